@@ -1,0 +1,85 @@
+#include "base/array.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool array_reserve(void **items, uint32_t count, uint32_t *capacity, size_t element_bytes)
+{
+    if (count < *capacity)
+        return true;
+    if (count == UINT32_MAX)
+        return false;
+    uint32_t grown = *capacity < 8 ? 8 : *capacity > UINT32_MAX / 2 ? UINT32_MAX : *capacity * 2;
+    if (element_bytes && grown > SIZE_MAX / element_bytes)
+        return false;
+    void *moved = realloc(*items, (size_t)grown * element_bytes);
+    if (!moved)
+        return false;
+    *items = moved;
+    *capacity = grown;
+    return true;
+}
+
+static bool product(size_t count, size_t element_bytes, size_t *bytes)
+{
+    if (element_bytes && count > (SIZE_MAX / 2) / element_bytes)
+        return false;
+    *bytes = count * element_bytes;
+    if (*bytes == 0)
+        *bytes = 1;
+    return true;
+}
+
+void *array_alloc(size_t count, size_t element_bytes)
+{
+    size_t bytes;
+    return product(count, element_bytes, &bytes) ? malloc(bytes) : NULL;
+}
+
+void *array_alloc_zeroed(size_t count, size_t element_bytes)
+{
+    size_t bytes;
+    return product(count, element_bytes, &bytes) ? calloc(1, bytes) : NULL;
+}
+
+void *array_alloc_aligned(size_t count, size_t element_bytes)
+{
+    size_t bytes;
+    if (!product(count, element_bytes, &bytes))
+        return NULL;
+    bytes = (bytes + 63) & ~(size_t)63;
+    void *memory = aligned_alloc(64, bytes);
+    if (memory)
+        memset(memory, 0, bytes);
+    return memory;
+}
+
+char *string_copy(const char *text)
+{
+    if (!text)
+        return NULL;
+    size_t bytes = strlen(text) + 1;
+    char *copy = malloc(bytes);
+    if (copy)
+        memcpy(copy, text, bytes);
+    return copy;
+}
+
+char *string_format(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    if (length < 0)
+        return NULL;
+    char *text = malloc((size_t)length + 1);
+    if (!text)
+        return NULL;
+    va_start(args, format);
+    vsnprintf(text, (size_t)length + 1, format, args);
+    va_end(args);
+    return text;
+}

@@ -1,0 +1,43 @@
+/* Whole files: read at once, written beside and renamed, so that a reader never sees half a file. */
+#ifndef BASE_FILE_H
+#define BASE_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "base/log.h"
+
+/* *data is malloc'ed, with one zero byte behind its size; free() it. Errors are logged with the
+   path. Refuses folders, devices and files over `limit_bytes` (0: no limit). */
+WHIT_CHECK whit_result file_read(const struct log *log, const char *path, uint64_t limit_bytes,
+                                 uint8_t **data, size_t *size_bytes);
+
+/* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
+   `path`; abandon removes it. Exactly one of the two ends it; both accept a zeroed one. Files open
+   when the process is interrupted are removed by file_abandon_all(), which is safe in a signal
+   handler. */
+struct file_write {
+    FILE *stream;
+    char *path;
+    char *temporary_path;
+    int slot;
+};
+
+WHIT_CHECK whit_result file_write_begin(const struct log *log, const char *path,
+                                        struct file_write *file);
+WHIT_CHECK whit_result file_write_commit(const struct log *log, struct file_write *file);
+void file_write_abandon(struct file_write *file);
+void file_abandon_all(void);
+
+bool file_exists(const char *path);
+/* Folder part of `path` with its slash, "" when there is none. Release with free(). */
+char *path_folder(const char *path);
+/* `relative` taken from the folder of `file`; absolute ones are kept. Release with free(). */
+char *path_beside(const char *file, const char *relative);
+/* Lower-case extension without the dot, "" when there is none. */
+void path_extension(const char *path, char *out, size_t out_bytes);
+const char *path_name(const char *path); /* behind the last slash */
+
+#endif

@@ -1,0 +1,22 @@
+/* One-line messages to whoever asked for them. */
+#ifndef BASE_LOG_H
+#define BASE_LOG_H
+
+#include "base/whit_base.h"
+
+/* Copied freely; a zeroed log is silent. Messages above `level` are not formatted. */
+struct log {
+    whit_log_fn fn;
+    void *user;
+    whit_log_level level;
+};
+
+void log_message(const struct log *log, whit_log_level level, const char *format, ...)
+    WHIT_PRINTF(3, 4);
+
+#define log_error(log, ...)   log_message((log), WHIT_LOG_ERROR, __VA_ARGS__)
+#define log_warning(log, ...) log_message((log), WHIT_LOG_WARNING, __VA_ARGS__)
+#define log_info(log, ...)    log_message((log), WHIT_LOG_INFO, __VA_ARGS__)
+#define log_debug(log, ...)   log_message((log), WHIT_LOG_DEBUG, __VA_ARGS__)
+
+#endif

@@ -1,0 +1,52 @@
+/* What POSIX gives and C does not. Everything that a port would change is in platform.c, file.c,
+   clock.c and threads.c. */
+#ifndef BASE_PLATFORM_H
+#define BASE_PLATFORM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/whit_base.h"
+
+/* How a child process ended. */
+enum child_end {
+    CHILD_DONE,      /* returned; its whole reply was received */
+    CHILD_CRASHED,   /* died of a signal */
+    CHILD_TIME,      /* ran past its time limit and was killed */
+    CHILD_MEMORY,    /* asked for more memory than allowed */
+    CHILD_REPLY,     /* replied with more than the limit, or not at all */
+    CHILD_NOT_STARTED,
+    CHILD_CANCELLED, /* *cancel became true while it ran */
+};
+
+struct child_limits {
+    double time_s;          /* wall clock */
+    uint64_t memory_bytes;  /* address space */
+    uint64_t reply_bytes;   /* largest reply */
+    const volatile bool *cancel; /* polled, may be NULL */
+};
+
+struct child_reply {
+    uint8_t *data; /* mapped by the call; give back with child_reply_free */
+    size_t size_bytes;
+    int signal; /* with CHILD_CRASHED */
+    int exit_code;
+};
+
+/* Writes bytes of the child's reply; false when the parent is gone. */
+typedef bool (*child_write)(void *to, const void *data, size_t size_bytes);
+
+/* Forks and runs fn(user, to, write) in the child, which must not touch Vulkan, threads or
+   terminals; its standard output and error go nowhere. fn's return value is the exit code. */
+enum child_end child_run(const struct child_limits *limits,
+                         int (*fn)(void *user, void *to, child_write write), void *user,
+                         struct child_reply *reply);
+void child_reply_free(struct child_reply *reply);
+
+bool platform_is_terminal(int fd);
+uint64_t platform_peak_memory_bytes(void); /* of this process and its finished children */
+/* Sets *flag at SIGINT and SIGTERM; a second signal removes unfinished files and ends at once. */
+void platform_catch_interrupts(volatile bool *flag);
+
+#endif

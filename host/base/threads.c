@@ -1,0 +1,54 @@
+#include "base/threads.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+enum { THREADS_MAX = 64 };
+
+struct loop {
+    void (*fn)(void *, uint32_t);
+    void *context;
+    uint32_t count;
+    _Atomic uint32_t next;
+};
+
+uint32_t threads_available(void)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return cores < 1 ? 1 : cores > THREADS_MAX ? THREADS_MAX : (uint32_t)cores;
+}
+
+static void *run(void *user)
+{
+    struct loop *loop = user;
+    for (;;) {
+        uint32_t index = atomic_fetch_add(&loop->next, 1);
+        if (index >= loop->count)
+            return NULL;
+        loop->fn(loop->context, index);
+    }
+}
+
+void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context, uint32_t index),
+                 void *context)
+{
+    if (thread_count == 0)
+        thread_count = threads_available();
+    if (thread_count > THREADS_MAX)
+        thread_count = THREADS_MAX;
+    if (thread_count > count)
+        thread_count = count;
+    struct loop loop = {.fn = fn, .context = context, .count = count};
+    atomic_init(&loop.next, 0);
+    pthread_t threads[THREADS_MAX];
+    uint32_t started = 0;
+    while (started + 1 < thread_count) {
+        if (pthread_create(&threads[started], NULL, run, &loop) != 0)
+            break;
+        ++started;
+    }
+    run(&loop);
+    for (uint32_t i = 0; i < started; ++i)
+        pthread_join(threads[i], NULL);
+}

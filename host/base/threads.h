@@ -1,0 +1,17 @@
+/* Fork and join over a fixed number of threads. */
+#ifndef BASE_THREADS_H
+#define BASE_THREADS_H
+
+#include <stdint.h>
+
+/* Usable cores of this machine, at least 1. */
+uint32_t threads_available(void);
+
+/* Calls fn(context, i) once for every i in [0, count), from at most `thread_count` threads
+   (0: threads_available()), the caller's among them; returns when all are done. Items are handed
+   out one by one, in order, so make them large. If a thread cannot be started the others do its
+   work. */
+void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context, uint32_t index),
+                 void *context);
+
+#endif

@@ -1,0 +1,79 @@
+/* Small vectors. Every operation is written out, one rounding each, so that C built with
+   contraction off gives the bits that the shaders give (docs/numerics.md). */
+#ifndef BASE_VEC_H
+#define BASE_VEC_H
+
+#include <math.h>
+
+struct vec3 {
+    float x, y, z;
+};
+
+struct dvec3 {
+    double x, y, z;
+};
+
+static inline struct vec3 vec3_make(float x, float y, float z) { return (struct vec3){x, y, z}; }
+
+static inline struct vec3 vec3_load(const float *p) { return (struct vec3){p[0], p[1], p[2]}; }
+
+static inline void vec3_store(float *p, struct vec3 v)
+{
+    p[0] = v.x;
+    p[1] = v.y;
+    p[2] = v.z;
+}
+
+static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline struct vec3 vec3_sub(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline struct vec3 vec3_scale(struct vec3 a, float s)
+{
+    return (struct vec3){a.x * s, a.y * s, a.z * s};
+}
+
+/* ((x + y) + z), the order of lavapipe's dot(). */
+static inline float vec3_dot(struct vec3 a, struct vec3 b)
+{
+    return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline float vec3_length(struct vec3 a) { return sqrtf(vec3_dot(a, a)); }
+
+/* The zero vector stays zero. */
+static inline struct vec3 vec3_normalize(struct vec3 a)
+{
+    float length = vec3_length(a);
+    return length > 0.0f ? vec3_scale(a, 1.0f / length) : a;
+}
+
+static inline struct dvec3 dvec3_from(struct vec3 a) { return (struct dvec3){a.x, a.y, a.z}; }
+
+static inline struct dvec3 dvec3_sub(struct dvec3 a, struct dvec3 b)
+{
+    return (struct dvec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline double dvec3_dot(struct dvec3 a, struct dvec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline struct dvec3 dvec3_cross(struct dvec3 a, struct dvec3 b)
+{
+    return (struct dvec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+#endif

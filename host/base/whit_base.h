@@ -1,0 +1,51 @@
+/* Part of whit's public face: results and logging, shared by every module. */
+#ifndef WHIT_BASE_H
+#define WHIT_BASE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__) || defined(__clang__)
+#define WHIT_CHECK        __attribute__((warn_unused_result))
+#define WHIT_PRINTF(f, a) __attribute__((format(printf, f, a)))
+#else
+#define WHIT_CHECK
+#define WHIT_PRINTF(f, a)
+#endif
+
+/* The one vocabulary of failure, from `base` to the public API. The reason is logged once,
+   where it happens; callers pass the code up. */
+typedef enum whit_result {
+    WHIT_OK = 0,
+    WHIT_ERROR_FAILED,     /* a result differs, or a promise was not kept */
+    WHIT_ERROR_USAGE,      /* arguments that make no sense */
+    WHIT_ERROR_INPUT,      /* a file that is missing, damaged or refused */
+    WHIT_ERROR_OUTPUT,     /* a file that cannot be written */
+    WHIT_ERROR_NO_DEVICE,  /* no Vulkan device that whit can use */
+    WHIT_ERROR_DEVICE,     /* a Vulkan call failed, or the device was lost */
+    WHIT_ERROR_MEMORY,     /* host or device memory ran out */
+    WHIT_ERROR_STATUS,     /* a kernel reported that its result is not to be trusted */
+    WHIT_ERROR_TIME_LIMIT, /* the caller's time limit passed */
+    WHIT_ERROR_CANCELLED,  /* the caller asked to stop */
+} whit_result;
+
+typedef enum whit_log_level {
+    WHIT_LOG_ERROR = 0,
+    WHIT_LOG_WARNING,
+    WHIT_LOG_INFO,
+    WHIT_LOG_DEBUG,
+} whit_log_level;
+
+/* `message` is one line without its newline, valid during the call only. Called from any thread,
+   one call at a time. */
+typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
+
+/* A short name for a result, for messages: "bad input". Never NULL. */
+const char *whit_result_name(whit_result result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

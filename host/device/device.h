@@ -1,0 +1,137 @@
+/* All of Vulkan: devices, buffers, compute pipelines, submission. No Vulkan type leaves this
+   module, and nothing here knows what a triangle is. Vulkan 1.2, compute only, no extension
+   required. Not thread-safe: one thread per device at a time. */
+#ifndef DEVICE_DEVICE_H
+#define DEVICE_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+struct device;
+struct buffer;
+struct pipeline;
+struct binding_set;
+struct commands;
+
+enum device_kind {
+    DEVICE_DISCRETE,
+    DEVICE_INTEGRATED,
+    DEVICE_VIRTUAL,
+    DEVICE_CPU,
+    DEVICE_OTHER,
+};
+
+struct device_info {
+    uint32_t index; /* in the order Vulkan lists them; what `--device N` takes */
+    char name[256];
+    char driver[256]; /* name and version text */
+    char api_version[32];
+    enum device_kind kind;
+    uint64_t memory_bytes;            /* of the largest device-local heap */
+    uint64_t max_storage_range_bytes; /* of one storage buffer descriptor */
+    uint64_t max_texel_elements;      /* of one texel buffer view */
+    uint64_t max_allocation_bytes;
+    uint32_t max_push_bytes, max_group_count_x, max_group_invocations;
+    uint32_t subgroup_size;
+    bool float64, int64, timestamps;
+    bool loop_limited;    /* a driver known to end shaders after 65535 loop turns (lavapipe) */
+    bool usable;          /* has what whit needs */
+    char why_not[128];    /* when not usable */
+};
+
+/* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all
+   is WHIT_ERROR_NO_DEVICE, logged with what to install. */
+WHIT_CHECK whit_result device_list(const struct log *log, struct device_info **infos,
+                                   uint32_t *count);
+const char *device_kind_name(enum device_kind kind);
+
+struct device_params {
+    const char *selector; /* NULL or "auto": discrete, else integrated, else virtual, else CPU; a
+                             number: that index; else part of a name, any case */
+    bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
+                             absence is an error */
+};
+
+WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
+                                     struct device **out);
+void device_destroy(struct device *device);
+const struct device_info *device_get_info(const struct device *device);
+/* Warnings and errors of the validation layers so far (each was logged). */
+uint32_t device_validation_messages(const struct device *device);
+
+/* What a buffer is used for, or-ed. */
+enum buffer_use {
+    BUFFER_STORAGE = 1,  /* storage buffer descriptor */
+    BUFFER_TEXELS = 2,   /* uniform texel buffer view, four uint32 per element */
+    BUFFER_INDIRECT = 4, /* arguments of a dispatch */
+    BUFFER_HOST = 8,     /* read or written by the host often: prefer host-visible memory */
+};
+
+/* Contents start as zeros. Over the device's limits is WHIT_ERROR_DEVICE, logged with name, size
+   and limit. `name` is copied and becomes the debug name. */
+WHIT_CHECK whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
+                                     const char *name, struct buffer **out);
+void buffer_destroy(struct buffer *buffer); /* NULL is fine; not while in flight */
+uint64_t buffer_size(const struct buffer *buffer);
+/* Through a staging buffer where the memory is not host-visible. Both wait until done. */
+WHIT_CHECK whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const void *data,
+                                    uint64_t size_bytes);
+WHIT_CHECK whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data,
+                                   uint64_t size_bytes);
+
+enum binding_kind { BINDING_NONE, BINDING_STORAGE, BINDING_TEXELS };
+
+struct pipeline_params {
+    const uint32_t *spirv;
+    size_t spirv_bytes;
+    const uint32_t *spec; /* value of specialization constant i, for i < spec_count */
+    uint32_t spec_count;
+    const enum binding_kind *bindings; /* of binding number i in set 0; NONE leaves a gap */
+    uint32_t binding_count;
+    uint32_t push_bytes;
+    const char *name;
+};
+
+WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipeline_params *params,
+                                       struct pipeline **out);
+void pipeline_destroy(struct pipeline *pipeline);
+
+/* buffers[i] goes to binding i, NULL where the pipeline has NONE. The buffers are borrowed until
+   the set is destroyed. The pipeline may not be destroyed before its sets. */
+WHIT_CHECK whit_result binding_set_create(struct pipeline *pipeline, struct buffer *const *buffers,
+                                          uint32_t count, struct binding_set **out);
+void binding_set_destroy(struct binding_set *set);
+
+/* A command buffer with its fence and timestamps: begin, record, submit, wait, and again. */
+WHIT_CHECK whit_result commands_create(struct device *device, const char *name,
+                                       struct commands **out);
+void commands_destroy(struct commands *commands); /* waits first */
+WHIT_CHECK whit_result commands_begin(struct commands *commands);
+void commands_bind(struct commands *commands, struct pipeline *pipeline, struct binding_set *set);
+void commands_push(struct commands *commands, const void *data, uint32_t size_bytes);
+void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t groups_y,
+                       uint32_t groups_z);
+void commands_dispatch_indirect(struct commands *commands, struct buffer *buffer,
+                                uint64_t offset_bytes);
+/* Everything before is visible to everything after: shader, transfer, indirect, host. */
+void commands_barrier(struct commands *commands);
+void commands_fill(struct commands *commands, struct buffer *buffer, uint64_t offset_bytes,
+                   uint64_t size_bytes, uint32_t word);
+void commands_copy(struct commands *commands, struct buffer *from, uint64_t from_offset_bytes,
+                   struct buffer *to, uint64_t to_offset_bytes, uint64_t size_bytes);
+/* A labelled stretch whose time is measured; at most COMMANDS_SPANS a recording, not nested. */
+enum { COMMANDS_SPANS = 256 };
+void commands_span_begin(struct commands *commands, const char *label);
+void commands_span_end(struct commands *commands);
+/* A recording error (out of memory) surfaces here. */
+WHIT_CHECK whit_result commands_submit(struct commands *commands);
+/* Waits up to `timeout_ms` (< 0: for ever). WHIT_ERROR_TIME_LIMIT leaves it in flight. */
+WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_ms);
+/* Device time of span i of the last finished submission; < 0 without timestamps. */
+double commands_span_ms(const struct commands *commands, uint32_t span);
+uint32_t commands_span_count(const struct commands *commands);
+
+#endif

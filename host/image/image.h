@@ -1,0 +1,59 @@
+/* Pixels in host memory, and files of them. */
+#ifndef IMAGE_IMAGE_H
+#define IMAGE_IMAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+/* Row 0 is the top. `channels` is 1, 3 or 4 floats, linear; or, for hit identities, uint32. */
+struct image {
+    uint32_t width, height, channels;
+    float *pixels;    /* width * height * channels, or NULL */
+    uint32_t *words;  /* the same for integers, or NULL; exactly one of the two is set */
+};
+
+/* Zeroed pixels. WHIT_ERROR_MEMORY, also for sizes whose product overflows. */
+WHIT_CHECK whit_result image_init(struct image *image, uint32_t width, uint32_t height,
+                                  uint32_t channels, bool integers);
+void image_finish(struct image *image);
+
+/* Key and value of a picture's recipe (PNG text chunks, EXR string attributes, comment lines are
+   not possible in PFM: the recipe is left out there). */
+struct image_text {
+    const char *key;
+    const char *value;
+};
+
+/* By extension: .png 8-bit sRGB (clamped, alpha kept with 4 channels, non-finite as magenta and
+   counted in a warning), .exr 32-bit float (integers as UINT channels `instance`, `primitive`),
+   .pfm 32-bit float RGB or grey. Atomic. Logs the path and the reason. */
+WHIT_CHECK whit_result image_save(const struct log *log, const struct image *image,
+                                  const char *path, const struct image_text *texts,
+                                  uint32_t text_count);
+/* True for extensions that image_save writes; `integers`: that keep uint32 exactly (.exr). */
+bool image_format_known(const char *path, bool integers);
+
+/* PNG (8-bit, sRGB to linear), EXR (float or uint channels), PFM, HDR. */
+WHIT_CHECK whit_result image_load(const struct log *log, const char *path, struct image *image);
+/* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
+WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
+                                        struct image_text **texts, uint32_t *text_count);
+
+struct image_difference {
+    uint64_t pixel_count, differing_pixels; /* any channel differs in a bit */
+    uint64_t over_1_255;                    /* pixels with a channel over 1/255 (sRGB) apart */
+    uint64_t nonfinite_a, nonfinite_b;
+    double rmse, largest; /* linear, over RGB; largest also of integers (1: they differ) */
+};
+
+/* WHIT_ERROR_INPUT when sizes or kinds differ. */
+WHIT_CHECK whit_result image_compare(const struct log *log, const struct image *a,
+                                     const struct image *b, struct image_difference *out);
+
+float image_srgb_from_linear(float linear); /* [0,1] to [0,1], clamps */
+float image_linear_from_srgb(float srgb);
+
+#endif

@@ -1,0 +1,38 @@
+/* Files into scenes. */
+#ifndef LOAD_LOAD_H
+#define LOAD_LOAD_H
+
+#include "scene/scene.h"
+
+struct load_params {
+    double time_limit_s;         /* for a foreign importer; 0: 60 */
+    uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
+    uint32_t texture_limit;      /* longest side of a texture, larger ones are halved; 0: 4096 */
+    const volatile bool *cancel; /* polled; may be NULL */
+};
+
+/* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl models.
+   On failure *out is NULL and one error naming the file and the reason (and the line, where the
+   format has lines) was logged. NULL params mean defaults. */
+WHIT_CHECK whit_result load_scene(const struct log *log, const char *path,
+                                  const struct load_params *params, struct scene **out);
+
+/* The parts of load_scene, for scene files that place models: adds what the model holds to an
+   unfrozen scene, its nodes below `parent` (SCENE_NONE: roots). Cameras, lights and environment of
+   the model are added only when `with_lights` / `with_cameras`. */
+WHIT_CHECK whit_result load_model(struct scene *scene, const char *path, uint32_t parent,
+                                  bool with_lights, bool with_cameras,
+                                  const struct load_params *params);
+WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
+                                       const struct load_params *params);
+
+/* 8-bit texture from a file or from memory (`data` non-NULL; `path` then only names it). The name
+   of an already loaded file gives the index it has. On failure a warning is noted in the scene and
+   *index is a 1x1 magenta texture. */
+WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
+                                    size_t size_bytes, const struct load_params *params,
+                                    uint32_t *index);
+/* Radiance .hdr, .exr, .pfm or an 8-bit picture (sRGB) into scene->environment. */
+WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path);
+
+#endif

@@ -1,0 +1,3 @@
+whit_module(scene
+  SOURCES scene.c freeze.c pose.c effects.c shapes.c
+  LINK whit_base)

@@ -1,0 +1,301 @@
+/* What is to be drawn: meshes, instances on a node tree, materials, textures, lights, cameras,
+   environment and animation. Loaders build it, scene_freeze() checks and completes it, and from
+   then on nobody changes it. Lengths are world units, angles radians, colours linear RGB. */
+#ifndef SCENE_SCENE_H
+#define SCENE_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/affine.h"
+#include "base/log.h"
+
+#define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
+
+/* Where something was defined, for receipts and errors. */
+struct scene_origin {
+    char *file;    /* NULL: made by whit */
+    uint32_t line; /* 1-based; 0: not known */
+};
+
+/* An 8-bit picture as stored in its file; row 0 is the top. */
+struct scene_texture {
+    char *name;
+    uint32_t width, height;
+    uint8_t *rgba; /* width * height * 4 */
+};
+
+enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP, SCENE_WRAP_MIRROR };
+
+/* A use of a texture: sampled at A * (u, v) + b, v growing downwards from the top row. */
+struct scene_texture_use {
+    uint32_t texture;   /* index, or SCENE_NONE */
+    uint32_t uv_set;    /* 0 or 1 */
+    float transform[6]; /* 2x3 row-major; identity: 1 0 0 0 1 0 */
+    enum scene_wrap wrap_u, wrap_v;
+    bool nearest; /* else bilinear */
+};
+
+enum scene_slot {
+    SCENE_SLOT_DIFFUSE,       /* RGB sRGB, times diffuse; alpha times opacity */
+    SCENE_SLOT_SPECULAR,      /* RGB linear, times specular */
+    SCENE_SLOT_EMISSION,      /* RGB sRGB, times emission */
+    SCENE_SLOT_NORMAL,        /* tangent-space normal, OpenGL orientation (green up) */
+    SCENE_SLOT_BUMP,          /* height in red */
+    SCENE_SLOT_METAL_ROUGH,   /* green roughness, blue metallic */
+    SCENE_SLOT_OPACITY,       /* red, or alpha where the picture has one, times opacity */
+    SCENE_SLOT_TRANSMISSION,  /* red, times transmission */
+    SCENE_SLOT_COUNT
+};
+
+enum scene_model {
+    SCENE_MODEL_PHONG,       /* MTL: ambient, diffuse, highlight, mirror, glass */
+    SCENE_MODEL_METAL_ROUGH, /* glTF: mapped to the Whitted model, see docs/effects.md */
+    SCENE_MODEL_UNLIT,       /* diffuse colour as it is */
+};
+
+enum scene_alpha {
+    SCENE_ALPHA_OPAQUE, /* opacity is ignored */
+    SCENE_ALPHA_MASK,   /* hit where opacity >= alpha_cutoff */
+    SCENE_ALPHA_BLEND,  /* passes 1 - opacity of the light straight through */
+};
+
+struct scene_material {
+    char *name;
+    struct scene_origin origin;
+    enum scene_model model;
+    int32_t illum;         /* MTL class 0..10; -1: not from an MTL */
+    float ambient[3];      /* times the scene's ambient light */
+    float diffuse[3];      /* albedo (PHONG), base colour (METAL_ROUGH), colour (UNLIT) */
+    float specular[3];     /* highlight colour (PHONG); tint of F0 (METAL_ROUGH), default 1 */
+    float shininess;       /* Blinn-Phong exponent (PHONG) */
+    float emission[3];     /* radiance */
+    float reflection[3];   /* mirror weight at normal incidence (PHONG) */
+    float transmission[3]; /* weight and filter of the refracted ray; 0: opaque */
+    float absorption[3];   /* Beer, per world unit, inside */
+    float ior;             /* of the inside, default 1.5 */
+    bool fresnel;          /* reflection and refraction share by Fresnel */
+    bool thin_walled;      /* transmits without bending (glTF without a volume) */
+    bool two_sided;        /* glTF doubleSided; false still hits both sides, normals flip anyway */
+    bool shadow_catcher;   /* MTL illum 10 */
+    float metallic, roughness; /* METAL_ROUGH */
+    float specular_level;      /* METAL_ROUGH: KHR_materials_specular factor, default 1 */
+    enum scene_alpha alpha;
+    float opacity, alpha_cutoff;
+    float normal_scale; /* of the normal map, or of bump height in UV-independent units */
+    struct scene_texture_use textures[SCENE_SLOT_COUNT];
+};
+
+/* A named range of triangles: OBJ group, glTF primitive. For receipts and picking. */
+struct scene_group {
+    char *name;
+    uint32_t first_triangle, triangle_count;
+};
+
+/* Triangles in object space. Arrays are owned by the scene; optional ones may be NULL. */
+struct scene_mesh {
+    char *name;
+    uint32_t vertex_count, triangle_count, group_count;
+    float *positions;   /* 3 per vertex */
+    float *normals;     /* 3 per vertex, or NULL: flat */
+    float *uvs[2];      /* 2 per vertex (v downwards), or NULL */
+    float *colors;      /* 4 per vertex linear RGBA, or NULL */
+    float *tangents;    /* 4 per vertex, w = sign of the bitangent, or NULL */
+    uint32_t *indices;  /* 3 per triangle */
+    uint32_t *materials; /* 1 per triangle: index into the scene's materials */
+    struct scene_group *groups;
+    float lo[3], hi[3]; /* bounds, set by scene_freeze; lo > hi when empty */
+};
+
+/* One node of the tree. The parent's index is smaller than its own. */
+struct scene_node {
+    char *name;
+    uint32_t parent; /* or SCENE_NONE */
+    bool has_matrix; /* else translation, rotation, scale */
+    struct affine matrix;
+    double translation[3], rotation[4], scale[3]; /* quaternion x, y, z, w */
+};
+
+enum scene_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE };
+enum scene_interpolation { SCENE_STEP, SCENE_LINEAR, SCENE_CUBIC };
+
+/* Keys of one property of one node. Before the first key and after the last one the value is held. */
+struct scene_channel {
+    uint32_t node;
+    enum scene_path path;
+    enum scene_interpolation interpolation;
+    uint32_t key_count;
+    float *times_s; /* increasing */
+    float *values;  /* 3 (4: rotation) per key; SCENE_CUBIC: in-tangent, value, out-tangent */
+};
+
+struct scene_instance {
+    char *name;
+    uint32_t mesh;
+    uint32_t node;        /* or SCENE_NONE: identity */
+    bool has_local;       /* `local` applies below the node (EXT_mesh_gpu_instancing) */
+    struct affine local;
+};
+
+enum scene_light_kind { SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_SPOT };
+
+/* `position` and `direction` are in the space of `node`. */
+struct scene_light {
+    char *name;
+    struct scene_origin origin;
+    enum scene_light_kind kind;
+    uint32_t node; /* or SCENE_NONE: world */
+    double position[3];
+    double direction[3]; /* the way the light travels; unit */
+    float color[3];      /* radiant intensity; irradiance when directional or without falloff */
+    bool falloff;        /* 1 / distance^2 */
+    float range;         /* 0: without limit */
+    float cos_inner, cos_outer; /* SPOT: full inside inner, none outside outer */
+    bool made_by_whit;
+};
+
+enum scene_camera_kind { SCENE_CAMERA_PERSPECTIVE, SCENE_CAMERA_ORTHOGRAPHIC };
+
+/* eye, target and up are in the space of `node`. */
+struct scene_camera {
+    char *name;
+    enum scene_camera_kind kind;
+    uint32_t node;
+    double eye[3], target[3], up[3];
+    float fov_y;    /* PERSPECTIVE: full vertical angle */
+    float height;   /* ORTHOGRAPHIC: full height of the picture, world units */
+    float aspect;   /* width / height the file asks for; 0: any */
+    bool made_by_whit;
+};
+
+enum scene_environment_kind { SCENE_ENVIRONMENT_GRADIENT, SCENE_ENVIRONMENT_MAP };
+
+/* What rays that miss see. GRADIENT runs from horizon to zenith above and to ground below (+y is
+   up); all three equal is a constant colour. MAP is equirectangular, row 0 up, u = 0 at -z. */
+struct scene_environment {
+    enum scene_environment_kind kind;
+    float zenith[3], horizon[3], ground[3];
+    float scale[3]; /* times map or gradient */
+    uint32_t width, height;
+    float *rgb; /* width * height * 3, or NULL */
+    char *name; /* file of the map */
+    bool made_by_whit;
+};
+
+enum scene_note_level { SCENE_NOTE_INFO, SCENE_NOTE_WARNING };
+
+/* What a loader or scene_freeze noticed, dropped or made up. */
+struct scene_note {
+    enum scene_note_level level;
+    char *text;
+};
+
+struct scene {
+    struct log log;
+    char *name; /* path or label */
+    struct scene_mesh *meshes;
+    struct scene_node *nodes;
+    struct scene_instance *instances;
+    struct scene_material *materials;
+    struct scene_texture *textures;
+    struct scene_light *lights;
+    struct scene_camera *cameras;
+    struct scene_channel *channels;
+    struct scene_note *notes;
+    uint32_t mesh_count, node_count, instance_count, material_count, texture_count, light_count,
+        camera_count, channel_count, note_count;
+    uint32_t mesh_capacity, node_capacity, instance_capacity, material_capacity, texture_capacity,
+        light_capacity, camera_capacity, channel_capacity, note_capacity;
+    struct scene_environment environment;
+    bool has_environment; /* false: scene_freeze makes one */
+    float ambient[3];     /* ambient light, times each material's `ambient` */
+    bool has_ambient;
+    uint64_t triangle_total; /* over instances; set by scene_freeze */
+    float time_end_s;        /* last key of any channel; 0: nothing moves */
+    uint64_t file_bytes;     /* of all files read */
+    uint64_t hash;           /* of everything above; set by scene_freeze */
+    bool frozen;
+};
+
+/* Never NULL fields afterwards but for arrays that are empty. NULL when memory runs out. */
+struct scene *scene_create(const struct log *log, const char *name);
+void scene_destroy(struct scene *scene);
+
+/* Fill *out with what the names above call default: grey diffuse PHONG, opaque, no textures;
+   identity node under SCENE_NONE; an unused texture. `name` is copied. */
+void scene_material_init(struct scene_material *out, const char *name);
+void scene_texture_use_init(struct scene_texture_use *out);
+void scene_node_init(struct scene_node *out, const char *name, uint32_t parent);
+
+/* Each takes over what its argument owns (on failure too) and returns the new index, or
+   SCENE_NONE when memory runs out. */
+uint32_t scene_add_mesh(struct scene *scene, struct scene_mesh mesh);
+uint32_t scene_add_node(struct scene *scene, struct scene_node node);
+uint32_t scene_add_instance(struct scene *scene, struct scene_instance instance);
+uint32_t scene_add_material(struct scene *scene, struct scene_material material);
+uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture);
+uint32_t scene_add_light(struct scene *scene, struct scene_light light);
+uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
+uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);
+void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
+    WHIT_PRINTF(3, 4);
+
+void scene_mesh_finish(struct scene_mesh *mesh);
+void scene_material_finish(struct scene_material *material);
+
+/* Checks everything, once: indices in range (else WHIT_ERROR_INPUT), vertices finite and below
+   1e18, textures and nodes in order, transforms invertible (a singular instance is dropped by
+   name). Bad and zero-area triangles are dropped and counted in notes. Adds a camera, a light and
+   an environment where the file has none, with a note; sets bounds, totals and hash. */
+WHIT_CHECK whit_result scene_freeze(struct scene *scene);
+
+/* The scene at one time: everything that moves, in world space. */
+struct scene_pose {
+    double time_s;
+    uint32_t instance_count, light_count, camera_count;
+    struct affine *instances; /* object to world */
+    struct scene_light *lights;   /* node resolved; name and origin borrowed from the scene */
+    struct scene_camera *cameras; /* likewise */
+    double lo[3], hi[3];          /* bounds of all instances; lo > hi when empty */
+};
+
+/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance's matrix is singular or
+   not finite at that time (named in the log), WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
+                                       struct scene_pose *pose);
+void scene_pose_finish(struct scene_pose *pose);
+
+/* Effects, and why the scene calls for them: the receipt of `whit scene` and the source of the
+   kernel's specialization. */
+enum scene_effect {
+    SCENE_EFFECT_SHADOWS,
+    SCENE_EFFECT_REFLECTION,
+    SCENE_EFFECT_REFRACTION,
+    SCENE_EFFECT_FRESNEL,
+    SCENE_EFFECT_ABSORPTION,
+    SCENE_EFFECT_CUTOUTS,      /* alpha mask or blend */
+    SCENE_EFFECT_TEXTURES,
+    SCENE_EFFECT_NORMAL_MAPS,  /* and bump maps */
+    SCENE_EFFECT_EMISSION,
+    SCENE_EFFECT_HIGHLIGHTS,
+    SCENE_EFFECT_POINT_LIGHTS,
+    SCENE_EFFECT_DIRECTIONAL_LIGHTS,
+    SCENE_EFFECT_SPOT_LIGHTS,
+    SCENE_EFFECT_ENVIRONMENT_MAP,
+    SCENE_EFFECT_SMOOTH_NORMALS,
+    SCENE_EFFECT_VERTEX_COLORS,
+    SCENE_EFFECT_METAL_ROUGH,
+    SCENE_EFFECT_INSTANCES,    /* more than one instance, or one that is moved */
+    SCENE_EFFECT_ORTHOGRAPHIC,
+    SCENE_EFFECT_COUNT
+};
+
+struct scene_effects {
+    bool called[SCENE_EFFECT_COUNT];
+    char reasons[SCENE_EFFECT_COUNT][160]; /* "material `glass`, illum 7, box.mtl:41" */
+};
+
+const char *scene_effect_name(enum scene_effect effect);
+void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
+
+#endif
