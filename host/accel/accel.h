@@ -1,0 +1,134 @@
+/* Trees over a scene, as flat arrays that go to the device as they are. */
+#ifndef ACCEL_ACCEL_H
+#define ACCEL_ACCEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "abi/bvh.h"
+#include "base/log.h"
+#include "scene/scene.h"
+
+/* ---- One tree over boxes (bvh.c: the skeleton; split_*.c: how to choose a split) ---- */
+
+struct bvh_box {
+    float lo[3], hi[3];
+};
+
+enum bvh_builder { BVH_BINNED, BVH_MEDIAN };
+
+struct bvh_params {
+    enum bvh_builder builder;
+    uint32_t bins;         /* BVH_BINNED: 2..256; 0: 16 */
+    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
+    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
+    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
+};
+
+/* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
+struct bvh {
+    struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
+    uint32_t *order;            /* free() */
+    uint32_t node_count;        /* with the unused one; 0: no primitives */
+    uint32_t primitive_count, leaf_count;
+    uint32_t depth; /* inner nodes on the longest path: the stack a traversal needs */
+    uint32_t leaf_largest;
+    double sah_cost; /* expected cost of a random ray, relative to the root's area */
+    double build_ms;
+};
+
+/* Boxes must be finite with lo <= hi. Deterministic. */
+WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes,
+                                 uint32_t count, const struct bvh_params *params, struct bvh *out);
+void bvh_finish(struct bvh *bvh);
+
+/* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
+   sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
+   first violation. */
+WHIT_CHECK whit_result bvh_validate(const struct log *log, const struct bvh *bvh,
+                                    const struct bvh_box *boxes, uint32_t leaf_limit);
+
+/* ---- All trees of a scene ---- */
+
+/* The tree of one mesh inside the shared arrays. */
+struct accel_mesh {
+    uint32_t root; /* ref, or BVH_EMPTY_REF */
+    uint32_t first_node, node_count;
+    uint32_t first_triangle, triangle_count; /* records in the triangle array */
+    uint32_t shade_base;                     /* primitive 0 in arrays indexed by primitive */
+    uint32_t depth;
+    double sah_cost, build_ms;
+    struct bvh_box box;
+};
+
+struct accel_params {
+    struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */
+    bool validate;
+};
+
+/* nodes: [0, instance_node_count) is the tree over instances, rebuilt by accel_pose within
+   [0, instance_node_capacity); mesh trees follow. */
+struct accel {
+    const struct scene *scene; /* borrowed */
+    struct log log;
+    struct accel_params params;
+    struct gpu_bvh_node *nodes;
+    struct gpu_triangle *triangles;
+    struct gpu_instance *instances; /* in the order of the scene */
+    struct accel_mesh *meshes;      /* in the order of the scene */
+    uint32_t node_count, triangle_count, instance_count, mesh_count;
+    uint32_t instance_node_count, instance_node_capacity;
+    uint32_t instance_root;  /* ref, or BVH_EMPTY_REF */
+    uint32_t instance_depth; /* of the tree over instances */
+    uint32_t mesh_depth;     /* deepest mesh tree */
+    bool single_identity;    /* one instance, not moved: traversal may start at meshes[..].root */
+    double build_ms, instance_build_ms;
+};
+
+/* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out. */
+WHIT_CHECK whit_result accel_create(const struct log *log, const struct scene *scene,
+                                    const struct accel_params *params, struct accel **out);
+void accel_destroy(struct accel *accel);
+/* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
+WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
+/* bvh_validate over everything. */
+WHIT_CHECK whit_result accel_validate(const struct accel *accel);
+uint64_t accel_bytes(const struct accel *accel);
+
+/* ---- Traversal on the CPU ---- */
+
+/* What a traversal counted; the shader counts the same. */
+struct traverse_counts {
+    uint32_t pairs;     /* node pairs fetched: box tests are twice that */
+    uint32_t triangles; /* triangle tests */
+    uint32_t instances; /* instances entered */
+    uint32_t stack;     /* most entries on the stack */
+};
+
+/* The float twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
+   on a device whose arithmetic is IEEE. tests t_min <= t <= t_max; equal t goes to the smaller
+   instance, then primitive. `skip_instance`/`skip_primitive`: not hit (HIT_NONE: none). `any`: any
+   hit will do, then only `primitive` != HIT_NONE counts. `counts` may be NULL; STATUS_* bits are
+   or-ed into *status. */
+void traverse_float(const struct accel *accel, const struct gpu_ray *ray, bool any,
+                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
+                    struct traverse_counts *counts, uint32_t *status);
+/* The same answer without any tree: every triangle of every instance. */
+void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
+                          struct gpu_hit *hit);
+
+/* The double-precision oracle's closest hit, with how sure it is: `edge_margin` is the smallest
+   barycentric coordinate of the hit, or for a miss the negated smallest distance by which some
+   triangle was missed, both relative to the error bound of the float test (below 1: the float test
+   may decide otherwise); `second_t` is the next hit behind (infinity: none). */
+struct oracle_hit {
+    double t, u, v;
+    uint32_t primitive, instance;
+    double edge_margin, second_t;
+};
+
+/* By tree (boxes widened so that nothing is lost), or by brute force. */
+void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
+                  struct oracle_hit *hit);
+
+#endif

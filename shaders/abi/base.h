@@ -1,0 +1,28 @@
+/* Read by the C compiler and by glslang: names of types that both know. Records are laid out in
+   16-byte rows, so that std430, scalar and C layouts agree. */
+#ifndef ABI_BASE_H
+#define ABI_BASE_H
+
+#ifdef __STDC_VERSION__
+#include <stddef.h>
+#include <stdint.h>
+typedef float gpu_float;
+typedef uint32_t gpu_uint;
+typedef float gpu_vec2[2];
+typedef float gpu_vec3[3];
+typedef float gpu_vec4[4];
+#define GPU_ASSERT_SIZE(record, bytes)                                                             \
+    _Static_assert(sizeof(struct record) == (bytes), "size of " #record);
+#define GPU_ASSERT_AT(record, field, bytes)                                                        \
+    _Static_assert(offsetof(struct record, field) == (bytes), "offset of " #record "." #field);
+#else
+#define gpu_float float
+#define gpu_uint  uint
+#define gpu_vec2  vec2
+#define gpu_vec3  vec3
+#define gpu_vec4  vec4
+#define GPU_ASSERT_SIZE(record, bytes)
+#define GPU_ASSERT_AT(record, field, bytes)
+#endif
+
+#endif

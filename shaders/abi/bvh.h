@@ -1,0 +1,102 @@
+/* Trees, triangles and instances as traversal reads them. */
+#ifndef ABI_BVH_H
+#define ABI_BVH_H
+
+#include "base.h"
+
+/* A box and what is in it. Nodes live in pairs: the two children of a node are nodes `first` and
+   `first + 1` with `first` even, so that siblings share one 64-byte line. In a tree over instances a
+   leaf holds one instance and `first` is its index. */
+struct gpu_bvh_node {
+    gpu_vec3 lo;
+    gpu_uint first; /* inner: left child; leaf: first record of the triangle array */
+    gpu_vec3 hi;
+    gpu_uint count; /* 0: inner; else primitives of the leaf, at most BVH_LEAF_MAX */
+};
+GPU_ASSERT_SIZE(gpu_bvh_node, 32)
+GPU_ASSERT_AT(gpu_bvh_node, first, 12)
+GPU_ASSERT_AT(gpu_bvh_node, hi, 16)
+GPU_ASSERT_AT(gpu_bvh_node, count, 28)
+
+/* A node as the traversal stack holds it: count in the upper 4 bits, first in the lower 28. */
+#define BVH_LEAF_MAX    15u
+#define BVH_COUNT_SHIFT 28u
+#define BVH_FIRST_MASK  0x0fffffffu
+#define BVH_EMPTY_REF   0xffffffffu /* a tree without primitives */
+
+/* One triangle in leaf order, object space. */
+struct gpu_triangle {
+    gpu_vec3 v0;
+    gpu_uint primitive; /* index within its mesh */
+    gpu_vec3 v1;
+    gpu_uint flags; /* TRIANGLE_* */
+    gpu_vec3 v2;
+    gpu_uint shadow; /* optical depth to shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
+};
+GPU_ASSERT_SIZE(gpu_triangle, 48)
+GPU_ASSERT_AT(gpu_triangle, primitive, 12)
+GPU_ASSERT_AT(gpu_triangle, v1, 16)
+GPU_ASSERT_AT(gpu_triangle, flags, 28)
+GPU_ASSERT_AT(gpu_triangle, v2, 32)
+GPU_ASSERT_AT(gpu_triangle, shadow, 44)
+
+#define TRIANGLE_CUTOUT    1u /* opacity decides whether it is hit */
+#define TRIANGLE_NO_SHADOW 2u /* casts no shadow: the surface of a light */
+/* Lets shadow rays through, weaker by 2^(-shadow / 64) per channel. Depths are added as integers,
+   so that the order in which a ray meets its filters cannot change the sum. */
+#define TRIANGLE_FILTER    4u
+#define SHADOW_DEPTH_SCALE 64.0
+
+/* An object placed in the world. t is the same in both spaces: directions are not renormalised.
+   The inverse takes (p - origin), never p: no cancellation far from the origin. */
+struct gpu_instance {
+    gpu_vec3 inverse0;
+    gpu_float origin_x;
+    gpu_vec3 inverse1;
+    gpu_float origin_y;
+    gpu_vec3 inverse2;
+    gpu_float origin_z;
+    gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
+    gpu_uint shade_base; /* primitive 0 of the mesh in the per-triangle shading arrays */
+    gpu_uint mesh;
+    gpu_uint pad;
+    gpu_vec3 forward0; /* object to world, rows */
+    gpu_float pad0;
+    gpu_vec3 forward1;
+    gpu_float pad1;
+    gpu_vec3 forward2;
+    gpu_float pad2;
+};
+GPU_ASSERT_SIZE(gpu_instance, 112)
+GPU_ASSERT_AT(gpu_instance, root, 48)
+GPU_ASSERT_AT(gpu_instance, forward0, 64)
+
+/* A ray of `whit trace` and its answer. */
+struct gpu_ray {
+    gpu_vec3 origin;
+    gpu_float t_min;
+    gpu_vec3 dir;
+    gpu_float t_max;
+};
+GPU_ASSERT_SIZE(gpu_ray, 32)
+
+struct gpu_hit {
+    gpu_float t; /* infinity: miss */
+    gpu_float u, v;
+    gpu_uint primitive; /* HIT_NONE: miss */
+    gpu_uint instance;
+    gpu_float ng_x, ng_y, ng_z; /* geometric normal in world space, not unit length */
+};
+GPU_ASSERT_SIZE(gpu_hit, 32)
+GPU_ASSERT_AT(gpu_hit, instance, 16)
+
+#define HIT_NONE 0xffffffffu
+
+/* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */
+#define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
+#define STATUS_NODE_STACK_OVERFLOW  2u
+#define STATUS_RAY_STACK_OVERFLOW   4u
+#define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
+#define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
+
+#endif
