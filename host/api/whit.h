@@ -1,0 +1,288 @@
+/* libwhit: a Whitted ray tracer on Vulkan compute. This header is the whole public face; see
+   tests/example/example.c for a program that uses nothing else.
+
+   Ownership: what a function creates, its destroy function ends; destroy accepts NULL. Handles
+   borrow what they were made from: scene <- accel <- renderer -> device; destroy in reverse order.
+   In every params struct, 0 means the default, and NULL params mean all defaults; params are read
+   during the call only. On failure an out parameter is NULL or untouched, the reason went to the
+   log callback as one line, and the result says which kind it was.
+
+   Threads: different handles may be used from different threads; one handle from one at a time. A
+   `cancel` flag may be set from anywhere, a signal handler included. */
+#ifndef WHIT_H
+#define WHIT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "whit_base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define WHIT_VERSION "0.1.0"
+#define WHIT_NONE    UINT32_MAX /* no primitive, no instance: a miss */
+
+typedef struct whit_scene whit_scene;       /* geometry, materials, lights, cameras */
+typedef struct whit_accel whit_accel;       /* trees over one scene, on the CPU */
+typedef struct whit_device whit_device;     /* one Vulkan device */
+typedef struct whit_renderer whit_renderer; /* an accel on a device, with settings */
+typedef struct whit_image whit_image;       /* pixels in host memory */
+
+/* Where messages go. Zeroed: nowhere. */
+typedef struct whit_log {
+    whit_log_fn fn;
+    void *user;
+    whit_log_level level; /* messages above it are not made */
+} whit_log;
+
+/* ---- Scene ---- */
+
+typedef struct whit_load_params {
+    double time_limit_s;           /* for a foreign importer; 0: 60 */
+    uint64_t memory_limit_bytes;   /* for a foreign importer; 0: 4 GiB */
+    uint32_t texture_limit;        /* longest side, larger ones are halved; 0: 4096 */
+    const volatile bool *cancel;   /* polled; NULL: never */
+} whit_load_params;
+
+/* .json scene files and .obj .gltf .glb .ply .stl models. */
+WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
+                                       const whit_log *log, whit_scene **out);
+void whit_scene_destroy(whit_scene *scene);
+
+typedef struct whit_scene_info {
+    uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,
+        camera_count, note_count, effect_count;
+    uint64_t mesh_triangle_count; /* each mesh once */
+    uint64_t triangle_count;      /* over all instances */
+    uint64_t file_bytes;          /* of all files read */
+    uint64_t hash;
+    double time_end_s;            /* 0: nothing moves */
+    double lo[3], hi[3];          /* world bounds at time 0; lo > hi when empty */
+} whit_scene_info;
+void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
+
+/* Item `index` of a kind, described. Strings live as long as the scene. */
+typedef struct whit_mesh_info {
+    const char *name;
+    uint32_t vertex_count, triangle_count, group_count;
+    bool has_normals, has_uvs, has_colors;
+} whit_mesh_info;
+typedef struct whit_material_info {
+    const char *name, *file; /* file: NULL when made by whit */
+    uint32_t line;
+    const char *model; /* "phong", "metal-rough", "unlit" */
+    int32_t illum;     /* -1: none */
+    float diffuse[3], specular[3], emission[3], reflection[3], transmission[3];
+    float shininess, ior, opacity, metallic, roughness;
+    uint32_t texture_count;
+} whit_material_info;
+typedef struct whit_light_info {
+    const char *name;
+    const char *kind; /* "point", "directional", "spot", "area-sample" */
+    double position[3], direction[3]; /* world, at time 0 */
+    float color[3];
+    bool made_by_whit;
+} whit_light_info;
+typedef struct whit_camera_info {
+    const char *name;
+    const char *kind; /* "perspective", "orthographic" */
+    double eye[3], target[3], up[3]; /* world, at time 0 */
+    double fov_y_degrees, height;
+    bool made_by_whit;
+} whit_camera_info;
+typedef struct whit_instance_info {
+    const char *name;
+    uint32_t mesh;
+    double object_to_world[12]; /* row-major 3x4, at time 0 */
+} whit_instance_info;
+typedef struct whit_effect_info {
+    const char *name;
+    bool called;
+    const char *reason; /* "" when not called for */
+} whit_effect_info;
+typedef struct whit_note_info {
+    bool warning;
+    const char *text;
+} whit_note_info;
+void whit_scene_get_mesh(const whit_scene *scene, uint32_t index, whit_mesh_info *info);
+void whit_scene_get_material(const whit_scene *scene, uint32_t index, whit_material_info *info);
+void whit_scene_get_light(const whit_scene *scene, uint32_t index, whit_light_info *info);
+void whit_scene_get_camera(const whit_scene *scene, uint32_t index, whit_camera_info *info);
+void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_instance_info *info);
+void whit_scene_get_effect(const whit_scene *scene, uint32_t index, whit_effect_info *info);
+void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info *info);
+
+/* Every world-space triangle at `time_s`, in the order of instance, then primitive. */
+typedef struct whit_triangle {
+    float vertices[9];
+    uint32_t instance, primitive;
+} whit_triangle;
+/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). */
+WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time_s,
+                                            bool (*fn)(void *user, const whit_triangle *triangle),
+                                            void *user);
+
+/* ---- Trees ---- */
+
+typedef enum whit_build { WHIT_BUILD_BINNED = 0, WHIT_BUILD_MEDIAN } whit_build;
+
+typedef struct whit_accel_params {
+    whit_build build;
+    uint32_t bins;       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
+    uint32_t leaf_limit; /* triangles in a leaf, 1..15; 0: 4 */
+    uint32_t threads;    /* 0: one a core; never changes the tree */
+    bool validate;       /* check the tree after the build (always in debug builds) */
+} whit_accel_params;
+
+WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
+                                         whit_accel **out);
+void whit_accel_destroy(whit_accel *accel);
+
+typedef struct whit_accel_info {
+    uint32_t node_count, leaf_count, triangle_count, depth, instance_depth;
+    uint64_t bytes;
+    double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
+} whit_accel_info;
+void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
+
+/* ---- Devices ---- */
+
+typedef struct whit_device_info {
+    uint32_t index;
+    char name[256], driver[256], api_version[32];
+    char kind[16]; /* "discrete", "integrated", "virtual", "cpu", "other" */
+    uint64_t memory_bytes, max_storage_range_bytes;
+    uint32_t subgroup_size;
+    bool float64, int64, timestamps, usable;
+    char why_not[128]; /* when not usable */
+} whit_device_info;
+
+/* *infos is one block; free() it. */
+WHIT_CHECK whit_result whit_device_list(const whit_log *log, whit_device_info **infos,
+                                        uint32_t *count);
+
+typedef struct whit_device_params {
+    const char *selector; /* NULL or "auto"; a number; part of a name */
+    bool validation;      /* Vulkan validation layers, with their messages in the log */
+} whit_device_params;
+
+WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
+                                          whit_device **out);
+void whit_device_destroy(whit_device *device);
+void whit_device_get_info(const whit_device *device, whit_device_info *info);
+uint32_t whit_device_validation_messages(const whit_device *device);
+
+/* ---- Rendering ---- */
+
+typedef struct whit_renderer_params {
+    uint32_t width, height;     /* pixels; 0: 640 x 480 */
+    const char *camera;         /* name or index of a camera of the scene, or
+                                   "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
+    double time_s;              /* of the animation */
+    uint32_t samples;           /* a pixel: 1, 4, 16 or 64; 0: 1 */
+    uint32_t depth;             /* most bounces; 0: 8 */
+    bool no_bounces;            /* depth 0: what the primary ray sees, with its shadows */
+    bool no_shadows;
+    bool all_effects;           /* compile everything, not only what the scene calls for */
+    uint32_t tile_size;         /* pixels on a side, 16..512; 0: by measured time */
+    const volatile bool *cancel;
+    /* Called from the rendering thread with the share done, 0..1; may be NULL. */
+    void (*progress)(void *user, double done);
+    void *progress_user;
+    double time_limit_s;        /* 0: none */
+    const char *load_path;      /* "auto" or NULL, "storage", "texel": how kernels read trees */
+} whit_renderer_params;
+
+WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
+                                            const whit_renderer_params *params,
+                                            whit_renderer **out);
+void whit_renderer_destroy(whit_renderer *renderer);
+
+/* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that it must not be trusted
+   (logged in words). May be called again: the same bytes. */
+WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
+
+typedef enum whit_aov {
+    WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 (0 where only background) */
+    WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
+} whit_aov;
+WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov,
+                                           whit_image **out);
+
+typedef struct whit_stats {
+    double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
+    uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
+    double mrays_per_s; /* all rays over render_ms */
+    uint64_t device_bytes;
+    uint32_t dispatches, tiles, tile_size;
+    const char *load_path; /* "storage" or "texel" */
+} whit_stats;
+void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
+
+/* ---- Rays ---- */
+
+/* Directions need not be unit; t counts in their lengths. Hits with t_min <= t <= t_max. */
+typedef struct whit_ray {
+    float origin[3], t_min, dir[3], t_max;
+} whit_ray;
+/* `u`, `v` weigh the second and third vertex; ng is (v1 - v0) x (v2 - v0) in world space, as long
+   as it comes. */
+typedef struct whit_hit {
+    float t; /* infinity: miss */
+    float u, v;
+    uint32_t primitive, instance; /* WHIT_NONE: miss */
+    float ng[3];
+} whit_hit;
+
+typedef enum whit_trace_on {
+    WHIT_TRACE_DEVICE = 0,
+    WHIT_TRACE_CPU_FLOAT,  /* the twin: the same bits */
+    WHIT_TRACE_CPU_BRUTE,  /* the twin without trees */
+} whit_trace_on;
+
+/* Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays that
+   are not finite miss. Cut-outs count as solid. `device` may be NULL with the CPU kinds. */
+WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
+                                  uint64_t count, bool any, whit_hit *hits);
+
+/* ---- Images ---- */
+
+typedef struct whit_image_info {
+    uint32_t width, height, channels;
+    bool integers;
+} whit_image_info;
+void whit_image_get_info(const whit_image *image, whit_image_info *info);
+/* width * height * channels values, row 0 at the top; the other one gives NULL. */
+const float *whit_image_floats(const whit_image *image);
+const uint32_t *whit_image_words(const whit_image *image);
+
+typedef struct whit_text {
+    const char *key, *value;
+} whit_text;
+/* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` is the recipe kept
+   inside the picture. */
+WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
+                                       const whit_text *texts, uint32_t text_count,
+                                       const whit_log *log);
+WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out);
+void whit_image_destroy(whit_image *image);
+
+/* True for a path that whit_image_save can write; `integers` asks for hit identities. */
+bool whit_image_format_known(const char *path, bool integers);
+
+/* Writes a whole file beside `path` and renames it. */
+WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,
+                                       const whit_log *log);
+/* Removes unfinished output; safe in a signal handler. */
+void whit_file_abandon_all(void);
+uint64_t whit_peak_memory_bytes(void);
+double whit_clock_ms(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,58 @@
+/* A scene on a device: upload, pipelines, pass order, readback. */
+#ifndef RENDER_RENDER_H
+#define RENDER_RENDER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "accel/accel.h"
+#include "device/device.h"
+#include "image/image.h"
+#include "scene/scene.h"
+
+enum render_load_path { RENDER_LOAD_AUTO, RENDER_LOAD_STORAGE, RENDER_LOAD_TEXEL };
+
+struct render_params {
+    uint32_t width, height; /* 0: 640 x 480 */
+    const char *camera;     /* name, index, or ten numbers; NULL: the first */
+    double time_s;
+    uint32_t samples; /* 1, 4, 16 or 64; 0: 1 */
+    uint32_t depth;   /* most bounces */
+    bool no_shadows, all_effects;
+    uint32_t tile_size; /* 16..512; 0: by measured time */
+    const volatile bool *cancel;
+    void (*progress)(void *user, double done);
+    void *progress_user;
+    double time_limit_s;
+    enum render_load_path load_path;
+};
+
+struct render_stats {
+    double upload_ms, compile_ms, render_ms, render_device_ms;
+    uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
+    uint64_t device_bytes;
+    uint32_t dispatches, tiles, tile_size;
+    bool texel_loads;
+};
+
+struct renderer;
+
+/* `device` and `accel` (with its scene) are borrowed until renderer_destroy. Poses `accel` at
+   params->time_s. WHIT_ERROR_USAGE for a camera that does not exist or sizes out of range. */
+WHIT_CHECK whit_result renderer_create(const struct log *log, struct device *device,
+                                       struct accel *accel, const struct render_params *params,
+                                       struct renderer **out);
+void renderer_destroy(struct renderer *renderer);
+WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
+/* Linear RGBA floats, or instance and primitive of the first sample (HIT_NONE: miss). */
+WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
+WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
+void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
+
+/* A batch of rays in chunks that fit the device. */
+WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays,
+                                      uint64_t count, bool any, struct gpu_hit *hits);
+/* Device time of the traversal of the last renderer_trace, without transfers; < 0: not measured. */
+double renderer_trace_device_ms(const struct renderer *renderer);
+
+#endif
