@@ -9,6 +9,9 @@
 
 #include "base/whit_base.h"
 
+/* Exit code of a child whose memory ran out. */
+enum { CHILD_EXIT_MEMORY = 120 };
+
 /* How a child process ended. */
 enum child_end {
     CHILD_DONE,      /* returned; its whole reply was received */
@@ -21,8 +24,8 @@ enum child_end {
 };
 
 struct child_limits {
-    double time_s;          /* wall clock */
-    uint64_t memory_bytes;  /* address space */
+    double time_s;          /* wall clock; 0: no limit */
+    uint64_t memory_bytes;  /* address space, beyond what is mapped at the fork; 0: no limit */
     uint64_t reply_bytes;   /* largest reply */
     const volatile bool *cancel; /* polled, may be NULL */
 };
@@ -38,7 +41,9 @@ struct child_reply {
 typedef bool (*child_write)(void *to, const void *data, size_t size_bytes);
 
 /* Forks and runs fn(user, to, write) in the child, which must not touch Vulkan, threads or
-   terminals; its standard output and error go nowhere. fn's return value is the exit code. */
+   terminals; its standard output and error go nowhere. fn's return value is the exit code, 0 to
+   119, or CHILD_EXIT_MEMORY when its memory ran out. A child that wrote nothing ends as
+   CHILD_REPLY, with its exit code. */
 enum child_end child_run(const struct child_limits *limits,
                          int (*fn)(void *user, void *to, child_write write), void *user,
                          struct child_reply *reply);

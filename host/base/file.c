@@ -1,0 +1,297 @@
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/array.h"
+
+/* Paths of unfinished files. Whoever takes a pointer out of its slot owns it, so that the signal
+   handler never reads a string that another thread frees. Slot numbers start at 1. */
+enum { SLOT_COUNT = 64 };
+static _Atomic(char *) unfinished[SLOT_COUNT];
+static char *abandoned[SLOT_COUNT]; /* free() is not for signal handlers */
+
+static int slot_take(const char *path)
+{
+    char *copy = string_copy(path);
+    if (!copy)
+        return 0;
+    for (int i = 0; i < SLOT_COUNT; ++i) {
+        char *empty = NULL;
+        if (atomic_compare_exchange_strong(&unfinished[i], &empty, copy))
+            return i + 1;
+    }
+    free(copy);
+    return 0;
+}
+
+static void slot_give_back(int slot)
+{
+    if (slot > 0)
+        free(atomic_exchange(&unfinished[slot - 1], NULL));
+}
+
+void file_abandon_all(void)
+{
+    for (int i = 0; i < SLOT_COUNT; ++i) {
+        char *path = atomic_exchange(&unfinished[i], NULL);
+        if (!path)
+            continue;
+        unlink(path);
+        abandoned[i] = path;
+    }
+}
+
+static whit_result read_all(const struct log *log, const char *path, int fd, uint8_t *data,
+                            size_t size_bytes, size_t *read_bytes)
+{
+    size_t done = 0;
+    while (done < size_bytes) {
+        ssize_t got = read(fd, data + done, size_bytes - done);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0) {
+            log_error(log, "%s: cannot read: %s", path, strerror(errno));
+            return WHIT_ERROR_INPUT;
+        }
+        if (got == 0)
+            break;
+        done += (size_t)got;
+    }
+    *read_bytes = done;
+    return WHIT_OK;
+}
+
+static whit_result check_readable(const struct log *log, const char *path, int fd,
+                                  uint64_t limit_bytes, size_t *size_bytes)
+{
+    struct stat info;
+    if (fstat(fd, &info) != 0) {
+        log_error(log, "%s: cannot read: %s", path, strerror(errno));
+        return WHIT_ERROR_INPUT;
+    }
+    if (!S_ISREG(info.st_mode)) {
+        log_error(log, "%s: %s, not a file", path,
+                  S_ISDIR(info.st_mode) ? "a folder" : "a device or pipe");
+        return WHIT_ERROR_INPUT;
+    }
+    if (limit_bytes && (uint64_t)info.st_size > limit_bytes) {
+        log_error(log, "%s: %llu bytes, over the limit of %llu", path,
+                  (unsigned long long)info.st_size, (unsigned long long)limit_bytes);
+        return WHIT_ERROR_INPUT;
+    }
+    *size_bytes = (size_t)info.st_size;
+    return WHIT_OK;
+}
+
+whit_result file_read(const struct log *log, const char *path, uint64_t limit_bytes, uint8_t **data,
+                      size_t *size_bytes)
+{
+    *data = NULL;
+    *size_bytes = 0;
+    /* Non-blocking, or opening a pipe without a writer would wait for ever. */
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0) {
+        log_error(log, "%s: cannot open: %s", path, strerror(errno));
+        return WHIT_ERROR_INPUT;
+    }
+    uint8_t *bytes = NULL;
+    size_t expected_bytes = 0;
+    whit_result result = check_readable(log, path, fd, limit_bytes, &expected_bytes);
+    if (result != WHIT_OK)
+        goto fail;
+    bytes = array_alloc(expected_bytes + 1, 1);
+    if (!bytes) {
+        log_error(log, "%s: no memory for its %zu bytes", path, expected_bytes);
+        result = WHIT_ERROR_MEMORY;
+        goto fail;
+    }
+    size_t read_bytes = 0;
+    result = read_all(log, path, fd, bytes, expected_bytes, &read_bytes);
+    if (result != WHIT_OK)
+        goto fail;
+    bytes[read_bytes] = 0;
+    close(fd);
+    *data = bytes;
+    *size_bytes = read_bytes;
+    return WHIT_OK;
+fail:
+    free(bytes);
+    close(fd);
+    return result;
+}
+
+static int open_sibling(const char *path, char **temporary_path)
+{
+    enum { NAME_KEPT = 200, ATTEMPTS = 16 }; /* NAME_MAX is 255 */
+    char *folder = path_folder(path);
+    int fd = -1;
+    errno = ENOMEM;
+    for (int attempt = 0; folder && attempt < ATTEMPTS && fd < 0; ++attempt) {
+        char number[16] = "";
+        if (attempt)
+            snprintf(number, sizeof number, ".%d", attempt);
+        free(*temporary_path);
+        *temporary_path = string_format("%s.%.*s.%ld%s.tmp", folder, NAME_KEPT, path_name(path),
+                                        (long)getpid(), number);
+        if (!*temporary_path) {
+            errno = ENOMEM;
+            break;
+        }
+        fd = open(*temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd < 0 && errno != EEXIST)
+            break;
+    }
+    int reason = errno;
+    free(folder);
+    errno = reason;
+    return fd;
+}
+
+/* Pipes, devices and the standard output cannot be renamed over: they are written directly. */
+static int open_direct(const char *path)
+{
+    if (strcmp(path, "/dev/stdout") == 0)
+        return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    return open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+}
+
+static int open_for_writing(struct file_write *file, const char *path)
+{
+    struct stat info;
+    bool exists = stat(path, &info) == 0;
+    bool standard_output = strcmp(path, "/dev/stdout") == 0;
+    if (exists && S_ISDIR(info.st_mode)) {
+        errno = EISDIR;
+        return -1;
+    }
+    if (standard_output || (exists && !S_ISREG(info.st_mode))) {
+        file->path = string_copy(path);
+        return file->path ? open_direct(path) : -1;
+    }
+    if (exists && access(path, W_OK) != 0)
+        return -1;
+    /* What a symbolic link points to is replaced, not the link. */
+    file->path = exists ? realpath(path, NULL) : string_copy(path);
+    if (!file->path)
+        return -1;
+    int fd = open_sibling(file->path, &file->temporary_path);
+    if (fd < 0) {
+        free(file->temporary_path);
+        file->temporary_path = NULL;
+        return -1;
+    }
+    file->slot = slot_take(file->temporary_path);
+    if (exists && fchmod(fd, info.st_mode & 07777) != 0)
+        errno = 0; /* keeping the permissions is a courtesy: some file systems have none */
+    return fd;
+}
+
+whit_result file_write_begin(const struct log *log, const char *path, struct file_write *file)
+{
+    *file = (struct file_write){0};
+    int fd = open_for_writing(file, path);
+    if (fd >= 0)
+        file->stream = fdopen(fd, "wb");
+    if (file->stream)
+        return WHIT_OK;
+    int reason = errno;
+    if (fd >= 0)
+        close(fd);
+    file_write_abandon(file);
+    log_error(log, "%s: cannot write: %s", path, strerror(reason));
+    return reason == ENOMEM ? WHIT_ERROR_MEMORY : WHIT_ERROR_OUTPUT;
+}
+
+/* 0, or the errno of the first thing that went wrong. */
+static int flush_and_close(struct file_write *file)
+{
+    int reason = 0;
+    errno = 0;
+    if (fflush(file->stream) != 0 || ferror(file->stream))
+        reason = errno ? errno : EIO;
+    /* Before the rename, or a power cut could leave the new name on no data. */
+    if (!reason && file->temporary_path && fsync(fileno(file->stream)) != 0 && errno != EINVAL)
+        reason = errno;
+    if (fclose(file->stream) != 0 && !reason)
+        reason = errno ? errno : EIO;
+    file->stream = NULL;
+    return reason;
+}
+
+whit_result file_write_commit(const struct log *log, struct file_write *file)
+{
+    if (!file->stream)
+        return WHIT_OK;
+    int reason = flush_and_close(file);
+    if (!reason && file->temporary_path) {
+        if (rename(file->temporary_path, file->path) != 0) {
+            reason = errno;
+        } else {
+            free(file->temporary_path);
+            file->temporary_path = NULL;
+        }
+    }
+    if (reason)
+        log_error(log, "%s: cannot write: %s", file->path, strerror(reason));
+    file_write_abandon(file);
+    return reason ? WHIT_ERROR_OUTPUT : WHIT_OK;
+}
+
+void file_write_abandon(struct file_write *file)
+{
+    if (!file)
+        return;
+    if (file->stream)
+        fclose(file->stream);
+    if (file->temporary_path)
+        unlink(file->temporary_path);
+    slot_give_back(file->slot);
+    free(file->temporary_path);
+    free(file->path);
+    *file = (struct file_write){0};
+}
+
+bool file_exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+const char *path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+char *path_folder(const char *path)
+{
+    return string_format("%.*s", (int)(path_name(path) - path), path);
+}
+
+char *path_beside(const char *file, const char *relative)
+{
+    if (relative[0] == '/')
+        return string_copy(relative);
+    return string_format("%.*s%s", (int)(path_name(file) - file), file, relative);
+}
+
+void path_extension(const char *path, char *out, size_t out_bytes)
+{
+    if (out_bytes == 0)
+        return;
+    out[0] = 0;
+    const char *name = path_name(path);
+    const char *dot = strrchr(name, '.');
+    if (!dot || dot == name || strlen(dot + 1) >= out_bytes)
+        return; /* cut short it could look like another one */
+    size_t i = 0;
+    for (const char *c = dot + 1; *c; ++c, ++i)
+        out[i] = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);
+    out[i] = 0;
+}

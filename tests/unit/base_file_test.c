@@ -1,0 +1,315 @@
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "base/platform.h"
+
+static char folder[64];
+
+struct messages {
+    int count;
+    char last[512];
+};
+
+static void collect(void *user, whit_log_level level, const char *message)
+{
+    (void)level;
+    struct messages *messages = user;
+    ++messages->count;
+    snprintf(messages->last, sizeof messages->last, "%s", message);
+}
+
+static struct log log_to(struct messages *messages)
+{
+    *messages = (struct messages){0};
+    return (struct log){.fn = collect, .user = messages, .level = WHIT_LOG_DEBUG};
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/whit-file-XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int entry_count(void)
+{
+    int count = 0;
+    DIR *dir = opendir(folder);
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir));)
+        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+    closedir(dir);
+    return count;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        char *path = string_format("%s/%s", folder, entry->d_name);
+        remove(path);
+        free(path);
+    }
+    closedir(dir);
+    return rmdir(folder);
+}
+
+static char *in_folder(const char *name)
+{
+    char *path = string_format("%s/%s", folder, name);
+    assert_non_null(path);
+    return path;
+}
+
+static void put(const char *path, const char *text)
+{
+    struct file_write file;
+    assert_int_equal(file_write_begin(NULL, path, &file), WHIT_OK);
+    fputs(text, file.stream);
+    assert_int_equal(file_write_commit(NULL, &file), WHIT_OK);
+}
+
+static void assert_content(const char *path, const char *text)
+{
+    uint8_t *data;
+    size_t size_bytes;
+    assert_int_equal(file_read(NULL, path, 0, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(size_bytes, strlen(text));
+    assert_string_equal((char *)data, text);
+    free(data);
+}
+
+static void commit_replaces_at_once(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.txt");
+    put(path, "old");
+    chmod(path, 0640);
+    struct file_write file;
+    assert_int_equal(file_write_begin(NULL, path, &file), WHIT_OK);
+    fputs("new and longer", file.stream);
+    fflush(file.stream);
+    assert_content(path, "old");
+    assert_int_equal(entry_count(), 2);
+    assert_int_equal(path_name(file.temporary_path)[0], '.');
+    assert_int_equal(file_write_commit(NULL, &file), WHIT_OK);
+    assert_content(path, "new and longer");
+    assert_int_equal(entry_count(), 1);
+    struct stat info;
+    assert_int_equal(stat(path, &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0640);
+    free(path);
+}
+
+static void abandon_leaves_the_old_file(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.txt");
+    put(path, "old");
+    struct file_write file;
+    assert_int_equal(file_write_begin(NULL, path, &file), WHIT_OK);
+    fputs("half", file.stream);
+    file_write_abandon(&file);
+    assert_content(path, "old");
+    assert_int_equal(entry_count(), 1);
+    file_write_abandon(&file);
+    assert_int_equal(file_write_commit(NULL, &file), WHIT_OK);
+    file_write_abandon(NULL);
+    free(path);
+}
+
+static void abandon_all_removes_every_open_file(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.txt");
+    struct file_write first, second;
+    assert_int_equal(file_write_begin(NULL, path, &first), WHIT_OK);
+    assert_int_equal(file_write_begin(NULL, path, &second), WHIT_OK);
+    assert_string_not_equal(first.temporary_path, second.temporary_path);
+    assert_int_equal(entry_count(), 2);
+    file_abandon_all();
+    assert_int_equal(entry_count(), 0);
+    struct messages messages;
+    struct log log = log_to(&messages);
+    assert_int_equal(file_write_commit(&log, &first), WHIT_ERROR_OUTPUT);
+    assert_int_equal(messages.count, 1);
+    file_write_abandon(&second);
+    assert_int_equal(entry_count(), 0);
+    free(path);
+}
+
+static void write_failures_name_path_and_reason(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct log log = log_to(&messages);
+    struct file_write file;
+    char *path = in_folder("none/a.txt");
+    assert_int_equal(file_write_begin(&log, path, &file), WHIT_ERROR_OUTPUT);
+    assert_int_equal(messages.count, 1);
+    assert_non_null(strstr(messages.last, path));
+    assert_non_null(strstr(messages.last, strerror(ENOENT)));
+    assert_null(file.stream);
+    assert_int_equal(file_write_begin(&log, folder, &file), WHIT_ERROR_OUTPUT);
+    assert_non_null(strstr(messages.last, strerror(EISDIR)));
+    assert_int_equal(file_write_begin(&log, "/dev/full", &file), WHIT_OK);
+    fputs("text", file.stream);
+    assert_int_equal(file_write_commit(&log, &file), WHIT_ERROR_OUTPUT);
+    assert_non_null(strstr(messages.last, strerror(ENOSPC)));
+    assert_int_equal(entry_count(), 0);
+    free(path);
+}
+
+static void links_pipes_and_long_names(void **state)
+{
+    (void)state;
+    char *path = in_folder("target"), *link_path = in_folder("link"), *pipe_path = in_folder("p");
+    put(path, "old");
+    assert_int_equal(symlink("target", link_path), 0);
+    put(link_path, "through");
+    assert_content(path, "through");
+    struct stat info;
+    assert_int_equal(lstat(link_path, &info), 0);
+    assert_true(S_ISLNK(info.st_mode));
+
+    assert_int_equal(mkfifo(pipe_path, 0600), 0);
+    int fd = open(pipe_path, O_RDONLY | O_NONBLOCK);
+    put(pipe_path, "piped");
+    char text[8] = "";
+    assert_int_equal(read(fd, text, 7), 5);
+    assert_string_equal(text, "piped");
+    close(fd);
+    assert_int_equal(lstat(pipe_path, &info), 0);
+    assert_true(S_ISFIFO(info.st_mode));
+
+    char name[256];
+    memset(name, 'n', 255);
+    name[255] = 0;
+    char *longest = in_folder(name);
+    put(longest, "x");
+    assert_content(longest, "x");
+    free(longest), free(path), free(link_path), free(pipe_path);
+}
+
+static void read_refuses_with_one_message(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct log log = log_to(&messages);
+    char *path = in_folder("a.txt"), *pipe_path = in_folder("p"), *missing = in_folder("m");
+    put(path, "0123456789");
+    mkfifo(pipe_path, 0600);
+    uint8_t *data;
+    size_t size_bytes;
+    const struct {
+        const char *path;
+        uint64_t limit_bytes;
+        const char *reason;
+    } cases[] = {{path, 9, "limit"},
+                 {folder, 0, "folder"},
+                 {pipe_path, 0, "pipe"},
+                 {"/dev/zero", 0, "device"},
+                 {missing, 0, "No such file"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        messages = (struct messages){0};
+        assert_int_equal(file_read(&log, cases[i].path, cases[i].limit_bytes, &data, &size_bytes),
+                         WHIT_ERROR_INPUT);
+        assert_null(data);
+        assert_int_equal(messages.count, 1);
+        assert_non_null(strstr(messages.last, cases[i].path));
+        assert_non_null(strstr(messages.last, cases[i].reason));
+    }
+    assert_int_equal(file_read(&log, path, 10, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(data[size_bytes], 0);
+    free(data), free(path), free(pipe_path), free(missing);
+}
+
+static void second_interrupt_removes_files_and_ends(void **state)
+{
+    (void)state;
+    char *path = in_folder("a.txt");
+    int ready[2];
+    assert_int_equal(pipe(ready), 0);
+    pid_t pid = fork();
+    if (pid == 0) {
+        static volatile bool interrupted;
+        struct file_write file;
+        platform_catch_interrupts(&interrupted);
+        if (file_write_begin(NULL, path, &file) != WHIT_OK)
+            _exit(1);
+        raise(SIGINT);
+        if (!interrupted || write(ready[1], "r", 1) != 1)
+            _exit(2);
+        for (;;)
+            pause();
+    }
+    char byte;
+    close(ready[1]);
+    assert_int_equal(read(ready[0], &byte, 1), 1);
+    assert_int_equal(entry_count(), 1);
+    kill(pid, SIGTERM);
+    int status;
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFSIGNALED(status));
+    assert_int_equal(WTERMSIG(status), SIGTERM);
+    assert_int_equal(entry_count(), 0);
+    close(ready[0]);
+    free(path);
+}
+
+static void paths(void **state)
+{
+    (void)state;
+    const struct {
+        const char *path, *folder, *name, *extension;
+    } cases[] = {{"a/b.PNG", "a/", "b.PNG", "png"},          {"b", "", "b", ""},
+                 {"/x.tar.gz", "/", "x.tar.gz", "gz"},       {"a.d/.exr", "a.d/", ".exr", ""},
+                 {"x.verylongone", "", "x.verylongone", ""}, {"a/", "a/", "", ""}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char *got = path_folder(cases[i].path);
+        assert_string_equal(got, cases[i].folder);
+        free(got);
+        assert_string_equal(path_name(cases[i].path), cases[i].name);
+        char extension[8];
+        path_extension(cases[i].path, extension, sizeof extension);
+        assert_string_equal(extension, cases[i].extension);
+    }
+    char *beside = path_beside("scenes/a.json", "models/b.obj");
+    assert_string_equal(beside, "scenes/models/b.obj");
+    free(beside);
+    beside = path_beside("scenes/a.json", "/b.obj");
+    assert_string_equal(beside, "/b.obj");
+    free(beside);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(commit_replaces_at_once, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(abandon_leaves_the_old_file, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(abandon_all_removes_every_open_file, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(write_failures_name_path_and_reason, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(links_pipes_and_long_names, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(read_refuses_with_one_message, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(second_interrupt_removes_files_and_ends, make_folder,
+                                        remove_folder),
+        cmocka_unit_test(paths),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,227 @@
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/platform.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define HAS_ASAN 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HAS_ASAN 1
+#endif
+#endif
+
+static const struct child_limits ordinary = {
+    .time_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 64u << 20};
+
+static int reply_words(void *user, void *to, child_write write)
+{
+    uint32_t count = *(uint32_t *)user;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!write(to, &i, sizeof i))
+            return 3;
+    }
+    return 0;
+}
+
+static void reply_arrives_whole(void **state)
+{
+    (void)state;
+    for (uint32_t count = 1; count <= 100000; count *= 10) {
+        struct child_reply reply;
+        assert_int_equal(child_run(&ordinary, reply_words, &count, &reply), CHILD_DONE);
+        assert_int_equal(reply.exit_code, 0);
+        assert_int_equal(reply.size_bytes, count * sizeof(uint32_t));
+        for (uint32_t i = 0; i < count; ++i)
+            assert_int_equal(((uint32_t *)(void *)reply.data)[i], i);
+        child_reply_free(&reply);
+        assert_null(reply.data);
+    }
+}
+
+static void reply_limit_is_exact(void **state)
+{
+    (void)state;
+    uint32_t count = 1000;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.reply_bytes = count * sizeof(uint32_t);
+    assert_int_equal(child_run(&limits, reply_words, &count, &reply), CHILD_DONE);
+    child_reply_free(&reply);
+    --limits.reply_bytes;
+    assert_int_equal(child_run(&limits, reply_words, &count, &reply), CHILD_REPLY);
+    assert_null(reply.data);
+}
+
+static int silent(void *user, void *to, child_write write)
+{
+    (void)to, (void)write;
+    return *(int *)user;
+}
+
+static void exit_codes_arrive(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    int code = 7;
+    assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_REPLY);
+    assert_int_equal(reply.exit_code, 7);
+    code = CHILD_EXIT_MEMORY;
+    assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_MEMORY);
+}
+
+static int die(void *user, void *to, child_write write)
+{
+    write(to, "some", 4);
+    raise(*(int *)user);
+    return 0;
+}
+
+static void crashes_are_told_apart(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    int number = SIGABRT;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
+    assert_int_equal(reply.signal, SIGABRT);
+    assert_null(reply.data);
+    number = SIGSEGV; /* a sanitizer's handler must not get it */
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
+    assert_int_equal(reply.signal, SIGSEGV);
+    number = SIGXCPU;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_TIME);
+    number = SIGKILL;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_MEMORY);
+}
+
+static int spin(void *user, void *to, child_write write)
+{
+    (void)user, (void)to, (void)write;
+    for (volatile unsigned i = 0;; ++i)
+        ;
+    return 0;
+}
+
+static void hangs_end_at_the_limit(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.time_s = 0.2;
+    double start_ms = clock_ms();
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_TIME);
+    double wall_ms = clock_ms() - start_ms;
+    assert_true(wall_ms >= 200.0 && wall_ms < 5000.0);
+}
+
+static volatile bool cancelled;
+
+static void cancel_now(int number)
+{
+    (void)number;
+    cancelled = true;
+}
+
+static void cancel_ends_it_soon(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.cancel = &cancelled;
+    cancelled = false;
+    signal(SIGALRM, cancel_now);
+    ualarm(100000, 0);
+    double start_ms = clock_ms();
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_CANCELLED);
+    assert_true(clock_ms() - start_ms < 5000.0);
+    signal(SIGALRM, SIG_DFL);
+}
+
+static int allocate(void *user, void *to, child_write write)
+{
+    size_t bytes = *(size_t *)user;
+    char *memory = malloc(bytes);
+    if (!memory)
+        return CHILD_EXIT_MEMORY;
+    memory[bytes / 2] = 'x';
+    bool written = write(to, &memory[bytes / 2], 1);
+    free(memory);
+    return written ? 0 : 1;
+}
+
+static void memory_is_limited(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    size_t bytes = 128u << 20;
+    assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_DONE);
+    child_reply_free(&reply);
+#ifndef HAS_ASAN
+    bytes = 512u << 20;
+    assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_MEMORY);
+#endif
+}
+
+static int chatter(void *user, void *to, child_write writer)
+{
+    (void)user;
+    static const char noise[] = "noise\n";
+    if (write(STDOUT_FILENO, noise, sizeof noise) < 0 ||
+        write(STDERR_FILENO, noise, sizeof noise) < 0)
+        return 1;
+    return writer(to, "k", 1) ? 0 : 1;
+}
+
+static void output_goes_nowhere(void **state)
+{
+    (void)state;
+    int ends[2], kept = dup(STDERR_FILENO);
+    assert_int_equal(pipe(ends), 0);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[1]);
+    struct child_reply reply;
+    enum child_end end = child_run(&ordinary, chatter, NULL, &reply);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    assert_int_equal(end, CHILD_DONE);
+    child_reply_free(&reply);
+    char text[8];
+    assert_int_equal(read(ends[0], text, sizeof text), 0);
+    close(ends[0]);
+}
+
+static void peak_memory_covers_what_was_used(void **state)
+{
+    (void)state;
+    uint64_t before = platform_peak_memory_bytes();
+    assert_true(before > 0);
+    size_t bytes = (size_t)before + (32u << 20);
+    char *memory = malloc(bytes);
+    assert_non_null(memory);
+    memset(memory, 1, bytes);
+    assert_true(platform_peak_memory_bytes() >= bytes);
+    free(memory);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reply_arrives_whole),
+        cmocka_unit_test(reply_limit_is_exact),
+        cmocka_unit_test(exit_codes_arrive),
+        cmocka_unit_test(crashes_are_told_apart),
+        cmocka_unit_test(hangs_end_at_the_limit),
+        cmocka_unit_test(cancel_ends_it_soon),
+        cmocka_unit_test(memory_is_limited),
+        cmocka_unit_test(output_goes_nowhere),
+        cmocka_unit_test(peak_memory_covers_what_was_used),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
