@@ -117,6 +117,7 @@ struct scene_node {
 };
 
 enum scene_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE };
+/* Rotations: LINEAR is slerp. CUBIC is glTF's Hermite spline, tangents per second. */
 enum scene_interpolation { SCENE_STEP, SCENE_LINEAR, SCENE_CUBIC };
 
 /* Keys of one property of one node. Before the first key and after the last one the value is held. */
@@ -137,7 +138,15 @@ struct scene_instance {
     struct affine local;
 };
 
-enum scene_light_kind { SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_SPOT };
+enum scene_light_kind {
+    SCENE_LIGHT_POINT,
+    SCENE_LIGHT_DIRECTIONAL,
+    SCENE_LIGHT_SPOT,
+    /* One sample of an emissive surface, made by scene_freeze: a point whose intensity along
+       `direction` (the surface's normal) is `color`, falling with the cosine to it; inverse-square.
+       A Lambertian surface below leaves albedo * color * cos * cos / distance^2. */
+    SCENE_LIGHT_AREA_SAMPLE,
+};
 
 /* `position` and `direction` are in the space of `node`. */
 struct scene_light {
@@ -151,6 +160,7 @@ struct scene_light {
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
     float cos_inner, cos_outer; /* SPOT: full inside inner, none outside outer */
+    bool two_sided;             /* AREA_SAMPLE: |cosine|, else nothing behind the surface */
     bool made_by_whit;
 };
 
@@ -237,6 +247,7 @@ uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture);
 uint32_t scene_add_light(struct scene *scene, struct scene_light light);
 uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
 uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);
+/* Kept for the receipt, and logged at once as a warning or as information. */
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
@@ -281,6 +292,7 @@ enum scene_effect {
     SCENE_EFFECT_POINT_LIGHTS,
     SCENE_EFFECT_DIRECTIONAL_LIGHTS,
     SCENE_EFFECT_SPOT_LIGHTS,
+    SCENE_EFFECT_AREA_LIGHTS,  /* emissive surfaces, sampled as lights */
     SCENE_EFFECT_ENVIRONMENT_MAP,
     SCENE_EFFECT_SMOOTH_NORMALS,
     SCENE_EFFECT_VERTEX_COLORS,

@@ -1,0 +1,295 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/freeze.h"
+
+#define LARGEST_COORDINATE 1e18f
+#define LARGEST_UV         1e9f
+
+struct cleaned {
+    uint32_t out_of_range, not_finite, zero_area;
+};
+
+static bool usable_vertex(const float *p)
+{
+    return fabsf(p[0]) <= LARGEST_COORDINATE && fabsf(p[1]) <= LARGEST_COORDINATE &&
+           fabsf(p[2]) <= LARGEST_COORDINATE;
+}
+
+/* Edge scaled so that its largest component is in [1/2, 1): products neither overflow nor vanish.
+ */
+static bool scaled_edge(const float *from, const float *to, double out[3])
+{
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        out[i] = (double)to[i] - (double)from[i];
+        largest = fmax(largest, fabs(out[i]));
+    }
+    if (largest == 0.0)
+        return false;
+    int exponent;
+    (void)frexp(largest, &exponent);
+    for (int i = 0; i < 3; ++i)
+        out[i] = ldexp(out[i], -exponent);
+    return true;
+}
+
+static bool has_area(const float *a, const float *b, const float *c)
+{
+    double e1[3], e2[3], e3[3];
+    if (!scaled_edge(a, b, e1) || !scaled_edge(a, c, e2) || !scaled_edge(b, c, e3))
+        return false;
+    return e1[1] * e2[2] != e1[2] * e2[1] || e1[2] * e2[0] != e1[0] * e2[2] ||
+           e1[0] * e2[1] != e1[1] * e2[0];
+}
+
+static bool keep_triangle(const struct scene_mesh *mesh, uint32_t triangle, struct cleaned *count)
+{
+    const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
+    const float *p[3];
+    for (int i = 0; i < 3; ++i) {
+        if (index[i] >= mesh->vertex_count) {
+            ++count->out_of_range;
+            return false;
+        }
+        p[i] = mesh->positions + 3 * (size_t)index[i];
+    }
+    if (!usable_vertex(p[0]) || !usable_vertex(p[1]) || !usable_vertex(p[2])) {
+        ++count->not_finite;
+        return false;
+    }
+    if (!has_area(p[0], p[1], p[2])) {
+        ++count->zero_area;
+        return false;
+    }
+    return true;
+}
+
+/* Groups are ranges: their ends move down by what was dropped before them. */
+static void shrink_groups(struct scene_mesh *mesh, const uint32_t *kept_before)
+{
+    for (uint32_t i = 0; i < mesh->group_count; ++i) {
+        struct scene_group *group = &mesh->groups[i];
+        uint32_t end = group->first_triangle + group->triangle_count;
+        group->first_triangle = kept_before[group->first_triangle];
+        group->triangle_count = kept_before[end] - group->first_triangle;
+    }
+}
+
+static whit_result drop_triangles(struct scene *scene, struct scene_mesh *mesh,
+                                  struct cleaned *count)
+{
+    uint32_t *kept_before = array_alloc((size_t)mesh->triangle_count + 1, sizeof *kept_before);
+    if (!kept_before) {
+        log_error(&scene->log, "%s: out of memory checking triangles", scene->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        kept_before[i] = kept;
+        if (!keep_triangle(mesh, i, count))
+            continue;
+        if (kept != i) {
+            memmove(mesh->indices + 3 * (size_t)kept, mesh->indices + 3 * (size_t)i,
+                    3 * sizeof *mesh->indices);
+            mesh->materials[kept] = mesh->materials[i];
+        }
+        ++kept;
+    }
+    kept_before[mesh->triangle_count] = kept;
+    shrink_groups(mesh, kept_before);
+    mesh->triangle_count = kept;
+    free(kept_before);
+    return WHIT_OK;
+}
+
+/* Vertices that only dropped triangles used; nothing may meet their values later. */
+static void zero_unusable_vertices(struct scene_mesh *mesh)
+{
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
+        float *p = mesh->positions + 3 * (size_t)i;
+        if (!usable_vertex(p))
+            p[0] = p[1] = p[2] = 0.0f;
+    }
+}
+
+static void set_bounds(struct scene_mesh *mesh)
+{
+    for (int k = 0; k < 3; ++k) {
+        mesh->lo[k] = INFINITY;
+        mesh->hi[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; ++i) {
+        const float *p = mesh->positions + 3 * (size_t)mesh->indices[i];
+        for (int k = 0; k < 3; ++k) {
+            mesh->lo[k] = fminf(mesh->lo[k], p[k]);
+            mesh->hi[k] = fmaxf(mesh->hi[k], p[k]);
+        }
+    }
+}
+
+static double length_of(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* Area-weighted face normals summed into the vertices marked bad. */
+static void average_faces(const struct scene_mesh *mesh, const bool *bad, double *sums)
+{
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const uint32_t *index = mesh->indices + 3 * (size_t)t;
+        if (!bad[index[0]] && !bad[index[1]] && !bad[index[2]])
+            continue;
+        double e1[3], e2[3];
+        const float *a = mesh->positions + 3 * (size_t)index[0];
+        for (int k = 0; k < 3; ++k) {
+            e1[k] = (double)mesh->positions[3 * (size_t)index[1] + (size_t)k] - (double)a[k];
+            e2[k] = (double)mesh->positions[3 * (size_t)index[2] + (size_t)k] - (double)a[k];
+        }
+        double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
+                       e1[0] * e2[1] - e1[1] * e2[0]};
+        for (int corner = 0; corner < 3; ++corner) {
+            for (int k = 0; bad[index[corner]] && k < 3; ++k)
+                sums[3 * (size_t)index[corner] + (size_t)k] += n[k];
+        }
+    }
+}
+
+static void mend_normal(float *normal, const double sum[3])
+{
+    double length = length_of(sum);
+    bool usable = length > 0.0 && isfinite(length);
+    for (int k = 0; k < 3; ++k)
+        normal[k] = usable ? (float)(sum[k] / length) : k == 2 ? 1.0f : 0.0f;
+}
+
+/* Unit length, since interpolation would weigh a longer normal more. False when it has none. */
+static bool normalize(float *normal)
+{
+    double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+    double length = length_of(n);
+    if (!(length > 0.0) || !isfinite(length))
+        return false;
+    if (fabs(length - 1.0) > 1e-4) {
+        for (int k = 0; k < 3; ++k)
+            normal[k] = (float)(n[k] / length);
+    }
+    return true;
+}
+
+static whit_result mend_normals(struct scene *scene, struct scene_mesh *mesh, uint32_t *count)
+{
+    if (!mesh->normals)
+        return WHIT_OK;
+    whit_result result = WHIT_ERROR_MEMORY;
+    double *sums = NULL;
+    bool *bad = array_alloc_zeroed(mesh->vertex_count, sizeof *bad);
+    if (!bad)
+        goto fail;
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
+        bad[i] = !normalize(mesh->normals + 3 * (size_t)i);
+        *count += bad[i];
+    }
+    if (*count) {
+        sums = array_alloc_zeroed((size_t)mesh->vertex_count, 3 * sizeof *sums);
+        if (!sums)
+            goto fail;
+        average_faces(mesh, bad, sums);
+        for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
+            if (bad[i])
+                mend_normal(mesh->normals + 3 * (size_t)i, sums + 3 * (size_t)i);
+        }
+    }
+    result = WHIT_OK;
+fail:
+    if (result != WHIT_OK)
+        log_error(&scene->log, "%s: out of memory mending normals", scene->name);
+    free(bad);
+    free(sums);
+    return result;
+}
+
+static uint32_t mend_uvs(struct scene_mesh *mesh)
+{
+    uint32_t count = 0;
+    for (int set = 0; set < 2; ++set) {
+        for (uint32_t i = 0; mesh->uvs[set] && i < mesh->vertex_count; ++i) {
+            float *uv = mesh->uvs[set] + 2 * (size_t)i;
+            if (fabsf(uv[0]) <= LARGEST_UV && fabsf(uv[1]) <= LARGEST_UV)
+                continue;
+            uv[0] = uv[1] = 0.0f;
+            ++count;
+        }
+    }
+    return count;
+}
+
+static uint32_t mend_colors(struct scene_mesh *mesh)
+{
+    uint32_t count = 0;
+    for (size_t i = 0; mesh->colors && i < 4 * (size_t)mesh->vertex_count; ++i) {
+        if (isfinite(mesh->colors[i]) && mesh->colors[i] >= 0.0f)
+            continue;
+        mesh->colors[i] = isfinite(mesh->colors[i]) ? 0.0f : 1.0f;
+        ++count;
+    }
+    return count;
+}
+
+static uint32_t mend_tangents(struct scene_mesh *mesh)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; mesh->tangents && i < mesh->vertex_count; ++i) {
+        float *t = mesh->tangents + 4 * (size_t)i;
+        t[3] = t[3] < 0.0f ? -1.0f : 1.0f;
+        if (normalize(t))
+            continue;
+        t[0] = 1.0f, t[1] = t[2] = 0.0f;
+        ++count;
+    }
+    return count;
+}
+
+static void report(struct scene *scene, const struct scene_mesh *mesh, uint32_t count,
+                   const char *what)
+{
+    if (count)
+        scene_note(scene, SCENE_NOTE_WARNING, "mesh `%s`: %u %s", mesh->name ? mesh->name : "",
+                   count, what);
+}
+
+static void report_dropped(struct scene *scene, const struct scene_mesh *mesh,
+                           const struct cleaned *count)
+{
+    if (count->out_of_range || count->not_finite || count->zero_area)
+        scene_note(
+            scene, SCENE_NOTE_WARNING,
+            "mesh `%s`: dropped %u triangles (%u with indices out of range, %u with vertices "
+            "not finite or beyond 1e18, %u without area)",
+            mesh->name ? mesh->name : "",
+            count->out_of_range + count->not_finite + count->zero_area, count->out_of_range,
+            count->not_finite, count->zero_area);
+}
+
+whit_result freeze_clean_mesh(struct scene *scene, uint32_t index)
+{
+    struct scene_mesh *mesh = &scene->meshes[index];
+    struct cleaned dropped = {0};
+    uint32_t normals = 0;
+    whit_result result = drop_triangles(scene, mesh, &dropped);
+    if (result != WHIT_OK)
+        return result;
+    zero_unusable_vertices(mesh);
+    set_bounds(mesh);
+    result = mend_normals(scene, mesh, &normals);
+    if (result != WHIT_OK)
+        return result;
+    report_dropped(scene, mesh, &dropped);
+    report(scene, mesh, normals, "normals without length or not finite, made from the faces");
+    report(scene, mesh, mend_uvs(mesh), "texture coordinates not finite or beyond 1e9, set to 0");
+    report(scene, mesh, mend_colors(mesh), "vertex colour components negative or not finite");
+    report(scene, mesh, mend_tangents(mesh), "tangents without length or not finite");
+    return WHIT_OK;
+}

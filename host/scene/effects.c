@@ -1,0 +1,223 @@
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/scene.h"
+
+static const char *const names[SCENE_EFFECT_COUNT] = {
+    [SCENE_EFFECT_SHADOWS] = "shadows",
+    [SCENE_EFFECT_REFLECTION] = "reflection",
+    [SCENE_EFFECT_REFRACTION] = "refraction",
+    [SCENE_EFFECT_FRESNEL] = "fresnel",
+    [SCENE_EFFECT_ABSORPTION] = "absorption",
+    [SCENE_EFFECT_CUTOUTS] = "cutouts",
+    [SCENE_EFFECT_TEXTURES] = "textures",
+    [SCENE_EFFECT_NORMAL_MAPS] = "normal-maps",
+    [SCENE_EFFECT_EMISSION] = "emission",
+    [SCENE_EFFECT_HIGHLIGHTS] = "highlights",
+    [SCENE_EFFECT_POINT_LIGHTS] = "point-lights",
+    [SCENE_EFFECT_DIRECTIONAL_LIGHTS] = "directional-lights",
+    [SCENE_EFFECT_SPOT_LIGHTS] = "spot-lights",
+    [SCENE_EFFECT_AREA_LIGHTS] = "area-lights",
+    [SCENE_EFFECT_ENVIRONMENT_MAP] = "environment-map",
+    [SCENE_EFFECT_SMOOTH_NORMALS] = "smooth-normals",
+    [SCENE_EFFECT_VERTEX_COLORS] = "vertex-colors",
+    [SCENE_EFFECT_METAL_ROUGH] = "metal-rough",
+    [SCENE_EFFECT_INSTANCES] = "instances",
+    [SCENE_EFFECT_ORTHOGRAPHIC] = "orthographic",
+};
+
+const char *scene_effect_name(enum scene_effect effect)
+{
+    return (unsigned)effect < SCENE_EFFECT_COUNT ? names[effect] : "unknown";
+}
+
+static const char *file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
+    WHIT_PRINTF(3, 4);
+
+/* The first reason is the one kept. */
+static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
+{
+    if (out->called[effect])
+        return;
+    out->called[effect] = true;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(out->reasons[effect], sizeof out->reasons[effect], format, args);
+    va_end(args);
+}
+
+static void place_of(const struct scene_origin *origin, char *out, size_t out_bytes)
+{
+    out[0] = '\0';
+    if (origin->file && origin->line)
+        snprintf(out, out_bytes, ", %s:%u", file_name(origin->file), origin->line);
+    else if (origin->file)
+        snprintf(out, out_bytes, ", %s", file_name(origin->file));
+}
+
+static void call_by_material(struct scene_effects *out, enum scene_effect effect,
+                             const struct scene_material *material, const char *what)
+{
+    char place[64], illum[24] = "";
+    if (out->called[effect])
+        return;
+    place_of(&material->origin, place, sizeof place);
+    if (material->illum >= 0)
+        snprintf(illum, sizeof illum, ", illum %d", (int)material->illum);
+    call(out, effect, "material `%.60s`%s%s%s%s", material->name ? material->name : "", illum,
+         what[0] ? ", " : "", what, place);
+}
+
+static bool any(const float rgb[3])
+{
+    return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
+}
+
+static bool has(const struct scene_material *material, enum scene_slot slot)
+{
+    return material->textures[slot].texture != SCENE_NONE;
+}
+
+static bool is_glossy_metal_rough(const struct scene_material *m)
+{
+    return m->model == SCENE_MODEL_METAL_ROUGH && (m->specular_level > 0.0f || m->metallic > 0.0f);
+}
+
+static void scan_optics(struct scene_effects *out, const struct scene_material *m)
+{
+    bool metal_rough = is_glossy_metal_rough(m);
+    if (m->model == SCENE_MODEL_UNLIT)
+        return;
+    if (any(m->transmission))
+        call_by_material(out, SCENE_EFFECT_REFRACTION, m, "");
+    if (any(m->transmission) && any(m->absorption))
+        call_by_material(out, SCENE_EFFECT_ABSORPTION, m, "");
+    if (any(m->reflection) || metal_rough || (any(m->transmission) && m->fresnel))
+        call_by_material(out, SCENE_EFFECT_REFLECTION, m,
+                         any(m->reflection) ? ""
+                         : metal_rough      ? "metal-rough"
+                                            : "glass");
+    if (metal_rough || (m->fresnel && (any(m->reflection) || any(m->transmission))))
+        call_by_material(out, SCENE_EFFECT_FRESNEL, m, metal_rough ? "metal-rough" : "");
+    if (any(m->emission))
+        call_by_material(out, SCENE_EFFECT_EMISSION, m, "");
+    if (metal_rough || (m->model == SCENE_MODEL_PHONG && any(m->specular)))
+        call_by_material(out, SCENE_EFFECT_HIGHLIGHTS, m, "");
+    if (m->model == SCENE_MODEL_METAL_ROUGH)
+        call_by_material(out, SCENE_EFFECT_METAL_ROUGH, m, "");
+}
+
+/* A mask or blend that is opaque everywhere needs no any-hit test. */
+static bool lets_through(const struct scene *scene, const struct scene_material *m)
+{
+    if (m->alpha == SCENE_ALPHA_OPAQUE)
+        return false;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        if (scene->meshes[i].colors)
+            return true;
+    }
+    return m->opacity < 1.0f || (m->alpha == SCENE_ALPHA_MASK && m->alpha_cutoff > 1.0f) ||
+           has(m, SCENE_SLOT_DIFFUSE) || has(m, SCENE_SLOT_OPACITY);
+}
+
+static void scan_material(const struct scene *scene, struct scene_effects *out,
+                          const struct scene_material *m)
+{
+    static const char *const slots[SCENE_SLOT_COUNT] = {
+        "diffuse map", "specular map",    "emission map", "normal map",
+        "bump map",    "metal-rough map", "opacity map",  "transmission map"};
+    scan_optics(out, m);
+    for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+        if (has(m, (enum scene_slot)slot))
+            call_by_material(out, SCENE_EFFECT_TEXTURES, m, slots[slot]);
+    }
+    if (m->model != SCENE_MODEL_UNLIT && (has(m, SCENE_SLOT_NORMAL) || has(m, SCENE_SLOT_BUMP)))
+        call_by_material(out, SCENE_EFFECT_NORMAL_MAPS, m,
+                         has(m, SCENE_SLOT_NORMAL) ? "normal map" : "bump map");
+    if (lets_through(scene, m))
+        call_by_material(out, SCENE_EFFECT_CUTOUTS, m,
+                         m->alpha == SCENE_ALPHA_MASK ? "alpha mask" : "alpha blend");
+}
+
+static void scan_light(struct scene_effects *out, const struct scene_light *light)
+{
+    static const enum scene_effect effects[] = {
+        [SCENE_LIGHT_POINT] = SCENE_EFFECT_POINT_LIGHTS,
+        [SCENE_LIGHT_DIRECTIONAL] = SCENE_EFFECT_DIRECTIONAL_LIGHTS,
+        [SCENE_LIGHT_SPOT] = SCENE_EFFECT_SPOT_LIGHTS,
+        [SCENE_LIGHT_AREA_SAMPLE] = SCENE_EFFECT_AREA_LIGHTS,
+    };
+    char place[64];
+    place_of(&light->origin, place, sizeof place);
+    const char *by = light->made_by_whit ? ", added by whit" : place;
+    const char *name = light->name ? light->name : "";
+    call(out, effects[light->kind], "light `%.60s`%s", name, by);
+    if (any(light->color))
+        call(out, SCENE_EFFECT_SHADOWS, "light `%.60s`%s", name, by);
+}
+
+static void scan_geometry(const struct scene *scene, struct scene_effects *out)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[i];
+        const char *name = mesh->name ? mesh->name : "";
+        if (mesh->normals)
+            call(out, SCENE_EFFECT_SMOOTH_NORMALS, "mesh `%.60s`", name);
+        if (mesh->colors)
+            call(out, SCENE_EFFECT_VERTEX_COLORS, "mesh `%.60s`", name);
+    }
+    if (scene->instance_count > 1)
+        call(out, SCENE_EFFECT_INSTANCES, "%u instances of %u meshes", scene->instance_count,
+             scene->mesh_count);
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_instance *instance = &scene->instances[i];
+        if (instance->node != SCENE_NONE || instance->has_local)
+            call(out, SCENE_EFFECT_INSTANCES, "instance `%.60s` has a transform",
+                 instance->name ? instance->name : "");
+    }
+}
+
+/* Only what some triangle of some instance wears counts: libraries of materials cost nothing.
+   NULL (all count) when memory runs out. */
+static bool *worn_materials(const struct scene *scene)
+{
+    bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
+    for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[i];
+        for (uint32_t t = 0; t < mesh->triangle_count; ++t)
+            worn[mesh->materials[t]] = true;
+    }
+    return worn;
+}
+
+void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
+{
+    memset(out, 0, sizeof *out);
+    bool *worn = worn_materials(scene);
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        if (!worn || worn[i])
+            scan_material(scene, out, &scene->materials[i]);
+    }
+    free(worn);
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        scan_light(out, &scene->lights[i]);
+    scan_geometry(scene, out);
+    const struct scene_environment *sky = &scene->environment;
+    if (sky->kind == SCENE_ENVIRONMENT_MAP && sky->rgb)
+        call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%.80s`",
+             sky->name ? file_name(sky->name) : "");
+    for (uint32_t i = 0; i < scene->camera_count; ++i) {
+        if (scene->cameras[i].kind == SCENE_CAMERA_ORTHOGRAPHIC)
+            call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%.60s`",
+                 scene->cameras[i].name ? scene->cameras[i].name : "");
+    }
+}

@@ -1,0 +1,239 @@
+/* Emissive surfaces as a handful of points. Whitted's model has no area lights, so each emissive
+   surface is replaced by deterministic samples spread evenly over its area. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/freeze.h"
+
+#define SAMPLES_MOST   16
+#define TRIANGLES_MOST (4u << 20)
+/* Emitted power per area of the scene's great circle, below which emission decorates but does not
+   light: the lamps of a car do not make its daylight. */
+#define POWER_LEAST    0.004
+
+struct emitter {
+    uint32_t instance, material, triangle;
+    double power; /* world area * luminance */
+};
+
+struct emitter_list {
+    struct emitter *items;
+    uint32_t count, capacity;
+    double power;
+};
+
+static double luminance(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
+/* Textured emission is left out: signs and screens glow, but their average is no lamp. */
+static bool lights_up(const struct scene_material *material)
+{
+    return material->model != SCENE_MODEL_UNLIT && luminance(material->emission) > 0.0 &&
+           material->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE;
+}
+
+static void triangle_corners(const struct scene_mesh *mesh, uint32_t triangle,
+                             const struct affine *matrix, double out[3][3])
+{
+    for (int i = 0; i < 3; ++i) {
+        size_t vertex = mesh->indices[3 * (size_t)triangle + (size_t)i];
+        const float *p = mesh->positions + 3 * vertex;
+        affine_point(matrix, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, out[i]);
+    }
+}
+
+/* Twice the area, and the normal that long. */
+static double normal_of(double corners[3][3], double out[3])
+{
+    double a[3], b[3];
+    for (int i = 0; i < 3; ++i) {
+        a[i] = corners[1][i] - corners[0][i];
+        b[i] = corners[2][i] - corners[0][i];
+    }
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+    return sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+}
+
+static bool gather_instance(const struct scene *scene, const struct scene_pose *pose,
+                            uint32_t instance, struct emitter_list *list)
+{
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const struct scene_material *material = &scene->materials[mesh->materials[t]];
+        if (!lights_up(material))
+            continue;
+        double corners[3][3], normal[3];
+        triangle_corners(mesh, t, &pose->instances[instance], corners);
+        double power = 0.5 * normal_of(corners, normal) * luminance(material->emission);
+        if (!(power > 0.0) || !isfinite(power))
+            continue;
+        struct emitter emitter = {instance, mesh->materials[t], t, power};
+        if (list->count == TRIANGLES_MOST ||
+            !ARRAY_PUSH(list->items, list->count, list->capacity, emitter))
+            return false;
+        list->power += power;
+    }
+    return true;
+}
+
+static int compare_emitters(const void *a, const void *b)
+{
+    const struct emitter *x = a, *y = b;
+    if (x->instance != y->instance)
+        return x->instance < y->instance ? -1 : 1;
+    if (x->material != y->material)
+        return x->material < y->material ? -1 : 1;
+    return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+}
+
+static double radical_inverse(uint32_t i)
+{
+    double result = 0.0, digit = 0.5;
+    for (; i; i >>= 1, digit *= 0.5)
+        result += (i & 1) * digit;
+    return result;
+}
+
+/* Uniform over the triangle from two numbers in [0, 1). */
+static void point_in(double corners[3][3], double u, double v, double out[3])
+{
+    double root = sqrt(u);
+    for (int i = 0; i < 3; ++i)
+        out[i] = corners[0][i] * (1.0 - root) + corners[1][i] * root * (1.0 - v) +
+                 corners[2][i] * root * v;
+}
+
+static bool add_sample(struct scene *scene, const struct emitter *emitter, double u, double v,
+                       double power)
+{
+    const struct scene_instance *instance = &scene->instances[emitter->instance];
+    const struct scene_material *material = &scene->materials[emitter->material];
+    struct affine local = instance->has_local ? instance->local : affine_identity();
+    struct scene_light light = {
+        .name = string_format("emission of `%s`", material->name ? material->name : ""),
+        .kind = SCENE_LIGHT_AREA_SAMPLE,
+        .node = instance->node,
+        .falloff = true,
+        .cos_inner = 1.0f,
+        .cos_outer = 0.0f,
+        /* OBJ files wind their lamps either way, so only glTF's are taken at their word. */
+        .two_sided = material->two_sided || material->model != SCENE_MODEL_METAL_ROUGH,
+        .made_by_whit = true,
+    };
+    double corners[3][3], normal[3];
+    triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
+    double twice_area = normal_of(corners, normal);
+    double side = affine_determinant(&local) < 0.0 ? -1.0 : 1.0;
+    /* A one-sided sample floats a little above its surface, out of its own shadow. */
+    double lift = light.two_sided ? 0.0 : 1e-4 * sqrt(twice_area);
+    point_in(corners, u, v, light.position);
+    for (int i = 0; i < 3; ++i) {
+        light.direction[i] = twice_area > 0.0 ? side * normal[i] / twice_area : -(double)(i == 1);
+        light.position[i] += lift * light.direction[i];
+        light.color[i] = (float)((double)material->emission[i] / luminance(material->emission) *
+                                 power / 3.14159265358979323846);
+    }
+    return scene_add_light(scene, light) != SCENE_NONE;
+}
+
+/* `samples` points at even steps of power through one run of emitters. */
+static bool sample_run(struct scene *scene, const struct emitter *run, uint32_t count,
+                       uint32_t samples)
+{
+    double total = 0.0;
+    for (uint32_t i = 0; i < count; ++i)
+        total += run[i].power;
+    double before = 0.0;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < samples; ++i) {
+        double target = ((double)i + 0.5) / samples * total;
+        while (at + 1 < count && before + run[at].power <= target)
+            before += run[at++].power;
+        double u = fmin((target - before) / run[at].power, 1.0);
+        double v = fmod(radical_inverse(i) + 0.5 / samples, 1.0);
+        if (!add_sample(scene, &run[at], u, v, total / samples))
+            return false;
+    }
+    return true;
+}
+
+static uint32_t run_length(const struct emitter_list *list, uint32_t first)
+{
+    uint32_t end = first + 1;
+    while (end < list->count && list->items[end].instance == list->items[first].instance &&
+           list->items[end].material == list->items[first].material)
+        ++end;
+    return end - first;
+}
+
+static uint32_t count_runs(const struct emitter_list *list)
+{
+    uint32_t runs = 0;
+    for (uint32_t i = 0; i < list->count; i += run_length(list, i))
+        ++runs;
+    return runs;
+}
+
+/* Every emissive surface gets a sample and its share of the rest; too many are sampled as one. */
+static bool sample_all(struct scene *scene, const struct emitter_list *list)
+{
+    uint32_t runs = count_runs(list);
+    if (runs > SAMPLES_MOST)
+        return sample_run(scene, list->items, list->count, SAMPLES_MOST);
+    for (uint32_t i = 0, length; i < list->count; i += length) {
+        length = run_length(list, i);
+        double power = 0.0;
+        for (uint32_t k = 0; k < length; ++k)
+            power += list->items[i + k].power;
+        uint32_t samples = 1 + (uint32_t)((SAMPLES_MOST - runs) * power / list->power + 1e-9);
+        if (!sample_run(scene, list->items + i, length, samples))
+            return false;
+    }
+    return true;
+}
+
+static bool power_suffices(const struct emitter_list *list, const struct scene_pose *pose)
+{
+    double diagonal2 = 0.0;
+    for (int i = 0; i < 3; ++i)
+        diagonal2 += (pose->hi[i] - pose->lo[i]) * (pose->hi[i] - pose->lo[i]);
+    return list->power >= POWER_LEAST * 3.14159265358979323846 * diagonal2 / 4.0;
+}
+
+whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose *pose,
+                                   uint32_t *added)
+{
+    struct emitter_list list = {0};
+    uint32_t before = scene->light_count;
+    whit_result result = WHIT_OK;
+    *added = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        if (gather_instance(scene, pose, i, &list))
+            continue;
+        if (list.count == TRIANGLES_MOST) {
+            scene_note(scene, SCENE_NOTE_WARNING,
+                       "more than %u emissive triangles: they are not sampled as lights",
+                       TRIANGLES_MOST);
+            goto done;
+        }
+        result = WHIT_ERROR_MEMORY;
+        goto done;
+    }
+    if (!list.count || !power_suffices(&list, pose))
+        goto done;
+    qsort(list.items, list.count, sizeof *list.items, compare_emitters);
+    if (!sample_all(scene, &list))
+        result = WHIT_ERROR_MEMORY;
+    *added = scene->light_count - before;
+done:
+    if (result != WHIT_OK)
+        log_error(&scene->log, "%s: out of memory sampling emissive surfaces", scene->name);
+    free(list.items);
+    return result;
+}

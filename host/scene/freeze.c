@@ -1,0 +1,483 @@
+#include "scene/freeze.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+/* Transforms end in floats on the device, so must their inverses. */
+#define LARGEST_ENTRY 1e30
+
+static const char *text_of(const char *name)
+{
+    return name ? name : "";
+}
+
+static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
+{
+    log_error(&scene->log, "%s: %s %u: %s", scene->name, what, index, why);
+    return WHIT_ERROR_INPUT;
+}
+
+static whit_result check_nodes(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->node_count; ++i) {
+        struct scene_node *node = &scene->nodes[i];
+        if (node->parent != SCENE_NONE && node->parent >= i)
+            return refuse(scene, "node", i, "its parent does not come before it");
+        bool finite = node->has_matrix ? affine_is_finite(&node->matrix) : true;
+        for (int k = 0; !node->has_matrix && k < 4; ++k)
+            finite = finite && isfinite(node->rotation[k]) &&
+                     (k == 3 || (isfinite(node->translation[k]) && isfinite(node->scale[k])));
+        if (!finite) {
+            scene_note(scene, SCENE_NOTE_WARNING,
+                       "node %u `%s`: its transform is not finite and is ignored", i,
+                       text_of(node->name));
+            char *name = node->name;
+            uint32_t parent = node->parent;
+            *node = (struct scene_node){.name = name,
+                                        .parent = parent,
+                                        .matrix = affine_identity(),
+                                        .rotation = {0, 0, 0, 1},
+                                        .scale = {1, 1, 1}};
+        }
+    }
+    return WHIT_OK;
+}
+
+static bool usable_channel(const struct scene *scene, const struct scene_channel *channel)
+{
+    if (channel->node >= scene->node_count || !channel->key_count || !channel->times_s ||
+        !channel->values)
+        return false;
+    size_t values = channel->key_count * (channel->path == SCENE_PATH_ROTATION ? 4u : 3u) *
+                    (channel->interpolation == SCENE_CUBIC ? (size_t)3 : 1);
+    for (uint32_t i = 0; i < channel->key_count; ++i) {
+        if (!isfinite(channel->times_s[i]) ||
+            (i && !(channel->times_s[i] > channel->times_s[i - 1])))
+            return false;
+    }
+    for (size_t i = 0; i < values; ++i) {
+        if (!isfinite(channel->values[i]))
+            return false;
+    }
+    return true;
+}
+
+static void check_channels(struct scene *scene)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->channel_count; ++i) {
+        struct scene_channel *channel = &scene->channels[i];
+        if (usable_channel(scene, channel)) {
+            scene->time_end_s = fmaxf(scene->time_end_s, channel->times_s[channel->key_count - 1]);
+            scene->channels[kept++] = *channel;
+            continue;
+        }
+        free(channel->times_s);
+        free(channel->values);
+    }
+    if (kept < scene->channel_count)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "dropped %u animation channels whose times do not increase or that are not "
+                   "finite",
+                   scene->channel_count - kept);
+    scene->channel_count = kept;
+}
+
+static bool mend(float *value, float least, float most, float otherwise)
+{
+    float before = *value;
+    *value = !isfinite(before) ? otherwise : fminf(fmaxf(before, least), most);
+    return !(*value == before);
+}
+
+static uint32_t mend_rgb(float rgb[3], float most, float otherwise)
+{
+    uint32_t mended = 0;
+    for (int i = 0; i < 3; ++i)
+        mended += mend(&rgb[i], 0.0f, most, otherwise);
+    return mended;
+}
+
+static uint32_t mend_material(struct scene_material *m)
+{
+    const float huge = 1e30f;
+    uint32_t count = mend_rgb(m->ambient, huge, 1.0f) + mend_rgb(m->diffuse, huge, 0.7f) +
+                     mend_rgb(m->specular, huge, 0.0f) + mend_rgb(m->emission, huge, 0.0f) +
+                     mend_rgb(m->reflection, huge, 0.0f) + mend_rgb(m->transmission, huge, 0.0f) +
+                     mend_rgb(m->absorption, huge, 0.0f);
+    count += mend(&m->shininess, 0.0f, 1e6f, 32.0f);
+    count += mend(&m->metallic, 0.0f, 1.0f, 0.0f);
+    count += mend(&m->roughness, 0.0f, 1.0f, 1.0f);
+    count += mend(&m->specular_level, 0.0f, 1.0f, 1.0f);
+    count += mend(&m->opacity, 0.0f, 1.0f, 1.0f);
+    count += mend(&m->alpha_cutoff, 0.0f, huge, 0.5f);
+    count += mend(&m->normal_scale, -1e6f, 1e6f, 1.0f);
+    if (!isfinite(m->ior) || m->ior <= 0.0f || m->ior > 1e6f) {
+        m->ior = 1.5f;
+        ++count;
+    }
+    return count;
+}
+
+static bool transform_is_finite(const struct scene_texture_use *use)
+{
+    for (int i = 0; i < 6; ++i) {
+        if (!isfinite(use->transform[i]) || fabsf(use->transform[i]) > 1e9f)
+            return false;
+    }
+    return true;
+}
+
+static whit_result check_materials(struct scene *scene)
+{
+    if (!scene->material_count) {
+        struct scene_material material;
+        scene_material_init(&material, "default");
+        if (scene_add_material(scene, material) == SCENE_NONE)
+            return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        struct scene_material *material = &scene->materials[i];
+        uint32_t count = mend_material(material);
+        for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+            struct scene_texture_use *use = &material->textures[slot];
+            if (use->texture != SCENE_NONE && use->texture >= scene->texture_count)
+                return refuse(scene, "material", i, "it uses a texture that is not there");
+            if (!transform_is_finite(use)) {
+                memcpy(use->transform, (float[]){1, 0, 0, 0, 1, 0}, sizeof use->transform);
+                ++count;
+            }
+            use->uv_set = use->uv_set ? 1 : 0;
+        }
+        if (count)
+            scene_note(scene, SCENE_NOTE_WARNING,
+                       "material `%s`: %u values not finite or out of range were mended",
+                       text_of(material->name), count);
+    }
+    return WHIT_OK;
+}
+
+static whit_result check_textures(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->texture_count; ++i) {
+        const struct scene_texture *texture = &scene->textures[i];
+        if (!texture->width || !texture->height || !texture->rgba)
+            return refuse(scene, "texture", i, "it has no pixels");
+    }
+    return WHIT_OK;
+}
+
+static whit_result check_mesh(struct scene *scene, uint32_t index)
+{
+    struct scene_mesh *mesh = &scene->meshes[index];
+    if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->indices))
+        return refuse(scene, "mesh", index, "it has no positions or no indices");
+    if (mesh->triangle_count && !mesh->materials) {
+        mesh->materials = array_alloc_zeroed(mesh->triangle_count, sizeof *mesh->materials);
+        if (!mesh->materials)
+            return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        if (mesh->materials[i] >= scene->material_count)
+            return refuse(scene, "mesh", index, "a triangle's material is not there");
+    }
+    for (uint32_t i = 0; i < mesh->group_count; ++i) {
+        const struct scene_group *group = &mesh->groups[i];
+        if (group->first_triangle > mesh->triangle_count ||
+            group->triangle_count > mesh->triangle_count - group->first_triangle)
+            return refuse(scene, "mesh", index, "a group reaches past its triangles");
+    }
+    return freeze_clean_mesh(scene, index);
+}
+
+/* Where each node is when nothing has moved yet; animated ones are checked by scene_pose_init. */
+struct still_node {
+    struct affine world;
+    bool animated;
+};
+
+static struct still_node *still_nodes(const struct scene *scene)
+{
+    struct still_node *still = array_alloc_zeroed(scene->node_count, sizeof *still);
+    if (!still)
+        return NULL;
+    for (uint32_t i = 0; i < scene->channel_count; ++i)
+        still[scene->channels[i].node].animated = true;
+    for (uint32_t i = 0; i < scene->node_count; ++i) {
+        const struct scene_node *node = &scene->nodes[i];
+        still[i].world = node->has_matrix
+                             ? node->matrix
+                             : affine_from_trs(node->translation, node->rotation, node->scale);
+        if (node->parent == SCENE_NONE)
+            continue;
+        const struct still_node *parent = &still[node->parent];
+        still[i].world = affine_multiply(&parent->world, &still[i].world);
+        still[i].animated = still[i].animated || parent->animated;
+    }
+    return still;
+}
+
+static bool usable_matrix(const struct affine *matrix)
+{
+    struct affine inverse;
+    if (!affine_is_finite(matrix) || !affine_invert(matrix, &inverse))
+        return false;
+    for (int i = 0; i < 12; ++i) {
+        if (fabs(matrix->m[i]) > LARGEST_ENTRY || fabs(inverse.m[i]) > LARGEST_ENTRY)
+            return false;
+    }
+    return true;
+}
+
+static bool keep_instance(struct scene *scene, uint32_t index, const struct still_node *still,
+                          uint32_t *empty)
+{
+    const struct scene_instance *instance = &scene->instances[index];
+    if (!scene->meshes[instance->mesh].triangle_count) {
+        ++*empty;
+        return false;
+    }
+    struct affine matrix = instance->has_local ? instance->local : affine_identity();
+    if (instance->node != SCENE_NONE) {
+        if (still[instance->node].animated)
+            return true;
+        matrix = affine_multiply(&still[instance->node].world, &matrix);
+    }
+    if (usable_matrix(&matrix))
+        return true;
+    scene_note(scene, SCENE_NOTE_WARNING, "instance %u `%s` dropped: its transform has no inverse",
+               index, text_of(instance->name));
+    return false;
+}
+
+static whit_result check_instances(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_instance *instance = &scene->instances[i];
+        if (instance->mesh >= scene->mesh_count)
+            return refuse(scene, "instance", i, "its mesh is not there");
+        if (instance->node != SCENE_NONE && instance->node >= scene->node_count)
+            return refuse(scene, "instance", i, "its node is not there");
+    }
+    struct still_node *still = still_nodes(scene);
+    if (!still)
+        return WHIT_ERROR_MEMORY;
+    uint32_t kept = 0, empty = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        if (keep_instance(scene, i, still, &empty))
+            scene->instances[kept++] = scene->instances[i];
+        else
+            free(scene->instances[i].name);
+    }
+    scene->instance_count = kept;
+    free(still);
+    if (empty)
+        scene_note(scene, SCENE_NOTE_WARNING, "dropped %u instances of meshes without triangles",
+                   empty);
+    return WHIT_OK;
+}
+
+/* Meshes that nothing places would be built and uploaded for nothing. */
+static whit_result drop_unused_meshes(struct scene *scene)
+{
+    uint32_t *moved_to = array_alloc(scene->mesh_count, sizeof *moved_to);
+    if (!moved_to)
+        return WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        moved_to[i] = SCENE_NONE;
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        moved_to[scene->instances[i].mesh] = 0;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        if (moved_to[i] == SCENE_NONE) {
+            scene_mesh_finish(&scene->meshes[i]);
+            continue;
+        }
+        moved_to[i] = kept;
+        scene->meshes[kept++] = scene->meshes[i];
+    }
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        scene->instances[i].mesh = moved_to[scene->instances[i].mesh];
+    if (kept < scene->mesh_count)
+        scene_note(scene, SCENE_NOTE_INFO, "dropped %u meshes that nothing places",
+                   scene->mesh_count - kept);
+    scene->mesh_count = kept;
+    free(moved_to);
+    return WHIT_OK;
+}
+
+static bool usable_light(const struct scene_light *light)
+{
+    bool finite = true;
+    for (int i = 0; i < 3; ++i)
+        finite = finite && isfinite(light->position[i]) && isfinite(light->direction[i]) &&
+                 isfinite(light->color[i]);
+    return finite;
+}
+
+static void mend_light(struct scene_light *light)
+{
+    double *d = light->direction;
+    double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int i = 0; i < 3; ++i) {
+        d[i] = length > 0.0 && isfinite(length) ? d[i] / length : -(double)(i == 1);
+        light->color[i] = fmaxf(light->color[i], 0.0f);
+    }
+    if (!(light->range > 0.0f) || !isfinite(light->range))
+        light->range = 0.0f;
+    mend(&light->cos_outer, -1.0f, 1.0f, 0.70710678f);
+    mend(&light->cos_inner, light->cos_outer, 1.0f, 1.0f);
+}
+
+static whit_result check_lights(struct scene *scene)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        struct scene_light *light = &scene->lights[i];
+        if (light->node != SCENE_NONE && light->node >= scene->node_count)
+            return refuse(scene, "light", i, "its node is not there");
+    }
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        struct scene_light *light = &scene->lights[i];
+        if (usable_light(light)) {
+            mend_light(light);
+            scene->lights[kept++] = *light;
+            continue;
+        }
+        scene_note(scene, SCENE_NOTE_WARNING, "light %u `%s` dropped: its values are not finite", i,
+                   text_of(light->name));
+        free(light->name);
+        free(light->origin.file);
+    }
+    scene->light_count = kept;
+    return WHIT_OK;
+}
+
+static bool usable_camera(const struct scene_camera *camera)
+{
+    double distance2 = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double step = camera->target[i] - camera->eye[i];
+        distance2 += step * step;
+        if (!isfinite(camera->up[i]))
+            return false;
+    }
+    if (camera->kind == SCENE_CAMERA_ORTHOGRAPHIC &&
+        !(camera->height > 0.0f && isfinite(camera->height)))
+        return false;
+    return isfinite(distance2) && distance2 > 0.0;
+}
+
+/* An `up` along the view has no picture plane: take the axis farthest from the view. */
+static void mend_camera(struct scene_camera *camera)
+{
+    double view[3], length2 = 0.0, up2 = 0.0, cross2 = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        view[i] = camera->target[i] - camera->eye[i];
+        length2 += view[i] * view[i];
+        up2 += camera->up[i] * camera->up[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double c = view[j] * camera->up[k] - view[k] * camera->up[j];
+        cross2 += c * c;
+    }
+    if (!(cross2 > 1e-16 * length2 * up2)) {
+        int axis = fabs(view[1]) < 0.9 * sqrt(length2) ? 1 : 2;
+        for (int i = 0; i < 3; ++i)
+            camera->up[i] = i == axis ? 1.0 : 0.0;
+    }
+    if (!(camera->fov_y > 0.0f && camera->fov_y < 3.1415f))
+        camera->fov_y = 0.6981317f;
+    if (!(camera->aspect > 0.0f && isfinite(camera->aspect)))
+        camera->aspect = 0.0f;
+}
+
+static whit_result check_cameras(struct scene *scene)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < scene->camera_count; ++i) {
+        if (scene->cameras[i].node != SCENE_NONE && scene->cameras[i].node >= scene->node_count)
+            return refuse(scene, "camera", i, "its node is not there");
+    }
+    for (uint32_t i = 0; i < scene->camera_count; ++i) {
+        struct scene_camera *camera = &scene->cameras[i];
+        if (usable_camera(camera)) {
+            mend_camera(camera);
+            scene->cameras[kept++] = *camera;
+            continue;
+        }
+        scene_note(scene, SCENE_NOTE_WARNING, "camera %u `%s` dropped: it looks nowhere", i,
+                   text_of(camera->name));
+        free(camera->name);
+    }
+    scene->camera_count = kept;
+    return WHIT_OK;
+}
+
+static void check_environment(struct scene *scene)
+{
+    struct scene_environment *sky = &scene->environment;
+    const float huge = 1e30f;
+    uint32_t count = mend_rgb(sky->zenith, huge, 0.0f) + mend_rgb(sky->horizon, huge, 0.0f) +
+                     mend_rgb(sky->ground, huge, 0.0f) + mend_rgb(sky->scale, huge, 1.0f) +
+                     mend_rgb(scene->ambient, huge, 0.0f);
+    if (sky->kind == SCENE_ENVIRONMENT_MAP && (!sky->rgb || !sky->width || !sky->height))
+        sky->kind = SCENE_ENVIRONMENT_GRADIENT;
+    size_t floats = sky->rgb ? (size_t)sky->width * sky->height * 3 : 0;
+    for (size_t i = 0; i < floats; ++i)
+        count += mend(&sky->rgb[i], 0.0f, huge, 0.0f);
+    if (count)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "environment: %u values not finite or negative were mended", count);
+}
+
+static whit_result check_all(struct scene *scene)
+{
+    whit_result result = check_nodes(scene);
+    if (result == WHIT_OK)
+        check_channels(scene);
+    if (result == WHIT_OK)
+        result = check_textures(scene);
+    if (result == WHIT_OK)
+        result = check_materials(scene);
+    for (uint32_t i = 0; result == WHIT_OK && i < scene->mesh_count; ++i)
+        result = check_mesh(scene, i);
+    if (result == WHIT_OK)
+        result = check_instances(scene);
+    if (result == WHIT_OK)
+        result = drop_unused_meshes(scene);
+    if (result == WHIT_OK)
+        result = check_lights(scene);
+    if (result == WHIT_OK)
+        result = check_cameras(scene);
+    if (result == WHIT_OK)
+        check_environment(scene);
+    return result;
+}
+
+whit_result scene_freeze(struct scene *scene)
+{
+    if (scene->frozen)
+        return WHIT_OK;
+    whit_result result = check_all(scene);
+    if (result == WHIT_OK)
+        result = freeze_add_defaults(scene);
+    if (result != WHIT_OK) {
+        if (result == WHIT_ERROR_MEMORY)
+            log_error(&scene->log, "%s: out of memory checking the scene", scene->name);
+        return result;
+    }
+    scene->triangle_total = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        scene->triangle_total += scene->meshes[scene->instances[i].mesh].triangle_count;
+    if (!scene->triangle_total)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "nothing to draw: no triangle is left, the picture shows the background");
+    scene->hash = freeze_hash(scene);
+    scene->frozen = true;
+    return WHIT_OK;
+}

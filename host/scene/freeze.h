@@ -1,0 +1,21 @@
+/* The parts of scene_freeze; no one else's business. */
+#ifndef SCENE_FREEZE_H
+#define SCENE_FREEZE_H
+
+#include "scene/scene.h"
+
+/* clean.c: drops triangles that cannot be traced, mends attributes, sets bounds. */
+WHIT_CHECK whit_result freeze_clean_mesh(struct scene *scene, uint32_t mesh);
+
+/* emitters.c: adds lights that stand for emissive surfaces. *added is how many; 0 when the scene
+   has none that would light it. */
+WHIT_CHECK whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose *pose,
+                                              uint32_t *added);
+
+/* defaults.c: camera, lights, ambient light and environment where the file has none. */
+WHIT_CHECK whit_result freeze_add_defaults(struct scene *scene);
+
+/* hash.c: over all that pictures depend on. */
+uint64_t freeze_hash(const struct scene *scene);
+
+#endif

@@ -1,0 +1,156 @@
+/* The scene's hash: everything that a picture depends on, names and notes left out. */
+#include <string.h>
+
+#include "scene/freeze.h"
+
+struct hash {
+    uint64_t value;
+};
+
+/* FNV-1a over 8-byte words with a fold, since byte by byte it is slower than loading. */
+static void hash_bytes(struct hash *hash, const void *data, size_t size_bytes)
+{
+    const uint8_t *bytes = data;
+    uint64_t value = (hash->value ^ size_bytes) * UINT64_C(0x100000001b3);
+    for (; size_bytes;) {
+        uint64_t word = 0;
+        size_t step = size_bytes < sizeof word ? size_bytes : sizeof word;
+        memcpy(&word, bytes, step);
+        value = (value ^ word) * UINT64_C(0x100000001b3);
+        value ^= value >> 29;
+        bytes += step;
+        size_bytes -= step;
+    }
+    hash->value = value;
+}
+
+#define HASH_FIELD(hash, field) hash_bytes((hash), &(field), sizeof(field))
+#define HASH_ARRAY(hash, array, count)                                                             \
+    hash_bytes((hash), (array), (array) ? (size_t)(count) * sizeof *(array) : 0)
+
+static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
+{
+    HASH_ARRAY(hash, m->positions, 3 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->normals, 3 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->uvs[0], 2 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->uvs[1], 2 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->colors, 4 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->tangents, 4 * (size_t)m->vertex_count);
+    HASH_ARRAY(hash, m->indices, 3 * (size_t)m->triangle_count);
+    HASH_ARRAY(hash, m->materials, m->triangle_count);
+}
+
+/* Field by field: padding and names must not count. */
+static void hash_material(struct hash *hash, const struct scene_material *m)
+{
+    const uint32_t flags[] = {(uint32_t)m->model, (uint32_t)m->illum, m->fresnel,
+                              m->thin_walled,     m->two_sided,       m->shadow_catcher,
+                              (uint32_t)m->alpha};
+    const float values[] = {m->shininess,      m->ior,     m->metallic,     m->roughness,
+                            m->specular_level, m->opacity, m->alpha_cutoff, m->normal_scale};
+    HASH_FIELD(hash, flags);
+    HASH_FIELD(hash, values);
+    HASH_FIELD(hash, m->ambient);
+    HASH_FIELD(hash, m->diffuse);
+    HASH_FIELD(hash, m->specular);
+    HASH_FIELD(hash, m->emission);
+    HASH_FIELD(hash, m->reflection);
+    HASH_FIELD(hash, m->transmission);
+    HASH_FIELD(hash, m->absorption);
+    for (int i = 0; i < SCENE_SLOT_COUNT; ++i) {
+        const struct scene_texture_use *use = &m->textures[i];
+        const uint32_t words[] = {use->texture, use->uv_set, (uint32_t)use->wrap_u,
+                                  (uint32_t)use->wrap_v, use->nearest};
+        HASH_FIELD(hash, words);
+        HASH_FIELD(hash, use->transform);
+    }
+}
+
+static void hash_node(struct hash *hash, const struct scene_node *n)
+{
+    const uint32_t words[] = {n->parent, n->has_matrix};
+    HASH_FIELD(hash, words);
+    HASH_FIELD(hash, n->matrix);
+    HASH_FIELD(hash, n->translation);
+    HASH_FIELD(hash, n->rotation);
+    HASH_FIELD(hash, n->scale);
+}
+
+static void hash_instance(struct hash *hash, const struct scene_instance *instance)
+{
+    const uint32_t words[] = {instance->mesh, instance->node, instance->has_local};
+    HASH_FIELD(hash, words);
+    if (instance->has_local)
+        HASH_FIELD(hash, instance->local);
+}
+
+static void hash_channel(struct hash *hash, const struct scene_channel *c)
+{
+    const uint32_t words[] = {c->node, (uint32_t)c->path, (uint32_t)c->interpolation, c->key_count};
+    size_t width = (c->path == SCENE_PATH_ROTATION ? 4u : 3u) *
+                   (c->interpolation == SCENE_CUBIC ? (size_t)3 : 1);
+    HASH_FIELD(hash, words);
+    HASH_ARRAY(hash, c->times_s, c->key_count);
+    HASH_ARRAY(hash, c->values, c->key_count * width);
+}
+
+static void hash_light(struct hash *hash, const struct scene_light *l)
+{
+    const uint32_t words[] = {(uint32_t)l->kind, l->node, l->falloff, l->two_sided};
+    const float values[] = {l->range, l->cos_inner, l->cos_outer};
+    HASH_FIELD(hash, words);
+    HASH_FIELD(hash, values);
+    HASH_FIELD(hash, l->position);
+    HASH_FIELD(hash, l->direction);
+    HASH_FIELD(hash, l->color);
+}
+
+static void hash_camera(struct hash *hash, const struct scene_camera *c)
+{
+    const uint32_t words[] = {(uint32_t)c->kind, c->node};
+    const float values[] = {c->fov_y, c->height, c->aspect};
+    HASH_FIELD(hash, words);
+    HASH_FIELD(hash, values);
+    HASH_FIELD(hash, c->eye);
+    HASH_FIELD(hash, c->target);
+    HASH_FIELD(hash, c->up);
+}
+
+static void hash_environment(struct hash *hash, const struct scene_environment *sky)
+{
+    const uint32_t words[] = {(uint32_t)sky->kind, sky->width, sky->height};
+    HASH_FIELD(hash, words);
+    HASH_FIELD(hash, sky->zenith);
+    HASH_FIELD(hash, sky->horizon);
+    HASH_FIELD(hash, sky->ground);
+    HASH_FIELD(hash, sky->scale);
+    HASH_ARRAY(hash, sky->rgb, (size_t)sky->width * sky->height * 3);
+}
+
+uint64_t freeze_hash(const struct scene *scene)
+{
+    struct hash hash = {UINT64_C(0xcbf29ce484222325)};
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        hash_mesh(&hash, &scene->meshes[i]);
+    for (uint32_t i = 0; i < scene->node_count; ++i)
+        hash_node(&hash, &scene->nodes[i]);
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        hash_instance(&hash, &scene->instances[i]);
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        hash_material(&hash, &scene->materials[i]);
+    for (uint32_t i = 0; i < scene->texture_count; ++i) {
+        const struct scene_texture *t = &scene->textures[i];
+        const uint32_t size[] = {t->width, t->height};
+        HASH_FIELD(&hash, size);
+        HASH_ARRAY(&hash, t->rgba, (size_t)t->width * t->height * 4);
+    }
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        hash_light(&hash, &scene->lights[i]);
+    for (uint32_t i = 0; i < scene->camera_count; ++i)
+        hash_camera(&hash, &scene->cameras[i]);
+    for (uint32_t i = 0; i < scene->channel_count; ++i)
+        hash_channel(&hash, &scene->channels[i]);
+    hash_environment(&hash, &scene->environment);
+    HASH_FIELD(&hash, scene->ambient);
+    return hash.value;
+}

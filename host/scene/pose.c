@@ -1,0 +1,314 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/scene.h"
+
+/* An animated scale of zero (things that pop up or vanish) counts as this, so that the matrix keeps
+   an inverse; nothing of that size is seen. */
+#define SMALLEST_ANIMATED_SCALE 1e-6
+
+static uint32_t width_of(const struct scene_channel *channel)
+{
+    return channel->path == SCENE_PATH_ROTATION ? 4 : 3;
+}
+
+/* Index of the last key at or before `time_s`; the channel has keys on both sides of it. */
+static uint32_t key_before(const struct scene_channel *channel, double time_s)
+{
+    uint32_t low = 0, high = channel->key_count - 1;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if ((double)channel->times_s[middle] <= time_s)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void normalize(double q[4])
+{
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(length > 0.0) || !isfinite(length)) {
+        q[0] = q[1] = q[2] = 0.0, q[3] = 1.0;
+        return;
+    }
+    for (int i = 0; i < 4; ++i)
+        q[i] /= length;
+}
+
+/* The shorter way round; linear where the angle is too small for the sine to divide by. */
+static void slerp(const double from[4], const double to[4], double s, double out[4])
+{
+    double a[4], b[4];
+    memcpy(a, from, sizeof a);
+    memcpy(b, to, sizeof b);
+    normalize(a);
+    normalize(b);
+    double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+    double sign = cosine < 0.0 ? -1.0 : 1.0;
+    cosine = fmin(fabs(cosine), 1.0);
+    double weight_a = 1.0 - s, weight_b = s;
+    if (cosine < 1.0 - 1e-9) {
+        double angle = acos(cosine), sine = sin(angle);
+        weight_a = sin((1.0 - s) * angle) / sine;
+        weight_b = sin(s * angle) / sine;
+    }
+    for (int i = 0; i < 4; ++i)
+        out[i] = weight_a * a[i] + sign * weight_b * b[i];
+}
+
+/* Hermite spline of glTF 2.0, appendix C.5: tangents are per second. */
+static void hermite(const float *key_a, const float *key_b, uint32_t width, double dt, double s,
+                    double out[4])
+{
+    double s2 = s * s, s3 = s2 * s;
+    for (uint32_t i = 0; i < width; ++i) {
+        double value_a = (double)key_a[width + i], out_tangent = (double)key_a[2 * width + i];
+        double in_tangent = (double)key_b[i], value_b = (double)key_b[width + i];
+        out[i] = (2 * s3 - 3 * s2 + 1) * value_a + dt * (s3 - 2 * s2 + s) * out_tangent +
+                 (-2 * s3 + 3 * s2) * value_b + dt * (s3 - s2) * in_tangent;
+    }
+}
+
+static void copy_key(const struct scene_channel *channel, uint32_t key, double out[4])
+{
+    uint32_t width = width_of(channel);
+    bool cubic = channel->interpolation == SCENE_CUBIC;
+    const float *value = channel->values + (size_t)key * width * (cubic ? 3 : 1);
+    for (uint32_t i = 0; i < width; ++i)
+        out[i] = (double)value[(cubic ? width : 0) + i];
+}
+
+static void interpolate(const struct scene_channel *channel, uint32_t key, double time_s,
+                        double out[4])
+{
+    uint32_t width = width_of(channel);
+    double start = (double)channel->times_s[key];
+    double dt = (double)channel->times_s[key + 1] - start;
+    double s = dt > 0.0 ? (time_s - start) / dt : 0.0;
+    double a[4], b[4];
+    copy_key(channel, key, a);
+    copy_key(channel, key + 1, b);
+    if (channel->interpolation == SCENE_STEP) {
+        memcpy(out, a, sizeof a);
+    } else if (channel->interpolation == SCENE_CUBIC) {
+        const float *values = channel->values + (size_t)key * width * 3;
+        hermite(values, values + (size_t)width * 3, width, dt, s, out);
+    } else if (channel->path == SCENE_PATH_ROTATION) {
+        slerp(a, b, s, out);
+    } else {
+        for (uint32_t i = 0; i < width; ++i)
+            out[i] = (1.0 - s) * a[i] + s * b[i];
+    }
+}
+
+static void evaluate(const struct scene_channel *channel, double time_s, double out[4])
+{
+    uint32_t last = channel->key_count - 1;
+    if (time_s >= (double)channel->times_s[last])
+        copy_key(channel, last, out);
+    else if (!(time_s > (double)channel->times_s[0]))
+        copy_key(channel, 0, out);
+    else
+        interpolate(channel, key_before(channel, time_s), time_s, out);
+    if (channel->path == SCENE_PATH_ROTATION)
+        normalize(out);
+}
+
+static void apply_channel(const struct scene_channel *channel, double time_s,
+                          struct scene_node *node)
+{
+    double value[4] = {0, 0, 0, 1};
+    evaluate(channel, time_s, value);
+    switch (channel->path) {
+    case SCENE_PATH_TRANSLATION:
+        memcpy(node->translation, value, sizeof node->translation);
+        break;
+    case SCENE_PATH_ROTATION:
+        memcpy(node->rotation, value, sizeof node->rotation);
+        break;
+    case SCENE_PATH_SCALE:
+        for (int i = 0; i < 3; ++i) {
+            bool small = fabs(value[i]) < SMALLEST_ANIMATED_SCALE;
+            node->scale[i] = small ? copysign(SMALLEST_ANIMATED_SCALE, value[i]) : value[i];
+        }
+        break;
+    }
+    node->has_matrix = false;
+}
+
+/* World matrix of every node; parents come before their children. */
+static struct affine *pose_nodes(const struct scene *scene, double time_s)
+{
+    struct scene_node *moved = array_alloc(scene->node_count, sizeof *moved);
+    struct affine *world = array_alloc(scene->node_count, sizeof *world);
+    if (!moved || !world) {
+        free(moved);
+        free(world);
+        return NULL;
+    }
+    if (scene->node_count)
+        memcpy(moved, scene->nodes, scene->node_count * sizeof *moved);
+    for (uint32_t i = 0; i < scene->channel_count; ++i)
+        apply_channel(&scene->channels[i], time_s, &moved[scene->channels[i].node]);
+    for (uint32_t i = 0; i < scene->node_count; ++i) {
+        const struct scene_node *node = &moved[i];
+        struct affine local = node->has_matrix
+                                  ? node->matrix
+                                  : affine_from_trs(node->translation, node->rotation, node->scale);
+        world[i] =
+            node->parent == SCENE_NONE ? local : affine_multiply(&world[node->parent], &local);
+    }
+    free(moved);
+    return world;
+}
+
+static void unit(double v[3], const double otherwise[3])
+{
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0.0) || !isfinite(largest)) {
+        memcpy(v, otherwise, 3 * sizeof v[0]);
+        return;
+    }
+    for (int i = 0; i < 3; ++i)
+        v[i] /= largest;
+    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; ++i)
+        v[i] /= length;
+}
+
+/* Normals go by the inverse transpose, everything else that points by the matrix itself. A mirrored
+   node keeps its front outside, as glTF has it, so the determinant's sign is left out. */
+static void move_normal(const struct affine *world, const double in[3], double out[3])
+{
+    struct affine inverse;
+    if (!affine_invert(world, &inverse)) {
+        affine_vector(world, in, out);
+        return;
+    }
+    double moved[3];
+    for (int i = 0; i < 3; ++i)
+        moved[i] = inverse.m[i] * in[0] + inverse.m[4 + i] * in[1] + inverse.m[8 + i] * in[2];
+    memcpy(out, moved, sizeof moved);
+}
+
+static struct scene_light pose_light(const struct scene_light *light, const struct affine *nodes)
+{
+    struct scene_light out = *light;
+    if (light->node != SCENE_NONE) {
+        const struct affine *world = &nodes[light->node];
+        affine_point(world, light->position, out.position);
+        if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+            move_normal(world, light->direction, out.direction);
+        else
+            affine_vector(world, light->direction, out.direction);
+        out.node = SCENE_NONE;
+    }
+    unit(out.direction, (const double[3]){0, -1, 0});
+    return out;
+}
+
+static struct scene_camera pose_camera(const struct scene_camera *camera,
+                                       const struct affine *nodes)
+{
+    struct scene_camera out = *camera;
+    if (camera->node == SCENE_NONE)
+        return out;
+    const struct affine *world = &nodes[camera->node];
+    affine_point(world, camera->eye, out.eye);
+    affine_point(world, camera->target, out.target);
+    affine_vector(world, camera->up, out.up);
+    out.node = SCENE_NONE;
+    return out;
+}
+
+static struct affine instance_matrix(const struct scene_instance *instance,
+                                     const struct affine *nodes)
+{
+    if (instance->node == SCENE_NONE)
+        return instance->has_local ? instance->local : affine_identity();
+    if (!instance->has_local)
+        return nodes[instance->node];
+    return affine_multiply(&nodes[instance->node], &instance->local);
+}
+
+static void grow_bounds(struct scene_pose *pose, const struct affine *matrix,
+                        const struct scene_mesh *mesh)
+{
+    if (mesh->lo[0] > mesh->hi[0])
+        return;
+    for (int corner = 0; corner < 8; ++corner) {
+        double p[3];
+        for (int i = 0; i < 3; ++i)
+            p[i] = (double)(corner >> i & 1 ? mesh->hi[i] : mesh->lo[i]);
+        affine_point(matrix, p, p);
+        for (int i = 0; i < 3; ++i) {
+            pose->lo[i] = fmin(pose->lo[i], p[i]);
+            pose->hi[i] = fmax(pose->hi[i], p[i]);
+        }
+    }
+}
+
+static whit_result pose_instances(const struct scene *scene, const struct affine *nodes,
+                                  struct scene_pose *pose)
+{
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_instance *instance = &scene->instances[i];
+        struct affine matrix = instance_matrix(instance, nodes), inverse;
+        if (!affine_is_finite(&matrix) || !affine_invert(&matrix, &inverse)) {
+            log_error(&scene->log, "%s: instance %u `%s` has no invertible transform at %g s",
+                      scene->name, i, instance->name ? instance->name : "", pose->time_s);
+            return WHIT_ERROR_INPUT;
+        }
+        pose->instances[i] = matrix;
+        grow_bounds(pose, &matrix, &scene->meshes[instance->mesh]);
+    }
+    return WHIT_OK;
+}
+
+whit_result scene_pose_init(const struct scene *scene, double time_s, struct scene_pose *pose)
+{
+    *pose = (struct scene_pose){
+        .time_s = time_s,
+        .instance_count = scene->instance_count,
+        .light_count = scene->light_count,
+        .camera_count = scene->camera_count,
+        .lo = {INFINITY, INFINITY, INFINITY},
+        .hi = {-INFINITY, -INFINITY, -INFINITY},
+    };
+    whit_result result = WHIT_ERROR_MEMORY;
+    struct affine *nodes = pose_nodes(scene, time_s);
+    pose->instances = array_alloc(scene->instance_count, sizeof *pose->instances);
+    pose->lights = array_alloc(scene->light_count, sizeof *pose->lights);
+    pose->cameras = array_alloc(scene->camera_count, sizeof *pose->cameras);
+    if (!nodes || !pose->instances || !pose->lights || !pose->cameras) {
+        log_error(&scene->log, "%s: out of memory for the scene's pose", scene->name);
+        goto fail;
+    }
+    result = pose_instances(scene, nodes, pose);
+    if (result != WHIT_OK)
+        goto fail;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        pose->lights[i] = pose_light(&scene->lights[i], nodes);
+    for (uint32_t i = 0; i < scene->camera_count; ++i)
+        pose->cameras[i] = pose_camera(&scene->cameras[i], nodes);
+    free(nodes);
+    return WHIT_OK;
+fail:
+    free(nodes);
+    scene_pose_finish(pose);
+    return result;
+}
+
+void scene_pose_finish(struct scene_pose *pose)
+{
+    if (!pose)
+        return;
+    free(pose->instances);
+    free(pose->lights);
+    free(pose->cameras);
+    *pose = (struct scene_pose){0};
+}

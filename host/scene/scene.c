@@ -1,0 +1,225 @@
+#include "scene/scene.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+struct scene *scene_create(const struct log *log, const char *name)
+{
+    struct scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return NULL;
+    if (log)
+        scene->log = *log;
+    scene->name = string_copy(name ? name : "");
+    if (!scene->name) {
+        free(scene);
+        return NULL;
+    }
+    return scene;
+}
+
+void scene_mesh_finish(struct scene_mesh *mesh)
+{
+    if (!mesh)
+        return;
+    for (uint32_t i = 0; mesh->groups && i < mesh->group_count; ++i)
+        free(mesh->groups[i].name);
+    free(mesh->groups);
+    free(mesh->name);
+    free(mesh->positions);
+    free(mesh->normals);
+    free(mesh->uvs[0]);
+    free(mesh->uvs[1]);
+    free(mesh->colors);
+    free(mesh->tangents);
+    free(mesh->indices);
+    free(mesh->materials);
+    *mesh = (struct scene_mesh){0};
+}
+
+void scene_material_finish(struct scene_material *material)
+{
+    if (!material)
+        return;
+    free(material->name);
+    free(material->origin.file);
+    *material = (struct scene_material){0};
+}
+
+static void finish_light(struct scene_light *light)
+{
+    free(light->name);
+    free(light->origin.file);
+}
+
+static void finish_channel(struct scene_channel *channel)
+{
+    free(channel->times_s);
+    free(channel->values);
+}
+
+static void finish_texture(struct scene_texture *texture)
+{
+    free(texture->name);
+    free(texture->rgba);
+}
+
+void scene_destroy(struct scene *scene)
+{
+    if (!scene)
+        return;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        scene_mesh_finish(&scene->meshes[i]);
+    for (uint32_t i = 0; i < scene->node_count; ++i)
+        free(scene->nodes[i].name);
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        free(scene->instances[i].name);
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        scene_material_finish(&scene->materials[i]);
+    for (uint32_t i = 0; i < scene->texture_count; ++i)
+        finish_texture(&scene->textures[i]);
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        finish_light(&scene->lights[i]);
+    for (uint32_t i = 0; i < scene->camera_count; ++i)
+        free(scene->cameras[i].name);
+    for (uint32_t i = 0; i < scene->channel_count; ++i)
+        finish_channel(&scene->channels[i]);
+    for (uint32_t i = 0; i < scene->note_count; ++i)
+        free(scene->notes[i].text);
+    free(scene->meshes);
+    free(scene->nodes);
+    free(scene->instances);
+    free(scene->materials);
+    free(scene->textures);
+    free(scene->lights);
+    free(scene->cameras);
+    free(scene->channels);
+    free(scene->notes);
+    free(scene->environment.rgb);
+    free(scene->environment.name);
+    free(scene->name);
+    free(scene);
+}
+
+void scene_texture_use_init(struct scene_texture_use *out)
+{
+    *out = (struct scene_texture_use){.texture = SCENE_NONE, .transform = {1, 0, 0, 0, 1, 0}};
+}
+
+void scene_material_init(struct scene_material *out, const char *name)
+{
+    *out = (struct scene_material){
+        .name = string_copy(name ? name : ""),
+        .model = SCENE_MODEL_PHONG,
+        .illum = -1,
+        .ambient = {1, 1, 1},
+        .diffuse = {0.7f, 0.7f, 0.7f},
+        .shininess = 32.0f,
+        .ior = 1.5f,
+        .roughness = 1.0f,
+        .specular_level = 1.0f,
+        .alpha = SCENE_ALPHA_OPAQUE,
+        .opacity = 1.0f,
+        .alpha_cutoff = 0.5f,
+        .normal_scale = 1.0f,
+    };
+    for (int i = 0; i < SCENE_SLOT_COUNT; ++i)
+        scene_texture_use_init(&out->textures[i]);
+}
+
+void scene_node_init(struct scene_node *out, const char *name, uint32_t parent)
+{
+    *out = (struct scene_node){
+        .name = string_copy(name ? name : ""),
+        .parent = parent,
+        .matrix = affine_identity(),
+        .rotation = {0, 0, 0, 1},
+        .scale = {1, 1, 1},
+    };
+}
+
+uint32_t scene_add_mesh(struct scene *scene, struct scene_mesh mesh)
+{
+    if (ARRAY_PUSH(scene->meshes, scene->mesh_count, scene->mesh_capacity, mesh))
+        return scene->mesh_count - 1;
+    scene_mesh_finish(&mesh);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_node(struct scene *scene, struct scene_node node)
+{
+    if (ARRAY_PUSH(scene->nodes, scene->node_count, scene->node_capacity, node))
+        return scene->node_count - 1;
+    free(node.name);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_instance(struct scene *scene, struct scene_instance instance)
+{
+    if (ARRAY_PUSH(scene->instances, scene->instance_count, scene->instance_capacity, instance))
+        return scene->instance_count - 1;
+    free(instance.name);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_material(struct scene *scene, struct scene_material material)
+{
+    if (ARRAY_PUSH(scene->materials, scene->material_count, scene->material_capacity, material))
+        return scene->material_count - 1;
+    scene_material_finish(&material);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture)
+{
+    if (ARRAY_PUSH(scene->textures, scene->texture_count, scene->texture_capacity, texture))
+        return scene->texture_count - 1;
+    finish_texture(&texture);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_light(struct scene *scene, struct scene_light light)
+{
+    if (ARRAY_PUSH(scene->lights, scene->light_count, scene->light_capacity, light))
+        return scene->light_count - 1;
+    finish_light(&light);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera)
+{
+    if (ARRAY_PUSH(scene->cameras, scene->camera_count, scene->camera_capacity, camera))
+        return scene->camera_count - 1;
+    free(camera.name);
+    return SCENE_NONE;
+}
+
+uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel)
+{
+    if (ARRAY_PUSH(scene->channels, scene->channel_count, scene->channel_capacity, channel))
+        return scene->channel_count - 1;
+    finish_channel(&channel);
+    return SCENE_NONE;
+}
+
+void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
+{
+    char text[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (level == SCENE_NOTE_WARNING)
+        log_warning(&scene->log, "%s", text);
+    else
+        log_info(&scene->log, "%s", text);
+    struct scene_note note = {level, string_copy(text)};
+    if (!note.text)
+        return;
+    if (!ARRAY_PUSH(scene->notes, scene->note_count, scene->note_capacity, note))
+        free(note.text);
+}
