@@ -1,0 +1,374 @@
+/* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel.h"
+#include "accel/accel_inside.h"
+#include "base/array.h"
+#include "base/clock.h"
+#include "base/threads.h"
+
+enum {
+    MESH_LARGE = 8192,   /* triangles from which a mesh is built by all threads */
+    SPAN_RECORDS = 8192, /* triangles or nodes handled by one call */
+};
+
+/* What a material means to traversal. */
+struct material_bits {
+    uint32_t flags, shadow;
+    bool masked; /* SCENE_ALPHA_MASK: colours of vertices may cut it out */
+};
+
+/* Records [begin, end) of one mesh. */
+struct span {
+    uint32_t mesh, begin, end;
+};
+
+struct creation {
+    struct accel *accel;
+    struct bvh *trees; /* one a mesh */
+    struct material_bits *materials;
+    struct span *spans;
+    uint32_t span_count, span_capacity;
+    uint32_t *small; /* meshes below MESH_LARGE */
+    uint32_t small_count;
+    whit_result *results; /* one a mesh */
+};
+
+/* ---- Materials ---- */
+
+static uint32_t optical_depth(double transmittance)
+{
+    double depth = transmittance > 0.0 ? -log2(transmittance) * SHADOW_DEPTH_SCALE : 1023.0;
+    return depth >= 1023.0 ? 1023u : depth > 0.0 ? (uint32_t)(depth + 0.5) : 0u;
+}
+
+/* What a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest through it. */
+static struct material_bits material_bits(const struct scene_material *m, bool area_lights)
+{
+    struct material_bits bits = {.masked = m->alpha == SCENE_ALPHA_MASK};
+    if (bits.masked &&
+        (m->opacity < m->alpha_cutoff || m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE ||
+         m->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE))
+        bits.flags |= TRIANGLE_CUTOUT;
+    if (area_lights && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0))
+        bits.flags |= TRIANGLE_NO_SHADOW;
+    double cover = m->alpha == SCENE_ALPHA_BLEND ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
+    bool filters = false;
+    for (int c = 0; c < 3; ++c) {
+        double kept = 1.0 - cover + cover * (double)m->transmission[c];
+        filters |= kept > 0.0;
+        bits.shadow |= optical_depth(kept) << (10 * c);
+    }
+    if (filters)
+        bits.flags |= TRIANGLE_FILTER;
+    else
+        bits.shadow = 0;
+    return bits;
+}
+
+static void materials_scan(struct creation *creation)
+{
+    const struct scene *scene = creation->accel->scene;
+    bool area_lights = false;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE;
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        creation->materials[i] = material_bits(&scene->materials[i], area_lights);
+}
+
+/* ---- Mesh trees ---- */
+
+struct box_context {
+    const struct scene_mesh *mesh;
+    struct bvh_box *boxes;
+};
+
+static void make_boxes(void *user, uint32_t index)
+{
+    const struct box_context *context = user;
+    const struct scene_mesh *mesh = context->mesh;
+    uint32_t begin = index * SPAN_RECORDS;
+    uint32_t left = mesh->triangle_count - begin;
+    uint32_t end = begin + (left < SPAN_RECORDS ? left : SPAN_RECORDS);
+    for (uint32_t i = begin; i < end; ++i) {
+        const uint32_t *corner = &mesh->indices[3 * (size_t)i];
+        const float *a = &mesh->positions[3 * (size_t)corner[0]];
+        const float *b = &mesh->positions[3 * (size_t)corner[1]];
+        const float *c = &mesh->positions[3 * (size_t)corner[2]];
+        context->boxes[i] = accel_triangle_box(a, b, c);
+    }
+}
+
+static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_t thread_count)
+{
+    struct accel *accel = creation->accel;
+    const struct scene_mesh *mesh = &accel->scene->meshes[index];
+    struct bvh_box *boxes = array_alloc(mesh->triangle_count, sizeof *boxes);
+    if (!boxes) {
+        log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
+                  mesh->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    struct box_context context = {mesh, boxes};
+    threads_for(thread_count, (mesh->triangle_count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes,
+                &context);
+    struct bvh_params params = accel->params.mesh;
+    params.thread_count = thread_count;
+    whit_result result =
+        bvh_build(&accel->log, boxes, mesh->triangle_count, &params, &creation->trees[index]);
+    free(boxes);
+    return result;
+}
+
+static void build_small(void *context, uint32_t index)
+{
+    struct creation *creation = context;
+    uint32_t mesh = creation->small[index];
+    creation->results[mesh] = mesh_build(creation, mesh, 1);
+}
+
+/* Large meshes one after the other by all threads, small ones side by side. */
+static whit_result meshes_build(struct creation *creation)
+{
+    struct accel *accel = creation->accel;
+    uint32_t threads = accel->params.mesh.thread_count;
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        if (accel->scene->meshes[i].triangle_count < MESH_LARGE)
+            creation->small[creation->small_count++] = i;
+        else
+            creation->results[i] = mesh_build(creation, i, threads);
+        if (creation->results[i] != WHIT_OK)
+            return creation->results[i];
+    }
+    threads_for(threads, creation->small_count, build_small, creation);
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        if (creation->results[i] != WHIT_OK)
+            return creation->results[i];
+    }
+    return WHIT_OK;
+}
+
+/* ---- One array for all ---- */
+
+static bool spans_add(struct creation *creation, uint32_t mesh, uint32_t count)
+{
+    for (uint32_t begin = 0; begin < count; begin += SPAN_RECORDS) {
+        uint32_t end = count - begin < SPAN_RECORDS ? count : begin + SPAN_RECORDS;
+        if (!ARRAY_PUSH(creation->spans, creation->span_count, creation->span_capacity,
+                        (struct span){mesh, begin, end}))
+            return false;
+    }
+    return true;
+}
+
+static struct bvh_box node_box(const struct gpu_bvh_node *node)
+{
+    struct bvh_box box;
+    memcpy(box.lo, node->lo, sizeof box.lo);
+    memcpy(box.hi, node->hi, sizeof box.hi);
+    return box;
+}
+
+/* Gives every mesh its place; the totals must fit the bits of a ref. */
+static whit_result meshes_place(struct creation *creation)
+{
+    struct accel *accel = creation->accel;
+    uint64_t nodes = accel->instance_node_capacity, triangles = 0;
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        const struct bvh *tree = &creation->trees[i];
+        struct accel_mesh *mesh = &accel->meshes[i];
+        *mesh = (struct accel_mesh){
+            .root = BVH_EMPTY_REF,
+            .first_node = (uint32_t)nodes,
+            .node_count = tree->node_count,
+            .first_triangle = (uint32_t)triangles,
+            .triangle_count = tree->primitive_count,
+            .shade_base = (uint32_t)triangles,
+            .depth = tree->depth,
+            .sah_cost = tree->sah_cost,
+            .build_ms = tree->build_ms,
+            .box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}},
+        };
+        nodes += tree->node_count;
+        triangles += tree->primitive_count;
+        if (nodes > BVH_FIRST_MASK || triangles > BVH_FIRST_MASK) {
+            log_error(&accel->log, "%s: more than %u nodes or triangles: split the scene",
+                      accel->scene->name, BVH_FIRST_MASK);
+            return WHIT_ERROR_INPUT;
+        }
+        if (tree->node_count > 0)
+            mesh->box = node_box(&tree->nodes[0]);
+        if (tree->depth > accel->mesh_depth)
+            accel->mesh_depth = tree->depth;
+        uint32_t larger =
+            tree->node_count > tree->primitive_count ? tree->node_count : tree->primitive_count;
+        if (!spans_add(creation, i, larger))
+            return WHIT_ERROR_MEMORY;
+    }
+    accel->node_count = (uint32_t)nodes;
+    accel->triangle_count = (uint32_t)triangles;
+    return WHIT_OK;
+}
+
+static struct gpu_triangle triangle_record(const struct creation *creation,
+                                           const struct scene_mesh *mesh, uint32_t primitive)
+{
+    struct gpu_triangle out = {.primitive = primitive};
+    const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
+    memcpy(out.v0, &mesh->positions[3 * (size_t)corner[0]], sizeof out.v0);
+    memcpy(out.v1, &mesh->positions[3 * (size_t)corner[1]], sizeof out.v1);
+    memcpy(out.v2, &mesh->positions[3 * (size_t)corner[2]], sizeof out.v2);
+    uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
+    if (material < creation->accel->scene->material_count) {
+        const struct material_bits *bits = &creation->materials[material];
+        out.flags = bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
+        out.shadow = bits->shadow;
+    }
+    return out;
+}
+
+static void write_span(void *context, uint32_t index)
+{
+    const struct creation *creation = context;
+    struct span span = creation->spans[index];
+    const struct accel_mesh *mesh = &creation->accel->meshes[span.mesh];
+    const struct bvh *tree = &creation->trees[span.mesh];
+    for (uint32_t i = span.begin; i < span.end && i < tree->node_count; ++i) {
+        struct gpu_bvh_node *node = &creation->accel->nodes[mesh->first_node + i];
+        *node = tree->nodes[i];
+        node->first += i == 1 ? 0 : node->count ? mesh->first_triangle : mesh->first_node;
+    }
+    for (uint32_t i = span.begin; i < span.end && i < tree->primitive_count; ++i)
+        creation->accel->triangles[mesh->first_triangle + i] =
+            triangle_record(creation, &creation->accel->scene->meshes[span.mesh], tree->order[i]);
+}
+
+static whit_result meshes_write(struct creation *creation)
+{
+    struct accel *accel = creation->accel;
+    accel->nodes = array_alloc_aligned(accel->node_count, sizeof *accel->nodes);
+    accel->triangles = array_alloc_aligned(accel->triangle_count, sizeof *accel->triangles);
+    if (!accel->nodes || !accel->triangles)
+        return WHIT_ERROR_MEMORY;
+    threads_for(accel->params.mesh.thread_count, creation->span_count, write_span, creation);
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        struct accel_mesh *mesh = &accel->meshes[i];
+        if (mesh->node_count > 0)
+            mesh->root = accel_node_ref(&accel->nodes[mesh->first_node]);
+    }
+    return WHIT_OK;
+}
+
+/* ---- Whole scenes ---- */
+
+static whit_result creation_alloc(struct creation *creation)
+{
+    struct accel *accel = creation->accel;
+    const struct scene *scene = accel->scene;
+    accel->mesh_count = scene->mesh_count;
+    accel->instance_count = scene->instance_count;
+    uint64_t capacity = 2 * (uint64_t)(scene->instance_count ? scene->instance_count : 1) + 2;
+    if (capacity > BVH_FIRST_MASK) {
+        log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
+        return WHIT_ERROR_INPUT;
+    }
+    accel->instance_node_capacity = (uint32_t)capacity;
+    accel->meshes = array_alloc_zeroed(scene->mesh_count, sizeof *accel->meshes);
+    accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
+    creation->trees = array_alloc_zeroed(scene->mesh_count, sizeof *creation->trees);
+    creation->small = array_alloc(scene->mesh_count, sizeof *creation->small);
+    creation->results = array_alloc_zeroed(scene->mesh_count, sizeof *creation->results);
+    creation->materials = array_alloc_zeroed(scene->material_count, sizeof *creation->materials);
+    bool all = accel->meshes && accel->instances && creation->trees && creation->small &&
+               creation->results && creation->materials;
+    return all ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
+static whit_result creation_run(struct creation *creation)
+{
+    whit_result result = creation_alloc(creation);
+    if (result != WHIT_OK)
+        return result;
+    materials_scan(creation);
+    result = meshes_build(creation);
+    if (result == WHIT_OK)
+        result = meshes_place(creation);
+    if (result == WHIT_OK)
+        result = meshes_write(creation);
+    return result;
+}
+
+static void creation_finish(struct creation *creation)
+{
+    for (uint32_t i = 0; creation->trees && i < creation->accel->mesh_count; ++i)
+        bvh_finish(&creation->trees[i]);
+    free(creation->trees);
+    free(creation->small);
+    free(creation->results);
+    free(creation->materials);
+    free(creation->spans);
+}
+
+static whit_result pose_at_start(struct accel *accel)
+{
+    struct scene_pose pose;
+    whit_result result = scene_pose_init(accel->scene, 0.0, &pose);
+    if (result != WHIT_OK)
+        return result;
+    result = accel_pose(accel, &pose);
+    scene_pose_finish(&pose);
+    return result;
+}
+
+whit_result accel_create(const struct log *log, const struct scene *scene,
+                         const struct accel_params *params, struct accel **out)
+{
+    double begin_ms = clock_ms();
+    *out = NULL;
+    struct accel *accel = array_alloc_zeroed(1, sizeof *accel);
+    if (!accel) {
+        log_error(log, "%s: out of memory for its trees", scene->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    accel->scene = scene;
+    accel->log = log ? *log : (struct log){0};
+    accel->params = params ? *params : (struct accel_params){0};
+    accel->params.instances.leaf_limit = 1;
+    struct creation creation = {.accel = accel};
+    whit_result result = creation_run(&creation);
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(log, "%s: out of memory for its trees", scene->name);
+    creation_finish(&creation);
+    accel->build_ms = clock_ms() - begin_ms;
+    if (result == WHIT_OK)
+        result = pose_at_start(accel);
+    if (result == WHIT_OK && accel->params.validate)
+        result = accel_validate(accel);
+    if (result != WHIT_OK) {
+        accel_destroy(accel);
+        return result;
+    }
+    *out = accel;
+    return WHIT_OK;
+}
+
+void accel_destroy(struct accel *accel)
+{
+    if (!accel)
+        return;
+    free(accel->nodes);
+    free(accel->triangles);
+    free(accel->instances);
+    free(accel->meshes);
+    free(accel);
+}
+
+uint64_t accel_bytes(const struct accel *accel)
+{
+    return (uint64_t)accel->node_count * sizeof *accel->nodes +
+           (uint64_t)accel->triangle_count * sizeof *accel->triangles +
+           (uint64_t)accel->instance_count * sizeof *accel->instances;
+}

@@ -1,0 +1,33 @@
+/* Shared by the files of accel/ that work on a whole scene. */
+#ifndef ACCEL_ACCEL_INSIDE_H
+#define ACCEL_ACCEL_INSIDE_H
+
+#include "accel/accel.h"
+
+/* Exact: minima and maxima of floats, nothing rounded. */
+static inline struct bvh_box accel_triangle_box(const float a[3], const float b[3],
+                                                const float c[3])
+{
+    struct bvh_box box;
+    for (int i = 0; i < 3; ++i) {
+        float lo = a[i] < b[i] ? a[i] : b[i], hi = a[i] > b[i] ? a[i] : b[i];
+        box.lo[i] = c[i] < lo ? c[i] : lo;
+        box.hi[i] = c[i] > hi ? c[i] : hi;
+    }
+    return box;
+}
+
+static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
+{
+    return node->count << BVH_COUNT_SHIFT | node->first;
+}
+
+/* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes that enter the
+   sums, which is what rounding them is relative to. */
+struct accel_extent {
+    double lo[3], hi[3], size[3];
+};
+
+struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box);
+
+#endif

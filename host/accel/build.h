@@ -1,0 +1,95 @@
+/* Inside of the builders: what bvh.c hands to split_*.c. */
+#ifndef ACCEL_BUILD_H
+#define ACCEL_BUILD_H
+
+#include <float.h>
+#include <stdalign.h>
+
+#include "accel/accel.h"
+#include "accel/f4.h"
+
+/* A box with the primitive it belongs to. Records are moved, not indices to them, so that a subtree
+   is one run of memory. */
+struct build_record {
+    alignas(32) float lo[3];
+    uint32_t primitive;
+    float hi[3];
+    uint32_t pad;
+};
+
+/* Bounds of some records. Centroids are quartered sums lo / 4 + hi / 4: neither they nor their
+   differences overflow. */
+struct build_bounds {
+    f4 lo, hi;
+    f4 centroid_lo, centroid_hi;
+};
+
+/* Records [first, first + count) and where their subtree goes: node `node`, and pairs of children
+   from pair slot `pair` on, of which it may use count - 1. */
+struct build_range {
+    struct build_bounds bounds;
+    uint32_t node, pair, first, count, depth;
+};
+
+struct build_params {
+    uint32_t bins, leaf_limit, thread_count;
+    float traversal_cost;
+    enum bvh_builder builder;
+};
+
+enum build_choice {
+    BUILD_SPLIT, /* the records are in two runs, the bounds of both are known */
+    BUILD_LEAF,  /* a leaf costs less; allowed by the leaf limit */
+    BUILD_NONE,  /* no plane separates anything */
+};
+
+/* Chooses the best of `bins` - 1 planes on each axis by surface area, and partitions. With
+   thread_count > 1 the binning of this one range is spread over threads. */
+enum build_choice split_binned(struct build_record *records, const struct build_range *range,
+                               const struct build_params *params, uint32_t thread_count,
+                               uint32_t *left_count, struct build_bounds halves[2]);
+
+/* Halves the records along the axis of the widest centroids; equal centroids by primitive. */
+void split_median(struct build_record *records, const struct build_range *range,
+                  uint32_t *left_count, struct build_bounds halves[2]);
+
+static inline f4 build_record_lo(const struct build_record *r)
+{
+    return f4_xyz(f4_load(r->lo));
+}
+static inline f4 build_record_hi(const struct build_record *r)
+{
+    return f4_xyz(f4_load(r->hi));
+}
+
+static inline f4 build_centroid(f4 lo, f4 hi)
+{
+    f4 quarter = f4_splat(0.25f);
+    return f4_add(f4_mul(lo, quarter), f4_mul(hi, quarter));
+}
+
+static inline struct build_bounds build_bounds_empty(void)
+{
+    f4 big = f4_set(FLT_MAX, FLT_MAX, FLT_MAX, 0.0f);
+    f4 small = f4_set(-FLT_MAX, -FLT_MAX, -FLT_MAX, 0.0f);
+    return (struct build_bounds){big, small, big, small};
+}
+
+static inline void build_bounds_add(struct build_bounds *b, f4 lo, f4 hi)
+{
+    f4 centroid = build_centroid(lo, hi);
+    b->lo = f4_min(b->lo, lo);
+    b->hi = f4_max(b->hi, hi);
+    b->centroid_lo = f4_min(b->centroid_lo, centroid);
+    b->centroid_hi = f4_max(b->centroid_hi, centroid);
+}
+
+static inline void build_bounds_merge(struct build_bounds *a, const struct build_bounds *b)
+{
+    a->lo = f4_min(a->lo, b->lo);
+    a->hi = f4_max(a->hi, b->hi);
+    a->centroid_lo = f4_min(a->centroid_lo, b->centroid_lo);
+    a->centroid_hi = f4_max(a->centroid_hi, b->centroid_hi);
+}
+
+#endif
