@@ -1,0 +1,103 @@
+/* shaders/lib/intersect.glsl in C, operation by operation: see there for the method. Built with
+   contraction off, it gives the bits that the shader gives on IEEE arithmetic. */
+#ifndef ACCEL_INTERSECT_H
+#define ACCEL_INTERSECT_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "base/vec.h"
+
+struct ray_setup {
+    struct vec3 origin, inv_dir;
+    bool negative[3];
+    bool dominant_x, dominant_y;
+    struct vec3 shear;
+};
+
+#define SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)
+
+static inline struct vec3 turn_dominant(const struct ray_setup *ray, struct vec3 p)
+{
+    if (ray->dominant_x)
+        return vec3_make(p.y, p.z, p.x);
+    if (ray->dominant_y)
+        return vec3_make(p.z, p.x, p.y);
+    return p;
+}
+
+static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 dir)
+{
+    struct ray_setup ray = {.origin = origin};
+    ray.inv_dir = vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);
+    ray.negative[0] = ray.inv_dir.x < 0.0f;
+    ray.negative[1] = ray.inv_dir.y < 0.0f;
+    ray.negative[2] = ray.inv_dir.z < 0.0f;
+    float x = fabsf(dir.x), y = fabsf(dir.y), z = fabsf(dir.z);
+    bool x_over_y = x > y, x_over_z = x > z, y_over_z = y > z;
+    ray.dominant_x = x_over_y && x_over_z;
+    ray.dominant_y = !x_over_y && y_over_z;
+    struct vec3 turned = turn_dominant(&ray, dir);
+    ray.shear = vec3_make(turned.x / turned.z, turned.y / turned.z, 1.0f / turned.z);
+    return ray;
+}
+
+static inline void slab_axis(float lo, float hi, float inv_dir, bool negative, float *start,
+                             float *end)
+{
+    float at_lo = lo * inv_dir;
+    float at_hi = hi * inv_dir;
+    float near = negative ? at_hi : at_lo;
+    float far = negative ? at_lo : at_hi;
+    *start = near > *start ? near : *start;
+    *end = far < *end ? far : *end;
+}
+
+static inline void slab_interval(const struct ray_setup *ray, struct vec3 lo, struct vec3 hi,
+                                 float t_min, float *t_near, float *t_far)
+{
+    float start = t_min, end = INFINITY;
+    slab_axis(lo.x, hi.x, ray->inv_dir.x, ray->negative[0], &start, &end);
+    slab_axis(lo.y, hi.y, ray->inv_dir.y, ray->negative[1], &start, &end);
+    slab_axis(lo.z, hi.z, ray->inv_dir.z, ray->negative[2], &start, &end);
+    *t_near = start;
+    *t_far = end * SLAB_FAR_SCALE;
+}
+
+static inline struct vec3 vec3_smaller(struct vec3 a, struct vec3 b)
+{
+    return vec3_make(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
+}
+
+static inline struct vec3 vec3_larger(struct vec3 a, struct vec3 b)
+{
+    return vec3_make(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
+}
+
+static inline bool intersect_triangle(const struct ray_setup *ray, struct vec3 a, struct vec3 b,
+                                      struct vec3 c, float t_min, float *t, float *u, float *v)
+{
+    float t_near, t_far;
+    slab_interval(ray, vec3_smaller(c, vec3_smaller(a, b)), vec3_larger(c, vec3_larger(a, b)),
+                  t_min, &t_near, &t_far);
+    struct vec3 ta = turn_dominant(ray, a), tb = turn_dominant(ray, b), tc = turn_dominant(ray, c);
+    float ax = ta.x - ray->shear.x * ta.z, ay = ta.y - ray->shear.y * ta.z;
+    float bx = tb.x - ray->shear.x * tb.z, by = tb.y - ray->shear.y * tb.z;
+    float cx = tc.x - ray->shear.x * tc.z, cy = tc.y - ray->shear.y * tc.z;
+    float ea = cx * by - cy * bx;
+    float eb = ax * cy - ay * cx;
+    float ec = bx * ay - by * ax;
+    bool below = ea < 0.0f || eb < 0.0f || ec < 0.0f;
+    bool above = ea > 0.0f || eb > 0.0f || ec > 0.0f;
+    float det = (ea + eb) + ec;
+    float az = ray->shear.z * ta.z, bz = ray->shear.z * tb.z, cz = ray->shear.z * tc.z;
+    float scaled_t = (ea * az + eb * bz) + ec * cz;
+    float inv_det = 1.0f / det;
+    float at = scaled_t * inv_det;
+    *u = eb * inv_det;
+    *v = ec * inv_det;
+    *t = at > t_near ? at : t_near;
+    return !(below && above) && det != 0.0f && at >= t_min && t_near <= t_far;
+}
+
+#endif

@@ -1,0 +1,168 @@
+/* What shading reads: materials, textures, lights, the frame; and the state of a pixel's ray tree. */
+#ifndef ABI_SHADE_H
+#define ABI_SHADE_H
+
+#include "base.h"
+
+#define TEXTURE_NONE 0xffffffffu
+
+#define MATERIAL_MODEL_PHONG       0u
+#define MATERIAL_MODEL_METAL_ROUGH 1u
+#define MATERIAL_MODEL_UNLIT       2u
+
+#define MATERIAL_FRESNEL        1u
+#define MATERIAL_THIN           2u
+#define MATERIAL_MASK           4u
+#define MATERIAL_BLEND          8u
+#define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not its red */
+#define MATERIAL_SHADOW_CATCHER 32u
+#define MATERIAL_TWO_SIDED      64u
+
+/* See struct scene_material for meaning and units. */
+struct gpu_material {
+    gpu_vec3 diffuse;
+    gpu_uint model; /* MATERIAL_MODEL_* */
+    gpu_vec3 ambient;
+    gpu_float shininess;
+    gpu_vec3 specular;
+    gpu_float ior;
+    gpu_vec3 emission;
+    gpu_uint flags; /* MATERIAL_* */
+    gpu_vec3 reflection;
+    gpu_float roughness;
+    gpu_vec3 transmission;
+    gpu_float metallic;
+    gpu_vec3 absorption;
+    gpu_float opacity;
+    gpu_float normal_scale;
+    gpu_float alpha_cutoff;
+    gpu_float specular_level;
+    gpu_float pad;
+    gpu_uint tex_diffuse; /* uses, or TEXTURE_NONE */
+    gpu_uint tex_specular;
+    gpu_uint tex_emission;
+    gpu_uint tex_normal;
+    gpu_uint tex_bump;
+    gpu_uint tex_metal_rough;
+    gpu_uint tex_opacity;
+    gpu_uint tex_transmission;
+};
+GPU_ASSERT_SIZE(gpu_material, 160)
+GPU_ASSERT_AT(gpu_material, emission, 48)
+GPU_ASSERT_AT(gpu_material, normal_scale, 112)
+GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
+
+#define WRAP_REPEAT 0u
+#define WRAP_CLAMP  1u
+#define WRAP_MIRROR 2u
+
+/* A use of a texture. Texels are two words each, four linear 16-bit channels. */
+struct gpu_texture {
+    gpu_vec4 matrix; /* uv' = (x u + y v, z u + w v) + offset */
+    gpu_vec2 offset;
+    gpu_uint first; /* texel */
+    gpu_uint size;  /* width | height << 16 */
+    gpu_uint wrap;  /* u | v << 2 */
+    gpu_uint nearest;
+    gpu_uint uv_set;
+    gpu_uint pad;
+};
+GPU_ASSERT_SIZE(gpu_texture, 48)
+GPU_ASSERT_AT(gpu_texture, offset, 16)
+
+#define LIGHT_POINT       0u
+#define LIGHT_DIRECTIONAL 1u
+#define LIGHT_SPOT        2u
+#define LIGHT_AREA_SAMPLE 3u /* Lambertian emitter around `direction` */
+
+/* World space. */
+struct gpu_light {
+    gpu_vec3 position;
+    gpu_uint kind;
+    gpu_vec3 direction; /* unit, the way the light travels */
+    gpu_float range;    /* infinity: no limit */
+    gpu_vec3 color;
+    gpu_uint falloff; /* 1: 1 / distance^2 */
+    gpu_float cos_inner;
+    gpu_float cos_outer;
+    gpu_uint two_sided; /* LIGHT_AREA_SAMPLE */
+    gpu_uint pad;
+};
+GPU_ASSERT_SIZE(gpu_light, 64)
+GPU_ASSERT_AT(gpu_light, cos_inner, 48)
+
+/* What all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
+   picture plane) and goes along forward + x * right + y * up, x and y in -1..1. */
+struct gpu_frame {
+    gpu_vec3 eye;
+    gpu_uint width;
+    gpu_vec3 right;
+    gpu_uint height;
+    gpu_vec3 up;
+    gpu_uint light_count;
+    gpu_vec3 forward;
+    gpu_uint environment_size; /* side of the octahedral map; 0: gradient */
+    gpu_vec3 zenith;
+    gpu_uint root; /* ref where traversal starts */
+    gpu_vec3 horizon;
+    gpu_uint shade_base; /* without instances */
+    gpu_vec3 ground;
+    gpu_uint depth; /* most bounces */
+    gpu_vec3 ambient;
+    gpu_uint triangle_total; /* per-triangle arrays: where uv set 1 starts */
+};
+GPU_ASSERT_SIZE(gpu_frame, 128)
+GPU_ASSERT_AT(gpu_frame, ambient, 112)
+
+/* A ray waiting on the ray stack of its pixel. */
+struct gpu_stacked_ray {
+    gpu_vec3 origin;
+    gpu_uint state; /* bounces so far | medium << 8: material + 1 it travels in, 0: air */
+    gpu_vec3 dir;   /* unit */
+    gpu_uint skip_primitive;
+    gpu_vec3 weight;
+    gpu_uint skip_instance;
+};
+GPU_ASSERT_SIZE(gpu_stacked_ray, 48)
+GPU_ASSERT_AT(gpu_stacked_ray, weight, 32)
+
+/* Push constants of the Whitted kernel: a chunk is a run of 8x8 pixel blocks of a band of rows. */
+struct gpu_chunk {
+    gpu_uint first_block;
+    gpu_uint block_count;
+    gpu_uint band_y;    /* first row of the band that the pixel buffers hold */
+    gpu_uint band_rows;
+    gpu_vec2 sample_xy; /* within the pixel, 0..1 */
+    gpu_uint sample_index;
+    gpu_float sample_weight;
+};
+GPU_ASSERT_SIZE(gpu_chunk, 32)
+
+/* Push constants of the ray batch kernel. */
+struct gpu_batch {
+    gpu_uint ray_count;
+    gpu_uint root;
+    gpu_uint pad0;
+    gpu_uint pad1;
+};
+
+/* Head of a work list, followed by the pixels (slots within the chunk). The first three words are
+   the arguments of an indirect dispatch. */
+struct gpu_work {
+    gpu_uint groups_x;
+    gpu_uint groups_y;
+    gpu_uint groups_z;
+    gpu_uint count;
+};
+GPU_ASSERT_SIZE(gpu_work, 16)
+
+/* What the kernel counted for a pixel. */
+struct gpu_counts {
+    gpu_uint shadow;
+    gpu_uint reflected;
+    gpu_uint refracted;
+    gpu_uint stack; /* rays waiting */
+};
+GPU_ASSERT_SIZE(gpu_counts, 16)
+
+#endif

@@ -1,0 +1,53 @@
+/* Specialization constants: one list, read by both compilers. Always passed whole. A constant that
+   is 0 takes its code out of the pipeline. */
+#ifndef ABI_SPEC_H
+#define ABI_SPEC_H
+
+#include "base.h"
+
+/* How kernels read trees and textures: through storage buffers, or through uniform texel buffers
+   over the same memory (twice as fast on lavapipe). */
+#define LOAD_STORAGE 0u
+#define LOAD_TEXEL   1u
+
+/*    id  name                 default  meaning */
+#define GPU_SPEC_LIST(X)                                                                           \
+    X(0, SPEC_GROUP_SIZE, 64)         /* invocations in a workgroup */                             \
+    X(1, SPEC_LOAD_PATH, 0)           /* LOAD_* */                                                 \
+    X(2, SPEC_STACK_SIZE, 64)         /* node stack entries, from the depth of the built trees */  \
+    X(3, SPEC_INSTANCED, 1)           /* 0: one mesh, not moved: no instance tree, no transform */ \
+    X(4, SPEC_ANY_HIT, 0)             /* of the ray batch kernel */                                \
+    X(5, SPEC_INTERLEAVE, 0)          /* even workgroups first: lavapipe splits ids in halves */   \
+    X(6, SPEC_PRIMARY, 1)             /* makes camera rays; 0: takes rays from the ray stacks */   \
+    X(7, SPEC_SHADOWS, 1)                                                                          \
+    X(8, SPEC_REFLECTION, 1)                                                                       \
+    X(9, SPEC_REFRACTION, 1)                                                                       \
+    X(10, SPEC_ABSORPTION, 1)                                                                      \
+    X(11, SPEC_CUTOUTS, 1)            /* opacity textures decide hits, or light passes straight */ \
+    X(12, SPEC_TEXTURES, 1)                                                                        \
+    X(13, SPEC_NORMAL_MAPS, 1)                                                                     \
+    X(14, SPEC_ENVIRONMENT_MAP, 1)                                                                 \
+    X(15, SPEC_SMOOTH_NORMALS, 1)                                                                  \
+    X(16, SPEC_VERTEX_COLORS, 1)                                                                   \
+    X(17, SPEC_METAL_ROUGH, 1)                                                                     \
+    X(18, SPEC_HIGHLIGHTS, 1)                                                                      \
+    X(19, SPEC_LIGHTS, 1)                                                                          \
+    X(20, SPEC_ORTHOGRAPHIC, 1)                                                                    \
+    X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */
+
+#ifdef __STDC_VERSION__
+#define GPU_SPEC_FIELD(id, name, value) uint32_t name;
+/* One word a constant, in the order of their ids. */
+struct gpu_spec {
+    GPU_SPEC_LIST(GPU_SPEC_FIELD)
+};
+#undef GPU_SPEC_FIELD
+#define GPU_SPEC_VALUE(id, name, value) .name = value,
+#define GPU_SPEC_DEFAULTS               {GPU_SPEC_LIST(GPU_SPEC_VALUE)}
+#define GPU_SPEC_COUNT                  ((uint32_t)(sizeof(struct gpu_spec) / sizeof(uint32_t)))
+#else
+#define GPU_SPEC_CONSTANT(id, name, value) layout(constant_id = id) const uint name = value;
+GPU_SPEC_LIST(GPU_SPEC_CONSTANT)
+#endif
+
+#endif

@@ -1,0 +1,226 @@
+// Stackful traversal, nearest child first: the one traversal source. Two loops side by side, one
+// over nodes and one over triangles, both do-while: on lavapipe an `if` costs both its sides and
+// only the end of a loop branches (docs/benchmarks.md). accel/traverse.c is this file in C.
+#ifndef BIND_TRAVERSE_GLSL
+#define BIND_TRAVERSE_GLSL
+
+#include "../lib/intersect.glsl"
+#include "trees.glsl"
+#include "materials.glsl"
+
+// What may end a traversal; always a constant, so that each use is compiled for its own.
+const uint TRAVERSE_CLOSEST = 0u;
+const uint TRAVERSE_ANY = 1u;    // any hit will do
+const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
+
+const uint REF_DONE = 0xffffffffu;
+const uint REF_ONE_PRIMITIVE = 1u << BVH_COUNT_SHIFT;
+const float FLOAT_LARGEST = 3.402823466e+38;
+
+struct Hit {
+    float t; // largest t that still counts, then that of the hit
+    float u, v;
+    uint triangle;  // record
+    uint primitive; // of its mesh, or HIT_NONE
+    uint instance;
+    uvec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
+    uint status;
+};
+
+Hit make_hit(float t_max)
+{
+    Hit hit;
+    hit.t = t_max < FLOAT_LARGEST ? t_max : FLOAT_LARGEST;
+    hit.u = 0.0;
+    hit.v = 0.0;
+    hit.triangle = 0u;
+    hit.primitive = HIT_NONE;
+    hit.instance = HIT_NONE;
+    hit.filter_depth = uvec3(0u);
+    hit.status = 0u;
+    return hit;
+}
+
+uint node_stack[SPEC_STACK_SIZE];
+
+bool is_inner(uint ref)
+{
+    return ref < REF_ONE_PRIMITIVE;
+}
+
+bool is_leaf(uint ref)
+{
+    return ref - REF_ONE_PRIMITIVE < REF_DONE - REF_ONE_PRIMITIVE;
+}
+
+void push_ref(uint ref, inout uint top, inout uint status)
+{
+    if (top < SPEC_STACK_SIZE) {
+        node_stack[top] = ref;
+        top++;
+    } else {
+        status |= STATUS_NODE_STACK_OVERFLOW;
+    }
+}
+
+uint pop_ref(uint base, inout uint top)
+{
+    if (top == base)
+        return REF_DONE;
+    top--;
+    return node_stack[top];
+}
+
+// Extra room for boxes whose rays are transformed below: float error of the transform, relative to
+// t. 1.0 in mesh trees, whose boxes and triangles are tested with one and the same ray.
+const float SLAB_NEAR_SCALE_INSTANCES = 1.0 - 1.0 / 524288.0;
+
+// One step down: both children of `pair` are tested, the nearer is returned, the farther pushed.
+uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, uint base, inout uint top,
+               inout Hit hit)
+{
+    uvec4 a0 = fetch_node_row(pair * 2u);
+    uvec4 a1 = fetch_node_row(pair * 2u + 1u);
+    uvec4 b0 = fetch_node_row(pair * 2u + 2u);
+    uvec4 b1 = fetch_node_row(pair * 2u + 3u);
+    precise vec3 a_lo = row_vec3(a0) - ray.origin;
+    precise vec3 a_hi = row_vec3(a1) - ray.origin;
+    precise vec3 b_lo = row_vec3(b0) - ray.origin;
+    precise vec3 b_hi = row_vec3(b1) - ray.origin;
+    float a_near, a_far, b_near, b_far;
+    slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
+    slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
+    if (near_scale != 1.0) {
+        precise float a_scaled = a_near * near_scale;
+        precise float b_scaled = b_near * near_scale;
+        a_near = a_scaled;
+        b_near = b_scaled;
+    }
+    bool hit_a = a_near <= a_far && a_near <= hit.t;
+    bool hit_b = b_near <= b_far && b_near <= hit.t;
+    uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
+    uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
+    bool b_first = hit_b && (!hit_a || b_near < a_near);
+    if (hit_a && hit_b)
+        push_ref(b_first ? ref_a : ref_b, top, hit.status);
+    uint nearer = b_first ? ref_b : ref_a;
+    if (!hit_a && !hit_b)
+        nearer = pop_ref(base, top);
+    return nearer;
+}
+
+// Tests one triangle record and keeps it when it is nearer, or as near with smaller ids.
+// True: the traversal may end.
+bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
+                   uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    uvec4 r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
+    uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
+    uvec4 r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    uint primitive = r0.w;
+    uint flags = r1.w;
+    precise vec3 a = row_vec3(r0) - ray.origin;
+    precise vec3 b = row_vec3(r1) - ray.origin;
+    precise vec3 c = row_vec3(r2) - ray.origin;
+    float t, u, v;
+    bool met = intersect_triangle(ray, a, b, c, t_min, t, u, v);
+    bool nearer = t < hit.t ||
+                  (t == hit.t && (instance < hit.instance ||
+                                  (instance == hit.instance && primitive < hit.primitive)));
+    bool skipped = primitive == skip_primitive && instance == skip_instance;
+    if (mode == TRAVERSE_SHADOW)
+        skipped = skipped || (flags & TRIANGLE_NO_SHADOW) != 0u;
+    bool accepted = met && nearer && !skipped;
+    if (SPEC_CUTOUTS != 0u && accepted && (flags & TRIANGLE_CUTOUT) != 0u)
+        accepted = cutout_is_solid(instance, primitive, u, v);
+    if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
+        (flags & TRIANGLE_FILTER) != 0u) {
+        hit.filter_depth += uvec3(r2.w & 1023u, (r2.w >> 10) & 1023u, (r2.w >> 20) & 1023u);
+        accepted = false;
+    }
+    if (accepted) {
+        hit.t = t;
+        hit.u = u;
+        hit.v = v;
+        hit.triangle = record;
+        hit.primitive = primitive;
+        hit.instance = instance;
+    }
+    return mode != TRAVERSE_CLOSEST && accepted;
+}
+
+// A mesh tree, with the stack above `base`.
+void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint base, uint instance,
+                   uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    uint top = base;
+    uint ref = root;
+    do {
+        do {
+            if (is_inner(ref))
+                ref = step_pair(ray, t_min, 1.0, ref, base, top, hit);
+        } while (is_inner(ref));
+        do {
+            if (is_leaf(ref)) {
+                bool done = test_triangle(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
+                                          skip_instance, skip_primitive, hit);
+                ref += 1u - REF_ONE_PRIMITIVE;
+                if (is_inner(ref))
+                    ref = pop_ref(base, top);
+                if (done)
+                    ref = REF_DONE;
+            }
+        } while (is_leaf(ref));
+    } while (ref != REF_DONE);
+    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
+    if (ref != REF_DONE)
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
+}
+
+// The tree over instances; each leaf is one.
+void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uint root,
+                        uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    RaySetup ray = make_ray_setup(origin, dir);
+    uint top = 0u;
+    uint ref = root;
+    do {
+        do {
+            if (is_inner(ref))
+                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, 0u, top, hit);
+        } while (is_inner(ref));
+        if (is_leaf(ref)) {
+            uint instance = ref & BVH_FIRST_MASK;
+            InstanceFrame frame = fetch_instance_frame(instance);
+            uint mesh_root = fetch_instance_row(instance * INSTANCE_ROWS + 3u).x;
+            RaySetup local =
+                make_ray_setup(to_object_point(frame, origin), to_object_dir(frame, dir));
+            traverse_mesh(mode, local, t_min, mesh_root, top, instance, skip_instance,
+                          skip_primitive, hit);
+            bool done = mode != TRAVERSE_CLOSEST && hit.primitive != HIT_NONE;
+            ref = done ? REF_DONE : pop_ref(0u, top);
+        }
+    } while (ref != REF_DONE);
+    if (ref != REF_DONE)
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
+}
+
+// Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`.
+// Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or
+// without SPEC_INSTANCED of the only mesh tree. Not finite rays hit nothing.
+Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, uint root,
+             uint skip_instance, uint skip_primitive)
+{
+    Hit hit = make_hit(t_max);
+    precise vec3 bounded = (origin - origin) + (dir - dir); // 0, or NaN
+    if (!(bounded.x + bounded.y + bounded.z == 0.0) || dir == vec3(0.0))
+        root = REF_DONE;
+    if (SPEC_INSTANCED != 0u)
+        traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);
+    else
+        traverse_mesh(mode, make_ray_setup(origin, dir), t_min, root, 0u, 0u, skip_instance,
+                      skip_primitive, hit);
+    return hit;
+}
+
+#endif

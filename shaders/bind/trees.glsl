@@ -1,0 +1,93 @@
+// Descriptors of the trees, with accessors. Traversal sits on these alone.
+#ifndef BIND_TREES_GLSL
+#define BIND_TREES_GLSL
+
+#include "../abi/bindings.h"
+#include "../abi/bvh.h"
+#include "../abi/spec.h"
+#include "../lib/load.glsl"
+
+layout(set = 0, binding = BIND_NODES, std430) readonly buffer NodeBuffer { uvec4 node_rows[]; };
+layout(set = 0, binding = BIND_NODE_TEXELS) uniform usamplerBuffer node_texels;
+layout(set = 0, binding = BIND_TRIANGLES, std430) readonly buffer TriangleBuffer
+{
+    uvec4 triangle_rows[];
+};
+layout(set = 0, binding = BIND_TRIANGLE_TEXELS) uniform usamplerBuffer triangle_texels;
+layout(set = 0, binding = BIND_INSTANCES, std430) readonly buffer InstanceBuffer
+{
+    uvec4 instance_rows[];
+};
+layout(set = 0, binding = BIND_INSTANCE_TEXELS) uniform usamplerBuffer instance_texels;
+layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer { uint status_word; };
+
+uvec4 fetch_node_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(node_texels, int(row));
+    return node_rows[row];
+}
+
+uvec4 fetch_triangle_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(triangle_texels, int(row));
+    return triangle_rows[row];
+}
+
+uvec4 fetch_instance_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(instance_texels, int(row));
+    return instance_rows[row];
+}
+
+const uint TRIANGLE_ROWS = 3u; // of 16 bytes, in a gpu_triangle
+const uint INSTANCE_ROWS = 7u; // in a gpu_instance
+
+// World to object: directions, and points relative to the instance's origin.
+struct InstanceFrame {
+    vec3 inverse0, inverse1, inverse2, origin;
+};
+
+InstanceFrame fetch_instance_frame(uint instance)
+{
+    uvec4 r0 = fetch_instance_row(instance * INSTANCE_ROWS);
+    uvec4 r1 = fetch_instance_row(instance * INSTANCE_ROWS + 1u);
+    uvec4 r2 = fetch_instance_row(instance * INSTANCE_ROWS + 2u);
+    InstanceFrame frame;
+    frame.inverse0 = row_vec3(r0);
+    frame.inverse1 = row_vec3(r1);
+    frame.inverse2 = row_vec3(r2);
+    frame.origin = vec3(uintBitsToFloat(r0.w), uintBitsToFloat(r1.w), uintBitsToFloat(r2.w));
+    return frame;
+}
+
+// Rows times vector, written out: lavapipe's mat3 * vec3 sums from the right.
+vec3 rotate_rows(vec3 r0, vec3 r1, vec3 r2, vec3 p)
+{
+    precise vec3 q;
+    q.x = (r0.x * p.x + r0.y * p.y) + r0.z * p.z;
+    q.y = (r1.x * p.x + r1.y * p.y) + r1.z * p.z;
+    q.z = (r2.x * p.x + r2.y * p.y) + r2.z * p.z;
+    return q;
+}
+
+vec3 to_object_point(InstanceFrame frame, vec3 p)
+{
+    precise vec3 relative = p - frame.origin;
+    return rotate_rows(frame.inverse0, frame.inverse1, frame.inverse2, relative);
+}
+
+vec3 to_object_dir(InstanceFrame frame, vec3 d)
+{
+    return rotate_rows(frame.inverse0, frame.inverse1, frame.inverse2, d);
+}
+
+void report_status(uint bits)
+{
+    if (bits != 0u)
+        atomicOr(status_word, bits);
+}
+
+#endif

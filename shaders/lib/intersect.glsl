@@ -1,0 +1,124 @@
+// Boxes and triangles against a ray. Every product and sum is `precise`: one rounding each, never
+// contracted, so that neighbours decide a shared edge alike and C gives the same bits
+// (docs/numerics.md). accel/intersect.h is this file in C.
+#ifndef LIB_INTERSECT_GLSL
+#define LIB_INTERSECT_GLSL
+
+// What a ray needs at every box and triangle.
+struct RaySetup {
+    vec3 origin;
+    vec3 inv_dir;  // infinite where the direction is 0
+    bvec3 negative; // inv_dir < 0, so that -0 counts as negative
+    bvec2 dominant; // |dir| is largest along x; along y
+    vec3 shear;    // Woop, Benthin and Wald 2013: dir.x / dir.z, dir.y / dir.z, 1 / dir.z after
+                   // turning the dominant axis to z
+};
+
+// (x, y, z) turned so that the dominant axis comes last; the turn keeps orientation.
+vec3 turn_dominant(bvec2 dominant, vec3 p)
+{
+    return dominant.x ? p.yzx : dominant.y ? p.zxy : p;
+}
+
+RaySetup make_ray_setup(vec3 origin, vec3 dir)
+{
+    RaySetup ray;
+    ray.origin = origin;
+    precise vec3 inv_dir = vec3(1.0) / dir;
+    ray.inv_dir = inv_dir;
+    ray.negative = lessThan(inv_dir, vec3(0.0));
+    vec3 size = abs(dir);
+    bool x_over_y = size.x > size.y;
+    bool x_over_z = size.x > size.z;
+    bool y_over_z = size.y > size.z;
+    ray.dominant = bvec2(x_over_y && x_over_z, !x_over_y && y_over_z);
+    vec3 turned = turn_dominant(ray.dominant, dir);
+    precise vec3 shear;
+    shear.z = 1.0 / turned.z;
+    shear.x = turned.x / turned.z;
+    shear.y = turned.y / turned.z;
+    ray.shear = shear;
+    return ray;
+}
+
+// Widens the far end of a slab interval: more than the error of (b - o) * (1 / d) on both ends
+// (Ize 2013 shows that 2 ulp close all holes between boxes) and than that of the edge functions,
+// which may call a triangle hit by a ray that passes its box within rounding.
+const float SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;
+
+// The part of the ray inside the box `lo`..`hi`, both relative to the ray's origin. NaN (0 times
+// infinity: the origin in the plane of a face, the ray parallel to it) loses every comparison and
+// so bounds nothing.
+void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near, out float t_far)
+{
+    precise vec3 at_lo = lo * ray.inv_dir;
+    precise vec3 at_hi = hi * ray.inv_dir;
+    vec3 near = mix(at_lo, at_hi, ray.negative);
+    vec3 far = mix(at_hi, at_lo, ray.negative);
+    float start = t_min;
+    start = near.x > start ? near.x : start;
+    start = near.y > start ? near.y : start;
+    start = near.z > start ? near.z : start;
+    float end = uintBitsToFloat(0x7f800000u);
+    end = far.x < end ? far.x : end;
+    end = far.y < end ? far.y : end;
+    end = far.z < end ? far.z : end;
+    precise float widened = end * SLAB_FAR_SCALE;
+    t_near = start;
+    t_far = widened;
+}
+
+// Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
+// An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
+// triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
+// other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
+bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out float t, out float u,
+                        out float v)
+{
+    vec3 lo, hi;
+    lo.x = a.x < b.x ? a.x : b.x;
+    lo.y = a.y < b.y ? a.y : b.y;
+    lo.z = a.z < b.z ? a.z : b.z;
+    hi.x = a.x > b.x ? a.x : b.x;
+    hi.y = a.y > b.y ? a.y : b.y;
+    hi.z = a.z > b.z ? a.z : b.z;
+    lo.x = c.x < lo.x ? c.x : lo.x;
+    lo.y = c.y < lo.y ? c.y : lo.y;
+    lo.z = c.z < lo.z ? c.z : lo.z;
+    hi.x = c.x > hi.x ? c.x : hi.x;
+    hi.y = c.y > hi.y ? c.y : hi.y;
+    hi.z = c.z > hi.z ? c.z : hi.z;
+    float t_near, t_far;
+    slab_interval(ray, lo, hi, t_min, t_near, t_far);
+
+    vec3 ta = turn_dominant(ray.dominant, a);
+    vec3 tb = turn_dominant(ray.dominant, b);
+    vec3 tc = turn_dominant(ray.dominant, c);
+    precise float ax = ta.x - ray.shear.x * ta.z;
+    precise float ay = ta.y - ray.shear.y * ta.z;
+    precise float bx = tb.x - ray.shear.x * tb.z;
+    precise float by = tb.y - ray.shear.y * tb.z;
+    precise float cx = tc.x - ray.shear.x * tc.z;
+    precise float cy = tc.y - ray.shear.y * tc.z;
+    precise float ea = cx * by - cy * bx;
+    precise float eb = ax * cy - ay * cx;
+    precise float ec = bx * ay - by * ax;
+    bool below = ea < 0.0 || eb < 0.0 || ec < 0.0;
+    bool above = ea > 0.0 || eb > 0.0 || ec > 0.0;
+    precise float det = (ea + eb) + ec;
+    precise float az = ray.shear.z * ta.z;
+    precise float bz = ray.shear.z * tb.z;
+    precise float cz = ray.shear.z * tc.z;
+    precise float scaled_t = (ea * az + eb * bz) + ec * cz;
+    precise float inv_det = 1.0 / det;
+    precise float at = scaled_t * inv_det;
+    precise float weight_b = eb * inv_det;
+    precise float weight_c = ec * inv_det;
+    u = weight_b;
+    v = weight_c;
+    t = at > t_near ? at : t_near;
+    // at >= t_min is false for NaN: overflow and zero area are no hits.
+    return !(below && above) && det != 0.0 && at >= t_min && t_near <= t_far;
+}
+
+#endif
