@@ -1,0 +1,263 @@
+/* Shapes made by formula: exact counts, closed surfaces, outward faces, normals that agree. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/shapes.h"
+
+struct edge {
+    float a[3], b[3];
+    int direction;
+};
+
+static int compare_edges(const void *x, const void *y)
+{
+    return memcmp(x, y, 6 * sizeof(float));
+}
+
+/* Every edge, by the bits of its ends, is walked once each way. */
+static void assert_closed(const struct scene_mesh *mesh)
+{
+    size_t count = 3 * (size_t)mesh->triangle_count;
+    struct edge *edges = calloc(count, sizeof *edges);
+    assert_non_null(edges);
+    for (size_t i = 0; i < count; ++i) {
+        size_t next = i % 3 == 2 ? i - 2 : i + 1;
+        const float *p = mesh->positions + 3 * (size_t)mesh->indices[i];
+        const float *q = mesh->positions + 3 * (size_t)mesh->indices[next];
+        bool forward = memcmp(p, q, 3 * sizeof *p) < 0;
+        memcpy(edges[i].a, forward ? p : q, 3 * sizeof *p);
+        memcpy(edges[i].b, forward ? q : p, 3 * sizeof *p);
+        edges[i].direction = forward ? 1 : -1;
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (size_t i = 0; i < count; i += 2) {
+        assert_int_equal(compare_edges(&edges[i], &edges[i + 1]), 0);
+        assert_int_equal(edges[i].direction + edges[i + 1].direction, 0);
+        if (i + 2 < count)
+            assert_int_not_equal(compare_edges(&edges[i], &edges[i + 2]), 0);
+    }
+    free(edges);
+}
+
+static double volume(const struct scene_mesh *mesh)
+{
+    double sum = 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const float *p[3];
+        for (uint32_t i = 0; i < 3; ++i)
+            p[i] = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + i];
+        for (int i = 0; i < 3; ++i) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum += (double)p[0][i] * ((double)p[1][j] * (double)p[2][k] -
+                                      (double)p[1][k] * (double)p[2][j]);
+        }
+    }
+    return sum / 6.0;
+}
+
+/* Faces that turn away from their own vertex normals would shade inside out. */
+static void assert_normals_agree(const struct scene_mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const uint32_t *index = mesh->indices + 3 * (size_t)t;
+        const float *p = mesh->positions + 3 * (size_t)index[0];
+        const float *q = mesh->positions + 3 * (size_t)index[1];
+        const float *r = mesh->positions + 3 * (size_t)index[2];
+        double sum = 0.0;
+        for (int i = 0; i < 3; ++i) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            double n = (double)(q[j] - p[j]) * (double)(r[k] - p[k]) -
+                       (double)(q[k] - p[k]) * (double)(r[j] - p[j]);
+            for (int corner = 0; corner < 3; ++corner)
+                sum += n * (double)mesh->normals[3 * (size_t)index[corner] + (size_t)i];
+        }
+        assert_true(sum > 0.0);
+    }
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
+        const float *n = mesh->normals + 3 * (size_t)i;
+        double length = sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] +
+                             (double)n[2] * (double)n[2]);
+        assert_true(fabs(length - 1.0) < 1e-6);
+    }
+}
+
+static void assert_indices(const struct scene_mesh *mesh)
+{
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; ++i)
+        assert_true(mesh->indices[i] < mesh->vertex_count);
+}
+
+static void check_closed(struct scene_mesh *mesh, uint32_t triangles, double least, double most)
+{
+    assert_int_equal(mesh->triangle_count, triangles);
+    assert_indices(mesh);
+    assert_closed(mesh);
+    assert_normals_agree(mesh);
+    assert_true(volume(mesh) > least && volume(mesh) <= most);
+    scene_mesh_finish(mesh);
+}
+
+static void check_open(struct scene_mesh *mesh, uint32_t triangles)
+{
+    assert_int_equal(mesh->triangle_count, triangles);
+    assert_indices(mesh);
+    assert_normals_agree(mesh);
+    scene_mesh_finish(mesh);
+}
+
+static void box(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    assert_int_equal(shape_box((double[]){1, 2, 4}, &mesh), WHIT_OK);
+    check_closed(&mesh, 12, 7.999999, 8.000001);
+}
+
+/* Pictures stand upright on a box's walls: v falls with y, and u runs to the right of who looks. */
+static void box_pictures_stand_upright(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        const float *p = mesh.positions + 3 * (size_t)i, *n = mesh.normals + 3 * (size_t)i;
+        const float *uv = mesh.uvs[0] + 2 * (size_t)i;
+        if (n[1] != 0.0f)
+            continue;
+        float right = n[2] * p[0] - n[0] * p[2]; /* (up x normal) . p */
+        assert_true(uv[1] == 0.5f - 0.5f * p[1]);
+        assert_true(uv[0] == 0.5f + 0.5f * right);
+    }
+    scene_mesh_finish(&mesh);
+}
+
+static void spheres(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    double full = 4.0 / 3.0 * 3.14159265358979 * 8.0;
+    assert_int_equal(shape_sphere(2.0, 3, 2, &mesh), WHIT_OK);
+    check_closed(&mesh, 6, 0.1 * full, full);
+    assert_int_equal(shape_sphere(2.0, 64, 32, &mesh), WHIT_OK);
+    check_closed(&mesh, 2 * 64 * 31, 0.99 * full, full);
+    for (uint32_t level = 0; level <= 4; ++level) {
+        assert_int_equal(shape_icosphere(2.0, level, &mesh), WHIT_OK);
+        assert_int_equal(mesh.vertex_count, (10u << (2 * level)) + 2);
+        check_closed(&mesh, 20u << (2 * level), level < 4 ? 0.5 * full : 0.99 * full, full);
+    }
+}
+
+static void rings_and_rods(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    double pi = 3.14159265358979;
+    assert_int_equal(shape_torus(3.0, 1.0, 64, 32, &mesh), WHIT_OK);
+    check_closed(&mesh, 4096, 0.98 * 6.0 * pi * pi, 6.0 * pi * pi);
+    assert_int_equal(shape_cylinder(1.0, 1.0, 2.0, 64, &mesh), WHIT_OK);
+    check_closed(&mesh, 256, 0.99 * 2.0 * pi, 2.0 * pi);
+    assert_int_equal(shape_cylinder(1.0, 0.0, 3.0, 64, &mesh), WHIT_OK);
+    check_closed(&mesh, 128, 0.99 * pi, pi);
+    assert_int_equal(shape_cylinder(1.0, 2.0, 3.0, 64, &mesh), WHIT_OK);
+    check_closed(&mesh, 256, 0.99 * 7.0 * pi, 7.0 * pi);
+}
+
+static void open_shapes(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    assert_int_equal(shape_plane(2.0, 4.0, 5, 3.0, &mesh), WHIT_OK);
+    check_open(&mesh, 50);
+    assert_int_equal(shape_terrain(10.0, 2.0, 32, 7, &mesh), WHIT_OK);
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        float y = mesh.positions[3 * (size_t)i + 1];
+        assert_true(y >= 0.0f && y <= 2.0f);
+    }
+    check_open(&mesh, 2048);
+}
+
+static void terrain_follows_its_seed(void **state)
+{
+    (void)state;
+    struct scene_mesh a, b, c;
+    assert_int_equal(shape_terrain(1.0, 1.0, 8, 1, &a), WHIT_OK);
+    assert_int_equal(shape_terrain(1.0, 1.0, 8, 1, &b), WHIT_OK);
+    assert_int_equal(shape_terrain(1.0, 1.0, 8, 2, &c), WHIT_OK);
+    size_t bytes = 3 * sizeof(float) * a.vertex_count;
+    assert_memory_equal(a.positions, b.positions, bytes);
+    assert_int_not_equal(memcmp(a.positions, c.positions, bytes), 0);
+    scene_mesh_finish(&a);
+    scene_mesh_finish(&b);
+    scene_mesh_finish(&c);
+}
+
+static double distance(const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
+static void sphereflake(void **state)
+{
+    (void)state;
+    double *spheres;
+    uint32_t count;
+    assert_int_equal(shape_sphereflake(1.0, 2, &spheres, &count), WHIT_OK);
+    assert_int_equal(count, 1 + 9 + 81);
+    for (uint32_t i = 1; i < count; ++i) {
+        const double *s = spheres + 4 * (size_t)i, *parent = spheres + 4 * (size_t)((i - 1) / 9);
+        assert_true(fabs(s[3] - parent[3] / 3.0) < 1e-12);
+        assert_true(fabs(distance(s, parent) - (s[3] + parent[3])) < 1e-12);
+    }
+    /* Touching at most: no two spheres reach into each other. */
+    for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t k = i + 1; k < 10; ++k) {
+            const double *a = spheres + 4 * (size_t)i, *b = spheres + 4 * (size_t)k;
+            assert_true(distance(a, b) > a[3] + b[3] - 1e-12);
+        }
+    }
+    free(spheres);
+}
+
+static void senseless_parameters_are_refused(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    double *spheres;
+    uint32_t count;
+    assert_int_equal(shape_box((double[]){1, 0, 1}, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_box((double[]){1, (double)NAN, 1}, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_sphere(1.0, 2, 8, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_sphere(1.0, 8, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_sphere(-1.0, 8, 8, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_icosphere(1.0, 9, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_torus(1.0, 0.0, 8, 8, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_cylinder(1.0, -1.0, 1.0, 8, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_plane(1.0, 1.0, 0, 1.0, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_terrain(1.0, 1.0, 5000, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_sphereflake(1.0, 7, &spheres, &count), WHIT_ERROR_USAGE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(box),
+        cmocka_unit_test(box_pictures_stand_upright),
+        cmocka_unit_test(spheres),
+        cmocka_unit_test(rings_and_rods),
+        cmocka_unit_test(open_shapes),
+        cmocka_unit_test(terrain_follows_its_seed),
+        cmocka_unit_test(sphereflake),
+        cmocka_unit_test(senseless_parameters_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
