@@ -1,0 +1,410 @@
+/* Is this a tree, and is it the tree of these primitives? Nothing read here is trusted: every index
+   is checked before it is followed, and no node is entered twice. */
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel_inside.h"
+#include "base/array.h"
+
+/* One tree inside arrays that may hold others. */
+struct view {
+    const struct log *log;
+    const char *name;
+    const struct gpu_bvh_node *nodes; /* the whole array */
+    uint32_t first_node, node_count;  /* those of this tree; the first is the root */
+    uint32_t first_slot, slot_count;  /* what its leaves may refer to */
+    uint32_t primitive_count;         /* in the leaves; each once */
+    uint32_t leaf_limit;
+    /* Primitive in a slot, and its box; false: no box to compare with. */
+    uint32_t (*primitive)(const void *user, uint32_t slot);
+    bool (*box)(const void *user, uint32_t slot, struct bvh_box *box);
+    const void *user;
+};
+
+/* A node still to be looked at. */
+struct visit {
+    uint32_t node, depth;
+};
+
+struct walk {
+    struct visit *stack;
+    uint8_t *pair_seen, *slot_seen, *primitive_seen;
+    uint32_t top, pairs, slots;
+    uint32_t depth, leaf_count, leaf_largest;
+};
+
+#define REFUSE(view, ...)                                                                          \
+    do {                                                                                           \
+        refuse((view), __VA_ARGS__);                                                               \
+        return false;                                                                              \
+    } while (0)
+
+static void refuse(const struct view *view, const char *what, uint32_t where)
+{
+    log_error(view->log, "%s: %s (%u)", view->name, what, where);
+}
+
+static bool box_holds(const float lo[3], const float hi[3], const float inner_lo[3],
+                      const float inner_hi[3])
+{
+    bool holds = true;
+    for (int i = 0; i < 3; ++i)
+        holds &= lo[i] <= inner_lo[i] && hi[i] >= inner_hi[i]; /* false for NaN */
+    return holds;
+}
+
+static bool box_is_sane(const struct gpu_bvh_node *node)
+{
+    bool sane = true;
+    for (int i = 0; i < 3; ++i)
+        sane &= node->lo[i] >= -FLT_MAX && node->lo[i] <= node->hi[i] && node->hi[i] <= FLT_MAX;
+    return sane;
+}
+
+static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot,
+                       const struct gpu_bvh_node *node)
+{
+    uint32_t primitive = view->primitive(view->user, slot);
+    struct bvh_box box;
+    if (primitive >= view->primitive_count)
+        REFUSE(view, "a leaf names a primitive out of range, at record", slot);
+    if (walk->slot_seen[slot - view->first_slot]++)
+        REFUSE(view, "two leaves share a record", slot);
+    if (walk->primitive_seen[primitive]++)
+        REFUSE(view, "a primitive is in the tree twice", primitive);
+    if (view->box(view->user, slot, &box) && !box_holds(node->lo, node->hi, box.lo, box.hi))
+        REFUSE(view, "a leaf does not contain its primitive", primitive);
+    ++walk->slots;
+    return true;
+}
+
+static bool check_leaf(const struct view *view, struct walk *walk, struct visit at)
+{
+    const struct gpu_bvh_node *node = &view->nodes[at.node];
+    uint32_t end = view->first_slot + view->slot_count;
+    if (node->count > view->leaf_limit)
+        REFUSE(view, "a leaf is over the limit, node", at.node);
+    if (node->first < view->first_slot || node->first > end || node->count > end - node->first)
+        REFUSE(view, "a leaf reaches out of range, node", at.node);
+    for (uint32_t i = 0; i < node->count; ++i) {
+        if (!check_slot(view, walk, node->first + i, node))
+            return false;
+    }
+    ++walk->leaf_count;
+    if (node->count > walk->leaf_largest)
+        walk->leaf_largest = node->count;
+    if (at.depth > walk->depth)
+        walk->depth = at.depth;
+    return true;
+}
+
+static bool check_inner(const struct view *view, struct walk *walk, struct visit at)
+{
+    const struct gpu_bvh_node *node = &view->nodes[at.node];
+    uint32_t end = view->first_node + view->node_count;
+    if (node->first % 2 != 0)
+        REFUSE(view, "children do not start at an even node, node", at.node);
+    if (node->first < view->first_node + 2 || node->first >= end)
+        REFUSE(view, "children out of range, node", at.node);
+    if (walk->pair_seen[(node->first - view->first_node) / 2]++)
+        REFUSE(view, "children have two parents, node", at.node);
+    for (uint32_t i = 0; i < 2; ++i) {
+        const struct gpu_bvh_node *child = &view->nodes[node->first + i];
+        if (!box_holds(node->lo, node->hi, child->lo, child->hi))
+            REFUSE(view, "a child is not inside its parent, node", node->first + i);
+        walk->stack[walk->top++] = (struct visit){node->first + i, at.depth + 1};
+    }
+    ++walk->pairs;
+    return true;
+}
+
+static bool walk_run(const struct view *view, struct walk *walk)
+{
+    walk->stack[walk->top++] = (struct visit){view->first_node, 0};
+    while (walk->top > 0) {
+        struct visit at = walk->stack[--walk->top];
+        const struct gpu_bvh_node *node = &view->nodes[at.node];
+        if (!box_is_sane(node))
+            REFUSE(view, "a box is not finite, or inside out, node", at.node);
+        if (!(node->count > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)))
+            return false;
+    }
+    if (2 + 2 * (uint64_t)walk->pairs != view->node_count)
+        REFUSE(view, "nodes are not reached from the root; reached pairs", walk->pairs);
+    if (walk->slots != view->primitive_count)
+        REFUSE(view, "primitives are missing; found", walk->slots);
+    return true;
+}
+
+static bool walk_alloc(const struct view *view, struct walk *walk)
+{
+    /* A pair enters the stack once, so the nodes bound it. */
+    *walk = (struct walk){
+        .stack = array_alloc((size_t)view->node_count + 2, sizeof *walk->stack),
+        .pair_seen = array_alloc_zeroed(view->node_count / 2 + 1, 1),
+        .slot_seen = array_alloc_zeroed(view->slot_count, 1),
+        .primitive_seen = array_alloc_zeroed(view->primitive_count, 1),
+    };
+    return walk->stack && walk->pair_seen && walk->slot_seen && walk->primitive_seen;
+}
+
+static void walk_finish(struct walk *walk)
+{
+    free(walk->stack);
+    free(walk->pair_seen);
+    free(walk->slot_seen);
+    free(walk->primitive_seen);
+}
+
+/* *found holds the counts on success. */
+static whit_result view_check(const struct view *view, struct walk *found)
+{
+    *found = (struct walk){0};
+    if (view->node_count == 0) {
+        if (view->primitive_count == 0)
+            return WHIT_OK;
+        refuse(view, "no nodes for primitives", view->primitive_count);
+        return WHIT_ERROR_FAILED;
+    }
+    if ((uintptr_t)&view->nodes[view->first_node] % 64 != 0 || view->node_count % 2 != 0) {
+        refuse(view, "nodes are not in aligned pairs; count", view->node_count);
+        return WHIT_ERROR_FAILED;
+    }
+    whit_result result = WHIT_OK;
+    if (!walk_alloc(view, found)) {
+        log_error(view->log, "%s: out of memory for validation", view->name);
+        result = WHIT_ERROR_MEMORY;
+    } else if (!walk_run(view, found)) {
+        result = WHIT_ERROR_FAILED;
+    }
+    walk_finish(found);
+    return result;
+}
+
+static bool stated(const struct view *view, const char *what, uint32_t said, uint32_t found)
+{
+    if (said == found)
+        return true;
+    log_error(view->log, "%s: the stated %s is %u, but it is %u", view->name, what, said, found);
+    return false;
+}
+
+/* ---- One tree ---- */
+
+struct bvh_user {
+    const struct bvh *bvh;
+    const struct bvh_box *boxes;
+};
+
+static uint32_t bvh_primitive(const void *user, uint32_t slot)
+{
+    return ((const struct bvh_user *)user)->bvh->order[slot];
+}
+
+static bool bvh_primitive_box(const void *user, uint32_t slot, struct bvh_box *box)
+{
+    const struct bvh_user *u = user;
+    if (!u->boxes)
+        return false;
+    *box = u->boxes[u->bvh->order[slot]];
+    return true;
+}
+
+whit_result bvh_validate(const struct log *log, const struct bvh *bvh, const struct bvh_box *boxes,
+                         uint32_t leaf_limit)
+{
+    struct bvh_user user = {bvh, boxes};
+    struct view view = {
+        .log = log,
+        .name = "tree",
+        .nodes = bvh->nodes,
+        .node_count = bvh->node_count,
+        .slot_count = bvh->primitive_count,
+        .primitive_count = bvh->primitive_count,
+        .leaf_limit = leaf_limit < BVH_LEAF_MAX ? leaf_limit : BVH_LEAF_MAX,
+        .primitive = bvh_primitive,
+        .box = bvh_primitive_box,
+        .user = &user,
+    };
+    struct walk found;
+    whit_result result = view_check(&view, &found);
+    if (result != WHIT_OK)
+        return result;
+    bool same = stated(&view, "depth", bvh->depth, found.depth) &&
+                stated(&view, "number of leaves", bvh->leaf_count, found.leaf_count) &&
+                stated(&view, "largest leaf", bvh->leaf_largest, found.leaf_largest);
+    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+}
+
+/* ---- Trees of a scene ---- */
+
+struct mesh_user {
+    const struct accel *accel;
+    const struct scene_mesh *mesh;
+};
+
+static uint32_t mesh_primitive(const void *user, uint32_t slot)
+{
+    return ((const struct mesh_user *)user)->accel->triangles[slot].primitive;
+}
+
+static bool mesh_primitive_box(const void *user, uint32_t slot, struct bvh_box *box)
+{
+    const struct gpu_triangle *t = &((const struct mesh_user *)user)->accel->triangles[slot];
+    *box = accel_triangle_box(t->v0, t->v1, t->v2);
+    return true;
+}
+
+static bool triangles_match(const struct view *view, const struct mesh_user *user)
+{
+    for (uint32_t i = 0; i < view->slot_count; ++i) {
+        const struct gpu_triangle *t = &user->accel->triangles[view->first_slot + i];
+        const uint32_t *corner = &user->mesh->indices[3 * (size_t)t->primitive];
+        const float *v[3] = {t->v0, t->v1, t->v2};
+        for (int k = 0; k < 3; ++k) {
+            const float *p = &user->mesh->positions[3 * (size_t)corner[k]];
+            if (memcmp(v[k], p, 3 * sizeof *p) != 0)
+                REFUSE(view, "a record is not its triangle", view->first_slot + i);
+        }
+    }
+    return true;
+}
+
+static whit_result validate_mesh(const struct accel *accel, uint32_t index)
+{
+    const struct accel_mesh *m = &accel->meshes[index];
+    struct mesh_user user = {accel, &accel->scene->meshes[index]};
+    struct view view = {
+        .log = &accel->log,
+        .name = user.mesh->name ? user.mesh->name : "mesh",
+        .nodes = accel->nodes,
+        .first_node = m->first_node,
+        .node_count = m->node_count,
+        .first_slot = m->first_triangle,
+        .slot_count = m->triangle_count,
+        .primitive_count = m->triangle_count,
+        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
+        .primitive = mesh_primitive,
+        .box = mesh_primitive_box,
+        .user = &user,
+    };
+    bool placed = m->first_node >= accel->instance_node_capacity &&
+                  m->first_node <= accel->node_count &&
+                  m->node_count <= accel->node_count - m->first_node &&
+                  m->first_triangle <= accel->triangle_count &&
+                  m->triangle_count <= accel->triangle_count - m->first_triangle &&
+                  m->triangle_count == user.mesh->triangle_count;
+    if (!placed) {
+        refuse(&view, "its nodes or triangles are out of range, mesh", index);
+        return WHIT_ERROR_FAILED;
+    }
+    struct walk found;
+    whit_result result = view_check(&view, &found);
+    if (result != WHIT_OK)
+        return result;
+    uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[m->first_node]) : BVH_EMPTY_REF;
+    bool same = stated(&view, "depth", m->depth, found.depth) &&
+                stated(&view, "root", m->root, root) && triangles_match(&view, &user);
+    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+}
+
+struct instance_user {
+    const struct accel *accel;
+    const uint32_t *dense; /* of each instance: its number among those that are not empty */
+};
+
+static uint32_t instance_primitive(const void *user, uint32_t slot)
+{
+    return ((const struct instance_user *)user)->dense[slot];
+}
+
+static bool instance_box(const void *user, uint32_t slot, struct bvh_box *box)
+{
+    const struct accel *accel = ((const struct instance_user *)user)->accel;
+    const struct gpu_instance *in = &accel->instances[slot];
+    const float *forward[3] = {in->forward0, in->forward1, in->forward2};
+    const float origin[3] = {in->origin_x, in->origin_y, in->origin_z};
+    double rows[12];
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c)
+            rows[4 * r + c] = (double)forward[r][c];
+        rows[4 * r + 3] = (double)origin[r];
+    }
+    struct accel_extent extent = accel_transformed_box(rows, &accel->meshes[in->mesh].box);
+    for (int i = 0; i < 3; ++i) {
+        box->lo[i] = (float)extent.lo[i];
+        box->hi[i] = (float)extent.hi[i];
+    }
+    return true;
+}
+
+/* Numbers the instances that are not empty; false when one does not refer to its mesh. */
+static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_t *count)
+{
+    *count = 0;
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        const struct gpu_instance *in = &accel->instances[i];
+        if (in->mesh >= accel->mesh_count || in->root != accel->meshes[in->mesh].root ||
+            in->shade_base != accel->meshes[in->mesh].shade_base) {
+            log_error(&accel->log, "instances: %u does not refer to its mesh", i);
+            return false;
+        }
+        dense[i] = in->root == BVH_EMPTY_REF ? UINT32_MAX : (*count)++;
+    }
+    return true;
+}
+
+/* Leaves name instances, and the empty ones are not in the tree. */
+static whit_result validate_instances(const struct accel *accel)
+{
+    uint32_t *dense = array_alloc(accel->instance_count, sizeof *dense);
+    if (!dense) {
+        log_error(&accel->log, "instances: out of memory for validation");
+        return WHIT_ERROR_MEMORY;
+    }
+    struct instance_user user = {accel, dense};
+    struct view view = {
+        .log = &accel->log,
+        .name = "instances",
+        .nodes = accel->nodes,
+        .node_count = accel->instance_node_count,
+        .slot_count = accel->instance_count,
+        .leaf_limit = 1,
+        .primitive = instance_primitive,
+        .box = instance_box,
+        .user = &user,
+    };
+    whit_result result = WHIT_ERROR_FAILED;
+    struct walk found;
+    if (accel->instance_node_count > accel->instance_node_capacity ||
+        accel->instance_node_capacity > accel->node_count)
+        refuse(&view, "nodes out of range", accel->instance_node_count);
+    else if (instances_number(accel, dense, &view.primitive_count))
+        result = view_check(&view, &found);
+    free(dense);
+    if (result != WHIT_OK)
+        return result;
+    uint32_t root = view.node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
+    bool same = stated(&view, "depth", accel->instance_depth, found.depth) &&
+                stated(&view, "root", accel->instance_root, root);
+    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+}
+
+whit_result accel_validate(const struct accel *accel)
+{
+    uint32_t deepest = 0;
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        whit_result result = validate_mesh(accel, i);
+        if (result != WHIT_OK)
+            return result;
+        if (accel->meshes[i].depth > deepest)
+            deepest = accel->meshes[i].depth;
+    }
+    if (accel->mesh_depth != deepest) {
+        log_error(&accel->log, "the stated depth of the meshes is %u, but it is %u",
+                  accel->mesh_depth, deepest);
+        return WHIT_ERROR_FAILED;
+    }
+    return validate_instances(accel);
+}
