@@ -75,10 +75,10 @@ bool affine_invert(const struct affine *a, struct affine *out)
     if (!isfinite(inv) || det == 0.0)
         return false;
     struct affine r = {{(m[5] * m[10] - m[6] * m[9]) * inv, (m[2] * m[9] - m[1] * m[10]) * inv,
-                        (m[1] * m[6] - m[2] * m[5]) * inv, 0,
-                        (m[6] * m[8] - m[4] * m[10]) * inv, (m[0] * m[10] - m[2] * m[8]) * inv,
-                        (m[2] * m[4] - m[0] * m[6]) * inv, 0, (m[4] * m[9] - m[5] * m[8]) * inv,
-                        (m[1] * m[8] - m[0] * m[9]) * inv, (m[0] * m[5] - m[1] * m[4]) * inv, 0}};
+                        (m[1] * m[6] - m[2] * m[5]) * inv, 0, (m[6] * m[8] - m[4] * m[10]) * inv,
+                        (m[0] * m[10] - m[2] * m[8]) * inv, (m[2] * m[4] - m[0] * m[6]) * inv, 0,
+                        (m[4] * m[9] - m[5] * m[8]) * inv, (m[1] * m[8] - m[0] * m[9]) * inv,
+                        (m[0] * m[5] - m[1] * m[4]) * inv, 0}};
     for (int i = 0; i < 3; ++i)
         r.m[4 * i + 3] = -(r.m[4 * i] * m[3] + r.m[4 * i + 1] * m[7] + r.m[4 * i + 2] * m[11]);
     if (!affine_is_finite(&r))

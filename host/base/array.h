@@ -23,7 +23,7 @@ void *array_alloc(size_t count, size_t element_bytes);
 void *array_alloc_zeroed(size_t count, size_t element_bytes);
 /* 64-byte aligned and zeroed; release with free(). */
 void *array_alloc_aligned(size_t count, size_t element_bytes);
-char *string_copy(const char *text);                                  /* NULL gives NULL */
+char *string_copy(const char *text); /* NULL gives NULL */
 char *string_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

@@ -9,6 +9,12 @@ static double read_ms(clockid_t id)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-double clock_ms(void) { return read_ms(CLOCK_MONOTONIC); }
+double clock_ms(void)
+{
+    return read_ms(CLOCK_MONOTONIC);
+}
 
-double clock_cpu_ms(void) { return read_ms(CLOCK_PROCESS_CPUTIME_ID); }
+double clock_cpu_ms(void)
+{
+    return read_ms(CLOCK_PROCESS_CPUTIME_ID);
+}

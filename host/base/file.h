@@ -1,4 +1,5 @@
-/* Whole files: read at once, written beside and renamed, so that a reader never sees half a file. */
+/* Whole files: read at once, written beside and renamed, so that a reader never sees half a file.
+ */
 #ifndef BASE_FILE_H
 #define BASE_FILE_H
 

@@ -14,19 +14,19 @@ enum { CHILD_EXIT_MEMORY = 120 };
 
 /* How a child process ended. */
 enum child_end {
-    CHILD_DONE,      /* returned; its whole reply was received */
-    CHILD_CRASHED,   /* died of a signal */
-    CHILD_TIME,      /* ran past its time limit and was killed */
-    CHILD_MEMORY,    /* asked for more memory than allowed */
-    CHILD_REPLY,     /* replied with more than the limit, or not at all */
+    CHILD_DONE,    /* returned; its whole reply was received */
+    CHILD_CRASHED, /* died of a signal */
+    CHILD_TIME,    /* ran past its time limit and was killed */
+    CHILD_MEMORY,  /* asked for more memory than allowed */
+    CHILD_REPLY,   /* replied with more than the limit, or not at all */
     CHILD_NOT_STARTED,
     CHILD_CANCELLED, /* *cancel became true while it ran */
 };
 
 struct child_limits {
-    double time_s;          /* wall clock; 0: no limit */
-    uint64_t memory_bytes;  /* address space, beyond what is mapped at the fork; 0: no limit */
-    uint64_t reply_bytes;   /* largest reply */
+    double time_s;               /* wall clock; 0: no limit */
+    uint64_t memory_bytes;       /* address space, beyond what is mapped at the fork; 0: no limit */
+    uint64_t reply_bytes;        /* largest reply */
     const volatile bool *cancel; /* polled, may be NULL */
 };
 

@@ -13,9 +13,15 @@ struct dvec3 {
     double x, y, z;
 };
 
-static inline struct vec3 vec3_make(float x, float y, float z) { return (struct vec3){x, y, z}; }
+static inline struct vec3 vec3_make(float x, float y, float z)
+{
+    return (struct vec3){x, y, z};
+}
 
-static inline struct vec3 vec3_load(const float *p) { return (struct vec3){p[0], p[1], p[2]}; }
+static inline struct vec3 vec3_load(const float *p)
+{
+    return (struct vec3){p[0], p[1], p[2]};
+}
 
 static inline void vec3_store(float *p, struct vec3 v)
 {
@@ -50,7 +56,10 @@ static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
     return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-static inline float vec3_length(struct vec3 a) { return sqrtf(vec3_dot(a, a)); }
+static inline float vec3_length(struct vec3 a)
+{
+    return sqrtf(vec3_dot(a, a));
+}
 
 /* The zero vector stays zero. */
 static inline struct vec3 vec3_normalize(struct vec3 a)
@@ -59,7 +68,10 @@ static inline struct vec3 vec3_normalize(struct vec3 a)
     return length > 0.0f ? vec3_scale(a, 1.0f / length) : a;
 }
 
-static inline struct dvec3 dvec3_from(struct vec3 a) { return (struct dvec3){a.x, a.y, a.z}; }
+static inline struct dvec3 dvec3_from(struct vec3 a)
+{
+    return (struct dvec3){a.x, a.y, a.z};
+}
 
 static inline struct dvec3 dvec3_sub(struct dvec3 a, struct dvec3 b)
 {
