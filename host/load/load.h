@@ -2,6 +2,8 @@
 #ifndef LOAD_LOAD_H
 #define LOAD_LOAD_H
 
+#include <stddef.h>
+
 #include "scene/scene.h"
 
 struct load_params {

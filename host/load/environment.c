@@ -1,0 +1,123 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "image/image.h"
+#include "load/load.h"
+#include "load/picture.h"
+
+#define FILE_BYTES_MOST ((uint64_t)1 << 30)
+#define SIDE_MOST       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
+
+/* .exr and .pfm: grey spreads to RGB, alpha is dropped. */
+static whit_result read_image(const struct log *log, const char *path, struct picture *out)
+{
+    struct image image = {0};
+    whit_result result = image_load(log, path, &image);
+    if (result != WHIT_OK)
+        return result;
+    size_t pixels = (size_t)image.width * image.height;
+    *out = (struct picture){.width = image.width, .height = image.height};
+    if (!image.pixels) {
+        log_error(log, "%s: it holds integers, not colours", path);
+        result = WHIT_ERROR_INPUT;
+        goto done;
+    }
+    out->rgb = array_alloc(pixels, 3 * sizeof(float));
+    if (!out->rgb) {
+        log_error(log, "%s: out of memory", path);
+        result = WHIT_ERROR_MEMORY;
+        goto done;
+    }
+    for (size_t i = 0; i < pixels; ++i) {
+        for (size_t k = 0; k < 3; ++k)
+            out->rgb[3 * i + k] = image.pixels[i * image.channels + (image.channels >= 3 ? k : 0)];
+    }
+done:
+    image_finish(&image);
+    return result;
+}
+
+static whit_result linearize(const struct log *log, const char *path, struct picture *picture)
+{
+    float table[256];
+    for (int i = 0; i < 256; ++i)
+        table[i] = image_linear_from_srgb((float)i / 255.0f);
+    size_t pixels = (size_t)picture->width * picture->height;
+    picture->rgb = array_alloc(pixels, 3 * sizeof(float));
+    if (!picture->rgb) {
+        log_error(log, "%s: out of memory", path);
+        return WHIT_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < pixels; ++i) {
+        for (size_t k = 0; k < 3; ++k)
+            picture->rgb[3 * i + k] = table[picture->rgba[4 * i + k]];
+    }
+    free(picture->rgba);
+    picture->rgba = NULL;
+    return WHIT_OK;
+}
+
+static whit_result read_picture(const struct log *log, const char *path, bool linear,
+                                struct picture *out, uint64_t *file_bytes)
+{
+    uint8_t *data = NULL;
+    size_t size_bytes = 0;
+    const char *reason = "";
+    whit_result result = file_read(log, path, FILE_BYTES_MOST, &data, &size_bytes);
+    if (result != WHIT_OK)
+        return result;
+    *file_bytes = size_bytes;
+    result = picture_decode(data, size_bytes, linear, out, &reason);
+    free(data);
+    if (result != WHIT_OK)
+        log_error(log, "%s: %s", path, reason);
+    else if (!linear)
+        result = linearize(log, path, out);
+    return result;
+}
+
+whit_result load_environment(struct scene *scene, const char *path)
+{
+    const struct log *log = &scene->log;
+    char extension[16];
+    struct picture picture = {0};
+    uint64_t file_bytes = 0;
+    whit_result result = WHIT_ERROR_MEMORY;
+    char *found = picture_find(path);
+    if (!found) {
+        log_error(log, "%s: out of memory", path);
+        return result;
+    }
+    path_extension(found, extension, sizeof extension);
+    if (strcmp(extension, "exr") == 0 || strcmp(extension, "pfm") == 0)
+        result = read_image(log, found, &picture);
+    else
+        result = read_picture(log, found, strcmp(extension, "hdr") == 0, &picture, &file_bytes);
+    if (result != WHIT_OK)
+        goto fail;
+    if (!picture_shrink(&picture, SIDE_MOST)) {
+        log_error(log, "%s: out of memory", path);
+        result = WHIT_ERROR_MEMORY;
+        goto fail;
+    }
+    struct scene_environment *sky = &scene->environment;
+    free(sky->rgb);
+    free(sky->name);
+    *sky = (struct scene_environment){
+        .kind = SCENE_ENVIRONMENT_MAP,
+        .scale = {1, 1, 1},
+        .width = picture.width,
+        .height = picture.height,
+        .rgb = picture.rgb,
+        .name = found,
+    };
+    scene->has_environment = true;
+    scene->file_bytes += file_bytes;
+    return WHIT_OK;
+fail:
+    picture_finish(&picture);
+    free(found);
+    return result;
+}

@@ -1,0 +1,57 @@
+#include "load/load.h"
+
+#include <string.h>
+
+#include "base/file.h"
+
+static bool is_model(const char *extension)
+{
+    static const char *const models[] = {"obj", "gltf", "glb", "ply", "stl"};
+    for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
+        if (strcmp(extension, models[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+static whit_result read_into(struct scene *scene, const char *path,
+                             const struct load_params *params)
+{
+    char extension[16];
+    path_extension(path, extension, sizeof extension);
+    if (strcmp(extension, "json") == 0)
+        return load_scene_file(scene, path, params);
+    if (is_model(extension))
+        return load_model(scene, path, SCENE_NONE, true, true, params);
+    log_error(&scene->log,
+              "%s: the extension `.%s` is not known; whit reads .json scenes and .obj .gltf .glb "
+              ".ply .stl models",
+              path, extension);
+    return WHIT_ERROR_INPUT;
+}
+
+whit_result load_scene(const struct log *log, const char *path, const struct load_params *params,
+                       struct scene **out)
+{
+    *out = NULL;
+    if (!file_exists(path)) {
+        log_error(log, "%s: there is no such file", path);
+        return WHIT_ERROR_INPUT;
+    }
+    struct scene *scene = scene_create(log, path);
+    if (!scene) {
+        log_error(log, "%s: out of memory", path);
+        return WHIT_ERROR_MEMORY;
+    }
+    whit_result result = read_into(scene, path, params);
+    if (result == WHIT_OK)
+        result = scene_freeze(scene);
+    if (result == WHIT_OK && params && params->cancel && *params->cancel)
+        result = WHIT_ERROR_CANCELLED;
+    if (result != WHIT_OK) {
+        scene_destroy(scene);
+        return result;
+    }
+    *out = scene;
+    return WHIT_OK;
+}

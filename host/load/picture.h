@@ -1,0 +1,31 @@
+/* Foreign picture files into pixels, through stb_image; and finding files whose names were written
+   on a system with other ideas about case and slashes. */
+#ifndef LOAD_PICTURE_H
+#define LOAD_PICTURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+/* `rgba` or `rgb` is malloc'ed; picture_finish() it. Row 0 is the top. */
+struct picture {
+    uint32_t width, height;
+    uint8_t *rgba; /* 4 a pixel as stored, or NULL */
+    float *rgb;    /* 3 a pixel, linear, or NULL */
+};
+
+/* From the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame), or with `linear` a Radiance
+   HDR. WHIT_ERROR_INPUT fills `reason` and logs nothing. */
+WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, bool linear,
+                                      struct picture *out, const char **reason);
+/* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
+bool picture_shrink(struct picture *picture, uint32_t side_most);
+void picture_finish(struct picture *picture);
+
+/* `path`, or the one file that differs from it by case and by \ for /. Release with free(); NULL
+   when memory runs out. A path that leads nowhere is given back with its slashes turned. */
+char *picture_find(const char *path);
+
+#endif

@@ -1,0 +1,98 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/load.h"
+#include "load/picture.h"
+
+#define FILE_BYTES_MOST ((uint64_t)1 << 29)
+#define SIDE_MOST       4096u
+
+static bool known(const struct scene *scene, const char *name, uint32_t *index)
+{
+    for (uint32_t i = 0; i < scene->texture_count; ++i) {
+        if (scene->textures[i].name && strcmp(scene->textures[i].name, name) == 0) {
+            *index = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Silent: a missing texture is a warning of the scene, not an error. */
+static whit_result decode_file(struct scene *scene, const char *path, struct picture *picture,
+                               const char **reason)
+{
+    uint8_t *data = NULL;
+    size_t size_bytes = 0;
+    const struct log silent = {0};
+    whit_result result = file_read(&silent, path, FILE_BYTES_MOST, &data, &size_bytes);
+    *reason = file_exists(path) ? "it cannot be read" : "there is no such file";
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size_bytes;
+    result = picture_decode(data, size_bytes, false, picture, reason);
+    free(data);
+    return result;
+}
+
+/* What a texture that cannot be had looks like; never mistaken for one that can. */
+static bool make_magenta(struct picture *picture)
+{
+    *picture = (struct picture){.width = 1, .height = 1, .rgba = array_alloc(1, 4)};
+    if (picture->rgba)
+        memcpy(picture->rgba, (const uint8_t[]){255, 0, 255, 255}, 4);
+    return picture->rgba != NULL;
+}
+
+static bool shrink(struct scene *scene, const char *name, const struct load_params *params,
+                   struct picture *picture)
+{
+    uint32_t most = params && params->texture_limit ? params->texture_limit : SIDE_MOST;
+    uint32_t width = picture->width, height = picture->height;
+    if (!picture_shrink(picture, most))
+        return false;
+    if (picture->width != width || picture->height != height)
+        scene_note(scene, SCENE_NOTE_INFO, "texture `%s`: shrunk from %ux%u to %ux%u",
+                   path_name(name), width, height, picture->width, picture->height);
+    return true;
+}
+
+whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
+                         size_t size_bytes, const struct load_params *params, uint32_t *index)
+{
+    struct picture picture = {0};
+    const char *reason = "";
+    char *name = data ? string_copy(path) : picture_find(path);
+    *index = SCENE_NONE;
+    if (!name)
+        goto fail;
+    if (known(scene, name, index)) {
+        free(name);
+        return WHIT_OK;
+    }
+    whit_result result = data ? picture_decode(data, size_bytes, false, &picture, &reason)
+                              : decode_file(scene, name, &picture, &reason);
+    if (result == WHIT_ERROR_MEMORY)
+        goto fail;
+    if (result != WHIT_OK) {
+        scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place", name,
+                   reason);
+        if (!make_magenta(&picture))
+            goto fail;
+    }
+    if (!shrink(scene, name, params, &picture))
+        goto fail;
+    *index = scene_add_texture(
+        scene, (struct scene_texture){name, picture.width, picture.height, picture.rgba});
+    if (*index != SCENE_NONE)
+        return WHIT_OK;
+    name = NULL;
+    picture.rgba = NULL;
+fail:
+    log_error(&scene->log, "%s: out of memory for a texture", path);
+    free(name);
+    picture_finish(&picture);
+    return WHIT_ERROR_MEMORY;
+}
