@@ -52,9 +52,13 @@ struct device_params {
     const char *selector; /* NULL or "auto": discrete, else integrated, else virtual, else CPU; a
                              number: that index; else part of a name, any case */
     bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
-                             absence is an error */
+                             absence is an error. WHIT_VALIDATION=1 in the environment turns it on
+                             for every device */
 };
 
+/* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
+   Compiled pipelines are kept in $XDG_CACHE_HOME/whit or ~/.cache/whit from one run to the next,
+   unless WHIT_NO_CACHE=1 is in the environment. */
 WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);
@@ -75,6 +79,7 @@ enum buffer_use {
 WHIT_CHECK whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
                                      const char *name, struct buffer **out);
 void buffer_destroy(struct buffer *buffer); /* NULL is fine; not while in flight */
+/* What was asked for, rounded up to a multiple of 16, at least 16. */
 uint64_t buffer_size(const struct buffer *buffer);
 /* Through a staging buffer where the memory is not host-visible. Both wait until done. */
 WHIT_CHECK whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const void *data,

@@ -1,3 +1,3 @@
 whit_module(device
-  SOURCES device.c buffer.c pipeline.c commands.c
+  SOURCES instance.c device.c cache.c buffer.c pipeline.c commands.c
   LINK whit_base Vulkan::Vulkan)

@@ -1,0 +1,323 @@
+#include "device/vulkan.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+enum { TEXEL_BYTES = 16 };
+
+enum placement {
+    PLACE_DEVICE,  /* fast for the device, out of the host's reach */
+    PLACE_UNIFIED, /* one memory for both */
+    PLACE_HOST,    /* written, and above all read, by the host */
+};
+
+/* Wanted properties of a memory type, best first. Vulkan promises every buffer a type that is
+   host-visible and coherent, so incoherent memory, with its flushes, is never needed. */
+static const VkMemoryPropertyFlags wanted[][4] = {
+    [PLACE_DEVICE] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0},
+    [PLACE_UNIFIED] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                           VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
+                           VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+                       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                           VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT},
+    [PLACE_HOST] = {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
+                        VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+                    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT},
+};
+
+/* Types with other properties than these need features that were not asked for. */
+static const VkMemoryPropertyFlags understood =
+    VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+    VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+
+static bool find_memory_type(const struct device *device, uint32_t type_bits,
+                             enum placement placement, uint32_t *type)
+{
+    for (size_t i = 0; i < sizeof wanted[0] / sizeof wanted[0][0]; ++i) {
+        VkMemoryPropertyFlags want = wanted[placement][i];
+        if (want == 0 && placement != PLACE_DEVICE)
+            return false;
+        for (uint32_t j = 0; j < device->memory.memoryTypeCount; ++j) {
+            VkMemoryPropertyFlags flags = device->memory.memoryTypes[j].propertyFlags;
+            if ((type_bits >> j & 1) && (flags & want) == want && !(flags & ~understood)) {
+                *type = j;
+                return true;
+            }
+        }
+        if (want == 0)
+            return false;
+    }
+    return false;
+}
+
+static enum placement placement_for(const struct device *device, uint32_t uses)
+{
+    bool one_memory = device->info.kind == DEVICE_CPU || device->info.kind == DEVICE_INTEGRATED;
+    if (uses & BUFFER_HOST)
+        return PLACE_HOST;
+    return one_memory && !device->staged ? PLACE_UNIFIED : PLACE_DEVICE;
+}
+
+/* "128 MiB", or bytes where that would not be exact. */
+static void describe_size(uint64_t bytes, char *text, size_t text_bytes)
+{
+    if (bytes >= 1 << 20 && bytes % (1 << 20) == 0)
+        snprintf(text, text_bytes, "%" PRIu64 " MiB", bytes >> 20);
+    else
+        snprintf(text, text_bytes, "%" PRIu64 " bytes", bytes);
+}
+
+static whit_result check_limit(const struct buffer *buffer, uint64_t size_bytes, uint64_t limit,
+                               const char *what)
+{
+    if (size_bytes <= limit)
+        return WHIT_OK;
+    char size[32], most[32];
+    describe_size(size_bytes, size, sizeof size);
+    describe_size(limit, most, sizeof most);
+    log_error(&buffer->device->log, "buffer \"%s\": %s is over the device's limit of %s for %s",
+              buffer->name, size, most, what);
+    return WHIT_ERROR_DEVICE;
+}
+
+static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes)
+{
+    const struct device_info *info = &buffer->device->info;
+    whit_result result = WHIT_OK;
+    if (buffer->uses & BUFFER_STORAGE)
+        result = check_limit(buffer, size_bytes, info->max_storage_range_bytes, "a storage buffer");
+    if (result == WHIT_OK && (buffer->uses & BUFFER_TEXELS))
+        result = check_limit(buffer, size_bytes, info->max_texel_elements * TEXEL_BYTES,
+                             "a texel buffer");
+    if (result == WHIT_OK)
+        result = check_limit(buffer, size_bytes, info->max_allocation_bytes, "one allocation");
+    return result;
+}
+
+static whit_result allocate(struct buffer *buffer)
+{
+    struct device *device = buffer->device;
+    enum placement placement = placement_for(device, buffer->uses);
+    whit_result result = WHIT_OK;
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = buffer->size_bytes,
+        .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+    };
+    if (buffer->uses & BUFFER_STORAGE)
+        info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    if (buffer->uses & BUFFER_TEXELS)
+        info.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+    if (buffer->uses & BUFFER_INDIRECT)
+        info.usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    VK_TRY(device, vkCreateBuffer(device->vk, &info, NULL, &buffer->vk));
+
+    VkMemoryRequirements needs;
+    vkGetBufferMemoryRequirements(device->vk, buffer->vk, &needs);
+    VkMemoryAllocateInfo allocation = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = needs.size,
+    };
+    if (!find_memory_type(device, needs.memoryTypeBits, placement, &allocation.memoryTypeIndex)) {
+        log_error(&device->log, "buffer \"%s\": the device has no memory for it", buffer->name);
+        return WHIT_ERROR_DEVICE;
+    }
+    VK_TRY(device, vkAllocateMemory(device->vk, &allocation, NULL, &buffer->memory));
+    VK_TRY(device, vkBindBufferMemory(device->vk, buffer->vk, buffer->memory, 0));
+    if (placement != PLACE_DEVICE) {
+        VkMemoryPropertyFlags flags =
+            device->memory.memoryTypes[allocation.memoryTypeIndex].propertyFlags;
+        void *mapped = NULL;
+        VK_TRY(device, vkMapMemory(device->vk, buffer->memory, 0, VK_WHOLE_SIZE, 0, &mapped));
+        buffer->mapped = mapped;
+        buffer->fast_to_read = (flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0;
+    }
+fail:
+    return result;
+}
+
+static whit_result make_view(struct buffer *buffer)
+{
+    struct device *device = buffer->device;
+    whit_result result = WHIT_OK;
+    VkFormatProperties format;
+    vkGetPhysicalDeviceFormatProperties(device->physical, VK_FORMAT_R32G32B32A32_UINT, &format);
+    if (!(format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT)) {
+        log_error(&device->log, "buffer \"%s\": the device has no texel buffers of four uint32",
+                  buffer->name);
+        return WHIT_ERROR_DEVICE;
+    }
+    VkBufferViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+        .buffer = buffer->vk,
+        .format = VK_FORMAT_R32G32B32A32_UINT,
+        .range = buffer->size_bytes,
+    };
+    VK_TRY(device, vkCreateBufferView(device->vk, &info, NULL, &buffer->texels));
+    device_name_object(device, VK_OBJECT_TYPE_BUFFER_VIEW, (uint64_t)buffer->texels, buffer->name);
+fail:
+    return result;
+}
+
+static whit_result transfer_ready(struct device *device)
+{
+    whit_result result = WHIT_OK;
+    if (!device->transfer)
+        result = commands_create(device, "transfer", &device->transfer);
+    return result;
+}
+
+static whit_result transfer_run(struct device *device)
+{
+    whit_result result = commands_submit(device->transfer);
+    return result == WHIT_OK ? commands_wait(device->transfer, -1.0) : result;
+}
+
+static whit_result clear(struct buffer *buffer)
+{
+    struct device *device = buffer->device;
+    if (buffer->mapped) {
+        memset(buffer->mapped, 0, buffer->size_bytes);
+        return WHIT_OK;
+    }
+    whit_result result = transfer_ready(device);
+    if (result == WHIT_OK)
+        result = commands_begin(device->transfer);
+    if (result != WHIT_OK)
+        return result;
+    commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0);
+    return transfer_run(device);
+}
+
+whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
+                          const char *name, struct buffer **out)
+{
+    *out = NULL;
+    struct buffer *buffer = array_alloc_zeroed(1, sizeof *buffer);
+    if (!buffer) {
+        log_error(&device->log, "out of memory for buffer \"%s\"", name ? name : "");
+        return WHIT_ERROR_MEMORY;
+    }
+    buffer->device = device;
+    buffer->uses = uses;
+    snprintf(buffer->name, sizeof buffer->name, "%s", name ? name : "");
+
+    whit_result result = check_limits(buffer, size_bytes);
+    if (result == WHIT_OK) {
+        buffer->size_bytes = size_bytes == 0 ? TEXEL_BYTES : (size_bytes + 15) & ~UINT64_C(15);
+        result = check_limits(buffer, buffer->size_bytes);
+    }
+    if (result == WHIT_OK)
+        result = allocate(buffer);
+    if (result == WHIT_OK) {
+        device_name_object(device, VK_OBJECT_TYPE_BUFFER, (uint64_t)buffer->vk, buffer->name);
+        device_name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, (uint64_t)buffer->memory,
+                           buffer->name);
+    }
+    if (result == WHIT_OK && (uses & BUFFER_TEXELS))
+        result = make_view(buffer);
+    if (result == WHIT_OK)
+        result = clear(buffer);
+    if (result != WHIT_OK) {
+        buffer_destroy(buffer);
+        return result;
+    }
+    *out = buffer;
+    return WHIT_OK;
+}
+
+void buffer_destroy(struct buffer *buffer)
+{
+    if (!buffer)
+        return;
+    VkDevice vk = buffer->device->vk;
+    vkDestroyBufferView(vk, buffer->texels, NULL);
+    vkDestroyBuffer(vk, buffer->vk, NULL);
+    vkFreeMemory(vk, buffer->memory, NULL);
+    free(buffer);
+}
+
+uint64_t buffer_size(const struct buffer *buffer)
+{
+    return buffer->size_bytes;
+}
+
+static whit_result check_access(const struct buffer *buffer, uint64_t offset_bytes,
+                                uint64_t size_bytes)
+{
+    if (buffer->device->lost)
+        return WHIT_ERROR_DEVICE;
+    if (offset_bytes <= buffer->size_bytes && size_bytes <= buffer->size_bytes - offset_bytes)
+        return WHIT_OK;
+    log_error(&buffer->device->log,
+              "buffer \"%s\" of %" PRIu64 " bytes: access to %" PRIu64 " bytes at %" PRIu64,
+              buffer->name, buffer->size_bytes, size_bytes, offset_bytes);
+    return WHIT_ERROR_USAGE;
+}
+
+static whit_result staging_ready(struct device *device)
+{
+    whit_result result = transfer_ready(device);
+    if (result == WHIT_OK && !device->staging)
+        result = buffer_create(device, STAGING_BYTES, BUFFER_HOST, "staging", &device->staging);
+    return result;
+}
+
+whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const void *data,
+                         uint64_t size_bytes)
+{
+    struct device *device = buffer->device;
+    const uint8_t *from = data;
+    whit_result result = check_access(buffer, offset_bytes, size_bytes);
+    if (result != WHIT_OK || size_bytes == 0)
+        return result;
+    if (buffer->mapped) {
+        memcpy(buffer->mapped + offset_bytes, from, size_bytes);
+        return WHIT_OK;
+    }
+    result = staging_ready(device);
+    for (uint64_t done = 0; result == WHIT_OK && done < size_bytes;) {
+        uint64_t part = size_bytes - done < STAGING_BYTES ? size_bytes - done : STAGING_BYTES;
+        memcpy(device->staging->mapped, from + done, part);
+        result = commands_begin(device->transfer);
+        if (result != WHIT_OK)
+            break;
+        commands_copy(device->transfer, device->staging, 0, buffer, offset_bytes + done, part);
+        result = transfer_run(device);
+        done += part;
+    }
+    return result;
+}
+
+whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data,
+                        uint64_t size_bytes)
+{
+    struct device *device = buffer->device;
+    uint8_t *to = data;
+    whit_result result = check_access(buffer, offset_bytes, size_bytes);
+    if (result != WHIT_OK || size_bytes == 0)
+        return result;
+    /* Where the device has no cached memory at all, staging would gain nothing. */
+    if (buffer->mapped && (buffer->fast_to_read || (buffer->uses & BUFFER_HOST))) {
+        memcpy(to, buffer->mapped + offset_bytes, size_bytes);
+        return WHIT_OK;
+    }
+    result = staging_ready(device);
+    for (uint64_t done = 0; result == WHIT_OK && done < size_bytes;) {
+        uint64_t part = size_bytes - done < STAGING_BYTES ? size_bytes - done : STAGING_BYTES;
+        result = commands_begin(device->transfer);
+        if (result != WHIT_OK)
+            break;
+        commands_copy(device->transfer, buffer, offset_bytes + done, device->staging, 0, part);
+        result = transfer_run(device);
+        if (result == WHIT_OK)
+            memcpy(to + done, device->staging->mapped, part);
+        done += part;
+    }
+    return result;
+}

@@ -1,0 +1,446 @@
+#include "device/vulkan.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+static const char *const validation_layer = "VK_LAYER_KHRONOS_validation";
+static const char *const install_driver =
+    "install one (Debian: mesa-vulkan-drivers, which also runs without a GPU)";
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT types,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user)
+{
+    struct device *device = user;
+    if (!(types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT))
+        return VK_FALSE;
+    char text[1900];
+    snprintf(text, sizeof text, "validation: %s", data->pMessage ? data->pMessage : "");
+    for (char *at = text; *at; ++at)
+        if (*at == '\n' || *at == '\r')
+            *at = ' ';
+    atomic_fetch_add(&device->validation_messages, 1);
+    if (severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT)
+        log_error(&device->log, "%s", text);
+    else
+        log_warning(&device->log, "%s", text);
+    return VK_FALSE;
+}
+
+static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct device *device)
+{
+    return (VkDebugUtilsMessengerCreateInfoEXT){
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = device,
+    };
+}
+
+/* Which of `names` the loader (layer NULL) or a layer offers; bit i of *found for names[i]. */
+static whit_result find_extensions(struct device *device, const char *layer,
+                                   const char *const *names, uint32_t name_count, uint32_t *found)
+{
+    whit_result result = WHIT_OK;
+    VkExtensionProperties *list = NULL;
+    uint32_t count = 0;
+    *found = 0;
+    VK_TRY(device, vkEnumerateInstanceExtensionProperties(layer, &count, NULL));
+    list = array_alloc_zeroed(count, sizeof *list);
+    if (!list) {
+        log_error(&device->log, "out of memory for %u Vulkan extensions", count);
+        return WHIT_ERROR_MEMORY;
+    }
+    VK_TRY(device, vkEnumerateInstanceExtensionProperties(layer, &count, list));
+    for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t j = 0; j < name_count; ++j)
+            if (strcmp(list[i].extensionName, names[j]) == 0)
+                *found |= 1u << j;
+fail:
+    free(list);
+    return result;
+}
+
+static whit_result find_validation(struct device *device)
+{
+    whit_result result = WHIT_OK;
+    VkLayerProperties *list = NULL;
+    uint32_t count = 0;
+    bool found = false;
+    VK_TRY(device, vkEnumerateInstanceLayerProperties(&count, NULL));
+    list = array_alloc_zeroed(count, sizeof *list);
+    if (!list) {
+        log_error(&device->log, "out of memory for %u Vulkan layers", count);
+        return WHIT_ERROR_MEMORY;
+    }
+    VK_TRY(device, vkEnumerateInstanceLayerProperties(&count, list));
+    for (uint32_t i = 0; i < count; ++i)
+        found |= strcmp(list[i].layerName, validation_layer) == 0;
+    if (!found) {
+        log_error(&device->log,
+                  "validation was asked for, but %s is not installed (Debian: "
+                  "vulkan-validationlayers)",
+                  validation_layer);
+        result = WHIT_ERROR_DEVICE;
+    }
+fail:
+    free(list);
+    return result;
+}
+
+static whit_result check_loader(struct device *device)
+{
+    whit_result result = WHIT_OK;
+    uint32_t version = 0;
+    VK_TRY(device, vkEnumerateInstanceVersion(&version));
+    if (version < VK_API_VERSION_1_2) {
+        log_error(&device->log, "the Vulkan loader knows version %u.%u only, whit needs 1.2",
+                  VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));
+        result = WHIT_ERROR_NO_DEVICE;
+    }
+fail:
+    return result;
+}
+
+static whit_result make_instance(struct device *device, uint32_t extensions,
+                                 const char *const *names, uint32_t name_count,
+                                 bool validation_features)
+{
+    const char *enabled[8];
+    uint32_t enabled_count = 0;
+    for (uint32_t i = 0; i < name_count; ++i)
+        if (extensions >> i & 1)
+            enabled[enabled_count++] = names[i];
+    if (validation_features)
+        enabled[enabled_count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+
+    const VkValidationFeatureEnableEXT checks[] = {
+        VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+        VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT,
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
+    };
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(device);
+    VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &messenger,
+        .enabledValidationFeatureCount = sizeof checks / sizeof *checks,
+        .pEnabledValidationFeatures = checks,
+    };
+    VkApplicationInfo application = {
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+        .pApplicationName = "whit",
+        .pEngineName = "whit",
+        .apiVersion = VK_API_VERSION_1_2,
+    };
+    VkInstanceCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = device->validation ? &features : NULL,
+        .flags = extensions & 2u ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0,
+        .pApplicationInfo = &application,
+        .enabledLayerCount = device->validation ? 1 : 0,
+        .ppEnabledLayerNames = &validation_layer,
+        .enabledExtensionCount = enabled_count,
+        .ppEnabledExtensionNames = enabled,
+    };
+    VkResult vk = VK_SUCCESS;
+    if (device_may_call(device, "vkCreateInstance", &vk))
+        vk = vkCreateInstance(&info, NULL, &device->instance);
+    if (vk == VK_ERROR_INCOMPATIBLE_DRIVER) {
+        log_error(&device->log, "no Vulkan driver: %s", install_driver);
+        return WHIT_ERROR_NO_DEVICE;
+    }
+    return device_check(device, vk, "vkCreateInstance", __FILE__, __LINE__);
+}
+
+whit_result instance_create(struct device *device)
+{
+    static const char *const names[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                        VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME};
+    static const char *const features_name = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+    uint32_t found = 0, features = 0;
+    whit_result result = check_loader(device);
+    if (result == WHIT_OK)
+        result = find_extensions(device, NULL, names, 2, &found);
+    if (result == WHIT_OK && device->validation)
+        result = find_validation(device);
+    if (result == WHIT_OK && device->validation)
+        result = find_extensions(device, validation_layer, &features_name, 1, &features);
+    if (result == WHIT_OK && device->validation && (!features || !(found & 1u))) {
+        log_error(&device->log, "validation was asked for, but %s lacks what whit needs of it",
+                  validation_layer);
+        result = WHIT_ERROR_DEVICE;
+    }
+    if (result == WHIT_OK)
+        result = make_instance(device, found, names, 2, features != 0);
+    if (result != WHIT_OK)
+        return result;
+
+    device->debug_utils = (found & 1u) != 0;
+    if (!device->validation)
+        return WHIT_OK;
+    PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(device->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(device);
+    if (create_messenger)
+        VK_TRY(device, create_messenger(device->instance, &info, NULL, &device->messenger));
+fail:
+    return result;
+}
+
+void instance_destroy(struct device *device)
+{
+    if (!device->instance)
+        return;
+    if (device->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+                device->instance, "vkDestroyDebugUtilsMessengerEXT");
+        destroy_messenger(device->instance, device->messenger, NULL);
+    }
+    vkDestroyInstance(device->instance, NULL);
+    device->instance = NULL;
+}
+
+bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *timestamp_bits)
+{
+    VkQueueFamilyProperties families[32];
+    uint32_t count = sizeof families / sizeof *families;
+    bool found = false;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    *timestamp_bits = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT))
+            continue;
+        if (found && (*timestamp_bits > 0 || families[i].timestampValidBits == 0))
+            continue;
+        found = true;
+        *family = i;
+        *timestamp_bits = families[i].timestampValidBits;
+    }
+    return found;
+}
+
+static enum device_kind kind_of(VkPhysicalDeviceType type)
+{
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return DEVICE_DISCRETE;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return DEVICE_INTEGRATED;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return DEVICE_VIRTUAL;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+        return DEVICE_CPU;
+    default:
+        return DEVICE_OTHER;
+    }
+}
+
+static uint64_t device_memory(VkPhysicalDevice physical)
+{
+    VkPhysicalDeviceMemoryProperties memory;
+    uint64_t largest = 0;
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+        if ((memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) &&
+            memory.memoryHeaps[i].size > largest)
+            largest = memory.memoryHeaps[i].size;
+    return largest;
+}
+
+/* What only a 1.2 device can be asked. */
+static void fill_details(VkPhysicalDevice physical, struct device_info *info)
+{
+    VkPhysicalDeviceVulkan12Properties v12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
+    VkPhysicalDeviceVulkan11Properties v11 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &v12};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
+    vkGetPhysicalDeviceProperties2(physical, &properties);
+    snprintf(info->driver, sizeof info->driver, "%.127s %.127s", v12.driverName, v12.driverInfo);
+    info->max_allocation_bytes = v11.maxMemoryAllocationSize;
+    info->subgroup_size = v11.subgroupSize;
+    info->loop_limited = v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+
+    VkPhysicalDeviceFeatures features;
+    vkGetPhysicalDeviceFeatures(physical, &features);
+    info->float64 = features.shaderFloat64;
+    info->int64 = features.shaderInt64;
+}
+
+static void fill_info(VkPhysicalDevice physical, uint32_t index, struct device_info *info)
+{
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    const VkPhysicalDeviceLimits *limits = &properties.limits;
+    uint32_t version = properties.apiVersion;
+    uint32_t family, timestamp_bits;
+    bool computes = instance_queue_family(physical, &family, &timestamp_bits);
+
+    *info = (struct device_info){
+        .index = index,
+        .kind = kind_of(properties.deviceType),
+        .memory_bytes = device_memory(physical),
+        .max_storage_range_bytes = limits->maxStorageBufferRange,
+        .max_texel_elements = limits->maxTexelBufferElements,
+        .max_push_bytes = limits->maxPushConstantsSize,
+        .max_group_count_x = limits->maxComputeWorkGroupCount[0],
+        .max_group_invocations = limits->maxComputeWorkGroupInvocations,
+        .timestamps = timestamp_bits > 0 && limits->timestampPeriod > 0.0f,
+        .usable = true,
+    };
+    snprintf(info->name, sizeof info->name, "%s", properties.deviceName);
+    snprintf(info->api_version, sizeof info->api_version, "%u.%u.%u", VK_API_VERSION_MAJOR(version),
+             VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+    if (version < VK_API_VERSION_1_2) {
+        info->usable = false;
+        snprintf(info->why_not, sizeof info->why_not, "Vulkan %s, 1.2 is needed",
+                 info->api_version);
+        return;
+    }
+    fill_details(physical, info);
+    if (!computes) {
+        info->usable = false;
+        snprintf(info->why_not, sizeof info->why_not, "no queue that computes");
+    }
+}
+
+/* Two blocks to free(): the handles and what is known of them. */
+static whit_result list_physical(struct device *device, VkPhysicalDevice **handles,
+                                 struct device_info **infos, uint32_t *count)
+{
+    whit_result result = WHIT_OK;
+    *handles = NULL;
+    *infos = NULL;
+    *count = 0;
+    VK_TRY(device, vkEnumeratePhysicalDevices(device->instance, count, NULL));
+    *handles = array_alloc_zeroed(*count, sizeof **handles);
+    *infos = array_alloc_zeroed(*count, sizeof **infos);
+    if (!*handles || !*infos) {
+        log_error(&device->log, "out of memory for %u Vulkan devices", *count);
+        result = WHIT_ERROR_MEMORY;
+        goto fail;
+    }
+    if (*count > 0)
+        VK_TRY(device, vkEnumeratePhysicalDevices(device->instance, count, *handles));
+    if (*count == 0) {
+        log_error(&device->log, "no Vulkan device: no driver found its hardware; %s",
+                  install_driver);
+        result = WHIT_ERROR_NO_DEVICE;
+        goto fail;
+    }
+    for (uint32_t i = 0; i < *count; ++i)
+        fill_info((*handles)[i], i, &(*infos)[i]);
+    return WHIT_OK;
+fail:
+    free(*handles);
+    free(*infos);
+    *handles = NULL;
+    *infos = NULL;
+    *count = 0;
+    return result;
+}
+
+whit_result device_list(const struct log *log, struct device_info **infos, uint32_t *count)
+{
+    struct device device = {0};
+    if (log)
+        device.log = *log;
+    device_read_fault(&device);
+    VkPhysicalDevice *handles = NULL;
+    *infos = NULL;
+    *count = 0;
+    whit_result result = instance_create(&device);
+    if (result == WHIT_OK)
+        result = list_physical(&device, &handles, infos, count);
+    free(handles);
+    instance_destroy(&device);
+    return result;
+}
+
+static bool contains_any_case(const char *text, const char *part)
+{
+    for (; *text; ++text) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            ++i;
+        if (!part[i])
+            return true;
+    }
+    return false;
+}
+
+/* How well a device answers the selector; lower is better, negative not at all. */
+static int rank(const struct device_info *info, const char *selector)
+{
+    bool numeric = selector[strspn(selector, "0123456789")] == '\0';
+    if (strcmp(selector, "auto") == 0)
+        return info->usable ? (int)info->kind : -1;
+    if (numeric)
+        return strtoull(selector, NULL, 10) == info->index ? 0 : -1;
+    if (!contains_any_case(info->name, selector))
+        return -1;
+    return info->usable ? 0 : 1;
+}
+
+static void describe_all(const struct device_info *infos, uint32_t count, char *text, size_t bytes)
+{
+    size_t used = 0;
+    for (uint32_t i = 0; i < count && used < bytes; ++i) {
+        int more = snprintf(text + used, bytes - used, "%s%u: %s (%s%s%s)", i ? ", " : "", i,
+                            infos[i].name, device_kind_name(infos[i].kind),
+                            infos[i].usable ? "" : "; not usable: ", infos[i].why_not);
+        used += more > 0 ? (size_t)more : 0;
+    }
+}
+
+whit_result instance_select(struct device *device, const char *selector)
+{
+    if (!selector || !*selector)
+        selector = "auto";
+    VkPhysicalDevice *handles;
+    struct device_info *infos;
+    uint32_t count;
+    whit_result result = list_physical(device, &handles, &infos, &count);
+    if (result != WHIT_OK)
+        return result;
+
+    int best_rank = -1;
+    uint32_t best = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        int this_rank = rank(&infos[i], selector);
+        if (this_rank >= 0 && (best_rank < 0 || this_rank < best_rank)) {
+            best_rank = this_rank;
+            best = i;
+        }
+    }
+    if (best_rank < 0 || !infos[best].usable) {
+        char all[1024] = "";
+        describe_all(infos, count, all, sizeof all);
+        if (best_rank >= 0)
+            log_error(&device->log, "device %u (%s) is not usable: %s", best, infos[best].name,
+                      infos[best].why_not);
+        else if (strcmp(selector, "auto") == 0)
+            log_error(&device->log, "no usable Vulkan device among %s", all);
+        else
+            log_error(&device->log, "no Vulkan device \"%s\"; there is %s", selector, all);
+        result = WHIT_ERROR_NO_DEVICE;
+    } else {
+        device->physical = handles[best];
+        device->info = infos[best];
+        vkGetPhysicalDeviceProperties(device->physical, &device->properties);
+        vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
+    }
+    free(handles);
+    free(infos);
+    return result;
+}

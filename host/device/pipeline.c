@@ -1,0 +1,304 @@
+#include "device/vulkan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+static VkDescriptorType descriptor_type(enum binding_kind kind)
+{
+    return kind == BINDING_TEXELS ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                  : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+static whit_result check_params(const struct pipeline *pipeline,
+                                const struct pipeline_params *params)
+{
+    const struct device *device = pipeline->device;
+    const VkPhysicalDeviceLimits *limits = &device->properties.limits;
+    if (!params->spirv || params->spirv_bytes == 0 || params->spirv_bytes % 4 != 0 ||
+        params->push_bytes % 4 != 0) {
+        log_error(&device->log, "pipeline \"%s\": SPIR-V or push constants of a broken size",
+                  pipeline->name);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->push_bytes > limits->maxPushConstantsSize ||
+        pipeline->storage_count > limits->maxPerStageDescriptorStorageBuffers ||
+        pipeline->texels_count > limits->maxPerStageDescriptorSampledImages) {
+        log_error(&device->log,
+                  "pipeline \"%s\": %u storage buffers, %u texel buffers and %u bytes of push "
+                  "constants; the device's limits are %u, %u and %u",
+                  pipeline->name, pipeline->storage_count, pipeline->texels_count,
+                  params->push_bytes, limits->maxPerStageDescriptorStorageBuffers,
+                  limits->maxPerStageDescriptorSampledImages, limits->maxPushConstantsSize);
+        return WHIT_ERROR_DEVICE;
+    }
+    return WHIT_OK;
+}
+
+static whit_result make_set_layout(struct pipeline *pipeline)
+{
+    struct device *device = pipeline->device;
+    whit_result result = WHIT_OK;
+    VkDescriptorSetLayoutBinding *bindings =
+        array_alloc_zeroed(pipeline->binding_count, sizeof *bindings);
+    if (!bindings) {
+        log_error(&device->log, "pipeline \"%s\": out of memory", pipeline->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < pipeline->binding_count; ++i)
+        if (pipeline->bindings[i] != BINDING_NONE)
+            bindings[count++] = (VkDescriptorSetLayoutBinding){
+                .binding = i,
+                .descriptorType = descriptor_type(pipeline->bindings[i]),
+                .descriptorCount = 1,
+                .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            };
+    VkDescriptorSetLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = count,
+        .pBindings = bindings,
+    };
+    VK_TRY(device, vkCreateDescriptorSetLayout(device->vk, &info, NULL, &pipeline->set_layout));
+    device_name_object(device, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, (uint64_t)pipeline->set_layout,
+                       pipeline->name);
+fail:
+    free(bindings);
+    return result;
+}
+
+static whit_result make_layout(struct pipeline *pipeline)
+{
+    struct device *device = pipeline->device;
+    whit_result result = WHIT_OK;
+    VkPushConstantRange push = {
+        .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+        .size = pipeline->push_bytes,
+    };
+    VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1,
+        .pSetLayouts = &pipeline->set_layout,
+        .pushConstantRangeCount = pipeline->push_bytes > 0 ? 1 : 0,
+        .pPushConstantRanges = &push,
+    };
+    VK_TRY(device, vkCreatePipelineLayout(device->vk, &info, NULL, &pipeline->layout));
+    device_name_object(device, VK_OBJECT_TYPE_PIPELINE_LAYOUT, (uint64_t)pipeline->layout,
+                       pipeline->name);
+fail:
+    return result;
+}
+
+static whit_result make_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+{
+    struct device *device = pipeline->device;
+    whit_result result = WHIT_OK;
+    VkShaderModule module = VK_NULL_HANDLE;
+    VkSpecializationMapEntry *entries = array_alloc_zeroed(params->spec_count, sizeof *entries);
+    if (!entries) {
+        log_error(&device->log, "pipeline \"%s\": out of memory", pipeline->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < params->spec_count; ++i)
+        entries[i] =
+            (VkSpecializationMapEntry){.constantID = i, .offset = 4 * i, .size = sizeof(uint32_t)};
+    VkSpecializationInfo spec = {
+        .mapEntryCount = params->spec_count,
+        .pMapEntries = entries,
+        .dataSize = params->spec_count * sizeof(uint32_t),
+        .pData = params->spec,
+    };
+    VkShaderModuleCreateInfo module_info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = params->spirv_bytes,
+        .pCode = params->spirv,
+    };
+    VK_TRY(device, vkCreateShaderModule(device->vk, &module_info, NULL, &module));
+    device_name_object(device, VK_OBJECT_TYPE_SHADER_MODULE, (uint64_t)module, pipeline->name);
+
+    VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main",
+                  .pSpecializationInfo = params->spec_count > 0 ? &spec : NULL},
+        .layout = pipeline->layout,
+    };
+    VK_TRY(device,
+           vkCreateComputePipelines(device->vk, device->cache, 1, &info, NULL, &pipeline->vk));
+    device_name_object(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)pipeline->vk, pipeline->name);
+fail:
+    vkDestroyShaderModule(device->vk, module, NULL);
+    free(entries);
+    return result;
+}
+
+/* Keeps a copy of the bindings, which later sets are checked against. */
+static bool copy_bindings(struct pipeline *pipeline, const struct pipeline_params *params)
+{
+    pipeline->bindings = array_alloc_zeroed(params->binding_count, sizeof *pipeline->bindings);
+    if (!pipeline->bindings)
+        return false;
+    pipeline->binding_count = params->binding_count;
+    for (uint32_t i = 0; i < params->binding_count; ++i) {
+        pipeline->bindings[i] = params->bindings[i];
+        pipeline->storage_count += params->bindings[i] == BINDING_STORAGE;
+        pipeline->texels_count += params->bindings[i] == BINDING_TEXELS;
+    }
+    return true;
+}
+
+whit_result pipeline_create(struct device *device, const struct pipeline_params *params,
+                            struct pipeline **out)
+{
+    *out = NULL;
+    struct pipeline *pipeline = array_alloc_zeroed(1, sizeof *pipeline);
+    whit_result result = pipeline ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (pipeline) {
+        pipeline->device = device;
+        pipeline->push_bytes = params->push_bytes;
+        snprintf(pipeline->name, sizeof pipeline->name, "%s", params->name ? params->name : "");
+        if (!copy_bindings(pipeline, params))
+            result = WHIT_ERROR_MEMORY;
+    }
+    if (result != WHIT_OK)
+        log_error(&device->log, "out of memory for a pipeline");
+    if (result == WHIT_OK)
+        result = check_params(pipeline, params);
+    if (result == WHIT_OK)
+        result = make_set_layout(pipeline);
+    if (result == WHIT_OK)
+        result = make_layout(pipeline);
+    if (result == WHIT_OK)
+        result = make_pipeline(pipeline, params);
+    if (result != WHIT_OK) {
+        pipeline_destroy(pipeline);
+        return result;
+    }
+    *out = pipeline;
+    return WHIT_OK;
+}
+
+void pipeline_destroy(struct pipeline *pipeline)
+{
+    if (!pipeline)
+        return;
+    VkDevice vk = pipeline->device->vk;
+    vkDestroyPipeline(vk, pipeline->vk, NULL);
+    vkDestroyPipelineLayout(vk, pipeline->layout, NULL);
+    vkDestroyDescriptorSetLayout(vk, pipeline->set_layout, NULL);
+    free(pipeline->bindings);
+    free(pipeline);
+}
+
+static whit_result check_buffers(const struct pipeline *pipeline, struct buffer *const *buffers,
+                                 uint32_t count)
+{
+    const struct log *log = &pipeline->device->log;
+    if (count != pipeline->binding_count) {
+        log_error(log, "pipeline \"%s\": %u buffers for %u bindings", pipeline->name, count,
+                  pipeline->binding_count);
+        return WHIT_ERROR_USAGE;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        enum binding_kind kind = pipeline->bindings[i];
+        uint32_t use = kind == BINDING_TEXELS ? BUFFER_TEXELS : BUFFER_STORAGE;
+        if (kind == BINDING_NONE ? buffers[i] == NULL : buffers[i] && (buffers[i]->uses & use))
+            continue;
+        log_error(log, "pipeline \"%s\": binding %u cannot take buffer \"%s\"", pipeline->name, i,
+                  buffers[i] ? buffers[i]->name : "(none)");
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+static whit_result make_set(struct binding_set *set, const struct pipeline *pipeline)
+{
+    struct device *device = set->device;
+    whit_result result = WHIT_OK;
+    VkDescriptorPoolSize sizes[2];
+    uint32_t size_count = 0;
+    if (pipeline->storage_count > 0)
+        sizes[size_count++] =
+            (VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, pipeline->storage_count};
+    if (pipeline->texels_count > 0)
+        sizes[size_count++] =
+            (VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, pipeline->texels_count};
+    VkDescriptorPoolCreateInfo pool = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = 1,
+        .poolSizeCount = size_count,
+        .pPoolSizes = sizes,
+    };
+    VK_TRY(device, vkCreateDescriptorPool(device->vk, &pool, NULL, &set->pool));
+    device_name_object(device, VK_OBJECT_TYPE_DESCRIPTOR_POOL, (uint64_t)set->pool, pipeline->name);
+    VkDescriptorSetAllocateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = set->pool,
+        .descriptorSetCount = 1,
+        .pSetLayouts = &pipeline->set_layout,
+    };
+    VK_TRY(device, vkAllocateDescriptorSets(device->vk, &info, &set->vk));
+    device_name_object(device, VK_OBJECT_TYPE_DESCRIPTOR_SET, (uint64_t)set->vk, pipeline->name);
+fail:
+    return result;
+}
+
+static void write_set(struct binding_set *set, const struct pipeline *pipeline,
+                      struct buffer *const *buffers)
+{
+    for (uint32_t i = 0; i < pipeline->binding_count; ++i) {
+        if (pipeline->bindings[i] == BINDING_NONE)
+            continue;
+        VkDescriptorBufferInfo range = {.buffer = buffers[i]->vk, .range = buffers[i]->size_bytes};
+        VkWriteDescriptorSet write = {
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet = set->vk,
+            .dstBinding = i,
+            .descriptorCount = 1,
+            .descriptorType = descriptor_type(pipeline->bindings[i]),
+            .pBufferInfo = &range,
+            .pTexelBufferView = &buffers[i]->texels,
+        };
+        vkUpdateDescriptorSets(set->device->vk, 1, &write, 0, NULL);
+    }
+}
+
+whit_result binding_set_create(struct pipeline *pipeline, struct buffer *const *buffers,
+                               uint32_t count, struct binding_set **out)
+{
+    *out = NULL;
+    struct device *device = pipeline->device;
+    if (device->lost)
+        return WHIT_ERROR_DEVICE;
+    whit_result result = check_buffers(pipeline, buffers, count);
+    if (result != WHIT_OK)
+        return result;
+    struct binding_set *set = array_alloc_zeroed(1, sizeof *set);
+    if (!set) {
+        log_error(&device->log, "out of memory for a binding set");
+        return WHIT_ERROR_MEMORY;
+    }
+    set->device = device;
+    if (pipeline->storage_count + pipeline->texels_count > 0) {
+        result = make_set(set, pipeline);
+        if (result != WHIT_OK) {
+            binding_set_destroy(set);
+            return result;
+        }
+        write_set(set, pipeline, buffers);
+    }
+    *out = set;
+    return WHIT_OK;
+}
+
+void binding_set_destroy(struct binding_set *set)
+{
+    if (!set)
+        return;
+    vkDestroyDescriptorPool(set->device->vk, set->pool, NULL);
+    free(set);
+}

@@ -1,0 +1,121 @@
+/* Private to device/: what its handles are made of, and how a Vulkan call is checked.
+
+   Environment, read once by device_create:
+   WHIT_FAULT=NAME:N    the N-th checked call of the Vulkan function NAME fails (N counts from 1,
+                        NAME `*` is any function) with VK_ERROR_OUT_OF_DEVICE_MEMORY, or
+                        VK_ERROR_DEVICE_LOST for vkQueueSubmit and vkWaitForFences. The call itself
+                        is not made. For tests of the error paths.
+   WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so that the
+                        path of discrete GPUs can be tested on a CPU device. */
+#ifndef DEVICE_VULKAN_H
+#define DEVICE_VULKAN_H
+
+#include <stdatomic.h>
+
+#include <vulkan/vulkan.h>
+
+#include "device/device.h"
+
+enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };
+
+struct fault {
+    char call[64]; /* "" for none, "*" for any */
+    uint32_t at, seen;
+};
+
+struct device {
+    struct log log;
+    struct fault fault;
+    bool validation, staged;
+    bool lost; /* every later call fails at once */
+    atomic_uint validation_messages;
+
+    VkInstance instance;
+    VkDebugUtilsMessengerEXT messenger;
+    bool debug_utils; /* the instance extension is on */
+
+    VkPhysicalDevice physical;
+    VkPhysicalDeviceProperties properties;
+    VkPhysicalDeviceMemoryProperties memory;
+    struct device_info info;
+
+    VkDevice vk;
+    VkQueue queue;
+    uint32_t queue_family;
+    uint64_t timestamp_mask; /* 0: the queue has none */
+    VkPipelineCache cache;
+    uint64_t cache_hash; /* of what the cache file holds; 0: no usable file */
+
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name; /* these three are NULL without debug_utils */
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label;
+
+    struct buffer *staging; /* both made when first needed */
+    struct commands *transfer;
+};
+
+struct buffer {
+    struct device *device;
+    VkBuffer vk;
+    VkDeviceMemory memory;
+    VkBufferView texels;
+    uint8_t *mapped;   /* NULL: goes through the staging buffer */
+    bool fast_to_read; /* mapped, and cached by the CPU */
+    uint64_t size_bytes;
+    uint32_t uses;
+    char name[OBJECT_NAME_BYTES];
+};
+
+struct pipeline {
+    struct device *device;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkPipeline vk;
+    enum binding_kind *bindings;
+    uint32_t binding_count, storage_count, texels_count;
+    uint32_t push_bytes;
+    char name[OBJECT_NAME_BYTES];
+};
+
+struct binding_set {
+    struct device *device;
+    VkDescriptorPool pool;
+    VkDescriptorSet vk; /* null when the pipeline binds nothing */
+};
+
+/* instance.c. Both work on a zeroed struct device that has its log, fault and validation. */
+whit_result instance_create(struct device *device);
+void instance_destroy(struct device *device);
+/* Sets physical, properties, memory and info. */
+whit_result instance_select(struct device *device, const char *selector);
+/* The family that the device's one queue comes from; false when none computes. */
+bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *timestamp_bits);
+
+/* cache.c: the pipeline cache and its file. */
+whit_result cache_open(struct device *device);
+void cache_close(struct device *device); /* saves, destroys */
+
+/* device.c */
+void device_read_fault(struct device *device);
+/* True when the call named by the expression is to fail now. */
+bool device_fault(struct device *device, const char *expression);
+/* False when the call may not be made: *vk is then its result. */
+bool device_may_call(struct device *device, const char *expression, VkResult *vk);
+/* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. */
+whit_result device_check(struct device *device, VkResult vk, const char *expression,
+                         const char *file, int line);
+void device_name_object(struct device *device, VkObjectType type, uint64_t handle,
+                        const char *name);
+
+/* Makes a Vulkan call; on failure sets `result` and jumps to `fail`. */
+#define VK_TRY(device, ...)                                                                        \
+    do {                                                                                           \
+        VkResult vk_ = VK_SUCCESS;                                                                 \
+        if (device_may_call((device), #__VA_ARGS__, &vk_))                                         \
+            vk_ = (__VA_ARGS__);                                                                   \
+        result = device_check((device), vk_, #__VA_ARGS__, __FILE__, __LINE__);                    \
+        if (result != WHIT_OK)                                                                     \
+            goto fail;                                                                             \
+    } while (0)
+
+#endif
