@@ -1,0 +1,393 @@
+/* Closest hits in double, with how far the float test is from deciding otherwise.
+
+   The float test (intersect.h) works on A = vertex - origin, sheared along the dominant axis z of
+   the direction: a = A.x - S.x A.z, and likewise in y, with S.x = d.x / d.z. Let r = 2^-24 be one
+   rounding. A.x and A.z carry one each, S.x one (its division), the product one, the difference
+   one:
+
+       |error of a| <= r (|A.x| + 3 |S.x A.z| + |a|) <= r (2 |A.x| + 4 |S.x A.z|).
+
+   In an instance the float ray itself is off: its origin o = M (p - T) by 4 r |M| |p - T| on each
+   axis (difference, product, two sums) and its direction d = M w by 3 r |M| |w|. That adds
+   error(o.x) + |S.x| error(o.z) + |A.z| (error(d.x) + |S.x| error(d.z)) / |d.z|.
+
+   An edge function U = c.x b.y - c.y b.x then errs by what its factors carry, plus two roundings of
+   each product (itself, and the difference). The float test says "hit" when no two edge functions
+   differ in sign, so |U| / error(U), smallest over the edges that matter, tells how many error
+   bounds away the other answer is: below 1 it is possible. t = (sum of U z) / (sum of U) errs by
+   the same rules; float clamps it to the triangle's box, which moves it by at most 4 r |t|.
+   Products of errors are kept; one denormal is added to everything that may underflow. The oracle's
+   own roundings are 2^-29 of all this. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "accel/accel.h"
+
+#define ROUNDING   0x1p-24
+#define DENORMAL   0x1p-149
+/* Boxes grow by this much of the distance to the ray's origin: what the float test may still hit
+   lies within 16 roundings of it. */
+#define BOX_GROWTH 0x1p-18
+
+enum { STACK_SIZE = 512 };
+
+struct probe {
+    double origin[3], dir[3];
+    double origin_error[3], dir_error[3];
+    int x, y, z; /* z: the dominant axis */
+    double shear[3];
+    double t_min, t_max;
+    double origin_error_largest;
+};
+
+/* What the exact test says of one triangle, and what it would take to turn that around. */
+struct verdict {
+    bool hit; /* edges only, without t_min and t_max */
+    double t, u, v, t_error;
+    double margin; /* in error bounds, 0 or more */
+};
+
+struct point {
+    double x, y, z;
+    double x_error, y_error, z_error;
+};
+
+struct number {
+    double value, error;
+};
+
+static bool ray_is_usable(const struct gpu_ray *ray)
+{
+    bool moves = false;
+    for (int i = 0; i < 3; ++i) {
+        if (!isfinite(ray->origin[i]) || !isfinite(ray->dir[i]))
+            return false;
+        moves |= ray->dir[i] != 0.0f;
+    }
+    return moves;
+}
+
+/* The same rule as make_ray_setup: ties go to z, then y. */
+static void probe_shear(struct probe *p)
+{
+    double x = fabs(p->dir[0]), y = fabs(p->dir[1]), z = fabs(p->dir[2]);
+    p->z = x > y && x > z ? 0 : !(x > y) && y > z ? 1 : 2;
+    p->x = (p->z + 1) % 3;
+    p->y = (p->z + 2) % 3;
+    p->shear[0] = p->dir[p->x] / p->dir[p->z];
+    p->shear[1] = p->dir[p->y] / p->dir[p->z];
+    p->shear[2] = 1.0 / p->dir[p->z];
+    p->origin_error_largest =
+        fmax(fmax(p->origin_error[0], p->origin_error[1]), p->origin_error[2]);
+}
+
+static struct probe probe_world(const struct gpu_ray *ray)
+{
+    struct probe p = {.t_min = (double)ray->t_min,
+                      .t_max = (double)(ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX)};
+    for (int i = 0; i < 3; ++i) {
+        p.origin[i] = (double)ray->origin[i];
+        p.dir[i] = (double)ray->dir[i];
+    }
+    probe_shear(&p);
+    return p;
+}
+
+/* By the floats of the instance, so that only roundings differ from the float twin. */
+static struct probe probe_local(const struct probe *world, const struct gpu_instance *in)
+{
+    const float *rows[3] = {in->inverse0, in->inverse1, in->inverse2};
+    const float at[3] = {in->origin_x, in->origin_y, in->origin_z};
+    struct probe p = {.t_min = world->t_min, .t_max = world->t_max};
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            double m = (double)rows[r][c], relative = world->origin[c] - (double)at[c];
+            p.origin[r] += m * relative;
+            p.dir[r] += m * world->dir[c];
+            p.origin_error[r] += 4.0 * ROUNDING * fabs(m * relative) + DENORMAL;
+            p.dir_error[r] += 3.0 * ROUNDING * fabs(m * world->dir[c]) + DENORMAL;
+        }
+    }
+    probe_shear(&p);
+    return p;
+}
+
+static struct number sheared(double a, double z, double shear, double a_error, double z_error,
+                             double shear_error)
+{
+    struct number out = {.value = a - shear * z};
+    out.error = ROUNDING * (2.0 * fabs(a) + 4.0 * fabs(shear * z)) + a_error +
+                fabs(shear) * z_error + fabs(z) * shear_error + DENORMAL;
+    return out;
+}
+
+static struct point probe_point(const struct probe *p, const float vertex[3])
+{
+    double a[3];
+    for (int i = 0; i < 3; ++i)
+        a[i] = (double)vertex[i] - p->origin[i];
+    double x = a[p->x], y = a[p->y], z = a[p->z], dz = fabs(p->dir[p->z]);
+    const double *oe = p->origin_error, *de = p->dir_error;
+    struct number sx = sheared(x, z, p->shear[0], oe[p->x], oe[p->z],
+                               (de[p->x] + fabs(p->shear[0]) * de[p->z]) / dz);
+    struct number sy = sheared(y, z, p->shear[1], oe[p->y], oe[p->z],
+                               (de[p->y] + fabs(p->shear[1]) * de[p->z]) / dz);
+    struct point out = {.x = sx.value, .y = sy.value, .z = p->shear[2] * z};
+    out.x_error = sx.error;
+    out.y_error = sy.error;
+    out.z_error = fabs(out.z) * (3.0 * ROUNDING + de[p->z] / dz) + fabs(p->shear[2]) * oe[p->z];
+    return out;
+}
+
+/* c.x b.y - c.y b.x */
+static struct number edge_function(const struct point *c, const struct point *b)
+{
+    double left = (fabs(c->x) + c->x_error) * (fabs(b->y) + b->y_error);
+    double right = (fabs(c->y) + c->y_error) * (fabs(b->x) + b->x_error);
+    struct number out = {.value = c->x * b->y - c->y * b->x};
+    out.error = (left - fabs(c->x * b->y)) + (right - fabs(c->y * b->x)) +
+                2.0 * ROUNDING * (left + right) + 2.0 * DENORMAL;
+    return out;
+}
+
+/* A hit is lost when any edge function changes sign; a miss is turned when all of one sign do. */
+static double edges_margin(const struct number edge[3], bool hit)
+{
+    double least = INFINITY, below = 0.0, above = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double bounds = fabs(edge[i].value) / edge[i].error;
+        least = fmin(least, bounds);
+        if (edge[i].value < 0.0)
+            below = fmax(below, bounds);
+        else
+            above = fmax(above, bounds);
+    }
+    return hit ? least : fmin(below, above);
+}
+
+static struct verdict probe_triangle(const struct probe *p, const struct gpu_triangle *triangle)
+{
+    struct point a = probe_point(p, triangle->v0), b = probe_point(p, triangle->v1),
+                 c = probe_point(p, triangle->v2);
+    struct number edge[3] = {edge_function(&c, &b), edge_function(&a, &c), edge_function(&b, &a)};
+    const struct point *corner[3] = {&a, &b, &c};
+    bool below = false, above = false;
+    double det = 0.0, det_error = 0.0, sum = 0.0, sum_error = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double u = edge[i].value, z = corner[i]->z;
+        below |= u < 0.0;
+        above |= u > 0.0;
+        det += u;
+        det_error += edge[i].error + 2.0 * ROUNDING * fabs(u);
+        sum += u * z;
+        sum_error += edge[i].error * fabs(z) + (fabs(u) + edge[i].error) * corner[i]->z_error +
+                     4.0 * ROUNDING * fabs(u * z) + DENORMAL;
+    }
+    struct verdict out = {.hit = !(below && above) && det != 0.0, .t_error = INFINITY};
+    out.margin = edges_margin(edge, out.hit);
+    if (det != 0.0) {
+        out.t = sum / det;
+        out.u = edge[1].value / det;
+        out.v = edge[2].value / det;
+    }
+    if (fabs(det) > det_error)
+        out.t_error = (sum_error + fabs(out.t) * det_error) / (fabs(det) - det_error) +
+                      8.0 * ROUNDING * fabs(out.t) + DENORMAL;
+    return out;
+}
+
+/* ---- Every triangle that matters ---- */
+
+struct search {
+    const struct accel *accel;
+    bool brute;
+    /* First pass: the two nearest hits. */
+    struct verdict best;
+    uint32_t instance, primitive;
+    double second_t;
+    /* Second pass: how many error bounds away another answer is. */
+    bool judging;
+    double margin;
+    double limit; /* what lies behind does not matter */
+};
+
+static double outside(double t, double t_error, const struct probe *p)
+{
+    double off = fmax(p->t_min - t, t - p->t_max);
+    return off > 0.0 ? off / t_error : 0.0;
+}
+
+static void keep_nearest(struct search *s, const struct verdict *v, uint32_t instance,
+                         uint32_t primitive)
+{
+    bool nearer = v->t < s->best.t ||
+                  (v->t == s->best.t && (instance < s->instance ||
+                                         (instance == s->instance && primitive < s->primitive)));
+    if (nearer) {
+        s->second_t = s->primitive == HIT_NONE ? INFINITY : s->best.t;
+        s->best = *v;
+        s->instance = instance;
+        s->primitive = primitive;
+    } else if (v->t < s->second_t) {
+        s->second_t = v->t;
+    }
+    s->limit = fmin(s->limit, s->second_t);
+}
+
+/* The float answer differs only if the winner is lost, or if some other triangle is hit, in the
+   interval, and in front: it takes the largest of these three. */
+static void judge(struct search *s, const struct verdict *v, const struct probe *p,
+                  uint32_t instance, uint32_t primitive)
+{
+    double margin = v->margin;
+    if (instance == s->instance && primitive == s->primitive) {
+        margin = fmin(margin, (v->t - p->t_min) / v->t_error);
+        margin = fmin(margin, (p->t_max - v->t) / v->t_error);
+    } else {
+        margin = fmax(v->hit ? 0.0 : margin, outside(v->t, v->t_error, p));
+        if (s->primitive != HIT_NONE)
+            margin = fmax(margin, (v->t - s->best.t) / (v->t_error + s->best.t_error));
+    }
+    s->margin = fmin(s->margin, margin);
+}
+
+static void visit_triangle(struct search *s, const struct probe *p, uint32_t record,
+                           uint32_t instance)
+{
+    const struct gpu_triangle *triangle = &s->accel->triangles[record];
+    struct verdict v = probe_triangle(p, triangle);
+    if (s->judging)
+        judge(s, &v, p, instance, triangle->primitive);
+    else if (v.hit && v.t >= p->t_min && v.t <= p->t_max)
+        keep_nearest(s, &v, instance, triangle->primitive);
+}
+
+/* Entry distance into the grown box; infinity: not entered within the interval that matters. */
+static double box_entry(const struct search *s, const struct probe *p,
+                        const struct gpu_bvh_node *node)
+{
+    double lo[3], hi[3], far = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = (double)node->lo[i] - p->origin[i];
+        hi[i] = (double)node->hi[i] - p->origin[i];
+        far = fmax(far, fmax(fabs(lo[i]), fabs(hi[i])));
+    }
+    double growth = far * BOX_GROWTH + 16.0 * p->origin_error_largest;
+    double start = -INFINITY, end = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+        if (p->dir[i] == 0.0) {
+            if (lo[i] - growth > 0.0 || hi[i] + growth < 0.0)
+                return INFINITY;
+            continue;
+        }
+        double a = (lo[i] - growth) / p->dir[i], b = (hi[i] + growth) / p->dir[i];
+        start = fmax(start, fmin(a, b));
+        end = fmin(end, fmax(a, b));
+    }
+    double slack = BOX_GROWTH * fmax(fabs(start), fabs(end));
+    bool reached =
+        start <= end && start - slack <= fmin(s->limit, p->t_max) && end + slack >= p->t_min;
+    return reached ? start : INFINITY;
+}
+
+typedef void (*leaf_fn)(struct search *s, const struct probe *p, const struct gpu_bvh_node *leaf,
+                        uint32_t instance);
+
+static void walk_tree(struct search *s, const struct probe *p, uint32_t root, leaf_fn leaf,
+                      uint32_t instance)
+{
+    uint32_t stack[STACK_SIZE], top = 0;
+    stack[top++] = root;
+    while (top > 0) {
+        const struct gpu_bvh_node *node = &s->accel->nodes[stack[--top]];
+        if (box_entry(s, p, node) == INFINITY)
+            continue;
+        if (node->count > 0) {
+            leaf(s, p, node, instance);
+            continue;
+        }
+        double a = box_entry(s, p, &s->accel->nodes[node->first]);
+        double b = box_entry(s, p, &s->accel->nodes[node->first + 1]);
+        uint32_t nearer = b < a ? 1 : 0;
+        if (fmax(a, b) < INFINITY)
+            stack[top++] = node->first + (1 - nearer);
+        if (fmin(a, b) < INFINITY)
+            stack[top++] = node->first + nearer;
+    }
+}
+
+static void visit_mesh_leaf(struct search *s, const struct probe *p,
+                            const struct gpu_bvh_node *leaf, uint32_t instance)
+{
+    for (uint32_t i = 0; i < leaf->count; ++i)
+        visit_triangle(s, p, leaf->first + i, instance);
+}
+
+static void visit_instance(struct search *s, const struct probe *world, uint32_t index)
+{
+    const struct gpu_instance *in = &s->accel->instances[index];
+    const struct accel_mesh *mesh = &s->accel->meshes[in->mesh];
+    struct probe local = s->accel->single_identity ? *world : probe_local(world, in);
+    if (in->root == BVH_EMPTY_REF)
+        return;
+    if (!s->brute) {
+        walk_tree(s, &local, mesh->first_node, visit_mesh_leaf, index);
+        return;
+    }
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i)
+        visit_triangle(s, &local, mesh->first_triangle + i, index);
+}
+
+static void visit_instance_leaf(struct search *s, const struct probe *p,
+                                const struct gpu_bvh_node *leaf, uint32_t instance)
+{
+    (void)instance;
+    visit_instance(s, p, leaf->first);
+}
+
+static void visit_all(struct search *s, const struct probe *world)
+{
+    if (!s->brute) {
+        if (s->accel->instance_root != BVH_EMPTY_REF)
+            walk_tree(s, world, 0, visit_instance_leaf, 0);
+        return;
+    }
+    for (uint32_t i = 0; i < s->accel->instance_count; ++i)
+        visit_instance(s, world, i);
+}
+
+void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
+                  struct oracle_hit *hit)
+{
+    *hit = (struct oracle_hit){.t = INFINITY,
+                               .primitive = HIT_NONE,
+                               .instance = HIT_NONE,
+                               .edge_margin = -INFINITY,
+                               .second_t = INFINITY};
+    if (!ray_is_usable(ray))
+        return;
+    struct probe world = probe_world(ray);
+    bool deep = accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;
+    struct search s = {.accel = accel,
+                       .brute = brute || deep,
+                       .best = {.t = INFINITY},
+                       .instance = HIT_NONE,
+                       .primitive = HIT_NONE,
+                       .second_t = INFINITY,
+                       .limit = INFINITY,
+                       .margin = INFINITY};
+    visit_all(&s, &world);
+    s.judging = true;
+    s.limit = s.primitive == HIT_NONE ? INFINITY : s.best.t + 2.0 * s.best.t_error;
+    visit_all(&s, &world);
+    hit->second_t = s.second_t;
+    hit->edge_margin = s.primitive == HIT_NONE ? -s.margin : s.margin;
+    if (s.primitive == HIT_NONE)
+        return;
+    hit->t = s.best.t;
+    hit->u = s.best.u;
+    hit->v = s.best.v;
+    hit->primitive = s.primitive;
+    hit->instance = s.instance;
+}
