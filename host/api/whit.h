@@ -59,12 +59,16 @@ typedef struct whit_scene_info {
     uint64_t triangle_count;      /* over all instances */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
+    uint32_t channel_count;       /* animated properties of nodes */
     double time_end_s;            /* 0: nothing moves */
     double lo[3], hi[3];          /* world bounds at time 0; lo > hi when empty */
+    const char *environment;      /* "gradient" or "map": what rays that miss see */
+    bool environment_made_by_whit;
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
 
-/* Item `index` of a kind, described. Strings live as long as the scene. */
+/* Item `index` of a kind, described; zeroed when there is no such item. Strings live as long as
+   the scene. */
 typedef struct whit_mesh_info {
     const char *name;
     uint32_t vertex_count, triangle_count, group_count;
@@ -157,6 +161,7 @@ typedef struct whit_device_info {
     uint64_t memory_bytes, max_storage_range_bytes;
     uint32_t subgroup_size;
     bool float64, int64, timestamps, usable;
+    bool automatic;    /* the one that "auto" takes */
     char why_not[128]; /* when not usable */
 } whit_device_info;
 
@@ -196,6 +201,7 @@ typedef struct whit_renderer_params {
     const char *load_path;      /* "auto" or NULL, "storage", "texel": how kernels read trees */
 } whit_renderer_params;
 
+/* `device` may be NULL: then only whit_trace on the CPU works. */
 WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
                                             const whit_renderer_params *params,
                                             whit_renderer **out);
@@ -244,7 +250,7 @@ typedef enum whit_trace_on {
 } whit_trace_on;
 
 /* Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays that
-   are not finite miss. Cut-outs count as solid. `device` may be NULL with the CPU kinds. */
+   are not finite miss. Cut-outs count as solid. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits);
 
@@ -272,6 +278,16 @@ void whit_image_destroy(whit_image *image);
 
 /* True for a path that whit_image_save can write; `integers` asks for hit identities. */
 bool whit_image_format_known(const char *path, bool integers);
+
+/* ---- Files ---- */
+
+/* A file under construction, hidden beside `path`: commit renames it over `path`, abandon removes
+   it. Exactly one of the two ends it. */
+typedef struct whit_file whit_file;
+WHIT_CHECK whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out);
+WHIT_CHECK whit_result whit_file_append(whit_file *file, const void *data, size_t size_bytes);
+WHIT_CHECK whit_result whit_file_commit(whit_file *file);
+void whit_file_abandon(whit_file *file);
 
 /* Writes a whole file beside `path` and renames it. */
 WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,

@@ -1,0 +1,96 @@
+#include <stdlib.h>
+
+#include "api/handles.h"
+
+#ifdef NDEBUG
+#define ALWAYS_VALIDATE false
+#else
+#define ALWAYS_VALIDATE true
+#endif
+
+static whit_result check_params(const struct log *log, const whit_accel_params *params)
+{
+    if (params->build != WHIT_BUILD_BINNED && params->build != WHIT_BUILD_MEDIAN) {
+        log_error(log, "there is no builder %d", (int)params->build);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->bins != 0 && (params->bins < 2 || params->bins > 256)) {
+        log_error(log, "%u bins: 2 to 256 are possible", params->bins);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->leaf_limit > BVH_LEAF_MAX) {
+        log_error(log, "%u triangles in a leaf: 1 to %u are possible", params->leaf_limit,
+                  BVH_LEAF_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
+                              whit_accel **out)
+{
+    const whit_accel_params defaults = {0};
+    if (!params)
+        params = &defaults;
+    *out = NULL;
+    whit_result result = check_params(&scene->log, params);
+    if (result != WHIT_OK)
+        return result;
+    whit_accel *accel = calloc(1, sizeof *accel);
+    if (!accel) {
+        log_error(&scene->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    accel->log = scene->log;
+    const struct bvh_params tree = {
+        .builder = params->build == WHIT_BUILD_MEDIAN ? BVH_MEDIAN : BVH_BINNED,
+        .bins = params->bins,
+        .leaf_limit = params->leaf_limit,
+        .thread_count = params->threads,
+    };
+    struct accel_params inner = {
+        .mesh = tree,
+        .instances = tree,
+        .validate = params->validate || ALWAYS_VALIDATE,
+    };
+    inner.instances.leaf_limit = 1;
+    result = accel_create(&scene->log, scene->scene, &inner, &accel->accel);
+    if (result != WHIT_OK) {
+        whit_accel_destroy(accel);
+        return result;
+    }
+    *out = accel;
+    return WHIT_OK;
+}
+
+void whit_accel_destroy(whit_accel *accel)
+{
+    if (!accel)
+        return;
+    accel_destroy(accel->accel);
+    free(accel);
+}
+
+void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
+{
+    const struct accel *accel = handle->accel;
+    *info = (whit_accel_info){
+        .node_count = accel->node_count,
+        .triangle_count = accel->triangle_count,
+        .depth = accel->mesh_depth,
+        .instance_depth = accel->instance_depth,
+        .bytes = accel_bytes(accel),
+        .build_ms = accel->build_ms,
+        .instance_build_ms = accel->instance_build_ms,
+    };
+    uint32_t largest = 0;
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        const struct accel_mesh *mesh = &accel->meshes[i];
+        for (uint32_t k = 0; k < mesh->node_count; ++k)
+            info->leaf_count += accel->nodes[mesh->first_node + k].count != 0;
+        if (mesh->triangle_count > largest) {
+            largest = mesh->triangle_count;
+            info->sah_cost = mesh->sah_cost;
+        }
+    }
+}

@@ -1,0 +1,53 @@
+/* What is behind the public handles; only api/ sees it. */
+#ifndef API_HANDLES_H
+#define API_HANDLES_H
+
+#include "accel/accel.h"
+#include "api/whit.h"
+#include "base/file.h"
+#include "device/device.h"
+#include "image/image.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+struct whit_scene {
+    struct scene *scene;
+    struct scene_pose pose; /* at time 0, for descriptions */
+    struct scene_effects effects;
+    struct log log;
+};
+
+struct whit_accel {
+    struct accel *accel;
+    struct log log;
+};
+
+struct whit_device {
+    struct device *device;
+    struct log log;
+};
+
+struct whit_renderer {
+    struct renderer *renderer; /* NULL: CPU only */
+    struct accel *accel;       /* borrowed */
+    const volatile bool *cancel;
+    struct log log;
+};
+
+struct whit_image {
+    struct image image;
+};
+
+struct whit_file {
+    struct file_write write;
+    struct log log;
+};
+
+static inline struct log log_from_public(const whit_log *log)
+{
+    if (!log)
+        return (struct log){0};
+    return (struct log){.fn = log->fn, .user = log->user, .level = log->level};
+}
+
+#endif

@@ -1,0 +1,248 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/handles.h"
+#include "base/threads.h"
+
+_Static_assert(sizeof(whit_ray) == sizeof(struct gpu_ray), "rays are handed on as they are");
+_Static_assert(sizeof(whit_hit) == sizeof(struct gpu_hit), "hits are handed on as they are");
+_Static_assert(offsetof(whit_ray, t_max) == offsetof(struct gpu_ray, t_max), "ray layout");
+_Static_assert(offsetof(whit_hit, instance) == offsetof(struct gpu_hit, instance), "hit layout");
+
+enum { DEPTH_DEFAULT = 8, CPU_BATCH = 4096 };
+
+static whit_result load_path_from_name(const struct log *log, const char *name,
+                                       enum render_load_path *out)
+{
+    *out = RENDER_LOAD_AUTO;
+    if (!name || strcmp(name, "auto") == 0)
+        return WHIT_OK;
+    if (strcmp(name, "storage") == 0)
+        *out = RENDER_LOAD_STORAGE;
+    else if (strcmp(name, "texel") == 0)
+        *out = RENDER_LOAD_TEXEL;
+    else {
+        log_error(log, "there is no load path `%s`: auto, storage, texel", name);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+static whit_result render_params_from_public(const struct log *log,
+                                             const whit_renderer_params *params,
+                                             struct render_params *out)
+{
+    *out = (struct render_params){
+        .width = params->width,
+        .height = params->height,
+        .camera = params->camera,
+        .time_s = params->time_s,
+        .samples = params->samples,
+        .depth = params->no_bounces ? 0
+                 : params->depth    ? params->depth
+                                    : DEPTH_DEFAULT,
+        .no_shadows = params->no_shadows,
+        .all_effects = params->all_effects,
+        .tile_size = params->tile_size,
+        .cancel = params->cancel,
+        .progress = params->progress,
+        .progress_user = params->progress_user,
+        .time_limit_s = params->time_limit_s,
+    };
+    return load_path_from_name(log, params->load_path, &out->load_path);
+}
+
+static whit_result pose_on_cpu(struct accel *accel, double time_s)
+{
+    struct scene_pose pose = {0};
+    whit_result result = scene_pose_init(accel->scene, time_s, &pose);
+    if (result == WHIT_OK)
+        result = accel_pose(accel, &pose);
+    scene_pose_finish(&pose);
+    return result;
+}
+
+whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
+                                 const whit_renderer_params *params, whit_renderer **out)
+{
+    const whit_renderer_params defaults = {0};
+    if (!params)
+        params = &defaults;
+    *out = NULL;
+    struct log log = device ? device->log : accel->log;
+    struct render_params inner;
+    whit_result result = render_params_from_public(&log, params, &inner);
+    if (result != WHIT_OK)
+        return result;
+    whit_renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer) {
+        log_error(&log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    renderer->log = log;
+    renderer->accel = accel->accel;
+    renderer->cancel = params->cancel;
+    result = device
+                 ? renderer_create(&log, device->device, accel->accel, &inner, &renderer->renderer)
+                 : pose_on_cpu(accel->accel, params->time_s);
+    if (result != WHIT_OK) {
+        whit_renderer_destroy(renderer);
+        return result;
+    }
+    *out = renderer;
+    return WHIT_OK;
+}
+
+void whit_renderer_destroy(whit_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    renderer_destroy(renderer->renderer);
+    free(renderer);
+}
+
+static whit_result need_device(const whit_renderer *renderer)
+{
+    if (renderer->renderer)
+        return WHIT_OK;
+    log_error(&renderer->log, "this renderer was made without a device");
+    return WHIT_ERROR_USAGE;
+}
+
+whit_result whit_renderer_render(whit_renderer *renderer)
+{
+    whit_result result = need_device(renderer);
+    return result == WHIT_OK ? renderer_render(renderer->renderer) : result;
+}
+
+whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
+{
+    *out = NULL;
+    whit_result result = need_device(renderer);
+    if (result != WHIT_OK)
+        return result;
+    whit_image *image = calloc(1, sizeof *image);
+    if (!image) {
+        log_error(&renderer->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    result = aov == WHIT_AOV_IDS ? renderer_read_ids(renderer->renderer, &image->image)
+                                 : renderer_read_color(renderer->renderer, &image->image);
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    *out = image;
+    return WHIT_OK;
+}
+
+void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
+{
+    *stats = (whit_stats){.render_device_ms = -1.0, .load_path = "storage"};
+    if (!renderer->renderer)
+        return;
+    struct render_stats inner = {0};
+    renderer_get_stats(renderer->renderer, &inner);
+    *stats = (whit_stats){
+        .upload_ms = inner.upload_ms,
+        .compile_ms = inner.compile_ms,
+        .render_ms = inner.render_ms,
+        .render_device_ms = inner.render_device_ms,
+        .rays_primary = inner.rays_primary,
+        .rays_shadow = inner.rays_shadow,
+        .rays_reflected = inner.rays_reflected,
+        .rays_refracted = inner.rays_refracted,
+        .device_bytes = inner.device_bytes,
+        .dispatches = inner.dispatches,
+        .tiles = inner.tiles,
+        .tile_size = inner.tile_size,
+        .load_path = inner.texel_loads ? "texel" : "storage",
+    };
+    uint64_t rays =
+        inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
+    if (inner.render_ms > 0.0)
+        stats->mrays_per_s = (double)rays / inner.render_ms * 1e-3;
+}
+
+/* ---- Rays on the CPU ---- */
+
+struct cpu_trace {
+    const whit_renderer *renderer;
+    const struct gpu_ray *rays;
+    struct gpu_hit *hits;
+    uint64_t count;
+    bool any, brute;
+    uint32_t *statuses; /* one a batch: threads share nothing */
+};
+
+static bool cancelled(const whit_renderer *renderer)
+{
+    return renderer->cancel && *renderer->cancel;
+}
+
+static void trace_batch(void *context, uint32_t index)
+{
+    const struct cpu_trace *trace = context;
+    const struct accel *accel = trace->renderer->accel;
+    uint64_t first = (uint64_t)index * CPU_BATCH;
+    uint64_t end = first + CPU_BATCH < trace->count ? first + CPU_BATCH : trace->count;
+    for (uint64_t i = first; i < end; ++i) {
+        if ((i & 63) == 0 && cancelled(trace->renderer))
+            return;
+        if (trace->brute)
+            traverse_brute_float(accel, &trace->rays[i], &trace->hits[i]);
+        else
+            traverse_float(accel, &trace->rays[i], trace->any, HIT_NONE, HIT_NONE, &trace->hits[i],
+                           NULL, &trace->statuses[index]);
+    }
+}
+
+static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace *trace)
+{
+    uint64_t batches = (trace->count + CPU_BATCH - 1) / CPU_BATCH;
+    if (batches > UINT32_MAX) {
+        log_error(&renderer->log, "more rays than one call takes");
+        return WHIT_ERROR_USAGE;
+    }
+    trace->statuses = calloc(batches ? (size_t)batches : 1, sizeof *trace->statuses);
+    if (!trace->statuses) {
+        log_error(&renderer->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    threads_for(renderer->accel->params.mesh.thread_count, (uint32_t)batches, trace_batch, trace);
+    uint32_t status = 0;
+    for (uint64_t i = 0; i < batches; ++i)
+        status |= trace->statuses[i];
+    free(trace->statuses);
+    if (cancelled(renderer))
+        return WHIT_ERROR_CANCELLED;
+    if (status) {
+        log_error(&renderer->log,
+                  "the traversal reported status %#x: its hits are not to be "
+                  "trusted",
+                  status);
+        return WHIT_ERROR_STATUS;
+    }
+    return WHIT_OK;
+}
+
+whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
+                       uint64_t count, bool any, whit_hit *hits)
+{
+    const void *from = rays;
+    void *to = hits;
+    if (on == WHIT_TRACE_DEVICE) {
+        whit_result result = need_device(renderer);
+        return result == WHIT_OK ? renderer_trace(renderer->renderer, from, count, any, to)
+                                 : result;
+    }
+    struct cpu_trace trace = {
+        .renderer = renderer,
+        .rays = from,
+        .hits = to,
+        .count = count,
+        .any = any,
+        .brute = on == WHIT_TRACE_CPU_BRUTE,
+    };
+    return trace_on_cpu(renderer, &trace);
+}

@@ -1,0 +1,274 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "api/handles.h"
+#include "load/load.h"
+
+static const double DEGREES = 180.0 / 3.14159265358979323846;
+
+whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log,
+                            whit_scene **out)
+{
+    const whit_load_params defaults = {0};
+    if (!params)
+        params = &defaults;
+    *out = NULL;
+    struct log inner = log_from_public(log);
+    whit_scene *scene = calloc(1, sizeof *scene);
+    if (!scene) {
+        log_error(&inner, "%s: out of memory", path);
+        return WHIT_ERROR_MEMORY;
+    }
+    scene->log = inner;
+    const struct load_params load = {
+        .time_limit_s = params->time_limit_s,
+        .memory_limit_bytes = params->memory_limit_bytes,
+        .texture_limit = params->texture_limit,
+        .cancel = params->cancel,
+    };
+    whit_result result = load_scene(&inner, path, &load, &scene->scene);
+    if (result != WHIT_OK)
+        goto fail;
+    result = scene_pose_init(scene->scene, 0.0, &scene->pose);
+    if (result != WHIT_OK)
+        goto fail;
+    scene_effects_scan(scene->scene, &scene->effects);
+    *out = scene;
+    return WHIT_OK;
+fail:
+    whit_scene_destroy(scene);
+    return result;
+}
+
+void whit_scene_destroy(whit_scene *scene)
+{
+    if (!scene)
+        return;
+    scene_pose_finish(&scene->pose);
+    scene_destroy(scene->scene);
+    free(scene);
+}
+
+static const char *or_empty(const char *text)
+{
+    return text ? text : "";
+}
+
+static void copy3(float out[3], const float in[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = in[i];
+}
+
+static void copy3_double(double out[3], const double in[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = in[i];
+}
+
+void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
+{
+    const struct scene *scene = handle->scene;
+    *info = (whit_scene_info){
+        .mesh_count = scene->mesh_count,
+        .instance_count = scene->instance_count,
+        .node_count = scene->node_count,
+        .material_count = scene->material_count,
+        .texture_count = scene->texture_count,
+        .light_count = scene->light_count,
+        .camera_count = scene->camera_count,
+        .note_count = scene->note_count,
+        .effect_count = SCENE_EFFECT_COUNT,
+        .triangle_count = scene->triangle_total,
+        .file_bytes = scene->file_bytes,
+        .hash = scene->hash,
+        .channel_count = scene->channel_count,
+        .time_end_s = (double)scene->time_end_s,
+        .environment = scene->environment.kind == SCENE_ENVIRONMENT_MAP ? "map" : "gradient",
+        .environment_made_by_whit = scene->environment.made_by_whit,
+    };
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        info->mesh_triangle_count += scene->meshes[i].triangle_count;
+    copy3_double(info->lo, handle->pose.lo);
+    copy3_double(info->hi, handle->pose.hi);
+}
+
+void whit_scene_get_mesh(const whit_scene *handle, uint32_t index, whit_mesh_info *info)
+{
+    *info = (whit_mesh_info){.name = ""};
+    if (index >= handle->scene->mesh_count)
+        return;
+    const struct scene_mesh *mesh = &handle->scene->meshes[index];
+    *info = (whit_mesh_info){
+        .name = or_empty(mesh->name),
+        .vertex_count = mesh->vertex_count,
+        .triangle_count = mesh->triangle_count,
+        .group_count = mesh->group_count,
+        .has_normals = mesh->normals != NULL,
+        .has_uvs = mesh->uvs[0] || mesh->uvs[1],
+        .has_colors = mesh->colors != NULL,
+    };
+}
+
+static const char *model_name(enum scene_model model)
+{
+    switch (model) {
+    case SCENE_MODEL_PHONG:
+        return "phong";
+    case SCENE_MODEL_METAL_ROUGH:
+        return "metal-rough";
+    case SCENE_MODEL_UNLIT:
+        return "unlit";
+    }
+    return "";
+}
+
+static uint32_t count_textures(const struct scene_material *material)
+{
+    uint32_t count = 0;
+    for (int i = 0; i < SCENE_SLOT_COUNT; ++i)
+        count += material->textures[i].texture != SCENE_NONE;
+    return count;
+}
+
+void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_material_info *info)
+{
+    *info = (whit_material_info){.name = "", .model = ""};
+    if (index >= handle->scene->material_count)
+        return;
+    const struct scene_material *material = &handle->scene->materials[index];
+    *info = (whit_material_info){
+        .name = or_empty(material->name),
+        .file = material->origin.file,
+        .line = material->origin.line,
+        .model = model_name(material->model),
+        .illum = material->illum,
+        .shininess = material->shininess,
+        .ior = material->ior,
+        .opacity = material->opacity,
+        .metallic = material->metallic,
+        .roughness = material->roughness,
+        .texture_count = count_textures(material),
+    };
+    copy3(info->diffuse, material->diffuse);
+    copy3(info->specular, material->specular);
+    copy3(info->emission, material->emission);
+    copy3(info->reflection, material->reflection);
+    copy3(info->transmission, material->transmission);
+}
+
+static const char *light_kind_name(enum scene_light_kind kind)
+{
+    switch (kind) {
+    case SCENE_LIGHT_POINT:
+        return "point";
+    case SCENE_LIGHT_DIRECTIONAL:
+        return "directional";
+    case SCENE_LIGHT_SPOT:
+        return "spot";
+    case SCENE_LIGHT_AREA_SAMPLE:
+        return "area-sample";
+    }
+    return "";
+}
+
+void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_info *info)
+{
+    *info = (whit_light_info){.name = "", .kind = ""};
+    if (index >= handle->pose.light_count)
+        return;
+    const struct scene_light *light = &handle->pose.lights[index];
+    *info = (whit_light_info){
+        .name = or_empty(light->name),
+        .kind = light_kind_name(light->kind),
+        .made_by_whit = light->made_by_whit,
+    };
+    copy3_double(info->position, light->position);
+    copy3_double(info->direction, light->direction);
+    copy3(info->color, light->color);
+}
+
+void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
+{
+    *info = (whit_camera_info){.name = "", .kind = ""};
+    if (index >= handle->pose.camera_count)
+        return;
+    const struct scene_camera *camera = &handle->pose.cameras[index];
+    bool perspective = camera->kind == SCENE_CAMERA_PERSPECTIVE;
+    *info = (whit_camera_info){
+        .name = or_empty(camera->name),
+        .kind = perspective ? "perspective" : "orthographic",
+        .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
+        .height = perspective ? 0.0 : (double)camera->height,
+        .made_by_whit = camera->made_by_whit,
+    };
+    copy3_double(info->eye, camera->eye);
+    copy3_double(info->target, camera->target);
+    copy3_double(info->up, camera->up);
+}
+
+void whit_scene_get_instance(const whit_scene *handle, uint32_t index, whit_instance_info *info)
+{
+    *info = (whit_instance_info){.name = "", .mesh = WHIT_NONE};
+    if (index >= handle->pose.instance_count)
+        return;
+    const struct scene_instance *instance = &handle->scene->instances[index];
+    info->name = or_empty(instance->name);
+    info->mesh = instance->mesh;
+    for (int i = 0; i < 12; ++i)
+        info->object_to_world[i] = handle->pose.instances[index].m[i];
+}
+
+void whit_scene_get_effect(const whit_scene *handle, uint32_t index, whit_effect_info *info)
+{
+    *info = (whit_effect_info){.name = "", .reason = ""};
+    if (index >= SCENE_EFFECT_COUNT)
+        return;
+    info->name = scene_effect_name((enum scene_effect)index);
+    info->called = handle->effects.called[index];
+    info->reason = info->called ? handle->effects.reasons[index] : "";
+}
+
+void whit_scene_get_note(const whit_scene *handle, uint32_t index, whit_note_info *info)
+{
+    *info = (whit_note_info){.text = ""};
+    if (index >= handle->scene->note_count)
+        return;
+    info->warning = handle->scene->notes[index].level == SCENE_NOTE_WARNING;
+    info->text = or_empty(handle->scene->notes[index].text);
+}
+
+static void world_triangle(const struct scene_mesh *mesh, const struct affine *to_world,
+                           uint32_t primitive, whit_triangle *out)
+{
+    for (int corner = 0; corner < 3; ++corner) {
+        const float *p =
+            mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)primitive + (size_t)corner];
+        const double in[3] = {(double)p[0], (double)p[1], (double)p[2]};
+        double world[3];
+        affine_point(to_world, in, world);
+        for (int axis = 0; axis < 3; ++axis)
+            out->vertices[3 * corner + axis] = (float)world[axis];
+    }
+    out->primitive = primitive;
+}
+
+whit_result whit_scene_triangles(const whit_scene *handle, double time_s,
+                                 bool (*fn)(void *user, const whit_triangle *triangle), void *user)
+{
+    struct scene_pose pose = {0};
+    whit_result result = scene_pose_init(handle->scene, time_s, &pose);
+    if (result != WHIT_OK)
+        return result;
+    for (uint32_t i = 0; i < pose.instance_count && result == WHIT_OK; ++i) {
+        const struct scene_mesh *mesh = &handle->scene->meshes[handle->scene->instances[i].mesh];
+        whit_triangle triangle = {.instance = i};
+        for (uint32_t k = 0; k < mesh->triangle_count && result == WHIT_OK; ++k) {
+            world_triangle(mesh, &pose.instances[i], k, &triangle);
+            if (!fn(user, &triangle))
+                result = WHIT_ERROR_CANCELLED;
+        }
+    }
+    scene_pose_finish(&pose);
+    return result;
+}
