@@ -285,9 +285,8 @@ static double box_entry(const struct search *s, const struct probe *p,
         start = fmax(start, fmin(a, b));
         end = fmin(end, fmax(a, b));
     }
-    double slack = BOX_GROWTH * fmax(fabs(start), fabs(end));
-    bool reached =
-        start <= end && start - slack <= fmin(s->limit, p->t_max) && end + slack >= p->t_min;
+    bool reached = start <= end && start - BOX_GROWTH * fabs(start) <= fmin(s->limit, p->t_max) &&
+                   end + BOX_GROWTH * fabs(end) >= p->t_min;
     return reached ? start : INFINITY;
 }
 
