@@ -1,3 +1,3 @@
 whit_module(render
-  SOURCES render.c camera.c upload.c variants.c trace.c
+  SOURCES camera.c environment.c render.c textures.c trace.c upload.c variants.c
   LINK whit_base whit_image whit_scene whit_accel whit_device whit_kernels)

@@ -110,8 +110,12 @@ struct gpu_frame {
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
     gpu_uint triangle_total; /* per-triangle arrays: where uv set 1 starts */
+    gpu_uint stack_size;     /* rays of one pixel's ray stack */
+    gpu_uint pad0;
+    gpu_uint pad1;
+    gpu_uint pad2;
 };
-GPU_ASSERT_SIZE(gpu_frame, 128)
+GPU_ASSERT_SIZE(gpu_frame, 144)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* A ray waiting on the ray stack of its pixel. */

@@ -43,8 +43,10 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
 {
     uint index = shade_index_of(instance, primitive);
     gpu_material material = materials[triangle_materials[index]];
-    if ((material.flags & MATERIAL_MASK) == 0u || material.tex_opacity == TEXTURE_NONE)
+    if ((material.flags & MATERIAL_MASK) == 0u)
         return true;
+    if (material.tex_opacity == TEXTURE_NONE)
+        return material.opacity >= material.alpha_cutoff;
     uint uv_set = textures[material.tex_opacity].uv_set;
     vec2 uv = interpolate_uv(index, uv_set, frame.triangle_total, u, v);
     return sample_opacity(material, uv) >= material.alpha_cutoff;
@@ -148,10 +150,14 @@ Surface fetch_surface(Hit hit)
     return s;
 }
 
+vec2 use_uv(Surface s, uint use)
+{
+    return interpolate_uv(s.shade_index, textures[use].uv_set, frame.triangle_total, s.u, s.v);
+}
+
 vec4 sample_use(Surface s, uint use)
 {
-    vec2 uv = interpolate_uv(s.shade_index, textures[use].uv_set, frame.triangle_total, s.u, s.v);
-    return sample_texture(use, uv);
+    return sample_texture(use, use_uv(s, use));
 }
 
 // Bends s.ns by a tangent-space map or by the slope of a height map.
@@ -166,7 +172,7 @@ void bend_normal(inout Surface s, gpu_material material)
         bent = t * map.x - b * map.y + s.ns * map.z;
     } else if (material.tex_bump != TEXTURE_NONE) {
         gpu_texture texture_use = textures[material.tex_bump];
-        vec2 uv = interpolate_uv(s.shade_index, texture_use.uv_set, frame.triangle_total, s.u, s.v);
+        vec2 uv = use_uv(s, material.tex_bump);
         vec2 size = vec2(float(texture_use.size & 0xffffu), float(texture_use.size >> 16));
         vec2 texel = 1.0 / size;
         float at = sample_texture(material.tex_bump, uv).r;

@@ -15,7 +15,7 @@ layout(set = 0, binding = BIND_IDS, std430) writeonly buffer IdBuffer { uvec2 id
 layout(set = 0, binding = BIND_COUNTS, std430) buffer CountBuffer { gpu_counts counts[]; };
 layout(set = 0, binding = BIND_RAY_STACKS, std430) buffer RayStackBuffer
 {
-    gpu_stacked_ray ray_stacks[]; // frame.depth + 1 per slot of the chunk
+    gpu_stacked_ray ray_stacks[]; // frame.stack_size per slot of the chunk
 };
 layout(set = 0, binding = BIND_WORK_IN, std430) readonly buffer WorkInBuffer
 {
@@ -37,7 +37,7 @@ struct Ray {
     uint bounces, medium, skip_primitive, skip_instance;
 };
 
-// Slot of the chunk that this invocation works on; with `all` the last ones may be past the end.
+// Which item of the work this invocation takes; the last ones may be past its end.
 uint own_slot()
 {
     uint group = gl_WorkGroupID.x;
@@ -137,7 +137,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     }
     if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
         if (m.tex_opacity != TEXTURE_NONE)
-            opacity *= sample_use(s, m.tex_opacity).a;
+            opacity = sample_opacity(m, use_uv(s, m.tex_opacity)) * s.color_alpha;
         o.straight = clamp(1.0 - opacity, 0.0, 1.0);
     }
     if (SPEC_NORMAL_MAPS != 0u)
@@ -249,7 +249,7 @@ vec3 local_light(Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays
 void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uint bounces,
               uint medium, Hit hit, inout uint status)
 {
-    if (top > frame.depth) {
+    if (top >= frame.stack_size) {
         status |= STATUS_RAY_STACK_OVERFLOW;
         return;
     }
@@ -260,7 +260,7 @@ void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uin
     stacked.state = bounces | (medium << 8);
     stacked.skip_primitive = hit.primitive;
     stacked.skip_instance = hit.instance;
-    ray_stacks[slot * (frame.depth + 1u) + top] = stacked;
+    ray_stacks[slot * frame.stack_size + top] = stacked;
     top++;
 }
 
@@ -373,7 +373,7 @@ void main()
         ray = camera_ray(at);
     } else {
         count.stack--;
-        ray = stacked_ray(slot * (frame.depth + 1u) + count.stack);
+        ray = stacked_ray(slot * frame.stack_size + count.stack);
     }
     Hit hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
                        ray.skip_instance, ray.skip_primitive);

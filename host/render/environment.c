@@ -1,0 +1,90 @@
+/* The environment map, resampled once from longitude and latitude to an octahedral square that
+   shaders read without trigonometry. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/threads.h"
+#include "render/renderer.h"
+
+static const double PI = 3.14159265358979323846;
+enum { ENVIRONMENT_SIDE_MAX = 2048 };
+
+struct resample {
+    const struct scene_environment *from;
+    uint32_t size;
+    float *to; /* RGBA */
+};
+
+/* Centre of texel (x, y) to a unit direction: lib/octahedron.glsl the other way. */
+static void dir_from_octahedron(double x, double y, double dir[3])
+{
+    double px = 2.0 * x - 1.0, pz = 2.0 * y - 1.0;
+    double py = 1.0 - fabs(px) - fabs(pz);
+    if (py < 0.0) {
+        double folded_x = (1.0 - fabs(pz)) * (px >= 0.0 ? 1.0 : -1.0);
+        double folded_z = (1.0 - fabs(px)) * (pz >= 0.0 ? 1.0 : -1.0);
+        px = folded_x;
+        pz = folded_z;
+    }
+    double length = sqrt(px * px + py * py + pz * pz);
+    dir[0] = px / length, dir[1] = py / length, dir[2] = pz / length;
+}
+
+static void sample_map(const struct scene_environment *map, const double dir[3], float out[3])
+{
+    /* u = 0 at -z, growing to the right as seen from inside; row 0 up. */
+    double u = 0.5 + atan2(dir[0], -dir[2]) / (2.0 * PI);
+    double v = acos(fmax(-1.0, fmin(1.0, dir[1]))) / PI;
+    double x = u * map->width - 0.5, y = v * map->height - 0.5;
+    double x_floor = floor(x), y_floor = floor(y);
+    double fx = x - x_floor, fy = y - y_floor;
+    double sum[3] = {0, 0, 0};
+    for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i < 2; ++i) {
+            int64_t width = map->width, height = map->height;
+            int64_t column = (((int64_t)x_floor + i) % width + width) % width;
+            int64_t row = (int64_t)y_floor + j;
+            row = row < 0 ? 0 : row >= height ? height - 1 : row;
+            double weight = (i ? fx : 1.0 - fx) * (j ? fy : 1.0 - fy);
+            const float *texel = &map->rgb[3 * (row * width + column)];
+            for (int c = 0; c < 3; ++c)
+                sum[c] += weight * (double)texel[c];
+        }
+    }
+    for (int c = 0; c < 3; ++c)
+        out[c] = (float)(sum[c] * (double)map->scale[c]);
+}
+
+static void resample_row(void *user, uint32_t y)
+{
+    const struct resample *job = user;
+    for (uint32_t x = 0; x < job->size; ++x) {
+        double dir[3];
+        dir_from_octahedron((x + 0.5) / job->size, (y + 0.5) / job->size, dir);
+        sample_map(job->from, dir, &job->to[4 * ((size_t)y * job->size + x)]);
+    }
+}
+
+whit_result upload_environment(struct renderer *renderer)
+{
+    const struct scene_environment *environment = &renderer->scene->environment;
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    buffers->environment_size = 0;
+    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb)
+        return WHIT_OK;
+    /* As many texels as the map has. */
+    double texels = (double)environment->width * (double)environment->height;
+    uint32_t size = (uint32_t)fmin(ceil(sqrt(texels)), ENVIRONMENT_SIDE_MAX);
+    struct resample job = {.from = environment, .size = size < 2 ? 2 : size};
+    job.to = array_alloc_zeroed((size_t)job.size * job.size, 4 * sizeof(float));
+    if (!job.to)
+        return WHIT_ERROR_MEMORY;
+    threads_for(0, job.size, resample_row, &job);
+    buffers->environment_size = job.size;
+    whit_result result =
+        upload_words(renderer, job.to, (uint64_t)job.size * job.size * 4 * sizeof(float),
+                     BUFFER_STORAGE, "environment", &buffers->environment);
+    free(job.to);
+    return result;
+}

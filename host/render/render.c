@@ -1,0 +1,563 @@
+/* The order of a picture: chunks of pixel blocks; for each sample of a chunk one dispatch of camera
+   rays and, as long as a pixel has rays left, one dispatch a ray. A chunk's size follows measured
+   time, so that no submission runs long. */
+#include "render/render.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/clock.h"
+#include "render/renderer.h"
+
+enum {
+    TILE_MIN = 16,
+    TILE_MAX = 512,
+    TILE_FIRST = 64,
+    TILE_STACKED_MAX = 256, /* ray stacks cost memory; larger only when asked for */
+    PASSES_FIRST = 8,
+    PASSES_MAX = 64,
+};
+/* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
+static const double SUBMISSION_TARGET_MS = 40.0;
+static const double SUBMISSION_LIMIT_MS = 100.0;
+
+whit_result status_check(struct renderer *renderer)
+{
+    uint32_t word = 0;
+    whit_result result = buffer_read(renderer->pixel_buffers.status, 0, &word, sizeof word);
+    if (result != WHIT_OK || word == 0)
+        return result;
+    const struct {
+        uint32_t bit;
+        const char *text;
+    } reasons[] = {
+        {STATUS_UNFINISHED_TRAVERSAL, "a traversal was cut short (the driver ends long loops)"},
+        {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed"},
+        {STATUS_RAY_STACK_OVERFLOW, "the ray stack overflowed"},
+        {STATUS_NON_FINITE, "radiance is not finite"},
+        {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
+    };
+    for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
+        if (word & reasons[i].bit)
+            log_error(&renderer->log, "the result is not to be trusted: %s", reasons[i].text);
+    }
+    return WHIT_ERROR_STATUS;
+}
+
+static uint32_t blocks_across(uint32_t pixels)
+{
+    return (pixels + 7) / 8;
+}
+
+static whit_result check_params(const struct log *log, struct render_params *params)
+{
+    if (params->width == 0 && params->height == 0) {
+        params->width = 640;
+        params->height = 480;
+    }
+    if (params->samples == 0)
+        params->samples = 1;
+    if (params->width == 0 || params->height == 0 || params->width > 65535 ||
+        params->height > 65535) {
+        log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
+        return WHIT_ERROR_USAGE;
+    }
+    uint32_t n = params->samples;
+    if (n != 1 && n != 4 && n != 16 && n != 64) {
+        log_error(log, "%u samples a pixel: must be 1, 4, 16 or 64", n);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX)) {
+        log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->depth > 32) {
+        log_error(log, "depth %u: must be 0..32", params->depth);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+static whit_result create_frame(struct renderer *renderer)
+{
+    struct gpu_frame *frame = &renderer->frame;
+    const struct accel *accel = renderer->accel;
+    const struct scene_environment *environment = &renderer->scene->environment;
+    bool orthographic;
+    whit_result result =
+        camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
+                     renderer->params.width, renderer->params.height, frame, &orthographic);
+    if (result != WHIT_OK)
+        return result;
+    renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = orthographic;
+    for (int i = 0; i < 3; ++i) {
+        frame->zenith[i] = environment->zenith[i] * environment->scale[i];
+        frame->horizon[i] = environment->horizon[i] * environment->scale[i];
+        frame->ground[i] = environment->ground[i] * environment->scale[i];
+        frame->ambient[i] = renderer->scene->ambient[i];
+    }
+    frame->light_count = renderer->pose.light_count;
+    frame->environment_size = renderer->scene_buffers.environment_size;
+    frame->root = accel->instance_root;
+    if (accel->single_identity) {
+        const struct accel_mesh *mesh = &accel->meshes[renderer->scene->instances[0].mesh];
+        frame->root = mesh->root;
+        frame->shade_base = mesh->shade_base;
+    }
+    frame->depth = renderer->params.depth;
+    frame->triangle_total = renderer->scene_buffers.triangle_total;
+    frame->stack_size = renderer->pixel_buffers.stack_size;
+    return upload_words(renderer, frame, sizeof *frame, BUFFER_STORAGE, "frame",
+                        &renderer->scene_buffers.frame);
+}
+
+/* Rays that wait when one ray leaves up to `children` others, depth first. */
+static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
+{
+    return depth * (children - 1) + 1;
+}
+
+static uint32_t largest_tile(const struct renderer *renderer)
+{
+    const struct render_params *params = &renderer->params;
+    uint32_t tile = params->tile_size         ? params->tile_size
+                    : renderer->has_secondary ? TILE_STACKED_MAX
+                                              : TILE_MAX;
+    uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
+    uint64_t slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
+    while (renderer->has_secondary && tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
+        tile /= 2;
+    return tile;
+}
+
+static whit_result create_pixel_buffers(struct renderer *renderer)
+{
+    struct pixel_buffers *p = &renderer->pixel_buffers;
+    struct device *device = renderer->device;
+    uint32_t width = renderer->params.width;
+    uint64_t limit = device_get_info(device)->max_storage_range_bytes;
+    uint64_t rows = limit / ((uint64_t)width * 16) / 8 * 8;
+    uint32_t height = blocks_across(renderer->params.height) * 8;
+    p->band_rows = rows < height ? (uint32_t)rows : height;
+    if (p->band_rows == 0) {
+        log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
+        return WHIT_ERROR_DEVICE;
+    }
+    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] || renderer->params.all_effects;
+    p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
+    uint32_t tile = largest_tile(renderer);
+    uint64_t frame_slots = (uint64_t)blocks_across(width) * (p->band_rows / 8) * 64;
+    uint64_t slots = (uint64_t)tile * tile;
+    p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
+    uint64_t pixels = (uint64_t)width * p->band_rows;
+    whit_result result = WHIT_OK;
+    const struct {
+        struct buffer **buffer;
+        uint64_t bytes;
+        uint32_t uses;
+        const char *name;
+    } all[] = {
+        {&p->pixels, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
+        {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
+        {&p->counts, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "counts"},
+        {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
+        {&p->work[0], 16 + (uint64_t)p->chunk_slots * 4,
+         BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
+        {&p->work[1], 16 + (uint64_t)p->chunk_slots * 4,
+         BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
+        {&p->work_head, 16, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
+        {&p->ray_stacks,
+         renderer->has_secondary
+             ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_stacked_ray)
+             : 16,
+         BUFFER_STORAGE, "ray stacks"},
+    };
+    for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
+        result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
+        if (result == WHIT_OK)
+            renderer->scene_buffers.bytes += all[i].bytes;
+    }
+    const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
+    if (result == WHIT_OK)
+        result = buffer_write(p->work_head, 0, &head, sizeof head);
+    return result;
+}
+
+static void pixel_buffers_finish(struct pixel_buffers *p)
+{
+    struct buffer *all[] = {p->pixels,  p->ids,     p->counts,    p->status,
+                            p->work[0], p->work[1], p->work_head, p->ray_stacks};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+        buffer_destroy(all[i]);
+    *p = (struct pixel_buffers){0};
+}
+
+static bool calls_for_secondary(const struct renderer *renderer)
+{
+    const bool *called = renderer->effects.called;
+    return renderer->params.depth > 0 &&
+           (renderer->params.all_effects || called[SCENE_EFFECT_REFLECTION] ||
+            called[SCENE_EFFECT_REFRACTION] || called[SCENE_EFFECT_FRESNEL] ||
+            called[SCENE_EFFECT_CUTOUTS]);
+}
+
+static whit_result create_parts(struct renderer *renderer)
+{
+    double start_ms = clock_ms();
+    renderer->has_secondary = calls_for_secondary(renderer);
+    whit_result result = create_pixel_buffers(renderer);
+    if (result == WHIT_OK)
+        result = upload_scene(renderer);
+    if (result == WHIT_OK)
+        result = create_frame(renderer);
+    double uploaded_ms = clock_ms();
+    renderer->stats.upload_ms = uploaded_ms - start_ms;
+    if (result == WHIT_OK)
+        result = variant_create_whitted(renderer, true, &renderer->primary);
+    if (result == WHIT_OK && renderer->has_secondary)
+        result = variant_create_whitted(renderer, false, &renderer->secondary);
+    if (result == WHIT_OK)
+        result = commands_create(renderer->device, "render", &renderer->commands);
+    renderer->stats.compile_ms = clock_ms() - uploaded_ms;
+    renderer->stats.texel_loads = renderer->scene_buffers.texel_loads;
+    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    return result;
+}
+
+whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
+                            const struct render_params *params, struct renderer **out)
+{
+    *out = NULL;
+    struct renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer)
+        return WHIT_ERROR_MEMORY;
+    renderer->log = *log;
+    renderer->device = device;
+    renderer->accel = accel;
+    renderer->scene = accel->scene;
+    if (params)
+        renderer->params = *params;
+    scene_effects_scan(renderer->scene, &renderer->effects);
+    whit_result result = check_params(log, &renderer->params);
+    if (result == WHIT_OK)
+        result = scene_pose_init(renderer->scene, renderer->params.time_s, &renderer->pose);
+    if (result == WHIT_OK)
+        result = accel_pose(accel, &renderer->pose);
+    if (result == WHIT_OK)
+        result = create_parts(renderer);
+    if (result != WHIT_OK) {
+        renderer_destroy(renderer);
+        return result;
+    }
+    *out = renderer;
+    return WHIT_OK;
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer)
+        return;
+    commands_destroy(renderer->commands);
+    pass_finish(&renderer->primary);
+    pass_finish(&renderer->secondary);
+    trace_finish(&renderer->trace);
+    pixel_buffers_finish(&renderer->pixel_buffers);
+    upload_finish(&renderer->scene_buffers);
+    scene_pose_finish(&renderer->pose);
+    image_finish(&renderer->color);
+    image_finish(&renderer->ids);
+    free(renderer);
+}
+
+/* Sample `index` of `count` within its pixel: the centre for one, else a Hammersley set, which is
+   stratified in both directions for powers of 4. */
+static void sample_position(uint32_t index, uint32_t count, float xy[2])
+{
+    double reversed = 0.0, digit = 0.5;
+    for (uint32_t i = index; i; i >>= 1, digit *= 0.5)
+        reversed += (i & 1) ? digit : 0.0;
+    xy[0] = (float)((index + 0.5) / count);
+    xy[1] = (float)(reversed + 0.5 / count);
+}
+
+/* What one picture in the making knows. */
+struct progress {
+    double start_ms;
+    uint32_t tile;
+    uint64_t work_done, work_total; /* block samples */
+};
+
+static whit_result stop_asked(const struct renderer *renderer, const struct progress *progress)
+{
+    const struct render_params *params = &renderer->params;
+    if (params->cancel && *params->cancel)
+        return WHIT_ERROR_CANCELLED;
+    if (params->time_limit_s > 0.0 &&
+        clock_ms() - progress->start_ms > params->time_limit_s * 1e3) {
+        log_error(&renderer->log, "time limit of %g s passed with %.0f %% of the picture done",
+                  params->time_limit_s,
+                  100.0 * (double)progress->work_done / (double)progress->work_total);
+        return WHIT_ERROR_TIME_LIMIT;
+    }
+    return WHIT_OK;
+}
+
+static whit_result submit(struct renderer *renderer)
+{
+    whit_result result = commands_submit(renderer->commands);
+    if (result == WHIT_OK)
+        result = commands_wait(renderer->commands, -1.0);
+    if (result != WHIT_OK)
+        return result;
+    double device_ms = commands_span_ms(renderer->commands, 0);
+    if (device_ms < 0.0 || renderer->stats.render_device_ms < 0.0)
+        renderer->stats.render_device_ms = -1.0;
+    else
+        renderer->stats.render_device_ms += device_ms;
+    return status_check(renderer);
+}
+
+static void clear_work(struct renderer *renderer, uint32_t list)
+{
+    commands_copy(renderer->commands, renderer->pixel_buffers.work_head, 0,
+                  renderer->pixel_buffers.work[list], 0, sizeof(struct gpu_work));
+}
+
+/* Camera rays; pixels with rays left go to list 1. */
+static whit_result record_primary(struct renderer *renderer, const struct gpu_chunk *chunk)
+{
+    struct commands *commands = renderer->commands;
+    whit_result result = commands_begin(commands);
+    if (result != WHIT_OK)
+        return result;
+    commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
+    clear_work(renderer, 1);
+    commands_barrier(commands);
+    commands_span_begin(commands, "sample");
+    commands_bind(commands, renderer->primary.pipeline, renderer->primary.sets[0]);
+    commands_push(commands, chunk, sizeof *chunk);
+    commands_dispatch(commands, chunk->block_count * RENDER_BLOCK_PIXELS / RENDER_GROUP_SIZE, 1, 1);
+    ++renderer->stats.dispatches;
+    return WHIT_OK;
+}
+
+/* One ray more of each listed pixel, `passes` times: pass i reads list (i + 1) % 2 and fills the
+   other. */
+static void record_passes(struct renderer *renderer, const struct gpu_chunk *chunk, uint32_t first,
+                          uint32_t passes)
+{
+    struct commands *commands = renderer->commands;
+    for (uint32_t i = first; i < first + passes; ++i) {
+        uint32_t in = (i + 1) % 2;
+        commands_barrier(commands);
+        clear_work(renderer, 1 - in);
+        commands_barrier(commands);
+        commands_bind(commands, renderer->secondary.pipeline, renderer->secondary.sets[in]);
+        commands_push(commands, chunk, sizeof *chunk);
+        commands_dispatch_indirect(commands, renderer->pixel_buffers.work[in], 0);
+        ++renderer->stats.dispatches;
+    }
+}
+
+static whit_result finish_submission(struct renderer *renderer)
+{
+    commands_span_end(renderer->commands);
+    commands_barrier(renderer->commands);
+    return submit(renderer);
+}
+
+/* All rays of one sample of one chunk. *longest_ms: of its submissions. */
+static whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                 const struct progress *progress, double *longest_ms)
+{
+    uint32_t passes = renderer->has_secondary ? PASSES_FIRST : 0, first = 0;
+    double start_ms = clock_ms();
+    whit_result result = record_primary(renderer, chunk);
+    if (result == WHIT_OK) {
+        record_passes(renderer, chunk, first, passes);
+        result = finish_submission(renderer);
+    }
+    for (;;) {
+        double spent_ms = clock_ms() - start_ms;
+        *longest_ms = spent_ms > *longest_ms ? spent_ms : *longest_ms;
+        if (result != WHIT_OK || passes == 0)
+            return result;
+        first += passes;
+        struct gpu_work head;
+        result = buffer_read(renderer->pixel_buffers.work[(first + 1) % 2], 0, &head, sizeof head);
+        if (result != WHIT_OK || head.count == 0)
+            return result;
+        result = stop_asked(renderer, progress);
+        if (result != WHIT_OK)
+            return result;
+        if (spent_ms < SUBMISSION_TARGET_MS && passes < PASSES_MAX)
+            passes *= 2;
+        else if (spent_ms > SUBMISSION_LIMIT_MS && passes > 2)
+            passes /= 2;
+        start_ms = clock_ms();
+        result = commands_begin(renderer->commands);
+        if (result != WHIT_OK)
+            return result;
+        commands_span_begin(renderer->commands, "bounces");
+        record_passes(renderer, chunk, first, passes);
+        result = finish_submission(renderer);
+    }
+}
+
+static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
+{
+    uint64_t slots = (uint64_t)progress->tile * progress->tile;
+    if (renderer->params.tile_size)
+        return;
+    if (spent_ms > SUBMISSION_LIMIT_MS && progress->tile > TILE_MIN)
+        progress->tile /= 2;
+    else if (spent_ms < SUBMISSION_TARGET_MS / 4 &&
+             slots * 4 <= renderer->pixel_buffers.chunk_slots)
+        progress->tile *= 2;
+}
+
+static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
+                                struct progress *progress)
+{
+    uint32_t samples = renderer->params.samples;
+    double longest_ms = 0.0;
+    for (uint32_t s = 0; s < samples; ++s) {
+        whit_result result = stop_asked(renderer, progress);
+        if (result != WHIT_OK)
+            return result;
+        chunk->sample_index = s;
+        chunk->sample_weight = 1.0f / (float)samples;
+        sample_position(s, samples, chunk->sample_xy);
+        result = render_sample(renderer, chunk, progress, &longest_ms);
+        if (result != WHIT_OK)
+            return result;
+        progress->work_done += chunk->block_count;
+        if (renderer->params.progress)
+            renderer->params.progress(renderer->params.progress_user,
+                                      (double)progress->work_done / (double)progress->work_total);
+    }
+    ++renderer->stats.tiles;
+    adapt_tile(renderer, progress, longest_ms);
+    return WHIT_OK;
+}
+
+/* Pixels and counts of one band from the device into the picture and the statistics. */
+static whit_result read_band(struct renderer *renderer, uint32_t band_y, uint32_t rows)
+{
+    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    size_t width = renderer->params.width;
+    size_t count = width * rows;
+    whit_result result = buffer_read(p->pixels, 0, &renderer->color.pixels[4 * width * band_y],
+                                     count * 4 * sizeof(float));
+    if (result == WHIT_OK)
+        result = buffer_read(p->ids, 0, &renderer->ids.words[2 * width * band_y],
+                             count * 2 * sizeof(uint32_t));
+    struct gpu_counts *counts = array_alloc(count, sizeof *counts);
+    if (!counts)
+        return WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = buffer_read(p->counts, 0, counts, count * sizeof *counts);
+    for (size_t i = 0; result == WHIT_OK && i < count; ++i) {
+        renderer->stats.rays_shadow += counts[i].shadow;
+        renderer->stats.rays_reflected += counts[i].reflected;
+        renderer->stats.rays_refracted += counts[i].refracted;
+    }
+    free(counts);
+    return result;
+}
+
+static whit_result render_band(struct renderer *renderer, uint32_t band_y,
+                               struct progress *progress)
+{
+    const struct render_params *params = &renderer->params;
+    uint32_t left = params->height - band_y;
+    uint32_t rows =
+        left < renderer->pixel_buffers.band_rows ? left : renderer->pixel_buffers.band_rows;
+    uint32_t across = blocks_across(params->width);
+    uint32_t block = band_y / 8 * across, end = block + blocks_across(rows) * across;
+    while (block < end) {
+        uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;
+        uint32_t held = renderer->pixel_buffers.chunk_slots / RENDER_BLOCK_PIXELS;
+        blocks = blocks < held ? blocks : held;
+        struct gpu_chunk chunk = {.first_block = block,
+                                  .block_count = end - block < blocks ? end - block : blocks,
+                                  .band_y = band_y,
+                                  .band_rows = rows};
+        whit_result result = render_chunk(renderer, &chunk, progress);
+        if (result != WHIT_OK)
+            return result;
+        block += chunk.block_count;
+        renderer->stats.tile_size = progress->tile;
+    }
+    return read_band(renderer, band_y, rows);
+}
+
+static void clear_stats(struct render_stats *stats)
+{
+    *stats = (struct render_stats){.upload_ms = stats->upload_ms,
+                                   .compile_ms = stats->compile_ms,
+                                   .device_bytes = stats->device_bytes,
+                                   .texel_loads = stats->texel_loads};
+}
+
+whit_result renderer_render(struct renderer *renderer)
+{
+    const struct render_params *params = &renderer->params;
+    renderer->rendered = false;
+    image_finish(&renderer->color);
+    image_finish(&renderer->ids);
+    whit_result result = image_init(&renderer->color, params->width, params->height, 4, false);
+    if (result == WHIT_OK)
+        result = image_init(&renderer->ids, params->width, params->height, 2, true);
+    clear_stats(&renderer->stats);
+    uint32_t largest = (uint32_t)sqrt((double)renderer->pixel_buffers.chunk_slots);
+    struct progress progress = {
+        .start_ms = clock_ms(),
+        .tile = params->tile_size                             ? params->tile_size
+                : largest < TILE_FIRST && largest >= TILE_MIN ? largest
+                                                              : TILE_FIRST,
+        .work_total = (uint64_t)blocks_across(params->width) * blocks_across(params->height) *
+                      params->samples,
+    };
+    for (uint32_t y = 0; result == WHIT_OK && y < params->height;
+         y += renderer->pixel_buffers.band_rows)
+        result = render_band(renderer, y, &progress);
+    renderer->stats.render_ms = clock_ms() - progress.start_ms;
+    renderer->stats.rays_primary = (uint64_t)params->width * params->height * params->samples;
+    renderer->rendered = result == WHIT_OK;
+    return result;
+}
+
+static whit_result copy_image(const struct renderer *renderer, const struct image *from,
+                              struct image *out)
+{
+    if (!renderer->rendered) {
+        log_error(&renderer->log, "no picture was rendered yet");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result =
+        image_init(out, from->width, from->height, from->channels, from->words != NULL);
+    size_t bytes = (size_t)from->width * from->height * from->channels * 4;
+    if (result == WHIT_OK)
+        memcpy(from->words ? (void *)out->words : (void *)out->pixels,
+               from->words ? (const void *)from->words : (const void *)from->pixels, bytes);
+    return result;
+}
+
+whit_result renderer_read_color(struct renderer *renderer, struct image *out)
+{
+    return copy_image(renderer, &renderer->color, out);
+}
+
+whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
+{
+    return copy_image(renderer, &renderer->ids, out);
+}
+
+void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)
+{
+    *stats = renderer->stats;
+}

@@ -1,0 +1,95 @@
+/* The renderer from inside: shared by the files of render/ alone. */
+#ifndef RENDER_RENDERER_H
+#define RENDER_RENDERER_H
+
+#include "abi/bindings.h"
+#include "abi/shade.h"
+#include "abi/spec.h"
+#include "render/render.h"
+
+/* The scene in device memory. `none` stands in for what the scene lacks. */
+struct scene_buffers {
+    struct buffer *nodes, *triangles, *instances;
+    struct buffer *materials, *textures, *texels, *uvs;
+    struct buffer *triangle_materials, *normals, *colors, *lights, *environment, *frame;
+    struct buffer *none;
+    uint32_t environment_size, triangle_total;
+    bool texel_loads;
+    uint64_t bytes;
+};
+
+/* The state of the pixels of one band of rows, and of the ray trees of one chunk. */
+struct pixel_buffers {
+    struct buffer *pixels, *ids, *counts;
+    struct buffer *ray_stacks, *work[2], *work_head;
+    struct buffer *status;
+    uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
+    uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
+    uint32_t stack_size;  /* rays of one pixel */
+};
+
+/* Pipelines of one kernel with the buffers they work on. */
+struct pass {
+    struct pipeline *pipeline;
+    struct binding_set *sets[2]; /* [1]: with the two work lists exchanged */
+};
+
+struct trace_state {
+    struct buffer *rays, *hits;
+    struct pass closest, any;
+    uint32_t capacity; /* rays */
+    double device_ms;
+};
+
+struct renderer {
+    struct log log;
+    struct device *device;
+    struct accel *accel;
+    const struct scene *scene;
+    struct render_params params;
+    struct scene_pose pose;
+    struct scene_effects effects;
+    struct scene_buffers scene_buffers;
+    struct pixel_buffers pixel_buffers;
+    struct pass primary, secondary;
+    struct trace_state trace;
+    struct commands *commands;
+    struct gpu_frame frame;
+    struct image color, ids; /* of the last picture */
+    struct render_stats stats;
+    bool has_secondary; /* the scene calls for more than camera rays */
+    bool rendered;
+};
+
+enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
+
+/* camera.c: the camera of params->camera in `pose`. */
+WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
+                                    const char *selector, uint32_t width, uint32_t height,
+                                    struct gpu_frame *frame, bool *orthographic);
+
+/* upload.c */
+WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
+void upload_finish(struct scene_buffers *buffers);
+WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
+                                    uint64_t size_bytes, uint32_t uses, const char *name,
+                                    struct buffer **out);
+/* textures.c: uploads all texels and writes the material records that use them. */
+WHIT_CHECK whit_result upload_materials(struct renderer *renderer);
+/* environment.c */
+WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
+
+/* variants.c: which constants a scene gets, and the pipelines made with them. */
+struct gpu_spec variant_spec(const struct renderer *renderer);
+WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer, bool primary,
+                                              struct pass *pass);
+WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
+void pass_finish(struct pass *pass);
+
+/* trace.c */
+void trace_finish(struct trace_state *trace);
+
+/* render.c: logs what the bits say. WHIT_OK when there are none. */
+WHIT_CHECK whit_result status_check(struct renderer *renderer);
+
+#endif

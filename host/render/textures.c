@@ -1,0 +1,320 @@
+/* Materials and the texels they use: 16 bits a channel, linear, so that shaders filter light and
+   not its encoding. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "render/renderer.h"
+
+/* One picture in device form; sRGB and linear uses of the same file are two of them. */
+struct texel_image {
+    uint32_t texture; /* of the scene */
+    bool srgb;
+    uint32_t width, height, first;
+    uint16_t *texels; /* RGBA; NULL until made */
+};
+
+struct material_upload {
+    struct renderer *renderer;
+    struct texel_image *images;
+    uint32_t image_count, image_capacity;
+    struct gpu_texture *uses;
+    uint32_t *use_images; /* image of each use */
+    uint32_t use_count, use_capacity, use_image_capacity;
+    struct gpu_material *materials;
+    uint16_t srgb[256], linear[256];
+};
+
+static void make_tables(struct material_upload *up)
+{
+    for (int i = 0; i < 256; ++i) {
+        double x = i / 255.0;
+        double light = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+        up->srgb[i] = (uint16_t)(light * 65535.0 + 0.5);
+        up->linear[i] = (uint16_t)(x * 65535.0 + 0.5);
+    }
+}
+
+static uint32_t find_image(struct material_upload *up, uint32_t texture, bool srgb)
+{
+    for (uint32_t i = 0; i < up->image_count; ++i) {
+        if (up->images[i].texture == texture && up->images[i].srgb == srgb)
+            return i;
+    }
+    const struct scene_texture *source = &up->renderer->scene->textures[texture];
+    struct texel_image image = {
+        .texture = texture, .srgb = srgb, .width = source->width, .height = source->height};
+    if (!ARRAY_PUSH(up->images, up->image_count, up->image_capacity, image))
+        return SCENE_NONE;
+    return up->image_count - 1;
+}
+
+static uint32_t wrap_code(enum scene_wrap wrap)
+{
+    return wrap == SCENE_WRAP_CLAMP    ? WRAP_CLAMP
+           : wrap == SCENE_WRAP_MIRROR ? WRAP_MIRROR
+                                       : WRAP_REPEAT;
+}
+
+/* Index of a new use record, TEXTURE_NONE when there is no texture. */
+static whit_result add_use(struct material_upload *up, const struct scene_texture_use *use,
+                           bool srgb, uint32_t *out)
+{
+    *out = TEXTURE_NONE;
+    if (use->texture == SCENE_NONE)
+        return WHIT_OK;
+    uint32_t image = find_image(up, use->texture, srgb);
+    const float *m = use->transform;
+    struct gpu_texture record = {
+        .matrix = {m[0], m[1], m[3], m[4]},
+        .offset = {m[2], m[5]},
+        .wrap = wrap_code(use->wrap_u) | wrap_code(use->wrap_v) << 2,
+        .nearest = use->nearest,
+        .uv_set = use->uv_set != 0,
+    };
+    uint32_t image_slots = up->use_count;
+    if (image == SCENE_NONE || !ARRAY_PUSH(up->uses, up->use_count, up->use_capacity, record) ||
+        !ARRAY_PUSH(up->use_images, image_slots, up->use_image_capacity, image))
+        return WHIT_ERROR_MEMORY;
+    *out = up->use_count - 1;
+    return WHIT_OK;
+}
+
+static bool has_alpha(const struct scene *scene, uint32_t texture)
+{
+    if (texture == SCENE_NONE)
+        return false;
+    const struct scene_texture *t = &scene->textures[texture];
+    size_t count = (size_t)t->width * t->height;
+    for (size_t i = 0; i < count; ++i) {
+        if (t->rgba[4 * i + 3] != 255)
+            return true;
+    }
+    return false;
+}
+
+static uint32_t model_code(enum scene_model model)
+{
+    return model == SCENE_MODEL_METAL_ROUGH ? MATERIAL_MODEL_METAL_ROUGH
+           : model == SCENE_MODEL_UNLIT     ? MATERIAL_MODEL_UNLIT
+                                            : MATERIAL_MODEL_PHONG;
+}
+
+static uint32_t material_flags(const struct scene_material *m)
+{
+    return (m->fresnel ? MATERIAL_FRESNEL : 0) | (m->thin_walled ? MATERIAL_THIN : 0) |
+           (m->alpha == SCENE_ALPHA_MASK ? MATERIAL_MASK : 0) |
+           (m->alpha == SCENE_ALPHA_BLEND ? MATERIAL_BLEND : 0) |
+           (m->shadow_catcher ? MATERIAL_SHADOW_CATCHER : 0) |
+           (m->two_sided ? MATERIAL_TWO_SIDED : 0);
+}
+
+/* Opacity is a picture of its own, or the alpha of the diffuse one. */
+static whit_result add_opacity(struct material_upload *up, const struct scene_material *m,
+                               struct gpu_material *out)
+{
+    const struct scene *scene = up->renderer->scene;
+    out->tex_opacity = TEXTURE_NONE;
+    if (m->alpha == SCENE_ALPHA_OPAQUE)
+        return WHIT_OK;
+    const struct scene_texture_use *own = &m->textures[SCENE_SLOT_OPACITY];
+    if (own->texture != SCENE_NONE) {
+        if (has_alpha(scene, own->texture))
+            out->flags |= MATERIAL_OPACITY_ALPHA;
+        return add_use(up, own, false, &out->tex_opacity);
+    }
+    const struct scene_texture_use *diffuse = &m->textures[SCENE_SLOT_DIFFUSE];
+    if (!has_alpha(scene, diffuse->texture))
+        return WHIT_OK;
+    out->flags |= MATERIAL_OPACITY_ALPHA;
+    return add_use(up, diffuse, true, &out->tex_opacity);
+}
+
+static whit_result add_material(struct material_upload *up, uint32_t index)
+{
+    const struct scene_material *m = &up->renderer->scene->materials[index];
+    struct gpu_material *out = &up->materials[index];
+    memcpy(out->diffuse, m->diffuse, sizeof out->diffuse);
+    memcpy(out->ambient, m->ambient, sizeof out->ambient);
+    memcpy(out->specular, m->specular, sizeof out->specular);
+    memcpy(out->emission, m->emission, sizeof out->emission);
+    memcpy(out->reflection, m->reflection, sizeof out->reflection);
+    memcpy(out->transmission, m->transmission, sizeof out->transmission);
+    memcpy(out->absorption, m->absorption, sizeof out->absorption);
+    out->model = model_code(m->model);
+    out->flags = material_flags(m);
+    out->shininess = m->shininess;
+    out->ior = m->ior;
+    out->roughness = m->roughness;
+    out->metallic = m->metallic;
+    out->opacity = m->opacity;
+    out->normal_scale = m->normal_scale;
+    out->alpha_cutoff = m->alpha_cutoff;
+    out->specular_level = m->specular_level;
+    const struct {
+        enum scene_slot slot;
+        bool srgb;
+        uint32_t *use;
+    } slots[] = {
+        {SCENE_SLOT_DIFFUSE, true, &out->tex_diffuse},
+        {SCENE_SLOT_SPECULAR, false, &out->tex_specular},
+        {SCENE_SLOT_EMISSION, true, &out->tex_emission},
+        {SCENE_SLOT_NORMAL, false, &out->tex_normal},
+        {SCENE_SLOT_BUMP, false, &out->tex_bump},
+        {SCENE_SLOT_METAL_ROUGH, false, &out->tex_metal_rough},
+        {SCENE_SLOT_TRANSMISSION, false, &out->tex_transmission},
+    };
+    for (size_t i = 0; i < sizeof slots / sizeof *slots; ++i) {
+        whit_result result = add_use(up, &m->textures[slots[i].slot], slots[i].srgb, slots[i].use);
+        if (result != WHIT_OK)
+            return result;
+    }
+    return add_opacity(up, m, out);
+}
+
+static bool make_texels(const struct material_upload *up, struct texel_image *image)
+{
+    const struct scene_texture *source = &up->renderer->scene->textures[image->texture];
+    size_t count = (size_t)source->width * source->height;
+    image->texels = array_alloc(count, 4 * sizeof(uint16_t));
+    if (!image->texels)
+        return false;
+    const uint16_t *color = image->srgb ? up->srgb : up->linear;
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t c = 0; c < 3; ++c)
+            image->texels[4 * i + c] = color[source->rgba[4 * i + c]];
+        image->texels[4 * i + 3] = up->linear[source->rgba[4 * i + 3]];
+    }
+    return true;
+}
+
+/* Half the size, by averaging up to 2x2 texels, in place. */
+static void halve_image(struct texel_image *image)
+{
+    uint32_t width = (image->width + 1) / 2, height = (image->height + 1) / 2;
+    for (uint32_t y = 0; y < height; ++y) {
+        for (uint32_t x = 0; x < width; ++x) {
+            uint32_t x0 = 2 * x, y0 = 2 * y;
+            uint32_t x1 = x0 + 1 < image->width ? x0 + 1 : x0;
+            uint32_t y1 = y0 + 1 < image->height ? y0 + 1 : y0;
+            for (uint32_t c = 0; c < 4; ++c) {
+                uint32_t sum = 0u + image->texels[4 * ((size_t)y0 * image->width + x0) + c] +
+                               image->texels[4 * ((size_t)y0 * image->width + x1) + c] +
+                               image->texels[4 * ((size_t)y1 * image->width + x0) + c] +
+                               image->texels[4 * ((size_t)y1 * image->width + x1) + c];
+                image->texels[4 * ((size_t)y * width + x) + c] = (uint16_t)((sum + 2) / 4);
+            }
+        }
+    }
+    image->width = width;
+    image->height = height;
+}
+
+static uint64_t texel_total(const struct material_upload *up)
+{
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < up->image_count; ++i)
+        total += (uint64_t)up->images[i].width * up->images[i].height;
+    return total;
+}
+
+/* Halves the largest pictures until all fit into one buffer, and says so. */
+static void fit_images(struct material_upload *up, uint64_t limit)
+{
+    uint32_t halved = 0;
+    while (texel_total(up) > limit) {
+        struct texel_image *largest = &up->images[0];
+        for (uint32_t i = 1; i < up->image_count; ++i) {
+            if ((uint64_t)up->images[i].width * up->images[i].height >
+                (uint64_t)largest->width * largest->height)
+                largest = &up->images[i];
+        }
+        halve_image(largest);
+        ++halved;
+    }
+    if (halved)
+        log_warning(&up->renderer->log,
+                    "textures: halved %u times, largest first, to fit the device's buffers",
+                    halved);
+}
+
+static whit_result upload_texels(struct material_upload *up)
+{
+    struct renderer *renderer = up->renderer;
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    const struct device_info *info = device_get_info(renderer->device);
+    uint64_t limit =
+        buffers->texel_loads ? info->max_texel_elements * 2 : info->max_storage_range_bytes / 8;
+    if (limit > 0x20000000u) /* texel indices are 32 bits, bytes stay below 4 GiB */
+        limit = 0x20000000u;
+    for (uint32_t i = 0; i < up->image_count; ++i) {
+        if (!make_texels(up, &up->images[i]))
+            return WHIT_ERROR_MEMORY;
+    }
+    fit_images(up, limit);
+    uint64_t total = texel_total(up);
+    if (total == 0)
+        return WHIT_OK;
+    uint32_t uses = buffers->texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
+    whit_result result =
+        buffer_create(renderer->device, (total + 1) * 8, uses, "texels", &buffers->texels);
+    uint32_t first = 0;
+    for (uint32_t i = 0; result == WHIT_OK && i < up->image_count; ++i) {
+        struct texel_image *image = &up->images[i];
+        uint64_t count = (uint64_t)image->width * image->height;
+        image->first = first;
+        first += (uint32_t)count;
+        result =
+            buffer_write(buffers->texels, (uint64_t)image->first * 8, image->texels, count * 8);
+    }
+    if (result == WHIT_OK)
+        buffers->bytes += buffer_size(buffers->texels);
+    return result;
+}
+
+static void place_uses(struct material_upload *up)
+{
+    for (uint32_t i = 0; i < up->use_count; ++i) {
+        const struct texel_image *image = &up->images[up->use_images[i]];
+        up->uses[i].first = image->first;
+        up->uses[i].size = image->width | image->height << 16;
+    }
+}
+
+static void material_upload_finish(struct material_upload *up)
+{
+    for (uint32_t i = 0; i < up->image_count; ++i)
+        free(up->images[i].texels);
+    free(up->images);
+    free(up->uses);
+    free(up->use_images);
+    free(up->materials);
+}
+
+whit_result upload_materials(struct renderer *renderer)
+{
+    const struct scene *scene = renderer->scene;
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    struct material_upload up = {.renderer = renderer};
+    make_tables(&up);
+    up.materials = array_alloc_zeroed(scene->material_count, sizeof *up.materials);
+    whit_result result = up.materials ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < scene->material_count; ++i)
+        result = add_material(&up, i);
+    if (result == WHIT_OK)
+        result = upload_texels(&up);
+    if (result == WHIT_OK) {
+        place_uses(&up);
+        result = upload_words(renderer, up.materials,
+                              (uint64_t)scene->material_count * sizeof *up.materials,
+                              BUFFER_STORAGE, "materials", &buffers->materials);
+    }
+    if (result == WHIT_OK)
+        result = upload_words(renderer, up.uses, (uint64_t)up.use_count * sizeof *up.uses,
+                              BUFFER_STORAGE, "textures", &buffers->textures);
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(&renderer->log, "out of memory for materials");
+    material_upload_finish(&up);
+    return result;
+}

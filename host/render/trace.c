@@ -1,0 +1,94 @@
+/* Batches of rays: in, traced, out, in pieces that the device holds and finishes soon. */
+#include "render/renderer.h"
+
+#include "base/clock.h"
+
+enum {
+    TRACE_CAPACITY = 1 << 20, /* rays in device memory */
+    TRACE_FIRST = 1 << 14,    /* rays of the first dispatch, whose time sets the next one's */
+};
+/* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
+static const double TRACE_TARGET_MS = 150.0;
+
+void trace_finish(struct trace_state *trace)
+{
+    pass_finish(&trace->closest);
+    pass_finish(&trace->any);
+    buffer_destroy(trace->rays);
+    buffer_destroy(trace->hits);
+    *trace = (struct trace_state){0};
+}
+
+static whit_result prepare(struct renderer *renderer, bool any)
+{
+    struct trace_state *trace = &renderer->trace;
+    whit_result result = WHIT_OK;
+    if (!trace->rays) {
+        trace->capacity = TRACE_CAPACITY;
+        result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
+                               BUFFER_STORAGE | BUFFER_HOST, "rays", &trace->rays);
+    }
+    if (result == WHIT_OK && !trace->hits)
+        result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_hit),
+                               BUFFER_STORAGE | BUFFER_HOST, "hits", &trace->hits);
+    struct pass *pass = any ? &trace->any : &trace->closest;
+    if (result == WHIT_OK && !pass->pipeline)
+        result = variant_create_trace(renderer, any, pass);
+    return result;
+}
+
+/* One dispatch over rays [0, count) of the ray buffer. */
+static whit_result dispatch(struct renderer *renderer, bool any, uint32_t count)
+{
+    const struct accel *accel = renderer->accel;
+    struct pass *pass = any ? &renderer->trace.any : &renderer->trace.closest;
+    struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root};
+    if (accel->instance_count == 0)
+        batch.root = BVH_EMPTY_REF;
+    whit_result result = commands_begin(renderer->commands);
+    if (result != WHIT_OK)
+        return result;
+    commands_fill(renderer->commands, renderer->pixel_buffers.status, 0, 4, 0);
+    commands_barrier(renderer->commands);
+    commands_bind(renderer->commands, pass->pipeline, pass->sets[0]);
+    commands_push(renderer->commands, &batch, sizeof batch);
+    commands_span_begin(renderer->commands, "trace");
+    commands_dispatch(renderer->commands, (count + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE, 1,
+                      1);
+    commands_span_end(renderer->commands);
+    commands_barrier(renderer->commands);
+    result = commands_submit(renderer->commands);
+    if (result == WHIT_OK)
+        result = commands_wait(renderer->commands, -1.0);
+    if (result == WHIT_OK)
+        renderer->trace.device_ms += commands_span_ms(renderer->commands, 0);
+    return result == WHIT_OK ? status_check(renderer) : result;
+}
+
+whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
+                           bool any, struct gpu_hit *hits)
+{
+    renderer->trace.device_ms = 0.0;
+    whit_result result = prepare(renderer, any);
+    uint64_t piece = TRACE_FIRST;
+    for (uint64_t done = 0; result == WHIT_OK && done < count;) {
+        if (renderer->params.cancel && *renderer->params.cancel)
+            return WHIT_ERROR_CANCELLED;
+        uint64_t size = count - done < piece ? count - done : piece;
+        double start_ms = clock_ms();
+        result = buffer_write(renderer->trace.rays, 0, rays + done, size * sizeof *rays);
+        if (result == WHIT_OK)
+            result = dispatch(renderer, any, (uint32_t)size);
+        if (result == WHIT_OK)
+            result = buffer_read(renderer->trace.hits, 0, hits + done, size * sizeof *hits);
+        if (clock_ms() - start_ms < TRACE_TARGET_MS / 4 && piece < renderer->trace.capacity)
+            piece *= 4;
+        done += size;
+    }
+    return result;
+}
+
+double renderer_trace_device_ms(const struct renderer *renderer)
+{
+    return renderer->trace.device_ms;
+}
