@@ -116,7 +116,7 @@ void scene_material_init(struct scene_material *out, const char *name)
         .name = string_copy(name ? name : ""),
         .model = SCENE_MODEL_PHONG,
         .illum = -1,
-        .ambient = {1, 1, 1},
+        .ambient = {0.7f, 0.7f, 0.7f},
         .diffuse = {0.7f, 0.7f, 0.7f},
         .shininess = 32.0f,
         .ior = 1.5f,

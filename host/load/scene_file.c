@@ -1,0 +1,303 @@
+/* whit's own scene files: docs/scenes.md, docs/scene.schema.json. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/scene_reader.h"
+
+#define FILE_BYTES_MOST ((uint64_t)64 << 20)
+#define RADIANS         (3.14159265358979323846 / 180.0)
+
+static double distance(const double a[3], const double b[3])
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
+/* What moves hangs on a node of its own; what stands still needs none. */
+static bool moving_node(struct reader *reader, const struct place *place, const json_t *object,
+                        const char *name, uint32_t *index)
+{
+    struct scene_node node;
+    *index = SCENE_NONE;
+    if (!json_object_get(object, "animation"))
+        return true;
+    scene_node_init(&node, name, SCENE_NONE);
+    *index = scene_add_node(reader->scene, node);
+    if (*index == SCENE_NONE)
+        return reader_no_memory(reader);
+    return reader_animation(reader, place, object, *index);
+}
+
+static bool read_light_place(struct reader *reader, const struct place *place, const json_t *object,
+                             struct scene_light *out)
+{
+    double target[3];
+    struct place here = {place, "target", 0};
+    bool points = out->kind == SCENE_LIGHT_POINT;
+    if (out->kind != SCENE_LIGHT_DIRECTIONAL && !json_object_get(object, "position"))
+        return reader_fail(reader, place, "a point or spot light needs a `position`");
+    if (!points && !json_object_get(object, "direction") && !json_object_get(object, "target"))
+        return reader_fail(reader, place, "this light needs a `direction` or a `target`");
+    if (!reader_numbers(reader, place, object, "position", 3, out->position) ||
+        !reader_numbers(reader, place, object, "direction", 3, out->direction))
+        return false;
+    if (json_object_get(object, "target")) {
+        if (json_object_get(object, "direction"))
+            return reader_fail(reader, &here, "`target` and `direction` exclude each other");
+        if (!reader_numbers(reader, place, object, "target", 3, target))
+            return false;
+        for (int i = 0; i < 3; ++i)
+            out->direction[i] = target[i] - out->position[i];
+    }
+    double length = distance(out->direction, (const double[3]){0, 0, 0});
+    if (!(length > 0.0))
+        return reader_fail(reader, place, "the light's direction has no length");
+    for (int i = 0; i < 3; ++i)
+        out->direction[i] /= length;
+    return true;
+}
+
+static bool read_light_values(struct reader *reader, const struct place *place,
+                              const json_t *object, struct scene_light *out)
+{
+    double intensity = 1.0, inner = 0.0, outer = 45.0;
+    struct place here = {place, "inner", 0};
+    if (!reader_color(reader, place, object, "color", out->color) ||
+        !reader_number(reader, place, object, "intensity", 0.0, 1e12, &intensity) ||
+        !reader_bool(reader, place, object, "falloff", &out->falloff) ||
+        !reader_float(reader, place, object, "range", 0.0, 1e18, &out->range) ||
+        !reader_number(reader, place, object, "outer", 0.1, 180.0, &outer))
+        return false;
+    inner = 0.8 * outer;
+    if (!reader_number(reader, place, object, "inner", 0.0, 180.0, &inner))
+        return false;
+    if (inner > outer)
+        return reader_fail(reader, &here, "the inner angle is over the outer one");
+    out->cos_inner = (float)cos(inner * RADIANS);
+    out->cos_outer = (float)cos(outer * RADIANS);
+    for (int i = 0; i < 3; ++i)
+        out->color[i] = (float)((double)out->color[i] * intensity);
+    return true;
+}
+
+static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
+{
+    static const char *const kinds[] = {"point", "directional", "spot", NULL};
+    static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
+    static const char *const point[] = {"position", "falloff", "range", NULL};
+    static const char *const directional[] = {"direction", "target", NULL};
+    static const char *const spot[] = {"position", "direction", "target", "falloff",
+                                       "range",    "inner",     "outer",  NULL};
+    static const char *const *const own[] = {point, directional, spot};
+    uint32_t kind = SCENE_LIGHT_POINT;
+    const char *name = "light";
+    struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
+    if (!json_is_object(object))
+        return reader_fail(reader, place, "a light in { } is expected");
+    if (!reader_choice(reader, place, object, "kind", kinds, &kind))
+        return false;
+    const char *const *lists[] = {common, own[kind]};
+    light.kind = (enum scene_light_kind)kind;
+    light.falloff = light.kind != SCENE_LIGHT_DIRECTIONAL;
+    if (!reader_object_lists(reader, place, object, lists, 2) ||
+        !reader_string(reader, place, object, "name", &name) ||
+        !read_light_place(reader, place, object, &light) ||
+        !read_light_values(reader, place, object, &light) ||
+        !moving_node(reader, place, object, name, &light.node))
+        return false;
+    light.name = string_copy(name);
+    light.origin.file = string_copy(reader->path);
+    light.origin.line = reader_line(reader, place);
+    return scene_add_light(reader->scene, light) != SCENE_NONE || reader_no_memory(reader);
+}
+
+static bool read_lights(struct reader *reader, const struct place *place, const json_t *value)
+{
+    if (!json_is_array(value))
+        return reader_fail(reader, place, "lights in [ ] are expected");
+    if (json_array_size(value) > 4096)
+        return reader_fail(reader, place, "more than 4096 lights");
+    for (size_t i = 0; i < json_array_size(value); ++i) {
+        struct place here = {place, NULL, i};
+        if (!read_light(reader, &here, json_array_get(value, i)))
+            return false;
+    }
+    return true;
+}
+
+static bool read_camera(struct reader *reader, const struct place *place, const json_t *object)
+{
+    static const char *const keys[] = {"name",   "eye",    "target",    "up", "fov",
+                                       "height", "aspect", "animation", NULL};
+    const char *name = "camera";
+    double fov = 40.0;
+    struct place at_height = {place, "height", 0};
+    struct scene_camera camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .node = SCENE_NONE};
+    if (!reader_object(reader, place, object, keys) ||
+        !reader_string(reader, place, object, "name", &name) ||
+        !reader_numbers(reader, place, object, "eye", 3, camera.eye) ||
+        !reader_numbers(reader, place, object, "target", 3, camera.target) ||
+        !reader_numbers(reader, place, object, "up", 3, camera.up) ||
+        !reader_number(reader, place, object, "fov", 0.01, 179.0, &fov) ||
+        !reader_float(reader, place, object, "height", 1e-15, 1e15, &camera.height) ||
+        !reader_float(reader, place, object, "aspect", 0.01, 100.0, &camera.aspect))
+        return false;
+    if (!(distance(camera.eye, camera.target) > 0.0))
+        return reader_fail(reader, place, "`eye` and `target` are the same point");
+    if (json_object_get(object, "height")) {
+        if (json_object_get(object, "fov"))
+            return reader_fail(reader, &at_height,
+                               "`height` (a parallel view) and `fov` exclude "
+                               "each other");
+        camera.kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    }
+    camera.fov_y = (float)(fov * RADIANS);
+    if (!moving_node(reader, place, object, name, &camera.node))
+        return false;
+    camera.name = string_copy(name);
+    return scene_add_camera(reader->scene, camera) != SCENE_NONE || reader_no_memory(reader);
+}
+
+static bool read_cameras(struct reader *reader, const struct place *place, const json_t *value)
+{
+    if (!json_is_array(value))
+        return reader_fail(reader, place, "cameras in [ ] are expected");
+    for (size_t i = 0; i < json_array_size(value); ++i) {
+        struct place here = {place, NULL, i};
+        if (!read_camera(reader, &here, json_array_get(value, i)))
+            return false;
+    }
+    return true;
+}
+
+static bool read_map(struct reader *reader, const struct place *place, const json_t *value)
+{
+    static const char *const keys[] = {"map", "scale", NULL};
+    const char *name = NULL;
+    float scale[3] = {1, 1, 1};
+    struct place here = {place, "map", 0};
+    if (!reader_object(reader, place, value, keys) ||
+        !reader_string(reader, place, value, "map", &name) ||
+        !reader_color(reader, place, value, "scale", scale))
+        return false;
+    char *path = path_beside(reader->path, name);
+    if (!path)
+        return reader_no_memory(reader);
+    if (!file_exists(path)) {
+        reader_fail(reader, &here, "there is no file `%s`", path);
+        free(path);
+        return false;
+    }
+    whit_result result = load_environment(reader->scene, path);
+    free(path);
+    if (result != WHIT_OK) {
+        reader->result = result;
+        return false;
+    }
+    memcpy(reader->scene->environment.scale, scale, sizeof scale);
+    return true;
+}
+
+static bool read_environment(struct reader *reader, const struct place *place, const json_t *value)
+{
+    static const char *const keys[] = {"zenith", "horizon", "ground", "scale", NULL};
+    struct scene_environment sky = {.kind = SCENE_ENVIRONMENT_GRADIENT,
+                                    .zenith = {0.22f, 0.40f, 0.72f},
+                                    .horizon = {0.80f, 0.86f, 0.92f},
+                                    .ground = {0.22f, 0.20f, 0.18f},
+                                    .scale = {1, 1, 1}};
+    if (json_is_object(value) && json_object_get(value, "map"))
+        return read_map(reader, place, value);
+    if (json_is_object(value)) {
+        if (!reader_object(reader, place, value, keys) ||
+            !reader_color(reader, place, value, "zenith", sky.zenith) ||
+            !reader_color(reader, place, value, "horizon", sky.horizon) ||
+            !reader_color(reader, place, value, "ground", sky.ground) ||
+            !reader_color(reader, place, value, "scale", sky.scale))
+            return false;
+    } else {
+        if (!reader_color_value(reader, place, value, sky.zenith))
+            return false;
+        memcpy(sky.horizon, sky.zenith, sizeof sky.horizon);
+        memcpy(sky.ground, sky.zenith, sizeof sky.ground);
+    }
+    reader->scene->environment = sky;
+    reader->scene->has_environment = true;
+    return true;
+}
+
+/* Materials come first, whatever their place in the file, since objects refer to them. */
+static bool read_root(struct reader *reader, const json_t *root)
+{
+    static const char *const keys[] = {"$schema", "description", "materials",   "objects", "lights",
+                                       "camera",  "cameras",     "environment", "ambient", NULL};
+    static const struct {
+        const char *key;
+        bool (*read)(struct reader *reader, const struct place *place, const json_t *value);
+    } parts[] = {
+        {"environment", read_environment}, {"materials", reader_materials}, {"lights", read_lights},
+        {"camera", read_camera},           {"cameras", read_cameras},
+    };
+    const struct place place = {0};
+    const char *ignored = NULL;
+    const json_t *objects = json_object_get(root, "objects");
+    struct place at_objects = {&place, "objects", 0};
+    if (!reader_object(reader, &place, root, keys) ||
+        !reader_string(reader, &place, root, "description", &ignored) ||
+        !reader_color(reader, &place, root, "ambient", reader->scene->ambient))
+        return false;
+    reader->scene->has_ambient = json_object_get(root, "ambient") != NULL;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; ++i) {
+        const json_t *value = json_object_get(root, parts[i].key);
+        struct place here = {&place, parts[i].key, 0};
+        if (value && !parts[i].read(reader, &here, value))
+            return false;
+    }
+    return !objects || reader_objects(reader, &at_objects, objects, SCENE_NONE, 0);
+}
+
+static void reader_finish(struct reader *reader)
+{
+    for (uint32_t i = 0; i < reader->shape_count; ++i)
+        free(reader->shapes[i].key);
+    for (uint32_t i = 0; i < reader->model_count; ++i)
+        free(reader->models[i].key);
+    free(reader->shapes);
+    free(reader->models);
+}
+
+whit_result load_scene_file(struct scene *scene, const char *path, const struct load_params *params)
+{
+    uint8_t *text = NULL;
+    size_t size_bytes = 0;
+    json_error_t error;
+    whit_result result = file_read(&scene->log, path, FILE_BYTES_MOST, &text, &size_bytes);
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size_bytes;
+    json_t *root = json_loadb((const char *)text, size_bytes, JSON_REJECT_DUPLICATES, &error);
+    if (!root) {
+        log_error(&scene->log, "%s:%d:%d: %s", path, error.line, error.column, error.text);
+        free(text);
+        return WHIT_ERROR_INPUT;
+    }
+    struct reader reader = {
+        .scene = scene,
+        .params = params,
+        .path = path,
+        .text = (const char *)text,
+        .text_bytes = size_bytes,
+        .plain_material = SCENE_NONE,
+    };
+    bool read = read_root(&reader, root);
+    result = read ? WHIT_OK : reader.result;
+    reader_finish(&reader);
+    json_decref(root);
+    free(text);
+    return result;
+}
