@@ -53,7 +53,10 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
         (m->opacity < m->alpha_cutoff || m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE ||
          m->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE))
         bits.flags |= TRIANGLE_CUTOUT;
-    if (area_lights && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0))
+    /* Surfaces that scene_freeze puts light samples on; others that glow are ordinary ones. */
+    bool glows = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
+    if (area_lights && glows && m->model != SCENE_MODEL_UNLIT &&
+        m->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE)
         bits.flags |= TRIANGLE_NO_SHADOW;
     double cover = m->alpha == SCENE_ALPHA_BLEND ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
     bool filters = false;

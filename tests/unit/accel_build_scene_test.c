@@ -1,0 +1,477 @@
+/* The arrays of a whole scene: where each mesh lies, what its triangles say, and instances posed
+   anywhere. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel.h"
+#include "scene/shapes.h"
+
+static const struct log silent;
+
+/* Each takes the mesh over and gives an index; no failure is expected. */
+static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings,
+                           uint32_t material)
+{
+    struct scene_mesh mesh;
+    assert_int_equal(shape_sphere(1.0, segments, rings, &mesh), WHIT_OK);
+    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
+        mesh.materials[i] = material;
+    uint32_t index = scene_add_mesh(scene, mesh);
+    assert_int_not_equal(index, SCENE_NONE);
+    return index;
+}
+
+static uint32_t add_empty_mesh(struct scene *scene)
+{
+    struct scene_mesh mesh = {0};
+    uint32_t index = scene_add_mesh(scene, mesh);
+    assert_int_not_equal(index, SCENE_NONE);
+    return index;
+}
+
+static void add_instance(struct scene *scene, uint32_t mesh, const struct affine *matrix)
+{
+    struct scene_instance instance = {.mesh = mesh, .node = SCENE_NONE};
+    if (matrix) {
+        instance.has_local = true;
+        instance.local = *matrix;
+    }
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+static uint32_t add_material(struct scene *scene, const char *name)
+{
+    struct scene_material material;
+    scene_material_init(&material, name);
+    uint32_t index = scene_add_material(scene, material);
+    assert_int_not_equal(index, SCENE_NONE);
+    return index;
+}
+
+static struct affine placed(double x, double y, double z, double angle, double sx, double sy,
+                            double sz)
+{
+    const double at[3] = {x, y, z}, scale[3] = {sx, sy, sz};
+    const double rotation[4] = {0.3 * sin(angle), 0.9 * sin(angle), -0.3 * sin(angle), cos(angle)};
+    return affine_from_trs(at, rotation, scale);
+}
+
+static struct scene *new_scene(void)
+{
+    struct scene *scene = scene_create(&silent, "test");
+    assert_non_null(scene);
+    return scene;
+}
+
+static struct accel *build(struct scene *scene, uint32_t threads)
+{
+    struct accel_params params = {.mesh = {.thread_count = threads},
+                                  .instances = {.thread_count = threads},
+                                  .validate = true};
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    assert_non_null(accel);
+    return accel;
+}
+
+/* Two large meshes, three small ones, one without triangles; turned, mirrored, far away. */
+static struct scene *mixed_scene(void)
+{
+    struct scene *scene = new_scene();
+    add_material(scene, "grey");
+    static const uint32_t sizes[] = {4, 90, 7, 80, 3};
+    for (size_t i = 0; i < 5; ++i)
+        add_sphere(scene, sizes[i], sizes[i], 0);
+    uint32_t empty = add_empty_mesh(scene);
+    add_instance(scene, empty, NULL);
+    for (uint32_t i = 0; i < 40; ++i) {
+        struct affine m = placed(3.0 * i, i % 7, 1e4 * (i % 3), i, i % 2 ? -1 : 1, 2.0, 0.01);
+        add_instance(scene, i % 5, &m);
+        if (i % 10 == 0)
+            add_instance(scene, empty, &m);
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static void meshes_lie_side_by_side(void **state)
+{
+    (void)state;
+    struct scene *scene = mixed_scene();
+    struct accel *accel = build(scene, 2);
+    uint32_t nodes = accel->instance_node_capacity, triangles = 0;
+    assert_int_equal(accel->mesh_count, scene->mesh_count);
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        const struct accel_mesh *mesh = &accel->meshes[i];
+        assert_int_equal(mesh->first_node, nodes);
+        assert_int_equal(mesh->first_node % 2, 0);
+        assert_int_equal(mesh->first_triangle, triangles);
+        assert_int_equal(mesh->shade_base, triangles);
+        assert_int_equal(mesh->triangle_count, scene->meshes[i].triangle_count);
+        assert_int_equal(mesh->root == BVH_EMPTY_REF, mesh->triangle_count == 0);
+        nodes += mesh->node_count;
+        triangles += mesh->triangle_count;
+        for (int a = 0; a < 3 && mesh->triangle_count; ++a) {
+            assert_true(mesh->box.lo[a] == scene->meshes[i].lo[a]);
+            assert_true(mesh->box.hi[a] == scene->meshes[i].hi[a]);
+        }
+    }
+    assert_int_equal(accel->node_count, nodes);
+    assert_int_equal(accel->triangle_count, triangles);
+    assert_int_equal((uintptr_t)accel->nodes % 64, 0);
+    assert_true(accel_bytes(accel) >= 32 * (uint64_t)nodes + 48 * (uint64_t)triangles);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void same_bytes_for_any_thread_count(void **state)
+{
+    (void)state;
+    struct scene *scene = mixed_scene();
+    struct accel *one = build(scene, 1);
+    for (uint32_t threads = 2; threads <= 4; threads += 2) {
+        struct accel *other = build(scene, threads);
+        assert_int_equal(other->node_count, one->node_count);
+        assert_memory_equal(other->nodes, one->nodes, one->node_count * sizeof *one->nodes);
+        assert_memory_equal(other->triangles, one->triangles,
+                            one->triangle_count * sizeof *one->triangles);
+        assert_memory_equal(other->instances, one->instances,
+                            one->instance_count * sizeof *one->instances);
+        accel_destroy(other);
+    }
+    accel_destroy(one);
+    scene_destroy(scene);
+}
+
+/* Leaf of the tree over instances that holds `instance`. */
+static const struct gpu_bvh_node *instance_leaf(const struct accel *accel, uint32_t instance)
+{
+    for (uint32_t i = 0; i < accel->instance_node_count; ++i) {
+        const struct gpu_bvh_node *node = &accel->nodes[i];
+        if (node->count == 1 && node->first == instance)
+            return node;
+    }
+    return NULL;
+}
+
+/* Every vertex, placed by the scene's own matrix in double, is inside with room to spare; the room
+   is not wasteful. */
+static void assert_posed(const struct accel *accel, const struct scene_pose *pose)
+{
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        const struct gpu_bvh_node *leaf = instance_leaf(accel, i);
+        const struct scene_mesh *mesh = &accel->scene->meshes[accel->scene->instances[i].mesh];
+        assert_int_equal(leaf != NULL, mesh->triangle_count > 0);
+        for (uint32_t v = 0; leaf && v < mesh->vertex_count; ++v) {
+            const float *p = mesh->positions + 3 * (size_t)v;
+            double world[3];
+            affine_point(&pose->instances[i],
+                         (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, world);
+            for (int a = 0; a < 3; ++a) {
+                double room = 0x1p-21 * fabs(world[a]);
+                assert_true((double)leaf->lo[a] + room <= world[a]);
+                assert_true((double)leaf->hi[a] - room >= world[a]);
+            }
+        }
+        for (int a = 0; leaf && a < 3; ++a)
+            assert_true((double)leaf->hi[a] - (double)leaf->lo[a] < 10.0);
+    }
+}
+
+static void instances_are_boxed_wherever_they_are(void **state)
+{
+    (void)state;
+    struct scene *scene = mixed_scene();
+    struct accel *accel = build(scene, 1);
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_posed(accel, &pose);
+    assert_false(accel->single_identity);
+    struct gpu_bvh_node mesh_node = accel->nodes[accel->meshes[1].first_node + 2];
+    for (uint32_t i = 0; i < pose.instance_count; ++i) {
+        pose.instances[i].m[3] += 1e5 + 17.0 * (i % 5);
+        pose.instances[i].m[7] -= 3.0 * i;
+    }
+    assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+    assert_int_equal(accel_validate(accel), WHIT_OK);
+    assert_posed(accel, &pose);
+    assert_memory_equal(&mesh_node, &accel->nodes[accel->meshes[1].first_node + 2],
+                        sizeof mesh_node);
+    scene_pose_finish(&pose);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void inverse_and_forward_are_inverse(void **state)
+{
+    (void)state;
+    struct scene *scene = mixed_scene();
+    struct accel *accel = build(scene, 1);
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        const struct gpu_instance *in = &accel->instances[i];
+        const float *f[3] = {in->forward0, in->forward1, in->forward2};
+        const float *b[3] = {in->inverse0, in->inverse1, in->inverse2};
+        for (int r = 0; r < 3; ++r) {
+            for (int c = 0; c < 3; ++c) {
+                double sum = 0.0, size = 0.0;
+                for (int k = 0; k < 3; ++k) {
+                    sum += (double)b[r][k] * (double)f[k][c];
+                    size += fabs((double)b[r][k] * (double)f[k][c]);
+                }
+                assert_true(fabs(sum - (r == c)) <= 0x1p-22 * size);
+            }
+        }
+        assert_int_equal(in->mesh, scene->instances[i].mesh);
+        assert_int_equal(in->root, accel->meshes[in->mesh].root);
+        assert_int_equal(in->shade_base, accel->meshes[in->mesh].shade_base);
+    }
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void one_instance_at_the_origin_is_told_apart(void **state)
+{
+    (void)state;
+    struct affine moved = affine_identity(), same = affine_identity();
+    moved.m[7] = 1e-30;
+    const struct affine *matrices[] = {NULL, &same, &moved};
+    for (int k = 0; k < 3; ++k) {
+        struct scene *scene = new_scene();
+        add_instance(scene, add_sphere(scene, 8, 8, 0), matrices[k]);
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        struct accel *accel = build(scene, 1);
+        assert_int_equal(accel->single_identity, k < 2);
+        assert_int_equal(accel->instance_root, 1u << BVH_COUNT_SHIFT);
+        assert_int_equal(accel->instance_depth, 0);
+        accel_destroy(accel);
+        scene_destroy(scene);
+    }
+}
+
+static void scenes_without_anything(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; ++k) {
+        struct scene *scene = new_scene();
+        if (k > 0) {
+            uint32_t mesh = add_empty_mesh(scene);
+            for (int i = 1; i < k; ++i)
+                add_instance(scene, mesh, NULL);
+        }
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        struct accel *accel = build(scene, 2);
+        assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
+        assert_int_equal(accel->instance_node_count, 0);
+        assert_false(accel->single_identity);
+        accel_destroy(accel);
+        scene_destroy(scene);
+    }
+}
+
+static void many_instances_in_one_place(void **state)
+{
+    (void)state;
+    enum { COUNT = 3000 };
+    struct scene *scene = new_scene();
+    uint32_t mesh = add_sphere(scene, 4, 3, 0);
+    for (int i = 0; i < COUNT; ++i)
+        add_instance(scene, mesh, NULL);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct accel *accel = build(scene, 2);
+    assert_int_equal(accel->instance_node_count, 2 * COUNT);
+    assert_true(accel->instance_depth <= 12);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void matrices_without_inverse_are_refused(void **state)
+{
+    (void)state;
+    struct scene *scene = new_scene();
+    uint32_t mesh = add_sphere(scene, 4, 3, 0);
+    add_instance(scene, mesh, NULL);
+    add_instance(scene, mesh, NULL);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct accel *accel = build(scene, 1);
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    const double bad[] = {0.0, (double)NAN, (double)INFINITY, 1e-60, 1e60};
+    for (int k = 0; k < 5; ++k) {
+        pose.instances[1].m[0] = bad[k];
+        assert_int_equal(accel_pose(accel, &pose), WHIT_ERROR_INPUT);
+        assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
+    }
+    pose.instances[1].m[0] = -1.0;
+    assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+    scene_pose_finish(&pose);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+/* ---- What triangles say to shadow rays ---- */
+
+static const struct gpu_triangle *bits_of(struct scene *scene, uint32_t material,
+                                          struct accel **accel)
+{
+    add_instance(scene, add_sphere(scene, 4, 3, material), NULL);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    *accel = build(scene, 1);
+    return &(*accel)->triangles[0];
+}
+
+static void assert_bits(void (*set)(struct scene_material *m), uint32_t flags, uint32_t shadow)
+{
+    struct scene *scene = new_scene();
+    uint32_t material = add_material(scene, "m");
+    uint8_t *pixel = calloc(1, 4);
+    scene_add_texture(scene, (struct scene_texture){.width = 1, .height = 1, .rgba = pixel});
+    set(&scene->materials[material]);
+    struct accel *accel;
+    const struct gpu_triangle *triangle = bits_of(scene, material, &accel);
+    assert_int_equal(triangle->flags, flags);
+    assert_int_equal(triangle->shadow, shadow);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void set_plain(struct scene_material *m)
+{
+    (void)m;
+}
+
+static void set_glass(struct scene_material *m)
+{
+    m->transmission[0] = 0.5f; /* one halving: 64 */
+    m->transmission[1] = 1.0f;
+}
+
+static void set_blend(struct scene_material *m)
+{
+    m->alpha = SCENE_ALPHA_BLEND;
+    m->opacity = 0.75f;
+}
+
+static void set_blend_glass(struct scene_material *m)
+{
+    set_blend(m);
+    m->transmission[2] = 1.0f; /* a quarter beside it, the rest through it */
+}
+
+static void set_blend_opaque(struct scene_material *m)
+{
+    m->alpha = SCENE_ALPHA_BLEND;
+}
+static void set_opacity_ignored(struct scene_material *m)
+{
+    m->opacity = 0.25f;
+}
+
+static void set_mask(struct scene_material *m)
+{
+    m->alpha = SCENE_ALPHA_MASK;
+    m->alpha_cutoff = 0.5f;
+    m->textures[SCENE_SLOT_DIFFUSE].texture = 0;
+}
+
+static void set_mask_solid(struct scene_material *m)
+{
+    m->alpha = SCENE_ALPHA_MASK;
+    m->alpha_cutoff = 0.5f;
+}
+
+static void set_lamp(struct scene_material *m)
+{
+    m->emission[0] = m->emission[1] = m->emission[2] = 10.0f;
+}
+
+static void materials_become_bits(void **state)
+{
+    (void)state;
+    assert_bits(set_plain, 0, 0);
+    assert_bits(set_glass, TRIANGLE_FILTER, 64u | 0u << 10 | 1023u << 20);
+    assert_bits(set_blend, TRIANGLE_FILTER, 128u | 128u << 10 | 128u << 20);
+    assert_bits(set_blend_glass, TRIANGLE_FILTER, 128u | 128u << 10 | 0u << 20);
+    assert_bits(set_blend_opaque, 0, 0);
+    assert_bits(set_opacity_ignored, 0, 0);
+    assert_bits(set_mask, TRIANGLE_CUTOUT, 0);
+    assert_bits(set_mask_solid, 0, 0);
+    assert_bits(set_lamp, TRIANGLE_NO_SHADOW, 0);
+}
+
+/* ---- Broken ones ---- */
+
+static void broken_scenes_are_refused(void **state)
+{
+    (void)state;
+    struct scene *scene = mixed_scene();
+    for (int k = 0; k < 12; ++k) {
+        struct accel *accel = build(scene, 2);
+        struct accel_mesh *mesh = &accel->meshes[1];
+        switch (k) {
+        case 0:
+            break;
+        case 1:
+            accel->triangles[mesh->first_triangle].primitive += 1;
+            break;
+        case 2:
+            accel->triangles[mesh->first_triangle].v1[0] += 1.0f;
+            break;
+        case 3:
+            accel->triangles[mesh->first_triangle].v2[2] *= 0.999f;
+            break;
+        case 4:
+            mesh->first_node += 2;
+            break;
+        case 5:
+            mesh->root ^= 1;
+            break;
+        case 6:
+            mesh->depth += 1;
+            break;
+        case 7:
+            accel->mesh_depth += 1;
+            break;
+        case 8:
+            accel->instances[3].root ^= 2;
+            break;
+        case 9:
+            accel->instances[3].origin_x += 3.0f;
+            break;
+        case 10:
+            accel->instance_depth += 1;
+            break;
+        case 11:
+            accel->nodes[accel->nodes[0].first].hi[0] = 1e-3f;
+            break;
+        }
+        if ((accel_validate(accel) == WHIT_OK) != (k == 0))
+            fail_msg("case %d was misjudged", k);
+        accel_destroy(accel);
+    }
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(meshes_lie_side_by_side),
+        cmocka_unit_test(same_bytes_for_any_thread_count),
+        cmocka_unit_test(instances_are_boxed_wherever_they_are),
+        cmocka_unit_test(inverse_and_forward_are_inverse),
+        cmocka_unit_test(one_instance_at_the_origin_is_told_apart),
+        cmocka_unit_test(scenes_without_anything),
+        cmocka_unit_test(many_instances_in_one_place),
+        cmocka_unit_test(matrices_without_inverse_are_refused),
+        cmocka_unit_test(materials_become_bits),
+        cmocka_unit_test(broken_scenes_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
