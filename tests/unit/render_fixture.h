@@ -1,0 +1,103 @@
+/* Scenes, devices and rays for tests of traversal and rendering. */
+#ifndef TESTS_RENDER_FIXTURE_H
+#define TESTS_RENDER_FIXTURE_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/array.h"
+#include "render/render.h"
+#include "scene/shapes.h"
+
+static void fixture_message(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    print_message("  %s\n", message);
+}
+
+static const struct log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
+
+static uint32_t fixture_random(uint32_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 17;
+    *state ^= *state << 5;
+    return *state;
+}
+
+/* [-1, 1) */
+static float fixture_signed(uint32_t *state)
+{
+    return (float)((double)fixture_random(state) / 2147483648.0 - 1.0);
+}
+
+/* A scene of one mesh, taken over, under one grey material; instances are added by the caller. */
+static struct scene *fixture_scene(struct scene_mesh mesh)
+{
+    struct scene *scene = scene_create(&fixture_log, "test");
+    assert_non_null(scene);
+    struct scene_material material;
+    scene_material_init(&material, "grey");
+    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
+    mesh.name = mesh.name ? mesh.name : string_copy("mesh");
+    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    return scene;
+}
+
+/* An instance of mesh 0 under a node with this matrix; NULL: no node. */
+static void fixture_place(struct scene *scene, const struct affine *matrix)
+{
+    uint32_t node = SCENE_NONE;
+    if (matrix) {
+        struct scene_node placed;
+        scene_node_init(&placed, "node", SCENE_NONE);
+        placed.has_matrix = true;
+        placed.matrix = *matrix;
+        node = scene_add_node(scene, placed);
+    }
+    struct scene_instance instance = {.name = string_copy("instance"), .mesh = 0, .node = node};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+/* Everything between a scene and its hits. */
+struct fixture {
+    struct scene *scene;
+    struct accel *accel;
+    struct device *device;
+    struct renderer *renderer;
+};
+
+static struct fixture fixture_open(struct scene *scene, const struct accel_params *accel_params,
+                                   const struct render_params *render_params)
+{
+    struct fixture f = {.scene = scene};
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, scene, accel_params, &f.accel), WHIT_OK);
+    assert_int_equal(accel_validate(f.accel), WHIT_OK);
+    assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+    const struct render_params small = {.width = 16, .height = 16, .depth = 4};
+    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel,
+                                     render_params ? render_params : &small, &f.renderer),
+                     WHIT_OK);
+    return f;
+}
+
+static void fixture_close(struct fixture *f)
+{
+    renderer_destroy(f->renderer);
+    assert_int_equal(device_validation_messages(f->device), 0);
+    device_destroy(f->device);
+    accel_destroy(f->accel);
+    scene_destroy(f->scene);
+}
+
+#endif

@@ -1,0 +1,239 @@
+/* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
+#include "render_fixture.h"
+
+enum { RAYS = 20000 };
+
+/* A vertex or a point of an edge of a random triangle in world space, where tests break. */
+static void aim(const struct fixture *f, const struct scene_pose *pose, uint32_t *state,
+                double out[3])
+{
+    const struct scene *scene = f->scene;
+    uint32_t i = fixture_random(state) % scene->instance_count;
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+    uint32_t triangle = fixture_random(state) % mesh->triangle_count;
+    double s = fixture_random(state) & 1 ? 0.0 : 0.5 + 0.5 * (double)fixture_signed(state);
+    const float *a = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle]];
+    const float *b = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + 1]];
+    double at[3];
+    for (int k = 0; k < 3; ++k)
+        at[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
+    affine_point(&pose->instances[i], at, out);
+}
+
+/* A quarter each: random, aimed, axis-parallel, short. */
+static void make_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t seed)
+{
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
+    uint32_t state = seed;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_ray *ray = &rays[i];
+        double target[3];
+        aim(f, &pose, &state, target);
+        *ray = (struct gpu_ray){.t_max = INFINITY};
+        for (int k = 0; k < 3; ++k) {
+            double center = 0.5 * (pose.lo[k] + pose.hi[k]);
+            double size = pose.hi[k] - pose.lo[k] + 1e-3;
+            ray->origin[k] = (float)(center + size * 1.5 * (double)fixture_signed(&state));
+            ray->dir[k] = i % 4 == 0 ? fixture_signed(&state)
+                                     : (float)(target[k] - (double)ray->origin[k]);
+        }
+        if (i % 4 == 2) {
+            uint32_t axis = fixture_random(&state) % 3;
+            for (uint32_t k = 0; k < 3; ++k) {
+                if (k != axis) {
+                    ray->origin[k] = (float)target[k];
+                    ray->dir[k] = i & 8 ? -0.0f : 0.0f;
+                }
+            }
+        }
+        if (i % 4 == 3) {
+            ray->t_min = 0.25f;
+            ray->t_max = 1.0f;
+        }
+    }
+    scene_pose_finish(&pose);
+}
+
+static void check_rays(struct fixture *f, const char *label)
+{
+    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    struct gpu_hit *device = array_alloc(RAYS, sizeof *device);
+    struct gpu_hit *any = array_alloc(RAYS, sizeof *any);
+    assert_non_null(rays);
+    assert_non_null(device);
+    assert_non_null(any);
+    make_rays(f, rays, 7);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, device), WHIT_OK);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any), WHIT_OK);
+    uint32_t hits = 0, twin_bad = 0, brute_bad = 0, any_bad = 0, status = 0;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_hit twin, brute;
+        traverse_float(f->accel, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL, &status);
+        hits += twin.primitive != HIT_NONE;
+        twin_bad += memcmp(&twin, &device[i], sizeof twin) != 0;
+        any_bad += (any[i].primitive != HIT_NONE) != (twin.primitive != HIT_NONE);
+        if (i % 8 < 4) {
+            traverse_brute_float(f->accel, &rays[i], &brute);
+            brute_bad += memcmp(&twin, &brute, sizeof twin) != 0;
+        }
+    }
+    print_message("  %s: %u rays, %u hit; device unlike twin %u, any-hit unlike closest %u; tree "
+                  "unlike brute force %u of %u\n",
+                  label, RAYS, hits, twin_bad, any_bad, brute_bad, RAYS / 2);
+    assert_true(hits > RAYS / 10);
+    assert_true(hits < RAYS);
+    assert_int_equal(twin_bad, 0);
+    assert_int_equal(any_bad, 0);
+    assert_int_equal(brute_bad, 0);
+    assert_int_equal(status, 0);
+    free(rays);
+    free(device);
+    free(any);
+}
+
+static void check_mesh(struct scene_mesh mesh, const char *label)
+{
+    struct scene *scene = fixture_scene(mesh);
+    fixture_place(scene, NULL);
+    struct fixture f = fixture_open(scene, NULL, NULL);
+    assert_true(f.accel->single_identity);
+    check_rays(&f, label);
+    fixture_close(&f);
+}
+
+static void sphere_equals_twin(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(1.0, 40, 20, &mesh), WHIT_OK);
+    check_mesh(mesh, "sphere");
+}
+
+static void box_equals_twin(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_box((double[]){2.0, 1.0, 3.0}, &mesh), WHIT_OK);
+    check_mesh(mesh, "box");
+}
+
+static void terrain_equals_twin(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_terrain(10.0, 2.0, 24, 3, &mesh), WHIT_OK);
+    check_mesh(mesh, "terrain");
+}
+
+static void far_sphere_equals_twin(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(2.0, 40, 20, &mesh), WHIT_OK);
+    const float offset[3] = {148376.0f, 1234.0f, -223423.0f};
+    for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i)
+        mesh.positions[i] += offset[i % 3];
+    check_mesh(mesh, "sphere far from the origin");
+}
+
+static void soup_equals_twin(void **state)
+{
+    (void)state;
+    uint32_t count = 500, random = 99;
+    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
+    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
+    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
+    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
+    for (uint32_t i = 0; i < 3 * count; ++i) {
+        /* Every tenth triangle repeats its neighbour: ties. */
+        uint32_t source = i / 3 % 10 == 9 ? i - 3 : i;
+        for (uint32_t k = 0; k < 3; ++k)
+            mesh.positions[3 * i + k] =
+                source == i ? fixture_signed(&random) * 3.0f : mesh.positions[3 * source + k];
+        mesh.indices[i] = i;
+    }
+    check_mesh(mesh, "soup with duplicates");
+}
+
+static void instances_equal_twin(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
+    struct scene *scene = fixture_scene(mesh);
+    uint32_t random = 5;
+    for (int i = 0; i < 40; ++i) {
+        double t[3], q[4], s[3];
+        for (int k = 0; k < 3; ++k) {
+            t[k] = 6.0 * (double)fixture_signed(&random);
+            s[k] = 1.0 + 0.7 * (double)fixture_signed(&random);
+        }
+        for (int k = 0; k < 4; ++k)
+            q[k] = (double)fixture_signed(&random);
+        if (i % 3 == 0)
+            s[0] = -s[0];
+        struct affine placed = affine_from_trs(t, q, s);
+        fixture_place(scene, &placed);
+    }
+    fixture_place(scene, NULL);
+    fixture_place(scene, NULL); /* the same place twice: ties between instances */
+    struct fixture f = fixture_open(scene, NULL, NULL);
+    assert_false(f.accel->single_identity);
+    check_rays(&f, "42 instances");
+    fixture_close(&f);
+}
+
+static void degenerate_rays_miss(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
+    struct scene *scene = fixture_scene(mesh);
+    fixture_place(scene, NULL);
+    struct fixture f = fixture_open(scene, NULL, NULL);
+    const float bad[] = {NAN, INFINITY, -INFINITY};
+    struct gpu_ray rays[16];
+    struct gpu_hit hits[16], twin;
+    uint32_t count = 0, status = 0;
+    for (int i = 0; i < 3; ++i) {
+        rays[count++] = (struct gpu_ray){{bad[i], 0, 0}, 0, {0, 0, 1}, INFINITY};
+        rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, bad[i], 1}, INFINITY};
+    }
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 0}, INFINITY};
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, NAN, {0, 0, 1}, INFINITY};
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 1}, NAN};
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, 5, {0, 0, 1}, 2};
+    assert_int_equal(renderer_trace(f.renderer, rays, count, false, hits), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i) {
+        traverse_float(f.accel, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL, &status);
+        assert_memory_equal(&twin, &hits[i], sizeof twin);
+        if (i != 8) /* a t_max that is not a number bounds nothing */
+            assert_int_equal(hits[i].primitive, HIT_NONE);
+    }
+    fixture_close(&f);
+}
+
+static void empty_scene_misses(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
+    struct fixture f = fixture_open(fixture_scene(mesh), NULL, NULL);
+    struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
+    struct gpu_hit hit;
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit), WHIT_OK);
+    assert_int_equal(hit.primitive, HIT_NONE);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sphere_equals_twin),   cmocka_unit_test(box_equals_twin),
+        cmocka_unit_test(terrain_equals_twin),  cmocka_unit_test(far_sphere_equals_twin),
+        cmocka_unit_test(soup_equals_twin),     cmocka_unit_test(instances_equal_twin),
+        cmocka_unit_test(degenerate_rays_miss), cmocka_unit_test(empty_scene_misses),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
