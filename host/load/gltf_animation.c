@@ -1,0 +1,162 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/gltf.h"
+
+struct target {
+    uint32_t node; /* of the file, or SCENE_NONE */
+    enum scene_path path;
+    uint32_t components; /* 0: a path that is not played */
+};
+
+static bool read_target(const struct gltf *gltf, const json_t *channel, const struct gltf_place *at,
+                        struct target *out)
+{
+    json_t *target;
+    const char *path;
+    if (!gltf_object(gltf, channel, at, "target", &target) ||
+        !gltf_index(gltf, target, at, "node", gltf->node_count, &out->node) ||
+        !gltf_string(gltf, target, at, "path", &path))
+        return false;
+    out->components = 0;
+    if (path && strcmp(path, "rotation") == 0) {
+        out->path = SCENE_PATH_ROTATION;
+        out->components = 4;
+    } else if (path && (strcmp(path, "translation") == 0 || strcmp(path, "scale") == 0)) {
+        out->path = path[0] == 't' ? SCENE_PATH_TRANSLATION : SCENE_PATH_SCALE;
+        out->components = 3;
+    }
+    return true;
+}
+
+static bool read_interpolation(const struct gltf *gltf, const json_t *sampler,
+                               const struct gltf_place *at, enum scene_interpolation *out)
+{
+    const char *name;
+    if (!gltf_string(gltf, sampler, at, "interpolation", &name))
+        return false;
+    *out = SCENE_LINEAR;
+    if (!name || strcmp(name, "LINEAR") == 0)
+        return true;
+    *out = strcmp(name, "STEP") == 0 ? SCENE_STEP : SCENE_CUBIC;
+    return *out == SCENE_STEP || strcmp(name, "CUBICSPLINE") == 0 ||
+           gltf_fail(gltf, at, "the interpolation `%.40s` is unknown", name);
+}
+
+static bool check_times(const struct gltf *gltf, const struct gltf_place *at, const float *times,
+                        uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        bool later = i == 0 || times[i] > times[i - 1];
+        if (!(later && times[i] >= 0 && times[i] < 1e18f))
+            return gltf_fail(gltf, at, "its times do not increase (key %u)", i);
+    }
+    return true;
+}
+
+/* Times and values of the sampler into *out, which owns them from then on, also on failure. */
+static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
+                         const struct gltf_place *at, uint32_t components,
+                         struct scene_channel *out)
+{
+    uint32_t accessors = gltf_count(gltf, "accessors"), input, output, values;
+    if (!read_interpolation(gltf, sampler, at, &out->interpolation) ||
+        !gltf_index(gltf, sampler, at, "input", accessors, &input) ||
+        !gltf_index(gltf, sampler, at, "output", accessors, &output))
+        return false;
+    if (input == SCENE_NONE || output == SCENE_NONE)
+        return gltf_fail(gltf, at, "has no input or no output");
+    if (!gltf_read_floats(gltf, input, 1, &out->times_s, &out->key_count) ||
+        !gltf_read_floats(gltf, output, components, &out->values, &values) ||
+        !check_times(gltf, at, out->times_s, out->key_count))
+        return false;
+    uint64_t needed = (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1);
+    return values == needed || gltf_fail(gltf, at, "has %u values where %llu are needed", values,
+                                         (unsigned long long)needed);
+}
+
+struct played {
+    uint8_t *paths; /* of each node of the file: bits of enum scene_path */
+    uint32_t doubled, unplayable;
+};
+
+static whit_result add_channel(struct gltf *gltf, const json_t *object, const json_t *samplers,
+                               const struct gltf_place *at, struct played *played)
+{
+    struct target target = {.node = SCENE_NONE};
+    uint32_t index;
+    if (!json_is_object(object)) {
+        gltf_fail(gltf, at, "should be an object");
+        return WHIT_ERROR_INPUT;
+    }
+    if (!read_target(gltf, object, at, &target) ||
+        !gltf_index(gltf, object, at, "sampler", (uint32_t)json_array_size(samplers), &index))
+        return WHIT_ERROR_INPUT;
+    played->unplayable += target.components == 0;
+    if (target.components == 0 || target.node == SCENE_NONE || index == SCENE_NONE ||
+        gltf->nodes[target.node] == SCENE_NONE)
+        return WHIT_OK;
+    struct scene_channel channel = {.node = gltf->nodes[target.node], .path = target.path};
+    uint8_t bit = (uint8_t)(1u << target.path);
+    bool doubled = played->paths[target.node] & bit;
+    bool fixed = gltf->scene->nodes[channel.node].has_matrix;
+    played->paths[target.node] |= bit;
+    played->doubled += doubled;
+    played->unplayable += fixed;
+    if (doubled || fixed)
+        return WHIT_OK;
+    if (!read_sampler(gltf, json_array_get(samplers, index), at, target.components, &channel)) {
+        free(channel.times_s);
+        free(channel.values);
+        return WHIT_ERROR_INPUT;
+    }
+    return scene_add_channel(gltf->scene, channel) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
+static whit_result add_animation(struct gltf *gltf, uint32_t index, struct played *played)
+{
+    struct gltf_place at;
+    json_t *animation, *channels, *samplers, *channel;
+    size_t i;
+    if (!gltf_item(gltf, "animations", index, &at, &animation) ||
+        !gltf_array(gltf, animation, &at, "channels", &channels) ||
+        !gltf_array(gltf, animation, &at, "samplers", &samplers))
+        return WHIT_ERROR_INPUT;
+    json_array_foreach(channels, i, channel)
+    {
+        struct gltf_place place = gltf_place("%.60s.channels[%zu]", at.text, i);
+        whit_result result = add_channel(gltf, channel, samplers, &place, played);
+        if (result != WHIT_OK)
+            return result;
+    }
+    return WHIT_OK;
+}
+
+static void note_unplayed(const struct gltf *gltf, const struct played *played)
+{
+    const char *name = path_name(gltf->request->path);
+    if (played->unplayable)
+        scene_note(gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: %u animation channels are not played (only translation, rotation and scale "
+                   "of nodes without a matrix are)",
+                   name, played->unplayable);
+    if (played->doubled)
+        scene_note(gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: %u animation channels move what an earlier animation moves, they are not "
+                   "played",
+                   name, played->doubled);
+}
+
+whit_result gltf_add_animations(struct gltf *gltf)
+{
+    struct played played = {.paths = array_alloc_zeroed(gltf->node_count, 1)};
+    whit_result result = played.paths ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < gltf_count(gltf, "animations"); i++)
+        result = add_animation(gltf, i, &played);
+    if (result == WHIT_OK)
+        note_unplayed(gltf, &played);
+    free(played.paths);
+    return result;
+}

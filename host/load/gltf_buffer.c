@@ -1,0 +1,176 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/gltf.h"
+
+#define BUFFER_LIMIT (UINT64_C(4) << 30)
+
+/* --- URIs ----------------------------------------------------------------------------------- */
+
+static int hex_digit(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    c |= 0x20;
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+char *gltf_uri_path(const struct gltf *gltf, const char *uri)
+{
+    char *decoded = string_copy(uri), *to = decoded;
+    for (const char *at = uri; decoded && *at; at++) {
+        int high = at[0] == '%' ? hex_digit(at[1]) : -1;
+        int low = high >= 0 ? hex_digit(at[2]) : -1;
+        bool escape = low >= 0 && (high || low);
+        *to++ = escape ? (char)(high * 16 + low) : *at;
+        at += escape ? 2 : 0;
+    }
+    if (!decoded)
+        return NULL;
+    *to = 0;
+    char *path = path_beside(gltf->request->path, decoded);
+    free(decoded);
+    return path;
+}
+
+static int base64_digit(char c)
+{
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
+}
+
+bool gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
+{
+    const char *text = strstr(uri, ";base64,");
+    if (strncmp(uri, "data:", 5) != 0 || !text)
+        return false;
+    text += 8;
+    size_t length = strlen(text), used = 0;
+    uint8_t *out = array_alloc(length / 4 * 3 + 3, 1);
+    uint32_t bits = 0, count = 0;
+    for (; out && *text && *text != '='; text++) {
+        int digit = base64_digit(*text);
+        if (digit < 0) {
+            free(out);
+            return false;
+        }
+        bits = bits << 6 | (uint32_t)digit;
+        if (++count % 4 == 0) {
+            out[used++] = (uint8_t)(bits >> 16);
+            out[used++] = (uint8_t)(bits >> 8);
+            out[used++] = (uint8_t)bits;
+        }
+    }
+    if (out && count % 4 >= 2)
+        out[used++] = (uint8_t)(count % 4 == 2 ? bits >> 4 : bits >> 10);
+    if (out && count % 4 == 3)
+        out[used++] = (uint8_t)(bits >> 2);
+    *data = out;
+    *size_bytes = used;
+    return out;
+}
+
+/* --- buffers -------------------------------------------------------------------------------- */
+
+static whit_result read_external(struct gltf *gltf, const char *uri, struct gltf_bytes *out)
+{
+    char *path = gltf_uri_path(gltf, uri);
+    if (!path)
+        return WHIT_ERROR_MEMORY;
+    whit_result result =
+        file_read(&gltf->scene->log, path, BUFFER_LIMIT, &out->owned, &out->size_bytes);
+    if (result == WHIT_OK)
+        gltf->scene->file_bytes += out->size_bytes;
+    out->data = out->owned;
+    free(path);
+    return result;
+}
+
+/* A scheme like http: that is neither data: nor a letter of a drive. */
+static bool has_scheme(const char *uri)
+{
+    size_t length = strcspn(uri, ":/?#");
+    return length > 1 && uri[length] == ':';
+}
+
+static whit_result load_buffer(struct gltf *gltf, uint32_t index, struct gltf_bytes *out)
+{
+    struct gltf_place at;
+    json_t *buffer;
+    const char *uri;
+    uint64_t size = 0;
+    if (!gltf_item(gltf, "buffers", index, &at, &buffer) ||
+        !gltf_string(gltf, buffer, &at, "uri", &uri) ||
+        !gltf_whole(gltf, buffer, &at, "byteLength", BUFFER_LIMIT, &size))
+        return WHIT_ERROR_INPUT;
+    whit_result result = WHIT_OK;
+    if (!uri && index == 0)
+        *out = gltf->chunk;
+    else if (uri && strncmp(uri, "data:", 5) == 0) {
+        if (!gltf_decode_uri(uri, &out->owned, &out->size_bytes)) {
+            gltf_fail(gltf, &at, "its data: URI cannot be read");
+            return WHIT_ERROR_INPUT;
+        }
+        out->data = out->owned;
+    } else if (uri && has_scheme(uri)) {
+        gltf_fail(gltf, &at, "`%.80s` is not a file beside the model", uri);
+        return WHIT_ERROR_INPUT;
+    } else if (uri) {
+        result = read_external(gltf, uri, out);
+    }
+    if (result == WHIT_OK && out->data && out->size_bytes < size) {
+        gltf_fail(gltf, &at, "has %zu bytes, its byteLength says %llu", out->size_bytes,
+                  (unsigned long long)size);
+        return WHIT_ERROR_INPUT;
+    }
+    if (out->data)
+        out->size_bytes = (size_t)size;
+    return result;
+}
+
+whit_result gltf_load_buffers(struct gltf *gltf)
+{
+    uint32_t count = gltf_count(gltf, "buffers");
+    gltf->buffers = array_alloc_zeroed(count, sizeof *gltf->buffers);
+    if (!gltf->buffers)
+        return WHIT_ERROR_MEMORY;
+    gltf->buffer_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        whit_result result = load_buffer(gltf, i, &gltf->buffers[i]);
+        if (result != WHIT_OK)
+            return result;
+    }
+    return WHIT_OK;
+}
+
+bool gltf_view(const struct gltf *gltf, uint32_t view, const uint8_t **data, size_t *size_bytes,
+               uint32_t *stride)
+{
+    struct gltf_place at;
+    json_t *object;
+    uint32_t index;
+    uint64_t offset = 0, size = 0, step = 0;
+    if (!gltf_item(gltf, "bufferViews", view, &at, &object) ||
+        !gltf_index(gltf, object, &at, "buffer", gltf->buffer_count, &index) ||
+        !gltf_whole(gltf, object, &at, "byteOffset", BUFFER_LIMIT, &offset) ||
+        !gltf_whole(gltf, object, &at, "byteLength", BUFFER_LIMIT, &size) ||
+        !gltf_whole(gltf, object, &at, "byteStride", 252, &step))
+        return false;
+    if (index == SCENE_NONE || !gltf->buffers[index].data)
+        return gltf_fail(gltf, &at, "its buffer has no data");
+    const struct gltf_bytes *buffer = &gltf->buffers[index];
+    if (offset > buffer->size_bytes || size > buffer->size_bytes - offset)
+        return gltf_fail(gltf, &at, "runs past the end of buffers[%u]", index);
+    *data = buffer->data + offset;
+    *size_bytes = (size_t)size;
+    if (stride)
+        *stride = (uint32_t)step;
+    return true;
+}

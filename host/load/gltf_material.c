@@ -1,0 +1,265 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/gltf.h"
+
+/* One material while it is read. */
+struct reading {
+    struct gltf *gltf;
+    const json_t *object;
+    struct gltf_place at;
+    struct scene_material *out;
+};
+
+static whit_result read_texture(struct reading *r, const json_t *in, const char *key,
+                                enum scene_slot slot)
+{
+    bool visible = slot == SCENE_SLOT_DIFFUSE;
+    return gltf_texture_use(r->gltf, in, &r->at, key, visible, &r->out->textures[slot]);
+}
+
+/* The extension's object, or NULL. */
+static whit_result extension(struct reading *r, const char *name, json_t **out)
+{
+    return gltf_extension(r->gltf, r->object, &r->at, name, out) ? WHIT_OK : WHIT_ERROR_INPUT;
+}
+
+static bool number(struct reading *r, const json_t *in, const char *key, double least, double most,
+                   float *out)
+{
+    double value = (double)*out;
+    if (!gltf_number(r->gltf, in, &r->at, key, &value))
+        return false;
+    *out = (float)fmin(fmax(value, least), most);
+    return true;
+}
+
+static whit_result read_metal_rough(struct reading *r)
+{
+    struct scene_material *out = r->out;
+    float base[4] = {1, 1, 1, 1};
+    json_t *pbr;
+    out->metallic = 1;
+    out->roughness = 1;
+    if (!gltf_object(r->gltf, r->object, &r->at, "pbrMetallicRoughness", &pbr) ||
+        !gltf_floats(r->gltf, pbr, &r->at, "baseColorFactor", 4, base) ||
+        !number(r, pbr, "metallicFactor", 0, 1, &out->metallic) ||
+        !number(r, pbr, "roughnessFactor", 0, 1, &out->roughness))
+        return WHIT_ERROR_INPUT;
+    for (int i = 0; i < 3; i++)
+        out->diffuse[i] = fmaxf(base[i], 0);
+    out->opacity = fminf(fmaxf(base[3], 0), 1);
+    whit_result result = read_texture(r, pbr, "baseColorTexture", SCENE_SLOT_DIFFUSE);
+    if (result == WHIT_OK)
+        result = read_texture(r, pbr, "metallicRoughnessTexture", SCENE_SLOT_METAL_ROUGH);
+    return result;
+}
+
+static whit_result read_emission(struct reading *r)
+{
+    json_t *object;
+    float strength = 1;
+    if (!gltf_floats(r->gltf, r->object, &r->at, "emissiveFactor", 3, r->out->emission))
+        return WHIT_ERROR_INPUT;
+    whit_result result = extension(r, "KHR_materials_emissive_strength", &object);
+    if (result != WHIT_OK || !number(r, object, "emissiveStrength", 0, 1e30, &strength))
+        return WHIT_ERROR_INPUT;
+    for (int i = 0; i < 3; i++)
+        r->out->emission[i] = fmaxf(r->out->emission[i], 0) * strength;
+    return read_texture(r, r->object, "emissiveTexture", SCENE_SLOT_EMISSION);
+}
+
+static whit_result read_normal_map(struct reading *r)
+{
+    json_t *info;
+    if (!gltf_object(r->gltf, r->object, &r->at, "normalTexture", &info) ||
+        !number(r, info, "scale", -1e6, 1e6, &r->out->normal_scale))
+        return WHIT_ERROR_INPUT;
+    return read_texture(r, r->object, "normalTexture", SCENE_SLOT_NORMAL);
+}
+
+static whit_result read_alpha(struct reading *r)
+{
+    const char *mode;
+    if (!gltf_string(r->gltf, r->object, &r->at, "alphaMode", &mode) ||
+        !number(r, r->object, "alphaCutoff", 0, 1e30, &r->out->alpha_cutoff) ||
+        !gltf_bool(r->gltf, r->object, &r->at, "doubleSided", &r->out->two_sided))
+        return WHIT_ERROR_INPUT;
+    if (mode && strcmp(mode, "MASK") == 0)
+        r->out->alpha = SCENE_ALPHA_MASK;
+    else if (mode && strcmp(mode, "BLEND") == 0)
+        r->out->alpha = SCENE_ALPHA_BLEND;
+    else if (mode && strcmp(mode, "OPAQUE") != 0) {
+        gltf_fail(r->gltf, &r->at, "the alphaMode `%.40s` is unknown", mode);
+        return WHIT_ERROR_INPUT;
+    }
+    return WHIT_OK;
+}
+
+static whit_result read_specular(struct reading *r)
+{
+    json_t *object;
+    whit_result result = extension(r, "KHR_materials_specular", &object);
+    if (result != WHIT_OK || !number(r, object, "specularFactor", 0, 1, &r->out->specular_level) ||
+        !gltf_floats(r->gltf, object, &r->at, "specularColorFactor", 3, r->out->specular))
+        return WHIT_ERROR_INPUT;
+    if (json_object_get(object, "specularTexture") ||
+        json_object_get(object, "specularColorTexture"))
+        scene_note(r->gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: material `%s`: textures of KHR_materials_specular are not used",
+                   path_name(r->gltf->request->path), r->out->name);
+    return WHIT_OK;
+}
+
+/* Attenuation is what is left after a distance; the absorption is Beer's coefficient for it. */
+static bool read_volume(struct reading *r, const json_t *volume)
+{
+    float thickness = 0, distance = 0, color[3] = {1, 1, 1};
+    if (!number(r, volume, "thicknessFactor", 0, 1e30, &thickness) ||
+        !number(r, volume, "attenuationDistance", 0, 1e30, &distance) ||
+        !gltf_floats(r->gltf, volume, &r->at, "attenuationColor", 3, color))
+        return false;
+    r->out->thin_walled = !(thickness > 0);
+    for (int i = 0; i < 3; i++) {
+        float left = fminf(fmaxf(color[i], 1e-6f), 1.0f);
+        r->out->absorption[i] = thickness > 0 && distance > 0 ? -logf(left) / distance : 0;
+    }
+    return true;
+}
+
+/* What passes is tinted by the base colour, as the extension says; its texture is left to the
+   renderer. */
+static whit_result read_transmission(struct reading *r)
+{
+    json_t *object, *volume, *ior;
+    float factor = 0;
+    struct scene_material *out = r->out;
+    if (extension(r, "KHR_materials_transmission", &object) != WHIT_OK ||
+        extension(r, "KHR_materials_volume", &volume) != WHIT_OK ||
+        extension(r, "KHR_materials_ior", &ior) != WHIT_OK ||
+        !number(r, ior, "ior", 0, 1e6, &out->ior) ||
+        !number(r, object, "transmissionFactor", 0, 1, &factor))
+        return WHIT_ERROR_INPUT;
+    if (out->ior < 1) /* 0 is the extension's word for a mirror at every angle */
+        out->ior = out->ior > 0 ? 1.0f : 1e3f;
+    if (!object || factor <= 0)
+        return WHIT_OK;
+    for (int i = 0; i < 3; i++)
+        out->transmission[i] = factor * out->diffuse[i];
+    out->fresnel = true;
+    out->thin_walled = true;
+    if (volume && !read_volume(r, volume))
+        return WHIT_ERROR_INPUT;
+    return read_texture(r, object, "transmissionTexture", SCENE_SLOT_TRANSMISSION);
+}
+
+/* Specular-glossiness, as diffuse and highlight: the exponent is that of a Blinn-Phong lobe as wide
+   as GGX of the same roughness (2 / alpha^2 - 2); smooth surfaces mirror. */
+static whit_result read_specular_glossiness(struct reading *r, const json_t *object)
+{
+    struct scene_material *out = r->out;
+    float diffuse[4] = {1, 1, 1, 1}, glossiness = 1;
+    for (int i = 0; i < 3; i++)
+        out->specular[i] = 1;
+    if (!gltf_floats(r->gltf, object, &r->at, "diffuseFactor", 4, diffuse) ||
+        !gltf_floats(r->gltf, object, &r->at, "specularFactor", 3, out->specular) ||
+        !number(r, object, "glossinessFactor", 0, 1, &glossiness))
+        return WHIT_ERROR_INPUT;
+    float alpha = (1 - glossiness) * (1 - glossiness);
+    out->model = SCENE_MODEL_PHONG;
+    out->shininess = fminf(2 / fmaxf(alpha * alpha, 1e-6f) - 2, 1e4f);
+    for (int i = 0; i < 3; i++) {
+        out->diffuse[i] = fmaxf(diffuse[i], 0);
+        out->reflection[i] = glossiness > 0.9f ? out->specular[i] : 0;
+    }
+    out->fresnel = glossiness > 0.9f;
+    out->opacity = fminf(fmaxf(diffuse[3], 0), 1);
+    scene_texture_use_init(&out->textures[SCENE_SLOT_METAL_ROUGH]);
+    scene_texture_use_init(&out->textures[SCENE_SLOT_DIFFUSE]);
+    whit_result result = read_texture(r, object, "diffuseTexture", SCENE_SLOT_DIFFUSE);
+    if (result == WHIT_OK)
+        result = read_texture(r, object, "specularGlossinessTexture", SCENE_SLOT_SPECULAR);
+    return result;
+}
+
+static whit_result read_other_models(struct reading *r)
+{
+    json_t *glossy, *unlit;
+    if (extension(r, "KHR_materials_pbrSpecularGlossiness", &glossy) != WHIT_OK ||
+        extension(r, "KHR_materials_unlit", &unlit) != WHIT_OK)
+        return WHIT_ERROR_INPUT;
+    whit_result result = glossy ? read_specular_glossiness(r, glossy) : WHIT_OK;
+    if (unlit)
+        r->out->model = SCENE_MODEL_UNLIT;
+    return result;
+}
+
+static void note_ignored(const struct reading *r)
+{
+    static const char *const read[] = {"KHR_materials_emissive_strength",
+                                       "KHR_materials_ior",
+                                       "KHR_materials_pbrSpecularGlossiness",
+                                       "KHR_materials_specular",
+                                       "KHR_materials_transmission",
+                                       "KHR_materials_unlit",
+                                       "KHR_materials_volume"};
+    const char *name;
+    json_t *value;
+    json_object_foreach(json_object_get(r->object, "extensions"), name, value)
+    {
+        bool known = false;
+        for (size_t i = 0; i < sizeof read / sizeof *read; i++)
+            known |= strcmp(name, read[i]) == 0;
+        if (!known)
+            scene_note(r->gltf->scene, SCENE_NOTE_INFO, "%s: material `%s`: %.60s is not drawn",
+                       path_name(r->gltf->request->path), r->out->name, name);
+    }
+}
+
+static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene_material *out)
+{
+    static whit_result (*const steps[])(struct reading *) = {
+        read_metal_rough, read_emission,     read_normal_map,   read_alpha,
+        read_specular,    read_other_models, read_transmission,
+    };
+    struct reading reading = {.gltf = gltf, .out = out};
+    json_t *object;
+    const char *name;
+    if (!gltf_item(gltf, "materials", index, &reading.at, &object) ||
+        !gltf_string(gltf, object, &reading.at, "name", &name))
+        return WHIT_ERROR_INPUT;
+    reading.object = object;
+    scene_material_init(out, name && *name ? name : reading.at.text);
+    out->origin.file = string_copy(gltf->request->path);
+    if (!out->name || !out->origin.file)
+        return WHIT_ERROR_MEMORY;
+    out->model = SCENE_MODEL_METAL_ROUGH;
+    for (int i = 0; i < 3; i++)
+        out->specular[i] = 1;
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        whit_result result = steps[i](&reading);
+        if (result != WHIT_OK)
+            return result;
+    }
+    note_ignored(&reading);
+    return WHIT_OK;
+}
+
+whit_result gltf_load_materials(struct gltf *gltf)
+{
+    for (uint32_t i = 0; i < gltf->material_count; i++) {
+        struct scene_material material = {0};
+        whit_result result = read_material(gltf, i, &material);
+        if (result != WHIT_OK) {
+            scene_material_finish(&material);
+            return result;
+        }
+        gltf->materials[i] = scene_add_material(gltf->scene, material);
+        if (gltf->materials[i] == SCENE_NONE)
+            return WHIT_ERROR_MEMORY;
+    }
+    return WHIT_OK;
+}

@@ -1,0 +1,202 @@
+#include "load/importer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+/* A reply holds at most this many times the size of the files, plus a constant: a vertex of an OBJ
+   face needs 4 characters at least and comes back as 48 bytes and its index. */
+#define REPLY_PER_BYTE       64
+#define REPLY_BASE           (UINT64_C(64) << 20)
+
+#define DEFAULT_TIME_S       60.0
+#define DEFAULT_MEMORY_BYTES (UINT64_C(4) << 30)
+
+uint32_t importer_array_words(enum import_array array)
+{
+    static const uint32_t words[IMPORT_ARRAY_COUNT] = {3, 3, 2, 2, 4, 4, 3};
+    return words[array];
+}
+
+static bool check_string(const uint8_t *data, size_t size_bytes, uint64_t offset, uint32_t bytes,
+                         const char **out)
+{
+    if (offset > size_bytes || size_bytes - offset < (uint64_t)bytes + 1)
+        return false;
+    if (data[offset + bytes] != 0 || memchr(data + offset, 0, bytes))
+        return false;
+    *out = (const char *)data + offset;
+    return true;
+}
+
+static bool check_indices(const uint32_t *indices, uint32_t triangle_count, uint32_t vertex_count)
+{
+    uint32_t largest = 0;
+    for (size_t i = 0; i < (size_t)triangle_count * 3; i++)
+        largest = indices[i] > largest ? indices[i] : largest;
+    return largest < vertex_count;
+}
+
+/* *spent is what the arrays of all records take together: it may not pass the block's size, so that
+   a small block cannot claim one array many times. */
+static bool check_array(const uint8_t *data, size_t size_bytes, const struct import_record *record,
+                        enum import_array array, uint64_t *spent, const void **out)
+{
+    *out = NULL;
+    uint64_t offset = record->arrays[array];
+    if (offset == 0)
+        return array != IMPORT_POSITIONS && array != IMPORT_INDICES;
+    uint64_t count = array == IMPORT_INDICES ? record->triangle_count : record->vertex_count;
+    uint64_t bytes = count * importer_array_words(array) * 4;
+    *spent += bytes;
+    if (offset % 4 || offset > size_bytes || size_bytes - offset < bytes || *spent > size_bytes)
+        return false;
+    *out = data + offset;
+    return true;
+}
+
+static bool check_record(const uint8_t *data, size_t size_bytes, const struct import_record *record,
+                         uint64_t *spent, struct import_part *part)
+{
+    const void *arrays[IMPORT_ARRAY_COUNT];
+    for (int i = 0; i < IMPORT_ARRAY_COUNT; i++)
+        if (!check_array(data, size_bytes, record, (enum import_array)i, spent, &arrays[i]))
+            return false;
+    *part = (struct import_part){
+        .group = record->group,
+        .vertex_count = record->vertex_count,
+        .triangle_count = record->triangle_count,
+        .positions = arrays[IMPORT_POSITIONS],
+        .normals = arrays[IMPORT_NORMALS],
+        .uvs = {arrays[IMPORT_UV0], arrays[IMPORT_UV1]},
+        .colors = arrays[IMPORT_COLORS],
+        .tangents = arrays[IMPORT_TANGENTS],
+        .indices = arrays[IMPORT_INDICES],
+    };
+    return record->vertex_count > 0 && record->triangle_count > 0 &&
+           check_string(data, size_bytes, record->name, record->name_bytes, &part->name) &&
+           check_string(data, size_bytes, record->material, record->material_bytes,
+                        &part->material) &&
+           check_indices(part->indices, part->triangle_count, part->vertex_count);
+}
+
+static void copy_error(const uint8_t *text, size_t bytes, char *reason, size_t reason_bytes)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < bytes && used + 1 < reason_bytes && text[i]; i++)
+        reason[used++] = (char)(text[i] < 32 ? ' ' : text[i]);
+    while (used && reason[used - 1] == ' ')
+        used--;
+    reason[used] = 0;
+}
+
+bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block *block,
+                    char *reason, size_t reason_bytes)
+{
+    struct import_header header;
+    uint32_t magic = 0;
+    if (size_bytes >= sizeof magic)
+        memcpy(&magic, data, sizeof magic);
+    if (magic == IMPORT_ERROR_MAGIC) {
+        copy_error(data + sizeof magic, size_bytes - sizeof magic, reason, reason_bytes);
+        return false;
+    }
+    snprintf(reason, reason_bytes, "the importer's reply is damaged");
+    if (magic != IMPORT_MAGIC || size_bytes < sizeof header)
+        return false;
+    memcpy(&header, data, sizeof header);
+    size_t room = size_bytes - sizeof header;
+    if (header.size_bytes != size_bytes || header.part_count > room / sizeof(struct import_record))
+        return false;
+    block->counts = header.counts;
+    block->parts = array_alloc_zeroed(header.part_count, sizeof *block->parts);
+    if (!block->parts) {
+        snprintf(reason, reason_bytes, "out of memory");
+        return false;
+    }
+    uint64_t spent = 0;
+    for (uint32_t i = 0; i < header.part_count; i++) {
+        struct import_record record;
+        memcpy(&record, data + sizeof header + i * sizeof record, sizeof record);
+        if (!check_record(data, size_bytes, &record, &spent, &block->parts[i]))
+            return false;
+    }
+    block->part_count = header.part_count;
+    return true;
+}
+
+static struct child_limits limits_for(const struct import_request *request,
+                                      const struct load_params *params)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < request->file_count; i++)
+        bytes += request->files[i].size_bytes;
+    double time_s = 8.0 + 4.0 * (double)bytes / 10e6;
+    double limit_s = params && params->time_limit_s > 0 ? params->time_limit_s : DEFAULT_TIME_S;
+    uint64_t memory =
+        params && params->memory_limit_bytes ? params->memory_limit_bytes : DEFAULT_MEMORY_BYTES;
+    return (struct child_limits){
+        .time_s = time_s < limit_s ? time_s : limit_s,
+        .memory_bytes = memory,
+        .reply_bytes = bytes * REPLY_PER_BYTE + REPLY_BASE,
+        .cancel = params ? params->cancel : NULL,
+    };
+}
+
+static whit_result report(const struct log *log, const char *path, enum child_end end,
+                          const struct child_limits *limits, const struct child_reply *reply)
+{
+    switch (end) {
+    case CHILD_CRASHED:
+        log_error(log, "%s: the importer crashed on this file (signal %d)", path, reply->signal);
+        return WHIT_ERROR_INPUT;
+    case CHILD_TIME:
+        log_error(log, "%s: the importer did not finish within %.0f s", path, limits->time_s);
+        return WHIT_ERROR_INPUT;
+    case CHILD_MEMORY:
+        log_error(log, "%s: the importer asked for more than %.0f MiB of memory", path,
+                  (double)limits->memory_bytes / 1048576.0);
+        return WHIT_ERROR_INPUT;
+    case CHILD_CANCELLED:
+        log_error(log, "%s: loading was cancelled", path);
+        return WHIT_ERROR_CANCELLED;
+    case CHILD_NOT_STARTED:
+        log_error(log, "%s: the importer's process could not be started", path);
+        return WHIT_ERROR_MEMORY;
+    case CHILD_REPLY:
+    default:
+        log_error(log, "%s: the importer gave no usable reply", path);
+        return WHIT_ERROR_INPUT;
+    }
+}
+
+whit_result importer_run(const struct log *log, const char *path,
+                         const struct import_request *request, const struct load_params *params,
+                         struct import_block *block)
+{
+    *block = (struct import_block){0};
+    struct child_limits limits = limits_for(request, params);
+    struct import_request copy = *request;
+    enum child_end end = child_run(&limits, importer_assimp_run, &copy, &block->reply);
+    if (end != CHILD_DONE) {
+        whit_result result = report(log, path, end, &limits, &block->reply);
+        importer_finish(block);
+        return result;
+    }
+    char reason[512];
+    if (!importer_parse(block->reply.data, block->reply.size_bytes, block, reason, sizeof reason)) {
+        log_error(log, "%s: %s", path, reason);
+        importer_finish(block);
+        return WHIT_ERROR_INPUT;
+    }
+    return WHIT_OK;
+}
+
+void importer_finish(struct import_block *block)
+{
+    free(block->parts);
+    child_reply_free(&block->reply);
+    *block = (struct import_block){0};
+}

@@ -1,0 +1,98 @@
+/* Foreign importers in a child process. The child hands back one flat block of triangles; the
+   parent believes nothing in it before importer_parse has checked every offset, count, string and
+   index. */
+#ifndef LOAD_IMPORTER_H
+#define LOAD_IMPORTER_H
+
+#include "base/log.h"
+#include "base/platform.h"
+#include "load/load.h"
+
+enum import_kind { IMPORT_OBJ, IMPORT_GLTF, IMPORT_PLY, IMPORT_STL };
+
+/* A file the importer may open: it sees these and nothing of the file system. */
+struct import_file {
+    const char *name;
+    const uint8_t *data;
+    size_t size_bytes;
+};
+
+/* files[0] is the model; its name's extension chooses the importer. */
+struct import_request {
+    enum import_kind kind;
+    const struct import_file *files;
+    uint32_t file_count;
+};
+
+/* Triangles of one group and material. Pointers are into the block; optional arrays are NULL. */
+struct import_part {
+    const char *name;
+    const char *material; /* name, "" when there is none */
+    uint32_t group;       /* parts of one group have normals all or none (glTF: the mesh) */
+    uint32_t vertex_count, triangle_count;
+    const float *positions, *normals; /* 3 per vertex */
+    const float *uvs[2];              /* 2 per vertex, v upwards as assimp has it */
+    const float *colors, *tangents;   /* 4 per vertex */
+    const uint32_t *indices;
+};
+
+/* What the importer left out. */
+struct import_counts {
+    uint64_t points, lines, bad_faces;
+};
+
+struct import_block {
+    struct child_reply reply;
+    struct import_part *parts;
+    uint32_t part_count;
+    struct import_counts counts;
+};
+
+/* Runs the importer on `request`. Errors are logged as `path: reason`. Time is limited by the
+   params, and further by the size of the files, so that a small damaged file fails soon. */
+WHIT_CHECK whit_result importer_run(const struct log *log, const char *path,
+                                    const struct import_request *request,
+                                    const struct load_params *params, struct import_block *block);
+void importer_finish(struct import_block *block);
+
+/* The checks of importer_run, on any bytes: fills parts and counts of *block, or gives a reason.
+   `data` is 8-byte aligned and outlives the block. */
+WHIT_CHECK bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block *block,
+                               char *reason, size_t reason_bytes);
+
+/* Layout of the block: header, part records, then strings and arrays anywhere behind them.
+   Offsets count from the start of the block; 0: absent. Arrays are 4-byte aligned. */
+#define IMPORT_MAGIC       0x4b4c4257u /* "WBLK" */
+#define IMPORT_ERROR_MAGIC 0x52524557u /* "WERR": text up to the end follows the magic */
+
+struct import_header {
+    uint32_t magic, part_count;
+    uint64_t size_bytes;
+    struct import_counts counts;
+};
+
+enum import_array {
+    IMPORT_POSITIONS,
+    IMPORT_NORMALS,
+    IMPORT_UV0,
+    IMPORT_UV1,
+    IMPORT_COLORS,
+    IMPORT_TANGENTS,
+    IMPORT_INDICES,
+    IMPORT_ARRAY_COUNT
+};
+
+struct import_record {
+    uint64_t name, material; /* offsets of zero-terminated strings */
+    uint32_t name_bytes, material_bytes;
+    uint32_t group, vertex_count, triangle_count, unused;
+    uint64_t arrays[IMPORT_ARRAY_COUNT];
+};
+
+/* 4-byte words per vertex (per triangle: indices). */
+uint32_t importer_array_words(enum import_array array);
+
+/* Runs in the child: imports and writes the block; the exit code. `user` is the request. */
+int importer_assimp_run(void *user, void *to, child_write write);
+
+#endif

@@ -1,0 +1,209 @@
+#include "load/model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/obj.h"
+#include "load/ply.h"
+
+/* A model larger than this is refused before it is read. */
+#define MODEL_LIMIT (UINT64_C(4) << 30)
+
+static whit_result import(struct scene *scene, const struct model_request *request,
+                          enum import_kind kind, const uint8_t *data, size_t size_bytes,
+                          struct import_block *block)
+{
+    static const char *const names[] = {"model.obj", "model.gltf", "model.ply", "model.stl"};
+    const struct import_file file = {names[kind], data, size_bytes};
+    const struct import_request import = {kind, &file, 1};
+    whit_result result = importer_run(&scene->log, request->path, &import, request->params, block);
+    if (result != WHIT_OK)
+        return result;
+    model_note_counts(scene, request->path, &block->counts);
+    if (block->part_count)
+        return WHIT_OK;
+    log_error(&scene->log, "%s: there are no triangles in it (%llu points, %llu lines)",
+              request->path, (unsigned long long)block->counts.points,
+              (unsigned long long)block->counts.lines);
+    importer_finish(block);
+    return WHIT_ERROR_INPUT;
+}
+
+static whit_result add_instance(struct scene *scene, const char *name, uint32_t mesh, uint32_t node)
+{
+    struct scene_instance instance = {
+        .name = string_copy(name), .mesh = mesh, .node = node, .local = affine_identity()};
+    if (!instance.name)
+        return WHIT_ERROR_MEMORY;
+    return scene_add_instance(scene, instance) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
+/* --- materials ------------------------------------------------------------------------------ */
+
+/* The materials of one model: each is added to the scene when the first triangle asks for it. */
+struct palette {
+    const struct mtl_library *library;
+    bool ambient_known;
+    char **names;
+    uint32_t *indices; /* in the scene, one for each name */
+    uint32_t count, capacity, index_count, index_capacity;
+};
+
+static void make_default(const char *name, bool colored, struct scene_material *out)
+{
+    scene_material_init(out, name);
+    for (int i = 0; colored && i < 3; i++)
+        out->diffuse[i] = 1.0f;
+}
+
+static whit_result make_material(struct scene *scene, const struct model_request *request,
+                                 struct palette *palette, const struct import_part *part,
+                                 struct scene_material *out)
+{
+    const struct mtl_entry *entry = mtl_find(palette->library, part->material);
+    if (entry)
+        return mtl_material(scene, entry, palette->ambient_known, request->params, out);
+    bool named = part->material[0] && strcmp(part->material, "DefaultMaterial") != 0;
+    make_default(named ? part->material : "default", part->colors, out);
+    if (named && palette->library->count)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: material `%s` is not defined, it is drawn grey",
+                   path_name(request->path), part->material);
+    return out->name ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
+static whit_result find_material(struct scene *scene, const struct model_request *request,
+                                 struct palette *palette, const struct import_part *part,
+                                 uint32_t *index)
+{
+    for (uint32_t i = 0; i < palette->count; i++) {
+        if (strcmp(palette->names[i], part->material) != 0)
+            continue;
+        *index = palette->indices[i];
+        return WHIT_OK;
+    }
+    struct scene_material material = {0};
+    whit_result result = make_material(scene, request, palette, part, &material);
+    if (result != WHIT_OK) {
+        scene_material_finish(&material);
+        return result;
+    }
+    *index = scene_add_material(scene, material);
+    char *name = string_copy(part->material);
+    if (*index == SCENE_NONE || !name ||
+        !ARRAY_PUSH(palette->indices, palette->index_count, palette->index_capacity, *index)) {
+        free(name);
+        return WHIT_ERROR_MEMORY;
+    }
+    if (ARRAY_PUSH(palette->names, palette->count, palette->capacity, name))
+        return WHIT_OK;
+    free(name);
+    return WHIT_ERROR_MEMORY;
+}
+
+static void palette_finish(struct palette *palette)
+{
+    for (uint32_t i = 0; i < palette->count; i++)
+        free(palette->names[i]);
+    free(palette->names);
+    free(palette->indices);
+}
+
+/* --- OBJ, PLY, STL -------------------------------------------------------------------------- */
+
+/* The whole block as one mesh, so that the file is one tree, drawn once. */
+static whit_result add_block(struct scene *scene, const struct model_request *request,
+                             const struct import_block *block, const struct mtl_library *library,
+                             bool colors_are_srgb)
+{
+    struct palette palette = {.library = library, .ambient_known = mtl_has_ambient(library)};
+    struct model_part *parts = array_alloc_zeroed(block->part_count, sizeof *parts);
+    whit_result result = parts ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++) {
+        parts[i].part = &block->parts[i];
+        parts[i].name = block->parts[i].name;
+        result = find_material(scene, request, &palette, &block->parts[i], &parts[i].material);
+    }
+    uint32_t mesh = SCENE_NONE;
+    const char *name = path_name(request->path);
+    if (result == WHIT_OK)
+        result = model_add_mesh(scene, name, parts, block->part_count, colors_are_srgb, &mesh);
+    if (result == WHIT_OK)
+        result = add_instance(scene, name, mesh, request->parent);
+    palette_finish(&palette);
+    free(parts);
+    return result;
+}
+
+whit_result model_load_obj(struct scene *scene, const struct model_request *request)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    struct mtl_library library = {0};
+    struct import_block block = {0};
+    whit_result result = file_read(&scene->log, request->path, MODEL_LIMIT, &data, &size);
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size;
+    if (!obj_repair_text(&data, &size)) {
+        result = WHIT_ERROR_MEMORY;
+        goto done;
+    }
+    result = obj_read_libraries(scene, request->path, (const char *)data, &library);
+    if (result == WHIT_OK)
+        result = import(scene, request, IMPORT_OBJ, data, size, &block);
+    free(data);
+    data = NULL;
+    if (result == WHIT_OK)
+        result = add_block(scene, request, &block, &library, false);
+done:
+    importer_finish(&block);
+    mtl_finish(&library);
+    free(data);
+    return result;
+}
+
+/* Colours of scans are bytes of a picture: sRGB. */
+static whit_result load_plain(struct scene *scene, const struct model_request *request,
+                              enum import_kind kind)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    const struct mtl_library no_library = {0};
+    struct import_block block = {0};
+    whit_result result = file_read(&scene->log, request->path, MODEL_LIMIT, &data, &size);
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size;
+    if (kind == IMPORT_PLY && !ply_repair(&data, &size)) {
+        free(data);
+        return WHIT_ERROR_MEMORY;
+    }
+    result = import(scene, request, kind, data, size, &block);
+    free(data);
+    if (result == WHIT_OK)
+        result = add_block(scene, request, &block, &no_library, true);
+    importer_finish(&block);
+    return result;
+}
+
+whit_result load_model(struct scene *scene, const char *path, uint32_t parent, bool with_lights,
+                       bool with_cameras, const struct load_params *params)
+{
+    const struct model_request request = {path, parent, with_lights, with_cameras, params};
+    char extension[16];
+    path_extension(path, extension, sizeof extension);
+    if (strcmp(extension, "obj") == 0)
+        return model_load_obj(scene, &request);
+    if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0)
+        return gltf_load(scene, &request);
+    if (strcmp(extension, "ply") == 0)
+        return load_plain(scene, &request, IMPORT_PLY);
+    if (strcmp(extension, "stl") == 0)
+        return load_plain(scene, &request, IMPORT_STL);
+    log_error(&scene->log, "%s: unknown kind of model `.%s` (known: .obj .gltf .glb .ply .stl)",
+              path, extension);
+    return WHIT_ERROR_INPUT;
+}

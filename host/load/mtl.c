@@ -1,0 +1,398 @@
+#include "load/mtl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+
+/* --- words and numbers, in any locale ------------------------------------------------------- */
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+static char *skip_blanks(char *at)
+{
+    while (is_blank(*at))
+        at++;
+    return at;
+}
+
+/* Cuts the next word off the line; "" at its end. */
+static char *next_word(char **at)
+{
+    char *word = skip_blanks(*at), *end = word;
+    while (*end && !is_blank(*end))
+        end++;
+    *at = *end ? end + 1 : end;
+    *end = 0;
+    return word;
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* The whole word as a finite decimal number. */
+static bool parse_number(const char *word, float *out)
+{
+    double value = 0;
+    int exponent = 0, digits = 0;
+    const char *at = word;
+    bool negative = *at == '-';
+    at += *at == '-' || *at == '+';
+    for (; is_digit(*at); at++, digits++)
+        value = value * 10 + (*at - '0');
+    if (*at == '.')
+        for (at++; is_digit(*at); at++, digits++, exponent--)
+            value = value * 10 + (*at - '0');
+    if (digits && (*at == 'e' || *at == 'E')) {
+        int power = 0;
+        bool down = at[1] == '-';
+        at += at[1] == '-' || at[1] == '+' ? 2 : 1;
+        for (; is_digit(*at); at++)
+            power = power < 1000 ? power * 10 + (*at - '0') : power;
+        exponent += down ? -power : power;
+    }
+    value *= pow(10.0, exponent);
+    *out = (float)(negative ? -value : value);
+    return digits > 0 && *at == 0 && isfinite(*out);
+}
+
+/* Up to `most` numbers; the line stands behind the last one. */
+static uint32_t parse_numbers(char **at, float *out, uint32_t most)
+{
+    uint32_t count = 0;
+    while (count < most) {
+        char *start = skip_blanks(*at), *end = start;
+        while (*end && !is_blank(*end))
+            end++;
+        char after = *end;
+        *end = 0;
+        bool good = parse_number(start, &out[count]);
+        *end = after;
+        if (!good)
+            break;
+        count++;
+        *at = end;
+    }
+    return count;
+}
+
+/* --- notes ---------------------------------------------------------------------------------- */
+
+struct reader {
+    struct scene *scene;
+    const char *path;
+    uint32_t line;
+    struct mtl_library *library;
+    char **noted; /* keywords already spoken of */
+    uint32_t noted_count, noted_capacity;
+};
+
+static bool note_keyword(struct reader *reader, const char *keyword, const char *what)
+{
+    for (uint32_t i = 0; i < reader->noted_count; i++)
+        if (strcmp(reader->noted[i], keyword) == 0)
+            return true;
+    char *copy = string_copy(keyword);
+    if (!copy || !ARRAY_PUSH(reader->noted, reader->noted_count, reader->noted_capacity, copy)) {
+        free(copy);
+        return false;
+    }
+    scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%.40s` %s", path_name(reader->path),
+               reader->line, keyword, what);
+    return true;
+}
+
+/* --- keywords ------------------------------------------------------------------------------- */
+
+static bool read_color(struct reader *reader, struct mtl_entry *entry, enum mtl_color color,
+                       const char *keyword, char *rest)
+{
+    float rgb[3];
+    uint32_t count = parse_numbers(&rest, rgb, 3);
+    if (count == 0)
+        return note_keyword(reader, keyword, "without numbers is ignored");
+    for (uint32_t i = 0; i < 3; i++)
+        entry->colors[color][i] = fmaxf(rgb[count == 3 ? i : 0], 0.0f);
+    entry->has_color[color] = true;
+    return true;
+}
+
+static bool read_number(struct reader *reader, struct mtl_entry *entry, enum mtl_number number,
+                        const char *keyword, char *rest)
+{
+    char *at = skip_blanks(rest);
+    if (number == MTL_D && strncmp(at, "-halo", 5) == 0) {
+        at += 5;
+        if (!note_keyword(reader, "d -halo", "is read as plain `d`"))
+            return false;
+    }
+    float value;
+    if (parse_numbers(&at, &value, 1) != 1)
+        return note_keyword(reader, keyword, "without a number is ignored");
+    bool transparency = strcmp(keyword, "Tr") == 0;
+    /* Where both are written, d stands: Tr has been used both ways round. */
+    if (transparency && entry->has_number[MTL_D])
+        return true;
+    entry->numbers[number] = transparency ? 1.0f - value : value;
+    entry->has_number[number] = true;
+    return true;
+}
+
+/* Numbers, or words, that follow an option; -1: not an option of maps. */
+static int option_arguments(const char *option)
+{
+    static const struct {
+        const char *name;
+        int arguments;
+    } options[] = {
+        {"-blendu", 1}, {"-blendv", 1},  {"-bm", 1},   {"-boost", 1},      {"-cc", 1},
+        {"-clamp", 1},  {"-imfchan", 1}, {"-mm", 2},   {"-o", 3},          {"-s", 3},
+        {"-t", 3},      {"-texres", 1},  {"-type", 1}, {"-colorspace", 1},
+    };
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+        if (strcmp(option, options[i].name) == 0)
+            return options[i].arguments;
+    return -1;
+}
+
+/* Reads the option at *at and its arguments; false when there is none. */
+static bool read_option(char **at, struct mtl_texture *map)
+{
+    char *start = skip_blanks(*at), *end = start;
+    char option[16] = "";
+    while (*end && !is_blank(*end))
+        end++;
+    if (*start != '-' || (size_t)(end - start) >= sizeof option)
+        return false;
+    memcpy(option, start, (size_t)(end - start));
+    int arguments = option_arguments(option);
+    if (arguments < 0)
+        return false;
+    *at = end;
+    if (arguments == 3) {
+        float v[3] = {0, 0, 0};
+        uint32_t count = parse_numbers(at, v, 3);
+        for (uint32_t i = 0; i < 2; i++) {
+            if (option[1] == 's')
+                map->scale[i] = i < count ? v[i] : map->scale[i];
+            else
+                map->offset[i] += v[i];
+        }
+    } else if (strcmp(option, "-bm") == 0) {
+        (void)parse_numbers(at, &map->bump, 1);
+    } else {
+        for (int i = 0; i < arguments; i++) {
+            char *word = next_word(at);
+            if (strcmp(option, "-clamp") == 0)
+                map->clamp = strcmp(word, "on") == 0;
+        }
+    }
+    return true;
+}
+
+/* Some writers put options behind the file's name. */
+static void cut_trailing_options(char *name, struct mtl_texture *map)
+{
+    for (char *at = strstr(name, " -"); at; at = strstr(at + 1, " -")) {
+        char *options = at + 1;
+        struct mtl_texture trial = *map;
+        char *copy = string_copy(options), *rest = copy;
+        while (rest && read_option(&rest, &trial))
+            continue;
+        bool all = rest && *skip_blanks(rest) == 0;
+        free(copy);
+        if (!all)
+            continue;
+        *map = trial;
+        *at = 0;
+        return;
+    }
+}
+
+static void trim_end(char *text)
+{
+    size_t length = strlen(text);
+    while (length && is_blank(text[length - 1]))
+        text[--length] = 0;
+}
+
+static bool read_map(struct reader *reader, struct mtl_entry *entry, enum mtl_map kind,
+                     const char *keyword, char *rest)
+{
+    struct mtl_texture map = {.scale = {1, 1}, .bump = 1, .line = reader->line};
+    while (read_option(&rest, &map))
+        continue;
+    char *name = skip_blanks(rest);
+    trim_end(name);
+    cut_trailing_options(name, &map);
+    trim_end(name);
+    if (!*name)
+        return note_keyword(reader, keyword, "without a file is ignored");
+    free(entry->maps[kind].file);
+    entry->maps[kind] = map;
+    entry->maps[kind].file = string_copy(name);
+    return entry->maps[kind].file;
+}
+
+static bool read_property(struct reader *reader, struct mtl_entry *entry, const char *keyword,
+                          char *rest)
+{
+    static const struct {
+        const char *keyword;
+        char type; /* c colour, n number, m map, i known and of no effect here */
+        int which;
+    } table[] = {
+        {"Ka", 'c', MTL_KA},
+        {"Kd", 'c', MTL_KD},
+        {"Ks", 'c', MTL_KS},
+        {"Ke", 'c', MTL_KE},
+        {"Tf", 'c', MTL_TF},
+        {"Ns", 'n', MTL_NS},
+        {"Ni", 'n', MTL_NI},
+        {"d", 'n', MTL_D},
+        {"Tr", 'n', MTL_D},
+        {"Pr", 'n', MTL_PR},
+        {"Pm", 'n', MTL_PM},
+        {"illum", 'n', MTL_ILLUM},
+        {"map_Kd", 'm', MTL_MAP_KD},
+        {"map_Ks", 'm', MTL_MAP_KS},
+        {"map_Ke", 'm', MTL_MAP_KE},
+        {"map_d", 'm', MTL_MAP_D},
+        {"map_Tr", 'm', MTL_MAP_D},
+        {"map_Bump", 'm', MTL_MAP_BUMP},
+        {"map_bump", 'm', MTL_MAP_BUMP},
+        {"bump", 'm', MTL_MAP_BUMP},
+        {"map_kS", 'm', MTL_MAP_KS},
+        {"norm", 'm', MTL_MAP_NORMAL},
+        {"map_Kn", 'm', MTL_MAP_NORMAL},
+        {"map_Ka", 'i', 0},
+        {"sharpness", 'i', 0},
+        {"map_aat", 'i', 0},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        if (strcmp(keyword, table[i].keyword) != 0)
+            continue;
+        if (table[i].type == 'c')
+            return read_color(reader, entry, (enum mtl_color)table[i].which, keyword, rest);
+        if (table[i].type == 'n')
+            return read_number(reader, entry, (enum mtl_number)table[i].which, keyword, rest);
+        if (table[i].type == 'm')
+            return read_map(reader, entry, (enum mtl_map)table[i].which, keyword, rest);
+        return true;
+    }
+    return note_keyword(reader, keyword, "is not used by whit and was ignored");
+}
+
+static bool begin_entry(struct reader *reader, char *rest)
+{
+    char *name = skip_blanks(rest);
+    trim_end(name);
+    struct mtl_entry entry = {
+        .name = string_copy(name), .file = string_copy(reader->path), .line = reader->line};
+    if (entry.name && entry.file &&
+        ARRAY_PUSH(reader->library->entries, reader->library->count, reader->library->capacity,
+                   entry))
+        return true;
+    free(entry.name);
+    free(entry.file);
+    return false;
+}
+
+static bool read_line(struct reader *reader, char *line, bool *in_entry)
+{
+    char *rest = line;
+    char *keyword = next_word(&rest);
+    if (!*keyword || *keyword == '#')
+        return true;
+    if (strcmp(keyword, "newmtl") == 0) {
+        *in_entry = true;
+        return begin_entry(reader, rest);
+    }
+    if (!*in_entry)
+        return note_keyword(reader, keyword, "before the first newmtl was ignored");
+    struct mtl_library *library = reader->library;
+    return read_property(reader, &library->entries[library->count - 1], keyword, rest);
+}
+
+/* Ends the logical line at `at`: a backslash before the line's end joins the next one to it.
+   Returns the start of the next line, or NULL. */
+static char *cut_line(char *at, uint32_t *lines)
+{
+    *lines = 0;
+    for (;; at++) {
+        if (*at == 0)
+            return NULL;
+        if (*at == '\\' && (at[1] == '\n' || (at[1] == '\r' && at[2] == '\n'))) {
+            *lines += 1;
+            at[0] = ' ';
+            at += at[1] == '\r';
+            at[0] = ' ';
+            at[1] = ' ';
+        } else if (*at == '\n' || *at == '\r') {
+            *lines += 1;
+            bool pair = at[0] == '\r' && at[1] == '\n';
+            *at = 0;
+            return at + (pair ? 2 : 1);
+        }
+    }
+}
+
+bool mtl_parse(struct scene *scene, const char *path, const char *text, struct mtl_library *library)
+{
+    struct reader reader = {.scene = scene, .path = path, .line = 1, .library = library};
+    bool in_entry = false;
+    bool has_mark = strncmp(text, "\xef\xbb\xbf", 3) == 0;
+    char *copy = string_copy(text + (has_mark ? 3 : 0));
+    bool ok = copy;
+    char *line = copy;
+    while (ok && line) {
+        uint32_t lines;
+        char *next = cut_line(line, &lines);
+        ok = read_line(&reader, line, &in_entry);
+        reader.line += lines;
+        line = next;
+    }
+    for (uint32_t i = 0; i < reader.noted_count; i++)
+        free(reader.noted[i]);
+    free(reader.noted);
+    free(copy);
+    return ok;
+}
+
+void mtl_finish(struct mtl_library *library)
+{
+    for (uint32_t i = 0; i < library->count; i++) {
+        struct mtl_entry *entry = &library->entries[i];
+        free(entry->name);
+        free(entry->file);
+        for (int map = 0; map < MTL_MAP_COUNT; map++)
+            free(entry->maps[map].file);
+    }
+    free(library->entries);
+    *library = (struct mtl_library){0};
+}
+
+const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name)
+{
+    for (uint32_t i = 0; i < library->count; i++)
+        if (strcmp(library->entries[i].name, name) == 0)
+            return &library->entries[i];
+    return NULL;
+}
+
+bool mtl_has_ambient(const struct mtl_library *library)
+{
+    for (uint32_t i = 0; i < library->count; i++) {
+        const float *ka = library->entries[i].colors[MTL_KA];
+        if (library->entries[i].has_color[MTL_KA] && (ka[0] > 0 || ka[1] > 0 || ka[2] > 0))
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,58 @@
+/* Wavefront material libraries. Read here and not by assimp, which drops options and loses the
+   whole OBJ over one odd line. */
+#ifndef LOAD_MTL_H
+#define LOAD_MTL_H
+
+#include "load/load.h"
+
+enum mtl_color { MTL_KA, MTL_KD, MTL_KS, MTL_KE, MTL_TF, MTL_COLOR_COUNT };
+enum mtl_number { MTL_NS, MTL_NI, MTL_D, MTL_PR, MTL_PM, MTL_ILLUM, MTL_NUMBER_COUNT };
+enum mtl_map {
+    MTL_MAP_KD,
+    MTL_MAP_KS,
+    MTL_MAP_KE,
+    MTL_MAP_D,
+    MTL_MAP_BUMP,
+    MTL_MAP_NORMAL,
+    MTL_MAP_COUNT
+};
+
+struct mtl_texture {
+    char *file; /* as written; NULL: no such map */
+    uint32_t line;
+    float scale[2], offset[2]; /* -s, -o and -t, v upwards */
+    float bump;                /* -bm */
+    bool clamp;
+};
+
+/* One newmtl as written. */
+struct mtl_entry {
+    char *name, *file;
+    uint32_t line;
+    float colors[MTL_COLOR_COUNT][3];
+    float numbers[MTL_NUMBER_COUNT];
+    bool has_color[MTL_COLOR_COUNT], has_number[MTL_NUMBER_COUNT];
+    struct mtl_texture maps[MTL_MAP_COUNT];
+};
+
+struct mtl_library {
+    struct mtl_entry *entries;
+    uint32_t count, capacity;
+};
+
+/* Adds the entries of `text` (zero-terminated) to the library. What is not understood is noted in
+   the scene, once for each keyword. False when memory runs out. */
+WHIT_CHECK bool mtl_parse(struct scene *scene, const char *path, const char *text,
+                          struct mtl_library *library);
+void mtl_finish(struct mtl_library *library);
+/* The first entry of that name, or NULL. */
+const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name);
+
+/* What the entry means to whit, textures loaded; *out is released with scene_material_finish.
+   `ambient_known`: some entry of the library has an ambient colour. */
+WHIT_CHECK whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
+                                    bool ambient_known, const struct load_params *params,
+                                    struct scene_material *out);
+bool mtl_has_ambient(const struct mtl_library *library);
+
+#endif

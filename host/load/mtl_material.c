@@ -1,0 +1,299 @@
+/* What an MTL entry means to whit. The classes of `illum`:
+
+     0  colour only: unlit            5  mirror, its weight rising to 1 by Fresnel from Ks
+     1  diffuse                       6  refraction
+     2  diffuse and highlight         7  refraction and Fresnel
+     3  mirror reflection by Ks       8  as 3 without ray tracing: taken as 2
+     4  glass: light passes straight  9  as 4 without ray tracing: blends by d
+        through, and Ks reflects     10  catches shadows, is invisible itself
+
+   How much a refracting class (4, 6, 7) lets through:
+     d < 1      1 - d, tinted by Tf where Tf has a hue
+     else Tf    the filter, as the format says: 1 lets everything pass; but as 1 - Tf where Tf can
+                only be the share held back, see filter_is_inverted()
+     neither    everything
+   Elsewhere d is opacity and Tf, which exporters write as 1 for opaque surfaces too, is ignored. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "load/mtl.h"
+
+enum { ALPHA_HALF = 128 };
+
+/* --- textures ------------------------------------------------------------------------------- */
+
+/* The path of a texture named in an MTL: as written, with slashes for backslashes, or the bare name
+   beside the MTL (paths of the exporter's machine). The first that exists; else the second. */
+static char *find_texture(const char *mtl_path, const char *name)
+{
+    char *written = path_beside(mtl_path, name);
+    if (!written || file_exists(written))
+        return written;
+    free(written);
+    char *slashed = string_copy(name);
+    for (char *c = slashed; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    if (!slashed)
+        return NULL;
+    char *path = path_beside(mtl_path, slashed);
+    char *bare = path_beside(mtl_path, path_name(slashed));
+    free(slashed);
+    if (path && bare && !file_exists(path) && file_exists(bare)) {
+        free(path);
+        return bare;
+    }
+    free(bare);
+    return path;
+}
+
+/* MTL samples at s * uv + o with v upwards; here v grows downwards: v = 1 - v_up. */
+static void set_transform(const struct mtl_texture *map, struct scene_texture_use *use)
+{
+    const float transform[6] = {
+        map->scale[0], 0, map->offset[0], 0, map->scale[1], 1 - map->scale[1] - map->offset[1]};
+    memcpy(use->transform, transform, sizeof transform);
+    use->wrap_u = use->wrap_v = map->clamp ? SCENE_WRAP_CLAMP : SCENE_WRAP_REPEAT;
+}
+
+static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, enum mtl_map kind,
+                           enum scene_slot slot, const struct load_params *params,
+                           struct scene_material *out)
+{
+    const struct mtl_texture *map = &entry->maps[kind];
+    if (!map->file)
+        return WHIT_OK;
+    char *path = find_texture(entry->file, map->file);
+    if (!path)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = WHIT_OK;
+    /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
+    if (slot != SCENE_SLOT_DIFFUSE && !file_exists(path)) {
+        scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: texture `%s` is missing",
+                   path_name(entry->file), map->line, map->file);
+    } else {
+        struct scene_texture_use *use = &out->textures[slot];
+        set_transform(map, use);
+        result = load_texture(scene, path, NULL, 0, params, &use->texture);
+    }
+    free(path);
+    return result;
+}
+
+/* --- cut-outs ------------------------------------------------------------------------------- */
+
+static const struct scene_texture *
+texture_of(const struct scene *scene, const struct scene_material *material, enum scene_slot slot)
+{
+    uint32_t index = material->textures[slot].texture;
+    return index < scene->texture_count ? &scene->textures[index] : NULL;
+}
+
+/* An alpha channel that cuts out shapes: part of the picture is clear, and part is not. */
+static bool has_cutouts(const struct scene_texture *texture)
+{
+    size_t count = (size_t)texture->width * texture->height, clear = 0;
+    for (size_t i = 0; i < count; i++)
+        clear += texture->rgba[i * 4 + 3] < ALPHA_HALF;
+    return clear * 200 > count && (count - clear) * 200 > count;
+}
+
+/* The alpha of one picture is what the other one shows, so that both together would count twice. */
+static bool same_opacity(const struct scene_texture *color, const struct scene_texture *opacity)
+{
+    if (color->width != opacity->width || color->height != opacity->height)
+        return false;
+    size_t count = (size_t)color->width * color->height, differing = 0, by_alpha = 0;
+    for (size_t i = 0; i < count; i++)
+        by_alpha += opacity->rgba[i * 4 + 3] < 255;
+    for (size_t i = 0; i < count; i++) {
+        int a = color->rgba[i * 4 + 3], b = opacity->rgba[i * 4 + (by_alpha ? 3 : 0)];
+        differing += abs(a - b) > 8;
+    }
+    return differing * 100 <= count;
+}
+
+static void set_cutouts(struct scene *scene, const struct mtl_entry *entry,
+                        struct scene_material *out)
+{
+    const struct scene_texture *color = texture_of(scene, out, SCENE_SLOT_DIFFUSE);
+    const struct scene_texture *opacity = texture_of(scene, out, SCENE_SLOT_OPACITY);
+    if (opacity) {
+        out->alpha = SCENE_ALPHA_MASK;
+        if (color && (color == opacity || same_opacity(color, opacity)))
+            scene_texture_use_init(&out->textures[SCENE_SLOT_OPACITY]);
+    } else if (color && has_cutouts(color)) {
+        out->alpha = SCENE_ALPHA_MASK;
+        scene_note(scene, SCENE_NOTE_INFO, "%s: material `%s` is cut out by the alpha of `%s`",
+                   path_name(entry->file), entry->name, path_name(color->name));
+    }
+}
+
+/* --- glass ---------------------------------------------------------------------------------- */
+
+static float largest(const float *rgb)
+{
+    return fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+}
+static float smallest(const float *rgb)
+{
+    return fminf(rgb[0], fminf(rgb[1], rgb[2]));
+}
+
+/* Well-known files (McGuire's archive, and what Mineways writes) hold in Tf the share that is held
+   back: 0.1 for clear glass, or 1 minus the surface's colour. So a filter that would pass nearly
+   nothing, and a filter whose complement has the hue of Kd, are turned round. */
+static bool filter_is_inverted(const struct mtl_entry *entry)
+{
+    const float *tf = entry->colors[MTL_TF], *kd = entry->colors[MTL_KD];
+    if (largest(tf) <= 0.2f)
+        return true;
+    bool hue = largest(kd) - smallest(kd) > 0.2f && entry->has_color[MTL_KD];
+    if (!hue || largest(tf) > 1.0f)
+        return false;
+    double dot = 0, tt = 0, kk = 0;
+    for (int i = 0; i < 3; i++) {
+        double held = 1.0 - tf[i];
+        dot += held * kd[i];
+        tt += held * held;
+        kk += (double)kd[i] * kd[i];
+    }
+    return tt > 0 && dot / sqrt(tt * kk) > 0.99;
+}
+
+static void set_transmission(struct scene *scene, const struct mtl_entry *entry,
+                             struct scene_material *out)
+{
+    const float *tf = entry->colors[MTL_TF];
+    float d = entry->has_number[MTL_D] ? entry->numbers[MTL_D] : 1.0f;
+    bool filtered = entry->has_color[MTL_TF];
+    bool inverted = d >= 1 && filtered && filter_is_inverted(entry);
+    for (int i = 0; i < 3; i++) {
+        float pass = filtered ? fminf(inverted ? 1 - tf[i] : tf[i], 1.0f) : 1.0f;
+        if (d < 1)
+            pass = filtered && largest(tf) > 0 ? (1 - d) * tf[i] / largest(tf) : 1 - d;
+        out->transmission[i] = pass;
+    }
+    if (inverted)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%s:%u: material `%s`: Tf %g %g %g is read as the share held back",
+                   path_name(entry->file), entry->line, entry->name, (double)tf[0], (double)tf[1],
+                   (double)tf[2]);
+}
+
+/* --- the rest ------------------------------------------------------------------------------- */
+
+static void set_color(const struct mtl_entry *entry, enum mtl_color color, float otherwise,
+                      float *out)
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = entry->has_color[color] ? entry->colors[color][i] : otherwise;
+}
+
+static void set_colors(const struct mtl_entry *entry, bool ambient_known,
+                       struct scene_material *out)
+{
+    const struct mtl_texture *maps = entry->maps;
+    set_color(entry, MTL_KD, maps[MTL_MAP_KD].file ? 1.0f : 0.7f, out->diffuse);
+    set_color(entry, MTL_KS, maps[MTL_MAP_KS].file ? 1.0f : 0.0f, out->specular);
+    set_color(entry, MTL_KE, maps[MTL_MAP_KE].file ? 1.0f : 0.0f, out->emission);
+    /* A library in which every Ka is 0 was written by something that knows no ambient light. */
+    if (ambient_known)
+        set_color(entry, MTL_KA, 1.0f, out->ambient);
+    if (entry->has_number[MTL_NS])
+        out->shininess = fmaxf(entry->numbers[MTL_NS], 0.0f);
+    if (entry->has_number[MTL_NI] && entry->numbers[MTL_NI] > 0)
+        out->ior = entry->numbers[MTL_NI];
+}
+
+static int32_t class_of(struct scene *scene, const struct mtl_entry *entry)
+{
+    if (!entry->has_number[MTL_ILLUM])
+        return 2;
+    float illum = entry->numbers[MTL_ILLUM];
+    if (illum >= 0 && illum <= 10 && illum == floorf(illum))
+        return (int32_t)illum;
+    scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: material `%s`: illum %g is taken as 2",
+               path_name(entry->file), entry->line, entry->name, (double)illum);
+    return 2;
+}
+
+static void set_opacity(const struct mtl_entry *entry, struct scene_material *out)
+{
+    float d = entry->has_number[MTL_D] ? entry->numbers[MTL_D] : 1.0f;
+    out->opacity = fminf(fmaxf(d, 0.0f), 1.0f);
+    if (out->opacity < 1)
+        out->alpha = SCENE_ALPHA_BLEND;
+}
+
+static void set_class(struct scene *scene, const struct mtl_entry *entry,
+                      struct scene_material *out)
+{
+    bool glass = out->illum == 4 || out->illum == 6 || out->illum == 7;
+    bool mirror = glass || out->illum == 3 || out->illum == 5;
+    if (out->illum == 0)
+        out->model = SCENE_MODEL_UNLIT;
+    if (out->illum < 2)
+        memset(out->specular, 0, sizeof out->specular);
+    if (mirror)
+        memcpy(out->reflection, out->specular, sizeof out->reflection);
+    out->fresnel = out->illum == 5 || out->illum == 7;
+    out->thin_walled = out->illum == 4;
+    out->shadow_catcher = out->illum == 10;
+    if (glass)
+        set_transmission(scene, entry, out);
+    else
+        set_opacity(entry, out);
+    if (out->illum == 8)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%s:%u: material `%s`: illum 8 reflects without rays, drawn as illum 2",
+                   path_name(entry->file), entry->line, entry->name);
+}
+
+/* Pr and Pm are the metallic-roughness extension; they say nothing new beside mirrors and glass. */
+static void set_metal_rough(const struct mtl_entry *entry, struct scene_material *out)
+{
+    bool plain = out->illum == 1 || out->illum == 2 || out->illum == 8;
+    if (!plain || (!entry->has_number[MTL_PR] && !entry->has_number[MTL_PM]))
+        return;
+    out->model = SCENE_MODEL_METAL_ROUGH;
+    out->metallic = entry->has_number[MTL_PM] ? fminf(fmaxf(entry->numbers[MTL_PM], 0), 1) : 0;
+    out->roughness = entry->has_number[MTL_PR] ? fminf(fmaxf(entry->numbers[MTL_PR], 0), 1) : 1;
+    for (int i = 0; i < 3; i++)
+        out->specular[i] = 1;
+}
+
+whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, bool ambient_known,
+                         const struct load_params *params, struct scene_material *out)
+{
+    static const struct {
+        enum mtl_map map;
+        enum scene_slot slot;
+    } slots[] = {
+        {MTL_MAP_KD, SCENE_SLOT_DIFFUSE},  {MTL_MAP_KS, SCENE_SLOT_SPECULAR},
+        {MTL_MAP_KE, SCENE_SLOT_EMISSION}, {MTL_MAP_D, SCENE_SLOT_OPACITY},
+        {MTL_MAP_BUMP, SCENE_SLOT_BUMP},   {MTL_MAP_NORMAL, SCENE_SLOT_NORMAL},
+    };
+    scene_material_init(out, entry->name);
+    out->origin.file = string_copy(entry->file);
+    out->origin.line = entry->line;
+    if (!out->name || !out->origin.file)
+        return WHIT_ERROR_MEMORY;
+    out->illum = class_of(scene, entry);
+    set_colors(entry, ambient_known, out);
+    set_class(scene, entry, out);
+    set_metal_rough(entry, out);
+    for (size_t i = 0; i < sizeof slots / sizeof *slots; i++) {
+        whit_result result = add_map(scene, entry, slots[i].map, slots[i].slot, params, out);
+        if (result != WHIT_OK)
+            return result;
+    }
+    if (entry->maps[MTL_MAP_NORMAL].file)
+        out->normal_scale = entry->maps[MTL_MAP_NORMAL].bump;
+    else if (entry->maps[MTL_MAP_BUMP].file)
+        out->normal_scale = entry->maps[MTL_MAP_BUMP].bump;
+    set_cutouts(scene, entry, out);
+    return WHIT_OK;
+}
