@@ -1,0 +1,327 @@
+/* What scene_freeze drops, mends, refuses and makes up. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/scene.h"
+#include "scene/shapes.h"
+
+static void *copy_of(const void *data, size_t size_bytes)
+{
+    void *copy = malloc(size_bytes);
+    assert_non_null(copy);
+    memcpy(copy, data, size_bytes);
+    return copy;
+}
+
+static struct scene_mesh make_mesh(const float *positions, uint32_t vertices,
+                                   const uint32_t *indices, uint32_t triangles)
+{
+    return (struct scene_mesh){
+        .name = string_copy("m"),
+        .vertex_count = vertices,
+        .triangle_count = triangles,
+        .positions = copy_of(positions, vertices * 3 * sizeof(float)),
+        .indices = copy_of(indices, triangles * 3 * sizeof(uint32_t)),
+    };
+}
+
+static void place(struct scene *scene, uint32_t mesh, uint32_t node)
+{
+    struct scene_instance instance = {.name = string_copy("i"), .mesh = mesh, .node = node};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+static struct scene *scene_of(struct scene_mesh mesh)
+{
+    struct scene *scene = scene_create(NULL, "test");
+    assert_non_null(scene);
+    place(scene, scene_add_mesh(scene, mesh), SCENE_NONE);
+    return scene;
+}
+
+static bool noted(const struct scene *scene, const char *text)
+{
+    for (uint32_t i = 0; i < scene->note_count; ++i) {
+        if (strstr(scene->notes[i].text, text))
+            return true;
+    }
+    return false;
+}
+
+static struct scene_mesh box_mesh(void)
+{
+    struct scene_mesh mesh;
+    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
+    mesh.name = string_copy("box");
+    return mesh;
+}
+
+static void bad_triangles_are_dropped_and_counted(void **state)
+{
+    (void)state;
+    const float p[] = {0,          0,      0, 1,     0, 0, 0,      1,     0, /* 0 1 2 */
+                       (float)NAN, 0,      0, 2e18f, 0, 0,                   /* 3 4: unusable */
+                       2,          0,      0, 1,     0, 0, 1e-30f, 0,     0, /* 5 6 7 */
+                       0,          1e-30f, 0, 1e17f, 0, 0, 0,      1e17f, 0};
+    const uint32_t indices[] = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0,  1, 99, 0, 1,
+                                5, 1, 6, 2, 0, 7, 8, 0, 9, 10, 2, 1,  0};
+    struct scene_mesh mesh = make_mesh(p, 11, indices, 9);
+    const struct scene_group groups[] = {{string_copy("a"), 0, 3}, {string_copy("b"), 3, 6}};
+    mesh.groups = copy_of(groups, sizeof groups);
+    mesh.group_count = 2;
+    mesh.materials = calloc(9, sizeof(uint32_t));
+    struct scene *scene = scene_of(mesh);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    const struct scene_mesh *m = &scene->meshes[0];
+    /* Kept: 0 1 2, the tiny 0 7 8, the huge 0 9 10, and 2 1 0. */
+    assert_int_equal(m->triangle_count, 4);
+    assert_int_equal(m->indices[4], 7);
+    assert_int_equal(m->indices[7], 9);
+    assert_int_equal(scene->triangle_total, 4);
+    assert_true(noted(scene,
+                      "dropped 5 triangles (1 with indices out of range, 2 with vertices not "
+                      "finite or beyond 1e18, 2 without area)"));
+    assert_int_equal(m->groups[0].triangle_count, 1);
+    assert_int_equal(m->groups[1].first_triangle, 1);
+    assert_int_equal(m->groups[1].triangle_count, 3);
+    assert_true(m->hi[0] == 1e17f && m->lo[0] == 0.0f);
+    assert_true(m->positions[9] == 0.0f); /* the NaN is gone */
+    scene_destroy(scene);
+}
+
+static void attributes_are_mended(void **state)
+{
+    (void)state;
+    const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};
+    const uint32_t indices[] = {0, 1, 2};
+    const float normals[] = {0, 0, 0, (float)NAN, 0, 1, 0, 0, -3, 0, 0, 0};
+    const float uvs[] = {0.5f, 0.25f, (float)INFINITY, 0, 2e9f, 1, 0, 0};
+    struct scene_mesh mesh = make_mesh(p, 4, indices, 1);
+    mesh.normals = copy_of(normals, sizeof normals);
+    mesh.uvs[0] = copy_of(uvs, sizeof uvs);
+    struct scene *scene = scene_of(mesh);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    const struct scene_mesh *m = &scene->meshes[0];
+    const float mended[] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 1};
+    const float mended_uvs[] = {0.5f, 0.25f, 0, 0, 0, 0, 0, 0};
+    assert_memory_equal(m->normals, mended, sizeof mended);
+    assert_memory_equal(m->uvs[0], mended_uvs, sizeof mended_uvs);
+    assert_true(noted(scene, "3 normals"));
+    assert_true(noted(scene, "2 texture coordinates"));
+    scene_destroy(scene);
+}
+
+static void materials_are_mended(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_of(box_mesh());
+    struct scene_material material;
+    scene_material_init(&material, "odd");
+    material.diffuse[0] = (float)NAN;
+    material.diffuse[1] = -1.0f;
+    material.ior = 0.0f;
+    scene_add_material(scene, material);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    const struct scene_material *m = &scene->materials[0];
+    assert_true(m->diffuse[0] == 0.7f && m->diffuse[1] == 0.0f && m->ior == 1.5f);
+    assert_true(noted(scene, "material `odd`: 3 values"));
+    scene_destroy(scene);
+}
+
+static void broken_references_are_refused(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_of(box_mesh());
+    scene->meshes[0].materials[3] = 7;
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+    scene = scene_of(box_mesh());
+    place(scene, 5, SCENE_NONE);
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+    scene = scene_of(box_mesh());
+    struct scene_node node;
+    scene_node_init(&node, "n", 0);
+    scene_add_node(scene, node); /* its own parent */
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+    scene = scene_of(box_mesh());
+    struct scene_material material;
+    scene_material_init(&material, "m");
+    material.textures[SCENE_SLOT_DIFFUSE].texture = 0;
+    scene_add_material(scene, material);
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+}
+
+static void singular_instances_and_unused_meshes_go(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_create(NULL, "test");
+    scene_add_mesh(scene, box_mesh()); /* unused */
+    uint32_t mesh = scene_add_mesh(scene, box_mesh());
+    struct scene_node node;
+    scene_node_init(&node, "flat", SCENE_NONE);
+    node.scale[1] = 0.0;
+    uint32_t flat = scene_add_node(scene, node);
+    place(scene, mesh, flat);
+    place(scene, mesh, SCENE_NONE);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene->instance_count, 1);
+    assert_int_equal(scene->mesh_count, 1);
+    assert_int_equal(scene->instances[0].mesh, 0);
+    assert_true(noted(scene, "instance 0 `i` dropped"));
+    scene_destroy(scene);
+}
+
+static void empty_scene_is_a_background(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_create(NULL, "test");
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene->camera_count, 1);
+    assert_int_equal(scene->light_count, 1);
+    assert_int_equal(scene->triangle_total, 0);
+    assert_true(noted(scene, "nothing to draw"));
+    scene_destroy(scene);
+}
+
+/* The whole bounding sphere is inside the view, and the light comes from behind the camera. */
+static void missing_camera_and_light_are_made(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_of(box_mesh());
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    const struct scene_camera *camera = &scene->cameras[0];
+    const struct scene_light *light = &scene->lights[0];
+    double distance2 = 0.0, along = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double step = camera->target[i] - camera->eye[i];
+        distance2 += step * step;
+        along += step * light->direction[i];
+    }
+    assert_true(camera->made_by_whit && light->made_by_whit && scene->environment.made_by_whit);
+    assert_true(fabs(sqrt(distance2) * sin(0.5 * (double)camera->fov_y) - sqrt(3.0)) < 1e-6);
+    assert_true(along > 0.0);
+    assert_true(scene->ambient[0] == 0.1f && scene->environment.horizon[0] > 0.5f);
+    scene_destroy(scene);
+}
+
+static void own_light_gets_no_company(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_of(box_mesh());
+    struct scene_light light = {.kind = SCENE_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
+    scene_add_light(scene, light);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene->light_count, 1);
+    assert_true(scene->lights[0].color[2] == 0.0f);
+    assert_true(scene->ambient[0] == 0.0f && scene->environment.horizon[0] == 0.0f);
+    scene_destroy(scene);
+}
+
+static struct scene *panel_scene(float radiance)
+{
+    struct scene_mesh panel;
+    assert_int_equal(shape_plane(2.0, 1.0, 1, 1.0, &panel), WHIT_OK);
+    struct scene *scene = scene_of(box_mesh());
+    struct scene_material material;
+    scene_material_init(&material, "plain");
+    scene_add_material(scene, material);
+    scene_material_init(&material, "panel");
+    material.emission[0] = material.emission[1] = material.emission[2] = radiance;
+    uint32_t glowing = scene_add_material(scene, material);
+    for (uint32_t i = 0; i < panel.triangle_count; ++i)
+        panel.materials[i] = glowing;
+    struct scene_node node;
+    scene_node_init(&node, "up", SCENE_NONE);
+    node.translation[1] = 5.0;
+    node.scale[0] = 3.0;
+    uint32_t up = scene_add_node(scene, node);
+    place(scene, scene_add_mesh(scene, panel), up);
+    return scene;
+}
+
+/* The samples' intensities add up to radiance * world area / pi, and lie on the panel. */
+static void emissive_surfaces_become_lights(void **state)
+{
+    (void)state;
+    struct scene *scene = panel_scene(10.0f);
+    struct scene_pose pose;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(pose.light_count, 16);
+    double sum = 0.0, mean_x = 0.0;
+    for (uint32_t i = 0; i < pose.light_count; ++i) {
+        const struct scene_light *light = &pose.lights[i];
+        assert_int_equal(light->kind, SCENE_LIGHT_AREA_SAMPLE);
+        assert_true(fabs(light->position[1] - 5.0) < 1e-9 && fabs(light->position[0]) <= 3.0);
+        assert_true(fabs(light->position[2]) <= 0.5);
+        assert_true(fabs(light->direction[1] - 1.0) < 1e-12);
+        sum += (double)light->color[0];
+        mean_x += light->position[0] / 16.0;
+    }
+    assert_true(fabs(sum - 10.0 * 6.0 / 3.14159265358979) < 1e-4);
+    assert_true(fabs(mean_x) < 0.3);
+    assert_true(scene->ambient[0] == 0.03f);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static void faint_glow_lights_nothing(void **state)
+{
+    (void)state;
+    struct scene *scene = panel_scene(0.001f);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene->light_count, 1);
+    assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
+    scene_destroy(scene);
+}
+
+static uint64_t hash_of(float diffuse, float move)
+{
+    struct scene *scene = scene_of(box_mesh());
+    struct scene_material material;
+    scene_material_init(&material, "m");
+    material.diffuse[0] = diffuse;
+    scene_add_material(scene, material);
+    scene->meshes[0].positions[0] += move;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    uint64_t hash = scene->hash;
+    scene_destroy(scene);
+    return hash;
+}
+
+static void hash_follows_content(void **state)
+{
+    (void)state;
+    assert_true(hash_of(0.5f, 0.0f) == hash_of(0.5f, 0.0f));
+    assert_true(hash_of(0.5f, 0.0f) != hash_of(0.6f, 0.0f));
+    assert_true(hash_of(0.5f, 0.0f) != hash_of(0.5f, 0.125f));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_triangles_are_dropped_and_counted),
+        cmocka_unit_test(attributes_are_mended),
+        cmocka_unit_test(materials_are_mended),
+        cmocka_unit_test(broken_references_are_refused),
+        cmocka_unit_test(singular_instances_and_unused_meshes_go),
+        cmocka_unit_test(empty_scene_is_a_background),
+        cmocka_unit_test(missing_camera_and_light_are_made),
+        cmocka_unit_test(own_light_gets_no_company),
+        cmocka_unit_test(emissive_surfaces_become_lights),
+        cmocka_unit_test(faint_glow_lights_nothing),
+        cmocka_unit_test(hash_follows_content),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

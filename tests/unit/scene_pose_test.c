@@ -1,0 +1,254 @@
+/* Animation against values worked out by hand, and the effects that a scene calls for. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/scene.h"
+#include "scene/shapes.h"
+
+static float *copy_of(const float *values, size_t count)
+{
+    float *copy = malloc(count * sizeof *copy);
+    assert_non_null(copy);
+    memcpy(copy, values, count * sizeof *copy);
+    return copy;
+}
+
+/* A box below a moving node below a still one at x = 10. */
+static struct scene *moving_scene(enum scene_path path, enum scene_interpolation interpolation,
+                                  const float *times, uint32_t keys, const float *values,
+                                  size_t value_count)
+{
+    struct scene *scene = scene_create(NULL, "test");
+    struct scene_mesh mesh;
+    struct scene_node node;
+    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
+    scene_add_mesh(scene, mesh);
+    scene_node_init(&node, "still", SCENE_NONE);
+    node.translation[0] = 10.0;
+    scene_add_node(scene, node);
+    scene_node_init(&node, "moving", 0);
+    scene_add_node(scene, node);
+    scene_add_instance(scene, (struct scene_instance){.name = string_copy("box"), .node = 1});
+    scene_add_channel(scene, (struct scene_channel){.node = 1,
+                                                    .path = path,
+                                                    .interpolation = interpolation,
+                                                    .key_count = keys,
+                                                    .times_s = copy_of(times, keys),
+                                                    .values = copy_of(values, value_count)});
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static struct affine matrix_at(const struct scene *scene, double time_s)
+{
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, time_s, &pose), WHIT_OK);
+    struct affine matrix = pose.instances[0];
+    scene_pose_finish(&pose);
+    return matrix;
+}
+
+static void assert_near(double a, double b)
+{
+    assert_true(fabs(a - b) < 1e-6);
+}
+
+static void linear_and_held_ends(void **state)
+{
+    (void)state;
+    const float times[] = {1, 2, 4}, values[] = {0, 0, 0, 4, 2, 0, 4, 2, 8};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values, 9);
+    assert_near((double)scene->time_end_s, 4.0);
+    assert_near(matrix_at(scene, -5.0).m[3], 10.0);
+    assert_near(matrix_at(scene, 1.25).m[3], 11.0);
+    assert_near(matrix_at(scene, 1.25).m[7], 0.5);
+    assert_near(matrix_at(scene, 2.0).m[3], 14.0);
+    assert_near(matrix_at(scene, 3.5).m[11], 6.0);
+    assert_near(matrix_at(scene, 99.0).m[11], 8.0);
+    scene_destroy(scene);
+}
+
+static void steps_hold_until_the_next_key(void **state)
+{
+    (void)state;
+    const float times[] = {0, 1, 2}, values[] = {1, 0, 0, 2, 0, 0, 3, 0, 0};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values, 9);
+    assert_near(matrix_at(scene, 0.999).m[3], 11.0);
+    assert_near(matrix_at(scene, 1.0).m[3], 12.0);
+    assert_near(matrix_at(scene, 1.999).m[3], 12.0);
+    assert_near(matrix_at(scene, 2.0).m[3], 13.0);
+    scene_destroy(scene);
+}
+
+/* Tangents are per second: with dt = 2 they count double. p(s) for values 0 -> 1, slopes 3 and 5.
+ */
+static void cubic_is_hermite(void **state)
+{
+    (void)state;
+    const float times[] = {0, 2};
+    const float values[] = {7, 7, 7, 0, 0, 0, 3, 0, 0, 5, 0, 0, 1, 0, 0, 7, 7, 7};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values, 18);
+    for (int i = 1; i < 8; ++i) {
+        double s = i / 8.0, s2 = s * s, s3 = s2 * s;
+        double expected =
+            2.0 * 3.0 * (s3 - 2.0 * s2 + s) + (3.0 * s2 - 2.0 * s3) + 2.0 * 5.0 * (s3 - s2);
+        assert_near(matrix_at(scene, 2.0 * s).m[3], 10.0 + expected);
+    }
+    assert_near(matrix_at(scene, 0.0).m[3], 10.0);
+    assert_near(matrix_at(scene, 2.0).m[3], 11.0);
+    scene_destroy(scene);
+}
+
+static void rotation_is_slerp_by_the_shorter_way(void **state)
+{
+    (void)state;
+    /* 0 to 90 degrees about y, the second key written with its sign turned. */
+    const float half = 0.70710678f, times[] = {0, 1};
+    const float values[] = {0, 0, 0, 1, 0, -half, 0, -half};
+    struct scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    for (int i = 0; i <= 4; ++i) {
+        double angle = i / 4.0 * 1.5707963267948966;
+        struct affine matrix = matrix_at(scene, i / 4.0);
+        assert_near(matrix.m[0], cos(angle));
+        assert_near(matrix.m[2], sin(angle));
+    }
+    scene_destroy(scene);
+}
+
+/* Equal keys must not divide by the sine of nothing. */
+static void rotation_between_equal_keys(void **state)
+{
+    (void)state;
+    const float times[] = {0, 1}, values[] = {0, 0, 0, 2, 0, 0, 0, 2};
+    struct scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    struct affine matrix = matrix_at(scene, 0.5);
+    assert_near(matrix.m[0], 1.0);
+    assert_near(matrix.m[5], 1.0);
+    scene_destroy(scene);
+}
+
+static void vanishing_scale_keeps_an_inverse(void **state)
+{
+    (void)state;
+    const float times[] = {0, 1}, values[] = {0, 0, 0, 1, 1, 1};
+    struct scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values, 6);
+    assert_true(matrix_at(scene, 0.0).m[0] > 0.0 && matrix_at(scene, 0.0).m[0] < 1e-5);
+    assert_near(matrix_at(scene, 0.5).m[0], 0.5);
+    scene_destroy(scene);
+}
+
+static void unordered_times_are_dropped(void **state)
+{
+    (void)state;
+    const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    assert_int_equal(scene->channel_count, 0);
+    assert_near(matrix_at(scene, 0.0).m[3], 10.0);
+    scene_destroy(scene);
+}
+
+static void lights_cameras_and_bounds_follow_their_nodes(void **state)
+{
+    (void)state;
+    const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    scene->frozen = false; /* add to it after all */
+    scene_add_light(scene, (struct scene_light){.kind = SCENE_LIGHT_POINT,
+                                                .node = 1,
+                                                .position = {1, 0, 0},
+                                                .direction = {0, -1, 0}});
+    scene_add_camera(
+        scene, (struct scene_camera){.node = 1, .eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y = 1.0f});
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.5, &pose), WHIT_OK);
+    const struct scene_light *light = &pose.lights[pose.light_count - 1];
+    const struct scene_camera *camera = &pose.cameras[pose.camera_count - 1];
+    assert_near(light->position[0], 11.0);
+    assert_near(light->position[1], 2.0);
+    assert_near(camera->eye[1], 2.0);
+    assert_near(camera->target[0], 10.0);
+    assert_near(pose.lo[1], 1.0);
+    assert_near(pose.hi[0], 11.0);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static struct scene *glass_scene(void)
+{
+    struct scene *scene = scene_create(NULL, "test");
+    struct scene_mesh mesh;
+    struct scene_material material;
+    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
+    free(mesh.normals);
+    mesh.normals = NULL;
+    scene_add_mesh(scene, mesh);
+    scene_add_instance(scene, (struct scene_instance){.node = SCENE_NONE});
+    scene_material_init(&material, "glass");
+    material.origin = (struct scene_origin){string_copy("models/box.mtl"), 41};
+    material.illum = 7;
+    material.fresnel = true;
+    material.transmission[0] = 1.0f;
+    scene_add_material(scene, material);
+    scene_material_init(&material, "worn by nothing");
+    material.textures[SCENE_SLOT_NORMAL].texture = 0;
+    material.alpha = SCENE_ALPHA_MASK;
+    material.absorption[0] = 1.0f;
+    scene_add_material(scene, material);
+    scene_add_texture(scene, (struct scene_texture){string_copy("t"), 1, 1, calloc(4, 1)});
+    scene_add_light(scene, (struct scene_light){.name = string_copy("sun"),
+                                                .kind = SCENE_LIGHT_DIRECTIONAL,
+                                                .node = SCENE_NONE,
+                                                .color = {1, 1, 1}});
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static void effects_have_reasons(void **state)
+{
+    (void)state;
+    struct scene *scene = glass_scene();
+    struct scene_effects effects;
+    scene_effects_scan(scene, &effects);
+    assert_string_equal(effects.reasons[SCENE_EFFECT_REFRACTION],
+                        "material `glass`, illum 7, box.mtl:41");
+    assert_true(effects.called[SCENE_EFFECT_FRESNEL]);
+    assert_true(effects.called[SCENE_EFFECT_REFLECTION]); /* glass reflects by Fresnel */
+    assert_true(effects.called[SCENE_EFFECT_DIRECTIONAL_LIGHTS]);
+    assert_string_equal(effects.reasons[SCENE_EFFECT_SHADOWS], "light `sun`");
+    static const enum scene_effect others[] = {
+        SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,        SCENE_EFFECT_TEXTURES,
+        SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_EMISSION,       SCENE_EFFECT_POINT_LIGHTS,
+        SCENE_EFFECT_SPOT_LIGHTS, SCENE_EFFECT_AREA_LIGHTS,    SCENE_EFFECT_ENVIRONMENT_MAP,
+        SCENE_EFFECT_METAL_ROUGH, SCENE_EFFECT_SMOOTH_NORMALS, SCENE_EFFECT_VERTEX_COLORS,
+        SCENE_EFFECT_INSTANCES,   SCENE_EFFECT_ORTHOGRAPHIC,   SCENE_EFFECT_HIGHLIGHTS};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i)
+        assert_false(effects.called[others[i]]);
+    for (int i = 0; i < SCENE_EFFECT_COUNT; ++i)
+        assert_non_null(scene_effect_name((enum scene_effect)i));
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_and_held_ends),
+        cmocka_unit_test(steps_hold_until_the_next_key),
+        cmocka_unit_test(cubic_is_hermite),
+        cmocka_unit_test(rotation_is_slerp_by_the_shorter_way),
+        cmocka_unit_test(rotation_between_equal_keys),
+        cmocka_unit_test(vanishing_scale_keeps_an_inverse),
+        cmocka_unit_test(unordered_times_are_dropped),
+        cmocka_unit_test(lights_cameras_and_bounds_follow_their_nodes),
+        cmocka_unit_test(effects_have_reasons),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
