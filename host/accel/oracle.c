@@ -22,13 +22,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "accel/accel.h"
+#include "accel/accel_inside.h"
 
-#define ROUNDING   0x1p-24
-#define DENORMAL   0x1p-149
+#define ROUNDING            0x1p-24
+#define DENORMAL            0x1p-149
 /* Boxes grow by this much of the distance to the ray's origin: what the float test may still hit
    lies within 16 roundings of it. */
-#define BOX_GROWTH 0x1p-18
+#define BOX_GROWTH          0x1p-18
+#define BOX_GROWTH_INSTANCE 0x1p-14 /* of the tree over instances: maps stretch errors */
 
 enum { STACK_SIZE = 512 };
 
@@ -39,6 +40,7 @@ struct probe {
     double shear[3];
     double t_min, t_max;
     double origin_error_largest;
+    double box_growth;
 };
 
 /* What the exact test says of one triangle, and what it would take to turn that around. */
@@ -82,10 +84,11 @@ static void probe_shear(struct probe *p)
         fmax(fmax(p->origin_error[0], p->origin_error[1]), p->origin_error[2]);
 }
 
-static struct probe probe_world(const struct gpu_ray *ray)
+static struct probe probe_world(const struct gpu_ray *ray, double growth)
 {
     struct probe p = {.t_min = (double)ray->t_min,
-                      .t_max = (double)(ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX)};
+                      .t_max = (double)(ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX),
+                      .box_growth = growth};
     for (int i = 0; i < 3; ++i) {
         p.origin[i] = (double)ray->origin[i];
         p.dir[i] = (double)ray->dir[i];
@@ -99,7 +102,7 @@ static struct probe probe_local(const struct probe *world, const struct gpu_inst
 {
     const float *rows[3] = {in->inverse0, in->inverse1, in->inverse2};
     const float at[3] = {in->origin_x, in->origin_y, in->origin_z};
-    struct probe p = {.t_min = world->t_min, .t_max = world->t_max};
+    struct probe p = {.t_min = world->t_min, .t_max = world->t_max, .box_growth = BOX_GROWTH};
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
             double m = (double)rows[r][c], relative = world->origin[c] - (double)at[c];
@@ -252,28 +255,17 @@ static void judge(struct search *s, const struct verdict *v, const struct probe 
     s->margin = fmin(s->margin, margin);
 }
 
-static void visit_triangle(struct search *s, const struct probe *p, uint32_t record,
-                           uint32_t instance)
-{
-    const struct gpu_triangle *triangle = &s->accel->triangles[record];
-    struct verdict v = probe_triangle(p, triangle);
-    if (s->judging)
-        judge(s, &v, p, instance, triangle->primitive);
-    else if (v.hit && v.t >= p->t_min && v.t <= p->t_max)
-        keep_nearest(s, &v, instance, triangle->primitive);
-}
-
 /* Entry distance into the grown box; infinity: not entered within the interval that matters. */
-static double box_entry(const struct search *s, const struct probe *p,
-                        const struct gpu_bvh_node *node)
+static double box_entry(const struct search *s, const struct probe *p, const float box_lo[3],
+                        const float box_hi[3])
 {
     double lo[3], hi[3], far = 0.0;
     for (int i = 0; i < 3; ++i) {
-        lo[i] = (double)node->lo[i] - p->origin[i];
-        hi[i] = (double)node->hi[i] - p->origin[i];
+        lo[i] = (double)box_lo[i] - p->origin[i];
+        hi[i] = (double)box_hi[i] - p->origin[i];
         far = fmax(far, fmax(fabs(lo[i]), fabs(hi[i])));
     }
-    double growth = far * BOX_GROWTH + 16.0 * p->origin_error_largest;
+    double growth = far * p->box_growth + 16.0 * p->origin_error_largest;
     double start = -INFINITY, end = INFINITY;
     for (int i = 0; i < 3; ++i) {
         if (p->dir[i] == 0.0) {
@@ -290,6 +282,21 @@ static double box_entry(const struct search *s, const struct probe *p,
     return reached ? start : INFINITY;
 }
 
+static void visit_triangle(struct search *s, const struct probe *p, uint32_t record,
+                           uint32_t instance)
+{
+    const struct gpu_triangle *triangle = &s->accel->triangles[record];
+    /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
+    struct bvh_box box = accel_triangle_box(triangle->v0, triangle->v1, triangle->v2);
+    if (s->judging && box_entry(s, p, box.lo, box.hi) == INFINITY)
+        return;
+    struct verdict v = probe_triangle(p, triangle);
+    if (s->judging)
+        judge(s, &v, p, instance, triangle->primitive);
+    else if (v.hit && v.t >= p->t_min && v.t <= p->t_max)
+        keep_nearest(s, &v, instance, triangle->primitive);
+}
+
 typedef void (*leaf_fn)(struct search *s, const struct probe *p, const struct gpu_bvh_node *leaf,
                         uint32_t instance);
 
@@ -300,14 +307,15 @@ static void walk_tree(struct search *s, const struct probe *p, uint32_t root, le
     stack[top++] = root;
     while (top > 0) {
         const struct gpu_bvh_node *node = &s->accel->nodes[stack[--top]];
-        if (box_entry(s, p, node) == INFINITY)
+        if (box_entry(s, p, node->lo, node->hi) == INFINITY)
             continue;
         if (node->count > 0) {
             leaf(s, p, node, instance);
             continue;
         }
-        double a = box_entry(s, p, &s->accel->nodes[node->first]);
-        double b = box_entry(s, p, &s->accel->nodes[node->first + 1]);
+        const struct gpu_bvh_node *pair = &s->accel->nodes[node->first];
+        double a = box_entry(s, p, pair[0].lo, pair[0].hi);
+        double b = box_entry(s, p, pair[1].lo, pair[1].hi);
         uint32_t nearer = b < a ? 1 : 0;
         if (fmax(a, b) < INFINITY)
             stack[top++] = node->first + (1 - nearer);
@@ -366,7 +374,10 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
                                .second_t = INFINITY};
     if (!ray_is_usable(ray))
         return;
-    struct probe world = probe_world(ray);
+    struct probe world =
+        probe_world(ray, accel->single_identity ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
+    if (!(world.t_min <= world.t_max))
+        return;
     bool deep = accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;
     struct search s = {.accel = accel,
                        .brute = brute || deep,

@@ -242,6 +242,24 @@ static void exponential_scales(void **state)
     }
 }
 
+/* Two bins halve the extent, so each split takes off one box: deeper than any stack but for the
+   medians. */
+static void depth_is_capped(void **state)
+{
+    (void)state;
+    enum { COUNT = 230 };
+    struct bvh_box *boxes = boxes_alloc(COUNT);
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        float at = (float)ldexp(1.0, (int)i - 112);
+        boxes[i] = (struct bvh_box){{at, 0, 0}, {1.5f * at, 1.5f * at, 1.5f * at}};
+    }
+    struct bvh bvh;
+    build_and_check(boxes, COUNT, &(struct bvh_params){.bins = 2, .leaf_limit = 1}, &bvh);
+    assert_in_range(bvh.depth, 97, 127);
+    bvh_finish(&bvh);
+    free(boxes);
+}
+
 static void one_giant_and_many_tiny(void **state)
 {
     (void)state;
@@ -341,6 +359,10 @@ static void same_tree_for_any_order(void **state)
     enum { COUNT = 5000 };
     random_state = 8;
     struct bvh_box *boxes = soup(COUNT, 0.05f);
+    for (uint32_t i = 0; i < COUNT; ++i) { /* both zeros */
+        boxes[i].lo[2] = i % 2 ? 0.0f : -0.0f;
+        boxes[i].hi[2] = 0.01f + fabsf(boxes[i].hi[2]);
+    }
     struct bvh first, second;
     build_and_check(boxes, COUNT, NULL, &first);
     for (uint32_t i = COUNT - 1; i > 0; --i) {
@@ -356,6 +378,26 @@ static void same_tree_for_any_order(void **state)
     bvh_finish(&first);
     bvh_finish(&second);
     free(boxes);
+}
+
+/* Points in ten heaps on a line, shuffled: what is left of a median is not right of it. */
+static void medians_separate(void **state)
+{
+    (void)state;
+    enum { COUNT = 200 };
+    random_state = 13;
+    struct bvh_box boxes[COUNT];
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        float x = (float)(random_bits() % 10);
+        boxes[i] = (struct bvh_box){{x, 0, 0}, {x, 0, 0}};
+    }
+    struct bvh bvh;
+    struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
+    build_and_check(boxes, COUNT, &params, &bvh);
+    assert_int_equal(bvh.depth, 8);
+    for (uint32_t i = 2; i < bvh.node_count; i += 2)
+        assert_true(bvh.nodes[i].hi[0] <= bvh.nodes[i + 1].lo[0]);
+    bvh_finish(&bvh);
 }
 
 static void sah_is_better_than_medians(void **state)
@@ -609,11 +651,13 @@ int main(void)
         cmocka_unit_test(nested_with_one_centre),
         cmocka_unit_test(on_a_line_and_in_a_plane),
         cmocka_unit_test(exponential_scales),
+        cmocka_unit_test(depth_is_capped),
         cmocka_unit_test(one_giant_and_many_tiny),
         cmocka_unit_test(garbage_bits),
         cmocka_unit_test(extents_at_the_edge_of_floats),
         cmocka_unit_test(same_bytes_for_any_thread_count),
         cmocka_unit_test(same_tree_for_any_order),
+        cmocka_unit_test(medians_separate),
         cmocka_unit_test(sah_is_better_than_medians),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(broken_trees_are_refused),
