@@ -1,6 +1,6 @@
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "api/handles.h"
 
@@ -19,7 +19,9 @@ static void describe(const struct device_info *from, whit_device_info *to)
     snprintf(to->name, sizeof to->name, "%s", from->name);
     snprintf(to->driver, sizeof to->driver, "%s", from->driver);
     snprintf(to->api_version, sizeof to->api_version, "%s", from->api_version);
-    snprintf(to->kind, sizeof to->kind, "%s", device_kind_name(from->kind));
+    const char *kind = device_kind_name(from->kind);
+    for (size_t i = 0; kind[i] && i + 1 < sizeof to->kind; ++i)
+        to->kind[i] = (char)tolower((unsigned char)kind[i]);
     snprintf(to->why_not, sizeof to->why_not, "%s", from->why_not);
 }
 

@@ -2,3 +2,40 @@ whit_module(api
   SOURCES scene_api.c accel_api.c device_api.c renderer_api.c image_api.c file_api.c
   LINK whit_base whit_image whit_scene whit_load whit_accel whit_device whit_render)
 target_include_directories(whit_api PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/base>)
+
+# libwhit: the objects of all modules in one archive. Its users link `whit`; its headers are found
+# as <whit/whit.h>, and as "whit.h".
+set(library_modules base image scene load accel device render api kernels)
+list(TRANSFORM library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:whit_\\1>"
+  OUTPUT_VARIABLE library_objects)
+add_library(whit STATIC ${library_objects})
+add_library(whit::whit ALIAS whit)
+set_target_properties(whit PROPERTIES LINKER_LANGUAGE C)
+target_link_libraries(whit
+  PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
+  PRIVATE assimp::assimp PNG::PNG OpenEXR::OpenEXRCore PkgConfig::JANSSON Vulkan::Vulkan
+    Threads::Threads m)
+
+set(public_headers api/whit.h base/whit_base.h)
+foreach(header ${public_headers})
+  get_filename_component(name ${header} NAME)
+  configure_file(${header} ${PROJECT_BINARY_DIR}/include/whit/${name} COPYONLY)
+endforeach()
+target_include_directories(whit PUBLIC
+  $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+  $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include/whit>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/whit>)
+
+# find_package(whit)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/whit)
+configure_package_config_file(api/cmake/whitConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(TARGETS whit EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT whitTargets NAMESPACE whit:: DESTINATION ${package_dir})
+install(FILES ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake
+  ${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake DESTINATION ${package_dir})
+install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/whit)

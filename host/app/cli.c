@@ -1,0 +1,274 @@
+#include "app/cli.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <jansson.h>
+
+/* Time that interrupted work has to stop by itself; Ctrl+C takes 0.2 s at most. */
+enum { GRACE_MS = 120 };
+
+volatile bool cli_cancel;
+static volatile sig_atomic_t interrupt_signal;
+static timer_t grace_timer;
+static volatile sig_atomic_t has_grace_timer;
+static double limit_end_ms;
+static bool error_said;
+
+/* ---- Messages ---- */
+
+static void say(const char *kind, const char *format, va_list args)
+{
+    char text[4096];
+    vsnprintf(text, sizeof text, format, args);
+    /* Names come from files: nothing in them may steer the terminal. */
+    for (char *c = text; *c; ++c) {
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    }
+    fprintf(stderr, "whit: %s: %s\n", kind, text);
+}
+
+void cli_error(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say("error", format, args);
+    va_end(args);
+    error_said = true;
+}
+
+void cli_warning(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say("warning", format, args);
+    va_end(args);
+}
+
+void cli_note(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say("note", format, args);
+    va_end(args);
+}
+
+static void on_message(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (cli_cancel)
+        return;
+    if (level == WHIT_LOG_ERROR)
+        cli_error("%s", message);
+    else
+        cli_warning("%s", message);
+}
+
+const whit_log cli_log = {.fn = on_message, .level = WHIT_LOG_WARNING};
+const whit_log cli_log_errors = {.fn = on_message, .level = WHIT_LOG_ERROR};
+
+static int code_of(whit_result result)
+{
+    switch (result) {
+    case WHIT_OK:
+        return EXIT_FINE;
+    case WHIT_ERROR_FAILED:
+    case WHIT_ERROR_STATUS:
+        return EXIT_DIFFERS;
+    case WHIT_ERROR_USAGE:
+    case WHIT_ERROR_INPUT:
+    case WHIT_ERROR_OUTPUT:
+    case WHIT_ERROR_MEMORY:
+        return EXIT_USAGE;
+    case WHIT_ERROR_NO_DEVICE:
+    case WHIT_ERROR_DEVICE:
+        return EXIT_DEVICE;
+    case WHIT_ERROR_TIME_LIMIT:
+        return EXIT_TIME;
+    case WHIT_ERROR_CANCELLED:
+        return EXIT_INTERRUPTED;
+    }
+    return EXIT_DIFFERS;
+}
+
+int cli_exit_of(whit_result result)
+{
+    if (result == WHIT_OK)
+        return EXIT_FINE;
+    if (cli_cancel) {
+        fprintf(stderr, "whit: interrupted, nothing was written\n");
+        return interrupt_signal ? 128 + (int)interrupt_signal : EXIT_INTERRUPTED;
+    }
+    if (!error_said)
+        cli_error("%s", whit_result_name(result));
+    if (cli_time_over())
+        return EXIT_TIME;
+    return code_of(result);
+}
+
+/* ---- Interrupts and time limits ---- */
+
+static void put(const char *text)
+{
+    ssize_t written = write(STDERR_FILENO, text, strlen(text));
+    (void)written;
+}
+
+/* The work did not stop in time: it may be inside a driver or a compiler. */
+static void on_alarm(int number)
+{
+    (void)number;
+    whit_file_abandon_all();
+    if (interrupt_signal) {
+        put("\nwhit: interrupted, nothing was written\n");
+        _exit(128 + (int)interrupt_signal);
+    }
+    put("\nwhit: error: the time limit has passed\n");
+    _exit(EXIT_TIME);
+}
+
+static void on_interrupt(int number)
+{
+    int reason = errno;
+    cli_cancel = true;
+    if (interrupt_signal) {
+        whit_file_abandon_all();
+        _exit(128 + number);
+    }
+    interrupt_signal = number;
+    const struct itimerspec grace = {.it_value = {.tv_nsec = GRACE_MS * 1000000L}};
+    if (!has_grace_timer || timer_settime(grace_timer, 0, &grace, NULL) != 0) {
+        whit_file_abandon_all();
+        _exit(128 + number);
+    }
+    errno = reason;
+}
+
+void cli_catch_interrupts(void)
+{
+    struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGALRM};
+    struct sigaction action = {.sa_handler = on_alarm, .sa_flags = SA_RESTART};
+    sigfillset(&action.sa_mask);
+    sigaction(SIGALRM, &action, NULL);
+    has_grace_timer = timer_create(CLOCK_MONOTONIC, &event, &grace_timer) == 0;
+    action.sa_handler = on_interrupt;
+    sigaction(SIGTERM, &action, NULL);
+    /* Also where it was ignored, as in background jobs of scripts: who sends it there means it. */
+    sigaction(SIGINT, &action, NULL);
+    struct sigaction before;
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &action, NULL); /* not under nohup */
+}
+
+void cli_limit_time(double seconds)
+{
+    if (!(seconds > 0.0))
+        return;
+    limit_end_ms = whit_clock_ms() + seconds * 1e3;
+    /* Rendering stops by itself; whatever does not is ended a little later. */
+    double hard_s = seconds * 1.05 + 0.25;
+    struct itimerspec limit = {0};
+    limit.it_value.tv_sec = (time_t)hard_s;
+    limit.it_value.tv_nsec = (long)((hard_s - (double)limit.it_value.tv_sec) * 1e9);
+    if (has_grace_timer)
+        timer_settime(grace_timer, 0, &limit, NULL);
+}
+
+double cli_time_left_s(void)
+{
+    if (limit_end_ms == 0.0)
+        return 0.0;
+    double left_s = (limit_end_ms - whit_clock_ms()) * 1e-3;
+    return left_s > 1e-3 ? left_s : 1e-3;
+}
+
+bool cli_time_over(void)
+{
+    return limit_end_ms != 0.0 && whit_clock_ms() >= limit_end_ms;
+}
+
+/* ---- Output ---- */
+
+bool cli_can_write(const char *path)
+{
+    struct stat info;
+    whit_file *file;
+    /* Opening and closing a pipe would end its reader. */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
+        return true;
+    if (whit_file_begin(path, &cli_log, &file) != WHIT_OK)
+        return false;
+    whit_file_abandon(file);
+    return true;
+}
+
+int cli_finish_stdout(int status)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    cli_error("standard output: cannot write: %s", strerror(errno ? errno : EIO));
+    return status == EXIT_FINE ? EXIT_USAGE : status;
+}
+
+int cli_print_json(json_t *value)
+{
+    if (!value) {
+        cli_error("out of memory");
+        return EXIT_USAGE;
+    }
+    json_dumpf(value, stdout, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    json_decref(value);
+    putchar('\n');
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+/* ---- Progress ---- */
+
+enum { PROGRESS_WIDTH = 30, PROGRESS_QUIET_MS = 300, PROGRESS_EVERY_MS = 80 };
+
+void cli_progress_init(struct cli_progress *progress, bool quiet)
+{
+    const char *terminal = getenv("TERM");
+    const char *no_color = getenv("NO_COLOR");
+    *progress = (struct cli_progress){
+        .shown = !quiet && isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0,
+        .color = !(no_color && no_color[0]),
+        .start_ms = whit_clock_ms(),
+    };
+}
+
+void cli_progress_update(void *user, double done)
+{
+    struct cli_progress *progress = user;
+    double now_ms = whit_clock_ms();
+    double spent_ms = now_ms - progress->start_ms;
+    if (!progress->shown || spent_ms < PROGRESS_QUIET_MS ||
+        now_ms - progress->last_ms < PROGRESS_EVERY_MS)
+        return;
+    progress->last_ms = now_ms;
+    progress->drawn = true;
+    done = done < 0.0 ? 0.0 : done > 1.0 ? 1.0 : done;
+    char bar[PROGRESS_WIDTH + 1] = {0};
+    for (int i = 0; i < PROGRESS_WIDTH; ++i)
+        bar[i] = (double)i < done * PROGRESS_WIDTH ? '#' : '.';
+    fprintf(stderr, "\r%s[%s]%s %3d %%", progress->color ? "\033[36m" : "", bar,
+            progress->color ? "\033[0m" : "", (int)(done * 100.0));
+    if (done > 0.01)
+        fprintf(stderr, "  %.1f s left  ", spent_ms * 1e-3 * (1.0 - done) / done);
+    fflush(stderr);
+}
+
+void cli_progress_finish(struct cli_progress *progress)
+{
+    if (progress->drawn)
+        fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + 30, "");
+    progress->drawn = progress->shown = false;
+}

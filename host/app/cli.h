@@ -1,0 +1,118 @@
+/* What every command of the program shares: options, messages, interrupts, exit codes. */
+#ifndef APP_CLI_H
+#define APP_CLI_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "api/whit.h"
+
+enum cli_exit {
+    EXIT_FINE = 0,
+    EXIT_DIFFERS = 1, /* a result differs, or a promise was not kept */
+    EXIT_USAGE = 2,   /* bad usage, bad input, output that cannot be written */
+    EXIT_DEVICE = 3,
+    EXIT_TIME = 5,
+    EXIT_INTERRUPTED = 130,
+};
+
+/* ---- Options ---- */
+
+/* One long option; `value` names its argument, NULL when it takes none. `help` may have several
+   lines. */
+struct cli_option {
+    int id; /* > 0; also the short option when it is a character */
+    const char *name, *value, *help;
+};
+
+/* A subcommand. Its options end with a zeroed one; --help is added to them. */
+struct cli_command {
+    const char *name;
+    const char *arguments; /* "SCENE -o OUT" */
+    const char *summary;   /* one line, for the list of commands */
+    const char *details;   /* paragraphs below the options; may be NULL */
+    const struct cli_option *options;
+    int (*run)(const struct cli_command *command, int argc, char **argv);
+};
+
+/* Reads the arguments of one command. */
+struct cli_reader {
+    const struct cli_command *command;
+    int argc;
+    char **argv;
+    const struct cli_option *option; /* the current one */
+    const char *value;
+    const char *positional; /* the one argument that is not an option, or NULL */
+    bool done;              /* with `status`: no more options, or an error, or help was printed */
+    int status;             /* < 0: go on with the work; else exit with it */
+};
+
+void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
+                     char **argv);
+/* The id of the next option; 0 at the end. */
+int cli_next(struct cli_reader *reader);
+/* Says what is wrong with the usage and how to get help; false, so that parsers can return it.
+   Sets `status`. */
+bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(2, 3);
+
+/* Values of the current option; on nonsense they misuse() and return false. */
+bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint32_t *out);
+bool cli_number(struct cli_reader *reader, double least, double most, double *out);
+bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height);
+bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out);
+
+void cli_print_help(const struct cli_command *command, FILE *to);
+/* The name nearest to `word`, or NULL when none is near. */
+const char *cli_nearest(const char *word, const char *const *names, uint32_t count);
+
+/* ---- Messages ---- */
+
+void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);
+void cli_warning(const char *format, ...) WHIT_PRINTF(1, 2);
+void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
+
+/* The log of libwhit's calls: errors and warnings to stderr. While a scene loads only errors, for
+   the scene keeps its notes. */
+extern const whit_log cli_log;
+extern const whit_log cli_log_errors;
+
+/* The exit code for a failed call; makes sure that something was said. */
+int cli_exit_of(whit_result result);
+
+/* ---- Interrupts and time limits ---- */
+
+/* Set by SIGINT and SIGTERM. Should the work not have stopped a moment later, the handler ends the
+   process, with all unfinished files removed. */
+extern volatile bool cli_cancel;
+void cli_catch_interrupts(void);
+/* Ends the process with EXIT_TIME some time after `seconds`, for what does not watch the time by
+   itself. */
+void cli_limit_time(double seconds);
+/* Time left of the limit, at least a little; 0: no limit. */
+double cli_time_left_s(void);
+bool cli_time_over(void);
+
+/* ---- Output ---- */
+
+/* Says so and returns false when `path` cannot be written; leaves pipes and devices alone. */
+bool cli_can_write(const char *path);
+/* Flushes standard output; a failure is an error, for `whit ... > /dev/full`. */
+int cli_finish_stdout(int status);
+/* Prints a jansson value, keys in the order they were added. Takes over the reference; NULL means
+   that memory ran out. */
+struct json_t;
+int cli_print_json(struct json_t *value);
+
+/* ---- Progress ---- */
+
+struct cli_progress {
+    bool shown, drawn, color;
+    double start_ms, last_ms;
+};
+void cli_progress_init(struct cli_progress *progress, bool quiet);
+void cli_progress_update(void *progress, double done); /* whit_renderer_params.progress */
+void cli_progress_finish(struct cli_progress *progress);
+
+#endif

@@ -1,0 +1,36 @@
+/* The subcommands, and the pieces of `render` that stand alone. */
+#ifndef APP_COMMANDS_H
+#define APP_COMMANDS_H
+
+#include "app/job.h"
+
+extern const struct cli_command command_render, command_scene, command_trace, command_devices;
+
+/* What `whit render` was asked for beside the job. */
+struct render_request {
+    const char *output, *ids, *camera; /* ids, camera: NULL when not given */
+    uint32_t width, height, samples, depth, tile_size;
+    bool no_shadows, all_effects;
+};
+
+/* What a picture says about itself: only what decides its pixels, so that the same inputs give the
+   same bytes. */
+enum { RECIPE_TEXTS = 8 };
+struct recipe {
+    whit_text texts[RECIPE_TEXTS];
+    uint32_t count;
+    char *command, *options, *counters; /* owned */
+    char hash[17];
+    whit_device_info device;
+};
+
+/* False when memory ran out, which was said. */
+bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
+                 const whit_stats *stats);
+void recipe_finish(struct recipe *recipe);
+
+/* --stats of `whit render`: on standard output. */
+int stats_print(const struct job *job, const struct render_request *request,
+                const whit_stats *stats, double save_ms);
+
+#endif

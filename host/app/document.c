@@ -1,0 +1,144 @@
+#include "app/document.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cli.h"
+
+static void out_of_memory(void)
+{
+    whit_file_abandon_all();
+    cli_error("out of memory");
+    exit(EXIT_USAGE);
+}
+
+static json_t *must(json_t *value)
+{
+    if (!value)
+        out_of_memory();
+    return value;
+}
+
+json_t *document_object(void)
+{
+    return must(json_object());
+}
+
+json_t *document_array(void)
+{
+    return must(json_array());
+}
+
+void document_append(json_t *array, json_t *value)
+{
+    if (json_array_append_new(array, must(value)) != 0)
+        out_of_memory();
+}
+
+void document_put(json_t *object, const char *key, json_t *value)
+{
+    if (json_object_set_new(object, key, must(value)) != 0)
+        out_of_memory();
+}
+
+static json_t *from_text(const char *text)
+{
+    if (!text)
+        return json_null();
+    json_t *value = json_string(text);
+    if (value)
+        return value;
+    char *ascii = strdup(text);
+    if (!ascii)
+        out_of_memory();
+    for (char *c = ascii; c && *c; ++c) {
+        if ((unsigned char)*c >= 0x80)
+            *c = '?';
+    }
+    value = json_string(ascii);
+    free(ascii);
+    return value;
+}
+
+static json_t *from_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *from_float(float value)
+{
+    char text[32];
+    if (!isfinite(value))
+        return json_null();
+    for (int digits = 6; digits <= 9; ++digits) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value)
+            break;
+    }
+    return json_real(strtod(text, NULL));
+}
+
+void document_text(json_t *object, const char *key, const char *text)
+{
+    document_put(object, key, from_text(text));
+}
+
+void document_number(json_t *object, const char *key, double value)
+{
+    document_put(object, key, from_number(value));
+}
+
+void document_ms(json_t *object, const char *key, double time_ms)
+{
+    document_number(object, key, floor(time_ms * 1e3 + 0.5) * 1e-3);
+}
+
+void document_float(json_t *object, const char *key, float value)
+{
+    document_put(object, key, from_float(value));
+}
+
+void document_count(json_t *object, const char *key, uint64_t value)
+{
+    document_put(object, key, json_integer((json_int_t)value));
+}
+
+void document_flag(json_t *object, const char *key, bool value)
+{
+    document_put(object, key, json_boolean(value));
+}
+
+void document_hash(json_t *object, const char *key, uint64_t value)
+{
+    char text[17];
+    snprintf(text, sizeof text, "%016" PRIx64, value);
+    document_text(object, key, text);
+}
+
+void document_floats(json_t *object, const char *key, const float *values, uint32_t count)
+{
+    json_t *array = document_array();
+    for (uint32_t i = 0; i < count; ++i)
+        document_append(array, from_float(values[i]));
+    document_put(object, key, array);
+}
+
+void document_numbers(json_t *object, const char *key, const double *values, uint32_t count)
+{
+    json_t *array = document_array();
+    for (uint32_t i = 0; i < count; ++i)
+        document_append(array, from_number(values[i]));
+    document_put(object, key, array);
+}
+
+char *document_line(json_t *value)
+{
+    char *text = json_dumps(value, JSON_COMPACT | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    if (!text)
+        out_of_memory();
+    json_decref(value);
+    return text;
+}

@@ -1,0 +1,28 @@
+/* JSON documents. Values that JSON cannot hold become null, text that is not UTF-8 loses what is
+   not; when memory runs out the program ends. */
+#ifndef APP_DOCUMENT_H
+#define APP_DOCUMENT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <jansson.h>
+
+json_t *document_object(void);
+json_t *document_array(void);
+void document_append(json_t *array, json_t *value);                /* takes over `value` */
+void document_put(json_t *object, const char *key, json_t *value); /* likewise */
+
+void document_text(json_t *object, const char *key, const char *text); /* NULL: null */
+void document_number(json_t *object, const char *key, double value);
+void document_ms(json_t *object, const char *key, double time_ms); /* in whole microseconds */
+void document_float(json_t *object, const char *key, float value); /* shortest that reads back */
+void document_count(json_t *object, const char *key, uint64_t value);
+void document_flag(json_t *object, const char *key, bool value);
+void document_hash(json_t *object, const char *key, uint64_t value); /* 16 hex digits */
+void document_floats(json_t *object, const char *key, const float *values, uint32_t count);
+void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
+/* In one line; free() it. Takes over `value`. */
+char *document_line(json_t *value);
+
+#endif

@@ -1,0 +1,189 @@
+#include "app/job.h"
+
+#include <string.h>
+
+enum { NOTES_SHOWN = 20, FRAMES_MAX = 1000000000 };
+
+void job_init(struct job *job)
+{
+    *job = (struct job){.fps = 24.0, .start_ms = whit_clock_ms()};
+}
+
+static void read_build(struct job *job, struct cli_reader *reader)
+{
+    static const char binned[] = "binned:";
+    if (strncmp(reader->value, binned, sizeof binned - 1) == 0) {
+        const char *whole = reader->value;
+        reader->value += sizeof binned - 1;
+        if (!cli_unsigned(reader, 2, 256, &job->bins))
+            return;
+        reader->value = whole;
+        job->build = WHIT_BUILD_BINNED;
+        return;
+    }
+    static const char *const choices[] = {"binned", "median", NULL};
+    uint32_t choice;
+    if (!cli_choice(reader, choices, &choice))
+        return;
+    job->build = choice == 0 ? WHIT_BUILD_BINNED : WHIT_BUILD_MEDIAN;
+    job->bins = 0;
+}
+
+static void read_load_path(struct job *job, struct cli_reader *reader)
+{
+    static const char *const choices[] = {"auto", "storage", "texel", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        job->load_path = choice ? choices[choice] : NULL;
+}
+
+static void read_stats(struct job *job, struct cli_reader *reader)
+{
+    static const char *const choices[] = {"text", "json", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        job->stats = choice ? JOB_STATS_JSON : JOB_STATS_TEXT;
+}
+
+bool job_option(struct job *job, struct cli_reader *reader, int id)
+{
+    switch (id) {
+    case JOB_DEVICE:
+        if (!reader->value[0])
+            cli_misuse(reader, "--device needs a name or a number");
+        job->device_name = reader->value;
+        return true;
+    case JOB_TIME:
+        job->has_time = cli_number(reader, -1e6, 1e6, &job->time_s);
+        return true;
+    case JOB_FRAME:
+        job->has_frame = cli_unsigned(reader, 0, FRAMES_MAX, &job->frame);
+        return true;
+    case JOB_FPS:
+        cli_number(reader, 1e-3, 1e6, &job->fps);
+        return true;
+    case JOB_BUILD:
+        read_build(job, reader);
+        return true;
+    case JOB_THREADS:
+        cli_unsigned(reader, 0, 1024, &job->threads);
+        return true;
+    case JOB_TEXTURE_LIMIT:
+        cli_unsigned(reader, 1, 16384, &job->texture_limit);
+        return true;
+    case JOB_LOAD_PATH:
+        read_load_path(job, reader);
+        return true;
+    case JOB_VALIDATION:
+        job->validation = true;
+        return true;
+    case JOB_TIME_LIMIT:
+        cli_number(reader, 1e-3, 1e6, &job->time_limit_s);
+        return true;
+    case JOB_STATS:
+        read_stats(job, reader);
+        return true;
+    case 'q':
+        job->quiet = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool job_options_done(struct job *job, struct cli_reader *reader)
+{
+    if (reader->status >= 0)
+        return false;
+    if (!reader->positional)
+        return cli_misuse(reader, "a scene is missing");
+    if (job->has_time && job->has_frame)
+        return cli_misuse(reader, "--time and --frame are two ways to say the same");
+    if (job->has_frame)
+        job->time_s = (double)job->frame / job->fps;
+    job->scene_path = reader->positional;
+    cli_limit_time(job->time_limit_s);
+    return true;
+}
+
+whit_result job_load(struct job *job)
+{
+    const whit_load_params params = {
+        .time_limit_s =
+            job->time_limit_s > 0.0 && job->time_limit_s < 60.0 ? cli_time_left_s() : 0.0,
+        .texture_limit = job->texture_limit,
+        .cancel = &cli_cancel,
+    };
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_scene_load(job->scene_path, &params, &cli_log_errors, &job->scene);
+    job->load_ms = whit_clock_ms() - start_ms;
+    return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
+}
+
+void job_print_notes(const struct job *job)
+{
+    whit_scene_info info;
+    whit_scene_get_info(job->scene, &info);
+    for (uint32_t i = 0; !job->quiet && i < info.note_count && i < NOTES_SHOWN; ++i) {
+        whit_note_info note;
+        whit_scene_get_note(job->scene, i, &note);
+        cli_note("%s", note.text);
+    }
+    if (!job->quiet && info.note_count > NOTES_SHOWN)
+        cli_note("and %u more; `whit scene` lists them", info.note_count - NOTES_SHOWN);
+}
+
+static whit_result still_wanted(void)
+{
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    if (!cli_time_over())
+        return WHIT_OK;
+    cli_error("the time limit has passed");
+    return WHIT_ERROR_TIME_LIMIT;
+}
+
+whit_result job_build(struct job *job)
+{
+    const whit_accel_params params = {
+        .build = job->build,
+        .bins = job->bins,
+        .threads = job->threads,
+    };
+    whit_result result = still_wanted();
+    if (result != WHIT_OK)
+        return result;
+    double start_ms = whit_clock_ms();
+    result = whit_accel_create(job->scene, &params, &job->accel);
+    job->accel_ms = whit_clock_ms() - start_ms;
+    return result == WHIT_OK ? still_wanted() : result;
+}
+
+whit_result job_open_device(struct job *job)
+{
+    const whit_device_params params = {
+        .selector = job->device_name,
+        .validation = job->validation,
+    };
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_device_create(&params, &cli_log, &job->device);
+    job->device_ms = whit_clock_ms() - start_ms;
+    return result == WHIT_OK ? still_wanted() : result;
+}
+
+int job_check_validation(const struct job *job)
+{
+    bool checked = job->validation && job->device;
+    uint32_t messages = checked ? whit_device_validation_messages(job->device) : 0;
+    if (messages == 0)
+        return EXIT_FINE;
+    cli_error("the validation layers had %u messages", messages);
+    return EXIT_DIFFERS;
+}
+
+void job_finish(struct job *job)
+{
+    whit_device_destroy(job->device);
+    whit_accel_destroy(job->accel);
+    whit_scene_destroy(job->scene);
+}

@@ -1,0 +1,293 @@
+/* A thin table-driven layer over getopt_long, so that help and parser cannot drift apart. */
+#define _GNU_SOURCE
+#include "app/cli.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTIONS_MAX = 48, ID_HELP = 'h', HELP_COLUMN = 27 };
+
+static const struct cli_option help_option = {ID_HELP, "help", NULL, "print this help"};
+
+static uint32_t count_options(const struct cli_command *command)
+{
+    uint32_t count = 0;
+    while (command->options[count].name)
+        ++count;
+    return count;
+}
+
+static const struct cli_option *find_option(const struct cli_command *command, int id)
+{
+    for (const struct cli_option *option = command->options; option->name; ++option) {
+        if (option->id == id)
+            return option;
+    }
+    return id == ID_HELP ? &help_option : NULL;
+}
+
+void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
+                     char **argv)
+{
+    *reader = (struct cli_reader){.command = command, .argc = argc, .argv = argv, .status = -1};
+    optind = 1;
+    opterr = 0;
+}
+
+bool cli_misuse(struct cli_reader *reader, const char *format, ...)
+{
+    char text[1024];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    cli_error("%s (see `whit %s --help`)", text, reader->command->name);
+    reader->done = true;
+    reader->status = EXIT_USAGE;
+    return false;
+}
+
+static struct option *long_options(const struct cli_command *command,
+                                   struct option table[OPTIONS_MAX], char *shorts)
+{
+    uint32_t count = count_options(command);
+    *shorts++ = '-'; /* arguments that are no options come in their place, as id 1 */
+    *shorts++ = ':';
+    for (uint32_t i = 0; i <= count && i + 1 < OPTIONS_MAX; ++i) {
+        const struct cli_option *option = i < count ? &command->options[i] : &help_option;
+        table[i] = (struct option){
+            .name = option->name,
+            .has_arg = option->value ? required_argument : no_argument,
+            .val = option->id,
+        };
+        table[i + 1] = (struct option){0};
+        if (option->id < 128 && isalpha(option->id)) {
+            *shorts++ = (char)option->id;
+            if (option->value)
+                *shorts++ = ':';
+        }
+    }
+    *shorts = 0;
+    return table;
+}
+
+/* The word in argv that getopt did not understand. */
+static void unknown_option(struct cli_reader *reader)
+{
+    if (optopt > 0 && optopt < 128 && isprint(optopt) && !find_option(reader->command, optopt)) {
+        cli_misuse(reader, "there is no option `-%c`", optopt);
+        return;
+    }
+    const char *word = reader->argv[optind - 1];
+    if (optopt) { /* --quiet=3 */
+        const struct cli_option *option = find_option(reader->command, optopt);
+        cli_misuse(reader, "option `--%s` takes no value", option ? option->name : word);
+        return;
+    }
+    char name[64] = "";
+    if (strncmp(word, "--", 2) == 0)
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    const char *names[OPTIONS_MAX];
+    uint32_t count = count_options(reader->command);
+    for (uint32_t i = 0; i < count && i < OPTIONS_MAX; ++i)
+        names[i] = reader->command->options[i].name;
+    const char *nearest = cli_nearest(name, names, count);
+    if (nearest)
+        cli_misuse(reader, "there is no option `--%s`; did you mean `--%s`?", name, nearest);
+    else
+        cli_misuse(reader, "there is no option `%s`", word);
+}
+
+static int take_positional(struct cli_reader *reader, const char *word)
+{
+    if (reader->positional) {
+        cli_misuse(reader, "`%s` is one argument too many", word);
+        return 0;
+    }
+    reader->positional = word;
+    return 1;
+}
+
+int cli_next(struct cli_reader *reader)
+{
+    struct option table[OPTIONS_MAX];
+    char shorts[2 * OPTIONS_MAX + 3];
+    long_options(reader->command, table, shorts);
+    while (!reader->done) {
+        optopt = 0;
+        int id = getopt_long(reader->argc, reader->argv, shorts, table, NULL);
+        if (id == 1) {
+            take_positional(reader, optarg);
+        } else if (id == -1) {
+            while (optind < reader->argc && take_positional(reader, reader->argv[optind]))
+                ++optind;
+            reader->done = true;
+        } else if (id == ':') {
+            const struct cli_option *option = find_option(reader->command, optopt);
+            cli_misuse(reader, "option `--%s` needs a value: %s", option ? option->name : "?",
+                       option ? option->value : "?");
+        } else if (id == '?') {
+            unknown_option(reader);
+        } else if (id == ID_HELP) {
+            cli_print_help(reader->command, stdout);
+            reader->done = true;
+            reader->status = cli_finish_stdout(EXIT_FINE);
+        } else {
+            reader->option = find_option(reader->command, id);
+            reader->value = optarg;
+            return id;
+        }
+    }
+    return 0;
+}
+
+bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint32_t *out)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(reader->value, &end, 10);
+    if (!isdigit((unsigned char)reader->value[0]) || *end || errno || value < least || value > most)
+        return cli_misuse(reader, "--%s `%s`: a whole number from %u to %u is needed",
+                          reader->option->name, reader->value, least, most);
+    *out = (uint32_t)value;
+    return true;
+}
+
+bool cli_number(struct cli_reader *reader, double least, double most, double *out)
+{
+    char *end;
+    double value = strtod(reader->value, &end);
+    if (end == reader->value || *end || !(value >= least && value <= most))
+        return cli_misuse(reader, "--%s `%s`: a number from %g to %g is needed",
+                          reader->option->name, reader->value, least, most);
+    *out = value;
+    return true;
+}
+
+enum { SIDE_MAX = 32768 };
+static const uint64_t PIXELS_MAX = UINT64_C(1) << 28;
+
+bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height)
+{
+    unsigned long w = 0, h = 0;
+    const char *text = reader->value;
+    char *end = NULL;
+    bool good = isdigit((unsigned char)text[0]);
+    if (good) {
+        w = strtoul(text, &end, 10);
+        good = (*end == 'x' || *end == 'X') && isdigit((unsigned char)end[1]);
+    }
+    if (good) {
+        h = strtoul(end + 1, &end, 10);
+        good = !*end;
+    }
+    if (!good || w < 1 || h < 1 || w > SIDE_MAX || h > SIDE_MAX || (uint64_t)w * h > PIXELS_MAX)
+        return cli_misuse(reader, "--%s `%s`: WxH is needed, each from 1 to %d, such as 1280x720",
+                          reader->option->name, text, SIDE_MAX);
+    *width = (uint32_t)w;
+    *height = (uint32_t)h;
+    return true;
+}
+
+bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out)
+{
+    char list[256] = "";
+    for (uint32_t i = 0; choices[i]; ++i) {
+        if (strcmp(choices[i], reader->value) == 0) {
+            *out = i;
+            return true;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
+    }
+    return cli_misuse(reader, "--%s `%s`: one of %s is needed", reader->option->name, reader->value,
+                      list);
+}
+
+static void print_option(const struct cli_option *option, FILE *to)
+{
+    char left[80];
+    char letter[8] = "    ";
+    if (option->id < 128 && isalpha(option->id))
+        snprintf(letter, sizeof letter, "-%c, ", option->id);
+    snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, option->value ? " " : "",
+             option->value ? option->value : "");
+    if (strlen(left) + 2 > HELP_COLUMN)
+        fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
+    else
+        fprintf(to, "%-*s", HELP_COLUMN, left);
+    for (const char *line = option->help; *line;) {
+        size_t length = strcspn(line, "\n");
+        fprintf(to, "%.*s\n", (int)length, line);
+        line += length + (line[length] != 0);
+        if (*line)
+            fprintf(to, "%*s", HELP_COLUMN, "");
+    }
+}
+
+void cli_print_help(const struct cli_command *command, FILE *to)
+{
+    fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
+            command->summary);
+    uint32_t count = count_options(command);
+    for (uint32_t i = 0; i <= count; ++i) {
+        const struct cli_option *option = i < count ? &command->options[i] : &help_option;
+        print_option(option, to);
+    }
+    if (command->details)
+        fprintf(to, "\n%s", command->details);
+}
+
+enum { WORD_MAX = 63 };
+
+/* Levenshtein's distance, with swapped neighbours as one step. */
+static uint32_t distance(const char *a, const char *b)
+{
+    uint32_t rows[3][WORD_MAX + 1];
+    uint32_t length_b = (uint32_t)strlen(b);
+    for (uint32_t j = 0; j <= length_b; ++j)
+        rows[0][j] = j;
+    for (uint32_t i = 1; a[i - 1]; ++i) {
+        uint32_t *row = rows[i % 3], *above = rows[(i - 1) % 3], *higher = rows[(i + 1) % 3];
+        row[0] = i;
+        for (uint32_t j = 1; j <= length_b; ++j) {
+            char x = (char)tolower((unsigned char)a[i - 1]);
+            char y = (char)tolower((unsigned char)b[j - 1]);
+            uint32_t best = above[j - 1] + (x != y);
+            if (above[j] + 1 < best)
+                best = above[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                higher[j - 2] + 1 < best)
+                best = higher[j - 2] + 1;
+            row[j] = best;
+        }
+    }
+    return rows[strlen(a) % 3][length_b];
+}
+
+const char *cli_nearest(const char *word, const char *const *names, uint32_t count)
+{
+    const char *nearest = NULL;
+    size_t length = strlen(word);
+    uint32_t least = length <= 3 ? 1 : length <= 6 ? 2 : 3;
+    if (length == 0 || length > WORD_MAX)
+        return NULL;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strlen(names[i]) > WORD_MAX || !names[i][0])
+            continue;
+        uint32_t steps = distance(word, names[i]);
+        bool prefix = strncmp(word, names[i], length) == 0;
+        if (steps <= least || (prefix && !nearest)) {
+            nearest = names[i];
+            least = steps < least ? steps : least;
+        }
+    }
+    return nearest;
+}

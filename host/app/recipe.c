@@ -1,0 +1,143 @@
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+#include "app/document.h"
+
+/* Appends `word`, an argument, quoted for a POSIX shell. */
+static void put_word(FILE *to, const char *word)
+{
+    static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                               "_-./,:=+@%";
+    fputc(' ', to);
+    if (word[0] && strspn(word, safe) == strlen(word)) {
+        fputs(word, to);
+        return;
+    }
+    fputc('\'', to);
+    for (const char *c = word; *c; ++c) {
+        if (*c == '\'')
+            fputs("'\\''", to);
+        else
+            fputc(*c, to);
+    }
+    fputc('\'', to);
+}
+
+/* The shortest decimal that reads back as `value`. */
+static void put_number(FILE *to, double value)
+{
+    char text[40];
+    for (int digits = 6; digits <= 17; ++digits) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    put_word(to, text);
+}
+
+/* `-o` names a file of the same kind, not this one: a copy under another name is the same. */
+static void put_output(FILE *to, const char *output)
+{
+    const char *dot = strrchr(output, '.');
+    fprintf(to, " -o whit%s", dot ? dot : "");
+}
+
+static char *command_line(const struct job *job, const struct render_request *request)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    if (!to)
+        return NULL;
+    fputs("whit render", to);
+    put_word(to, job->scene_path);
+    put_output(to, request->output);
+    fprintf(to, " --size %ux%u", request->width, request->height);
+    if (request->camera) {
+        fputs(" --camera", to);
+        put_word(to, request->camera);
+    }
+    if (job->time_s != 0.0) {
+        fputs(" --time", to);
+        put_number(to, job->time_s);
+    }
+    fprintf(to, " --aa %u --depth %u", request->samples, request->depth);
+    if (request->no_shadows)
+        fputs(" --no-shadows", to);
+    if (job->texture_limit)
+        fprintf(to, " --texture-limit %u", job->texture_limit);
+    if (fclose(to) != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+static char *options_line(const struct job *job, const struct render_request *request)
+{
+    json_t *options = document_object();
+    document_count(options, "width", request->width);
+    document_count(options, "height", request->height);
+    document_text(options, "camera", request->camera);
+    document_number(options, "time_s", job->time_s);
+    document_count(options, "samples", request->samples);
+    document_count(options, "depth", request->depth);
+    document_flag(options, "shadows", !request->no_shadows);
+    if (job->texture_limit)
+        document_count(options, "texture_limit", job->texture_limit);
+    return document_line(options);
+}
+
+static char *counters_line(const whit_stats *stats)
+{
+    json_t *rays = document_object();
+    document_count(rays, "primary", stats->rays_primary);
+    document_count(rays, "shadow", stats->rays_shadow);
+    document_count(rays, "reflected", stats->rays_reflected);
+    document_count(rays, "refracted", stats->rays_refracted);
+    json_t *counters = document_object();
+    document_put(counters, "rays", rays);
+    return document_line(counters);
+}
+
+static void add(struct recipe *recipe, const char *key, const char *value)
+{
+    recipe->texts[recipe->count++] = (whit_text){.key = key, .value = value};
+}
+
+bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
+                 const whit_stats *stats)
+{
+    *recipe = (struct recipe){0};
+    whit_scene_info scene;
+    whit_scene_get_info(job->scene, &scene);
+    whit_device_get_info(job->device, &recipe->device);
+    snprintf(recipe->hash, sizeof recipe->hash, "%016" PRIx64, scene.hash);
+    recipe->command = command_line(job, request);
+    recipe->options = options_line(job, request);
+    recipe->counters = counters_line(stats);
+    if (!recipe->command) {
+        cli_error("out of memory");
+        recipe_finish(recipe);
+        return false;
+    }
+    add(recipe, "Software", "whit " WHIT_VERSION);
+    add(recipe, "whit:command", recipe->command);
+    add(recipe, "whit:device", recipe->device.name);
+    add(recipe, "whit:driver", recipe->device.driver);
+    add(recipe, "whit:scene", job->scene_path);
+    add(recipe, "whit:scene_hash", recipe->hash);
+    add(recipe, "whit:options", recipe->options);
+    add(recipe, "whit:counters", recipe->counters);
+    return true;
+}
+
+void recipe_finish(struct recipe *recipe)
+{
+    free(recipe->command);
+    free(recipe->options);
+    free(recipe->counters);
+    *recipe = (struct recipe){0};
+}

@@ -1,0 +1,322 @@
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+
+enum render_id {
+    ID_IDS = JOB_ID_END,
+    ID_SIZE,
+    ID_CAMERA,
+    ID_AA,
+    ID_DEPTH,
+    ID_NO_SHADOWS,
+    ID_EFFECTS,
+    ID_TILE,
+};
+
+enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
+
+static const struct cli_option options[] = {
+    {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)"},
+    {ID_IDS, "ids", "FILE.exr", "also write what each pixel hits: instance, primitive"},
+    {ID_SIZE, "size", "WxH", "pixels (640x480)"},
+    {ID_CAMERA, "camera", "NAME|N|numbers",
+     "a camera of the scene, by name or number, or\n"
+     "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"
+     "vertical angle in degrees (the scene's first)"},
+    JOB_OPTION_TIME,
+    {ID_AA, "aa", "1|4|16|64", "samples a pixel (1)"},
+    {ID_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},
+    {ID_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},
+    {ID_EFFECTS, "effects", "auto|all",
+     "compile what the scene calls for, or everything; the\n"
+     "picture is the same (auto)"},
+    {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
+    JOB_OPTION_DEVICE,
+    JOB_OPTION_TREES,
+    JOB_OPTION_TEXTURES,
+    JOB_OPTION_RUN,
+    {0, NULL, NULL, NULL},
+};
+
+static void read_samples(struct cli_reader *reader, uint32_t *samples)
+{
+    static const char *const choices[] = {"1", "4", "16", "64", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        *samples = 1u << (2 * choice);
+}
+
+static void read_option(struct cli_reader *reader, int id, struct job *job,
+                        struct render_request *request)
+{
+    static const char *const effects[] = {"auto", "all", NULL};
+    uint32_t choice;
+    if (job_option(job, reader, id))
+        return;
+    switch (id) {
+    case 'o':
+        request->output = reader->value;
+        break;
+    case ID_IDS:
+        request->ids = reader->value;
+        break;
+    case ID_SIZE:
+        cli_size(reader, &request->width, &request->height);
+        break;
+    case ID_CAMERA:
+        request->camera = reader->value;
+        break;
+    case ID_AA:
+        read_samples(reader, &request->samples);
+        break;
+    case ID_DEPTH:
+        cli_unsigned(reader, 0, DEPTH_MOST, &request->depth);
+        break;
+    case ID_NO_SHADOWS:
+        request->no_shadows = true;
+        break;
+    case ID_EFFECTS:
+        if (cli_choice(reader, effects, &choice))
+            request->all_effects = choice == 1;
+        break;
+    case ID_TILE:
+        cli_unsigned(reader, 16, 512, &request->tile_size);
+        break;
+    default:
+        break;
+    }
+}
+
+static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
+{
+    if (!request->output)
+        return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
+    if (!whit_image_format_known(request->output, false))
+        return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
+    if (request->ids && !whit_image_format_known(request->ids, true))
+        return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
+    if (request->ids && strcmp(request->ids, request->output) == 0)
+        return cli_misuse(reader, "%s: -o and --ids name the same file", request->ids);
+    if (cli_can_write(request->output) && (!request->ids || cli_can_write(request->ids)))
+        return true;
+    reader->status = EXIT_USAGE;
+    return false;
+}
+
+static bool read_ten_numbers(const char *text, double numbers[CAMERA_NUMBERS])
+{
+    for (int i = 0; i < CAMERA_NUMBERS; ++i) {
+        char *end;
+        numbers[i] = strtod(text, &end);
+        if (end == text || !isfinite(numbers[i]) || *end != (i + 1 < CAMERA_NUMBERS ? ',' : 0))
+            return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+static whit_result check_numbers(const char *text, const double n[CAMERA_NUMBERS])
+{
+    if (n[0] == n[3] && n[1] == n[4] && n[2] == n[5]) {
+        cli_error("--camera `%s`: eye and target are the same point", text);
+        return WHIT_ERROR_USAGE;
+    }
+    if (!(n[9] > 0.0 && n[9] < 180.0)) {
+        cli_error("--camera `%s`: the angle must be between 0 and 180 degrees", text);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+static bool is_index(const char *text, uint32_t count)
+{
+    char *end;
+    unsigned long index = strtoul(text, &end, 10);
+    return isdigit((unsigned char)text[0]) && !*end && index < count;
+}
+
+static whit_result refuse_camera(const struct job *job, const char *wanted, uint32_t count)
+{
+    const char *names[CAMERA_NAMES_MOST];
+    uint32_t most = count < CAMERA_NAMES_MOST ? count : CAMERA_NAMES_MOST;
+    char list[512] = "";
+    for (uint32_t i = 0; i < most; ++i) {
+        whit_camera_info camera;
+        whit_scene_get_camera(job->scene, i, &camera);
+        names[i] = camera.name;
+        size_t used = strlen(list);
+        if (i < 8)
+            snprintf(list + used, sizeof list - used, "%s%u `%s`", i ? ", " : "", i, camera.name);
+        else if (i == 8)
+            snprintf(list + used, sizeof list - used, ", ...");
+    }
+    const char *nearest = cli_nearest(wanted, names, most);
+    if (nearest)
+        cli_error("%s: there is no camera `%s`; did you mean `%s`?", job->scene_path, wanted,
+                  nearest);
+    else
+        cli_error("%s: there is no camera `%s`, only %s; or give ten numbers "
+                  "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov",
+                  job->scene_path, wanted, list);
+    return WHIT_ERROR_USAGE;
+}
+
+/* Before any device is started. */
+static whit_result check_camera(const struct job *job, const char *wanted)
+{
+    double numbers[CAMERA_NUMBERS];
+    whit_scene_info scene;
+    whit_scene_get_info(job->scene, &scene);
+    if (!wanted || is_index(wanted, scene.camera_count))
+        return WHIT_OK;
+    for (uint32_t i = 0; i < scene.camera_count; ++i) {
+        whit_camera_info camera;
+        whit_scene_get_camera(job->scene, i, &camera);
+        if (strcmp(camera.name, wanted) == 0)
+            return WHIT_OK;
+    }
+    if (read_ten_numbers(wanted, numbers))
+        return check_numbers(wanted, numbers);
+    return refuse_camera(job, wanted, scene.camera_count);
+}
+
+static whit_result create_renderer(struct job *job, const struct render_request *request,
+                                   struct cli_progress *progress, whit_renderer **renderer)
+{
+    const whit_renderer_params params = {
+        .width = request->width,
+        .height = request->height,
+        .camera = request->camera,
+        .time_s = job->time_s,
+        .samples = request->samples,
+        .depth = request->depth,
+        .no_bounces = request->depth == 0,
+        .no_shadows = request->no_shadows,
+        .all_effects = request->all_effects,
+        .tile_size = request->tile_size,
+        .cancel = &cli_cancel,
+        .progress = cli_progress_update,
+        .progress_user = progress,
+        .time_limit_s = cli_time_left_s(),
+        .load_path = job->load_path,
+    };
+    return whit_renderer_create(job->device, job->accel, &params, renderer);
+}
+
+static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
+                        const struct recipe *recipe)
+{
+    whit_image *image;
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    whit_result result = whit_renderer_image(renderer, aov, &image);
+    if (result != WHIT_OK)
+        return result;
+    result = whit_image_save(image, path, recipe->texts, recipe->count, &cli_log);
+    whit_image_destroy(image);
+    return result;
+}
+
+static whit_result save_all(const struct job *job, const struct render_request *request,
+                            whit_renderer *renderer, const whit_stats *stats)
+{
+    struct recipe recipe;
+    if (!recipe_init(&recipe, job, request, stats))
+        return WHIT_ERROR_MEMORY;
+    whit_result result = WHIT_OK;
+    if (request->ids)
+        result = save(renderer, WHIT_AOV_IDS, request->ids, &recipe);
+    if (result == WHIT_OK)
+        result = save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
+    recipe_finish(&recipe);
+    return result;
+}
+
+static whit_result prepare(struct job *job, const struct render_request *request,
+                           struct cli_progress *progress, whit_renderer **renderer)
+{
+    whit_result result = job_load(job);
+    if (result == WHIT_OK)
+        result = check_camera(job, request->camera);
+    if (result == WHIT_OK) {
+        job_print_notes(job);
+        result = job_build(job);
+    }
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (result == WHIT_OK)
+        result = create_renderer(job, request, progress, renderer);
+    return result;
+}
+
+static void say_done(const struct job *job, const struct render_request *request,
+                     const whit_stats *stats)
+{
+    whit_device_info device;
+    whit_device_get_info(job->device, &device);
+    if (!job->quiet && job->stats == JOB_STATS_NONE)
+        fprintf(stderr, "whit: %s: %u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
+                request->output, request->width, request->height, stats->render_ms * 1e-3,
+                stats->mrays_per_s, device.name);
+}
+
+static int work(struct job *job, const struct render_request *request)
+{
+    struct cli_progress progress;
+    whit_renderer *renderer = NULL;
+    whit_stats stats = {0};
+    int status = EXIT_FINE;
+    cli_progress_init(&progress, job->quiet);
+    whit_result result = prepare(job, request, &progress, &renderer);
+    progress.start_ms = whit_clock_ms();
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    cli_progress_finish(&progress);
+    if (result == WHIT_OK) {
+        double start_ms = whit_clock_ms();
+        whit_renderer_get_stats(renderer, &stats);
+        result = save_all(job, request, renderer, &stats);
+        if (result == WHIT_OK) {
+            say_done(job, request, &stats);
+            status = stats_print(job, request, &stats, whit_clock_ms() - start_ms);
+        }
+    }
+    if (result != WHIT_OK)
+        status = cli_exit_of(result);
+    else if (status == EXIT_FINE)
+        status = job_check_validation(job);
+    whit_renderer_destroy(renderer);
+    return status;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct job job;
+    struct render_request request = {
+        .width = 640, .height = 480, .samples = 1, .depth = DEPTH_DEFAULT};
+    job_init(&job);
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &job, &request);
+    if (!job_options_done(&job, &reader) || !check_outputs(&reader, &request))
+        return reader.status;
+    int status = work(&job, &request);
+    job_finish(&job);
+    return status;
+}
+
+const struct cli_command command_render = {
+    .name = "render",
+    .arguments = "SCENE -o FILE [options]",
+    .summary = "Renders a scene (.json) or a model (.obj .gltf .glb .ply .stl) to a picture.",
+    .details =
+        "Defaults are in brackets. The picture carries its recipe: PNG text, EXR attributes.\n"
+        "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device,\n"
+        "5 time limit, 130 interrupted.\n",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,186 @@
+#include "app/commands.h"
+#include "app/document.h"
+
+struct figures {
+    whit_scene_info scene;
+    whit_accel_info tree;
+    whit_device_info device;
+    const whit_stats *render;
+    double save_ms, total_ms;
+    uint64_t rays;
+};
+
+static void collect(const struct job *job, const whit_stats *stats, double save_ms,
+                    struct figures *out)
+{
+    *out = (struct figures){.render = stats, .save_ms = save_ms};
+    whit_scene_get_info(job->scene, &out->scene);
+    whit_accel_get_info(job->accel, &out->tree);
+    whit_device_get_info(job->device, &out->device);
+    out->rays =
+        stats->rays_primary + stats->rays_shadow + stats->rays_reflected + stats->rays_refracted;
+    out->total_ms = whit_clock_ms() - job->start_ms;
+}
+
+static json_t *times_document(const struct job *job, const struct figures *figures)
+{
+    json_t *times = document_object();
+    document_ms(times, "load_ms", job->load_ms);
+    document_ms(times, "build_ms", figures->tree.build_ms);
+    document_ms(times, "build_instances_ms", figures->tree.instance_build_ms);
+    document_ms(times, "device_ms", job->device_ms);
+    document_ms(times, "upload_ms", figures->render->upload_ms);
+    document_ms(times, "compile_ms", figures->render->compile_ms);
+    document_ms(times, "render_ms", figures->render->render_ms);
+    if (figures->render->render_device_ms >= 0.0)
+        document_ms(times, "render_device_ms", figures->render->render_device_ms);
+    else
+        document_put(times, "render_device_ms", json_null());
+    document_ms(times, "save_ms", figures->save_ms);
+    document_ms(times, "total_ms", figures->total_ms);
+    return times;
+}
+
+static json_t *scene_document(const struct job *job, const struct figures *figures)
+{
+    json_t *scene = document_object();
+    document_text(scene, "file", job->scene_path);
+    document_hash(scene, "hash", figures->scene.hash);
+    document_count(scene, "file_bytes", figures->scene.file_bytes);
+    document_count(scene, "instances", figures->scene.instance_count);
+    document_count(scene, "triangles", figures->scene.triangle_count);
+    return scene;
+}
+
+static json_t *picture_document(const struct job *job, const struct render_request *request)
+{
+    json_t *picture = document_object();
+    document_text(picture, "file", request->output);
+    document_text(picture, "ids", request->ids);
+    document_count(picture, "width", request->width);
+    document_count(picture, "height", request->height);
+    document_count(picture, "samples", request->samples);
+    document_count(picture, "depth", request->depth);
+    document_number(picture, "time_s", job->time_s);
+    return picture;
+}
+
+static json_t *rays_document(const struct figures *figures)
+{
+    json_t *rays = document_object();
+    document_count(rays, "primary", figures->render->rays_primary);
+    document_count(rays, "shadow", figures->render->rays_shadow);
+    document_count(rays, "reflected", figures->render->rays_reflected);
+    document_count(rays, "refracted", figures->render->rays_refracted);
+    document_count(rays, "total", figures->rays);
+    document_number(rays, "mrays_per_s", figures->render->mrays_per_s);
+    return rays;
+}
+
+static json_t *tree_document(const whit_accel_info *info)
+{
+    json_t *tree = document_object();
+    document_count(tree, "nodes", info->node_count);
+    document_count(tree, "leaves", info->leaf_count);
+    document_count(tree, "triangles", info->triangle_count);
+    document_count(tree, "depth", info->depth);
+    document_count(tree, "instance_depth", info->instance_depth);
+    document_number(tree, "sah_cost", info->sah_cost);
+    document_count(tree, "bytes", info->bytes);
+    return tree;
+}
+
+static int print_json(const struct job *job, const struct render_request *request,
+                      const struct figures *figures)
+{
+    json_t *root = document_object();
+    document_text(root, "whit", WHIT_VERSION);
+    document_put(root, "scene", scene_document(job, figures));
+    document_put(root, "picture", picture_document(job, request));
+    json_t *device = document_object();
+    document_text(device, "name", figures->device.name);
+    document_text(device, "driver", figures->device.driver);
+    document_text(device, "kind", figures->device.kind);
+    document_put(root, "device", device);
+    document_put(root, "times", times_document(job, figures));
+    document_put(root, "rays", rays_document(figures));
+    document_put(root, "tree", tree_document(&figures->tree));
+    json_t *work = document_object();
+    document_count(work, "dispatches", figures->render->dispatches);
+    document_count(work, "tiles", figures->render->tiles);
+    document_count(work, "tile_size", figures->render->tile_size);
+    document_text(work, "load_path", figures->render->load_path);
+    document_put(root, "work", work);
+    json_t *memory = document_object();
+    document_count(memory, "host_peak_bytes", whit_peak_memory_bytes());
+    document_count(memory, "device_bytes", figures->render->device_bytes);
+    document_put(root, "memory", memory);
+    return cli_print_json(root);
+}
+
+static void print_time(const char *name, double ms, const char *about)
+{
+    printf("  %-18s %10.1f ms%s%s\n", name, ms, about[0] ? "   " : "", about);
+}
+
+static void print_times(const struct job *job, const struct figures *figures)
+{
+    puts("times");
+    print_time("load", job->load_ms, "");
+    print_time("build", figures->tree.build_ms, "");
+    print_time("build instances", figures->tree.instance_build_ms, "");
+    print_time("device", job->device_ms, "");
+    print_time("upload", figures->render->upload_ms, "");
+    print_time("compile", figures->render->compile_ms, "");
+    print_time("render", figures->render->render_ms, "");
+    if (figures->render->render_device_ms >= 0.0)
+        print_time("  on the device", figures->render->render_device_ms, "");
+    print_time("save", figures->save_ms, "");
+    print_time("total", figures->total_ms, "");
+}
+
+static void print_rays(const struct figures *figures)
+{
+    puts("rays");
+    printf("  %-18s %10llu\n", "primary", (unsigned long long)figures->render->rays_primary);
+    printf("  %-18s %10llu\n", "shadow", (unsigned long long)figures->render->rays_shadow);
+    printf("  %-18s %10llu\n", "reflected", (unsigned long long)figures->render->rays_reflected);
+    printf("  %-18s %10llu\n", "refracted", (unsigned long long)figures->render->rays_refracted);
+    printf("  %-18s %10llu   %.2f Mray/s\n", "total", (unsigned long long)figures->rays,
+           figures->render->mrays_per_s);
+}
+
+static int print_text(const struct job *job, const struct render_request *request,
+                      const struct figures *figures)
+{
+    const whit_accel_info *tree = &figures->tree;
+    printf("scene      %s: %llu triangles in %u instances\n", job->scene_path,
+           (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count);
+    printf("picture    %s: %u x %u, %u samples a pixel, depth %u\n", request->output,
+           request->width, request->height, request->samples, request->depth);
+    printf("device     %s (%s)\n", figures->device.name, figures->device.driver);
+    print_times(job, figures);
+    print_rays(figures);
+    printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
+           tree->node_count, tree->leaf_count, tree->triangle_count, tree->instance_depth,
+           tree->depth, tree->sah_cost);
+    printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads\n",
+           figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
+           figures->render->load_path);
+    printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",
+           (double)whit_peak_memory_bytes() / 1048576.0,
+           (double)figures->render->device_bytes / 1048576.0);
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+int stats_print(const struct job *job, const struct render_request *request,
+                const whit_stats *stats, double save_ms)
+{
+    struct figures figures;
+    collect(job, stats, save_ms, &figures);
+    if (job->stats == JOB_STATS_JSON)
+        return print_json(job, request, &figures);
+    if (job->stats == JOB_STATS_TEXT)
+        return print_text(job, request, &figures);
+    return EXIT_FINE;
+}

@@ -1,0 +1,246 @@
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/commands.h"
+
+enum trace_id { ID_RAYS = JOB_ID_END, ID_ANY, ID_ON };
+
+/* Rays in memory at a time. */
+enum { CHUNK = 1 << 20 };
+_Static_assert(sizeof(whit_ray) == 32 && sizeof(whit_hit) == 32, "records on disk");
+
+static const struct cli_option options[] = {
+    {ID_RAYS, "rays", "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax"},
+    {'o', "output", "FILE",
+     "little-endian records: float t (inf: miss), u, v;\n"
+     "uint32 primitive (0xffffffff: miss), instance; float ng[3]"},
+    {ID_ANY, "any", NULL, "any hit will do: only `primitive` says something"},
+    {ID_ON, "on", "device|cpu|brute",
+     "where: Vulkan, its twin on the CPU, the twin without\n"
+     "trees (device)"},
+    JOB_OPTION_TIME,
+    JOB_OPTION_DEVICE,
+    JOB_OPTION_TREES,
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
+    {'q', "quiet", NULL, "no notes, no progress, only errors"},
+    {0, NULL, NULL, NULL},
+};
+
+struct trace {
+    const char *rays_path, *output;
+    uint32_t on; /* whit_trace_on */
+    bool any;
+    FILE *input;
+    uint64_t ray_count; /* 0: not known, for pipes */
+    uint64_t done_count;
+    double trace_ms;
+    whit_ray *rays;
+    whit_hit *hits;
+    whit_file *file;
+};
+
+static whit_result refuse_size(const struct trace *trace, uint64_t size_bytes)
+{
+    cli_error("%s: %llu bytes are no whole number of 32-byte rays: the last one, at byte %llu, "
+              "is cut short",
+              trace->rays_path, (unsigned long long)size_bytes,
+              (unsigned long long)(size_bytes - size_bytes % sizeof(whit_ray)));
+    return WHIT_ERROR_INPUT;
+}
+
+/* Before anything slow. */
+static whit_result open_rays(struct trace *trace)
+{
+    struct stat info;
+    errno = 0;
+    trace->input = fopen(trace->rays_path, "rb");
+    if (!trace->input || fstat(fileno(trace->input), &info) != 0) {
+        cli_error("%s: cannot read: %s", trace->rays_path, strerror(errno));
+        return WHIT_ERROR_INPUT;
+    }
+    if (S_ISDIR(info.st_mode)) {
+        cli_error("%s: cannot read: %s", trace->rays_path, strerror(EISDIR));
+        return WHIT_ERROR_INPUT;
+    }
+    if (!S_ISREG(info.st_mode))
+        return WHIT_OK;
+    if ((uint64_t)info.st_size % sizeof(whit_ray) != 0)
+        return refuse_size(trace, (uint64_t)info.st_size);
+    trace->ray_count = (uint64_t)info.st_size / sizeof(whit_ray);
+    return WHIT_OK;
+}
+
+static whit_result read_chunk(struct trace *trace, uint64_t *count)
+{
+    errno = 0;
+    size_t bytes = fread(trace->rays, 1, (size_t)CHUNK * sizeof(whit_ray), trace->input);
+    if (ferror(trace->input)) {
+        cli_error("%s: cannot read: %s", trace->rays_path, strerror(errno ? errno : EIO));
+        return WHIT_ERROR_INPUT;
+    }
+    *count = bytes / sizeof(whit_ray);
+    if (bytes % sizeof(whit_ray) != 0)
+        return refuse_size(trace, trace->done_count * sizeof(whit_ray) + bytes);
+    return WHIT_OK;
+}
+
+static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
+                                struct cli_progress *progress)
+{
+    for (;;) {
+        uint64_t count;
+        whit_result result = cli_cancel ? WHIT_ERROR_CANCELLED : read_chunk(trace, &count);
+        if (result != WHIT_OK || count == 0)
+            return result;
+        if (cli_time_over()) {
+            cli_error("the time limit has passed");
+            return WHIT_ERROR_TIME_LIMIT;
+        }
+        double start_ms = whit_clock_ms();
+        result = whit_trace(renderer, (whit_trace_on)trace->on, trace->rays, count, trace->any,
+                            trace->hits);
+        trace->trace_ms += whit_clock_ms() - start_ms;
+        if (result == WHIT_OK)
+            result = whit_file_append(trace->file, trace->hits, count * sizeof(whit_hit));
+        if (result != WHIT_OK)
+            return result;
+        trace->done_count += count;
+        if (trace->ray_count)
+            cli_progress_update(progress, (double)trace->done_count / (double)trace->ray_count);
+    }
+}
+
+static whit_result allocate(struct trace *trace)
+{
+    /* A small file needs no large blocks. */
+    trace->rays = malloc((size_t)CHUNK * sizeof *trace->rays);
+    trace->hits = malloc((size_t)CHUNK * sizeof *trace->hits);
+    if (trace->rays && trace->hits)
+        return WHIT_OK;
+    cli_error("out of memory");
+    return WHIT_ERROR_MEMORY;
+}
+
+static whit_result prepare(struct job *job, struct trace *trace, whit_renderer **renderer)
+{
+    const whit_renderer_params params = {
+        .width = 16,
+        .height = 16,
+        .time_s = job->time_s,
+        .cancel = &cli_cancel,
+        .load_path = job->load_path,
+    };
+    whit_result result = open_rays(trace);
+    if (result == WHIT_OK)
+        result = allocate(trace);
+    if (result == WHIT_OK)
+        result = job_load(job);
+    if (result == WHIT_OK) {
+        job_print_notes(job);
+        result = job_build(job);
+    }
+    if (result == WHIT_OK && trace->on == WHIT_TRACE_DEVICE)
+        result = job_open_device(job);
+    if (result == WHIT_OK)
+        result = whit_renderer_create(job->device, job->accel, &params, renderer);
+    return result;
+}
+
+static void say_done(const struct job *job, const struct trace *trace)
+{
+    if (job->quiet)
+        return;
+    fprintf(stderr, "whit: %s: %llu rays in %.3f s (%.2f Mray/s)\n", trace->output,
+            (unsigned long long)trace->done_count, trace->trace_ms * 1e-3,
+            trace->trace_ms > 0.0 ? (double)trace->done_count / trace->trace_ms * 1e-3 : 0.0);
+}
+
+static int work(struct job *job, struct trace *trace)
+{
+    struct cli_progress progress;
+    whit_renderer *renderer = NULL;
+    int status = EXIT_FINE;
+    whit_result result = prepare(job, trace, &renderer);
+    cli_progress_init(&progress, job->quiet);
+    if (result == WHIT_OK)
+        result = whit_file_begin(trace->output, &cli_log, &trace->file);
+    if (result == WHIT_OK) {
+        result = trace_chunks(trace, renderer, &progress);
+        if (result == WHIT_OK && cli_cancel)
+            result = WHIT_ERROR_CANCELLED;
+        if (result == WHIT_OK)
+            result = whit_file_commit(trace->file);
+        else
+            whit_file_abandon(trace->file);
+    }
+    cli_progress_finish(&progress);
+    if (result == WHIT_OK)
+        say_done(job, trace);
+    else
+        status = cli_exit_of(result);
+    if (status == EXIT_FINE)
+        status = job_check_validation(job);
+    whit_renderer_destroy(renderer);
+    return status;
+}
+
+static bool check_request(struct cli_reader *reader, const struct trace *trace)
+{
+    if (!trace->rays_path)
+        return cli_misuse(reader, "--rays FILE is missing");
+    if (!trace->output)
+        return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
+    if (cli_can_write(trace->output))
+        return true;
+    reader->status = EXIT_USAGE;
+    return false;
+}
+
+static void read_option(struct cli_reader *reader, int id, struct job *job, struct trace *trace)
+{
+    static const char *const places[] = {"device", "cpu", "brute", NULL};
+    if (id == ID_RAYS)
+        trace->rays_path = reader->value;
+    else if (id == 'o')
+        trace->output = reader->value;
+    else if (id == ID_ANY)
+        trace->any = true;
+    else if (id == ID_ON)
+        cli_choice(reader, places, &trace->on);
+    else
+        job_option(job, reader, id);
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct job job;
+    struct trace trace = {.on = WHIT_TRACE_DEVICE};
+    job_init(&job);
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &job, &trace);
+    if (!job_options_done(&job, &reader) || !check_request(&reader, &trace))
+        return reader.status;
+    int status = work(&job, &trace);
+    job_finish(&job);
+    free(trace.rays);
+    free(trace.hits);
+    if (trace.input)
+        fclose(trace.input);
+    return status;
+}
+
+const struct cli_command command_trace = {
+    .name = "trace",
+    .arguments = "SCENE --rays FILE -o FILE [options]",
+    .summary = "Traces a batch of rays and writes their hits.",
+    .details =
+        "Hits are those with tmin <= t <= tmax; directions need not be unit. `instance` and\n"
+        "`primitive` are those of `whit scene --triangles`.\n",
+    .options = options,
+    .run = run,
+};
