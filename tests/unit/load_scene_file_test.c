@@ -1,0 +1,489 @@
+/* whit's own scene files: what they mean, and where their errors are. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "load/load.h"
+
+#ifndef WHIT_SCENES_DIR
+#define WHIT_SCENES_DIR "scenes"
+#endif
+
+struct heard {
+    char errors[4][600];
+    uint32_t error_count;
+    char folder[64];
+};
+
+static void hear(void *user, whit_log_level level, const char *message)
+{
+    struct heard *heard = user;
+    if (level != WHIT_LOG_ERROR)
+        return;
+    if (heard->error_count < 4)
+        snprintf(heard->errors[heard->error_count], sizeof heard->errors[0], "%s", message);
+    ++heard->error_count;
+}
+
+static int open_folder(void **state)
+{
+    struct heard *heard = calloc(1, sizeof *heard);
+    if (!heard)
+        return -1;
+    snprintf(heard->folder, sizeof heard->folder, "%s", "/tmp/whit-scene-XXXXXX");
+    *state = heard;
+    return mkdtemp(heard->folder) ? 0 : -1;
+}
+
+static int close_folder(void **state)
+{
+    struct heard *heard = *state;
+    int result = rmdir(heard->folder);
+    free(heard);
+    return result;
+}
+
+static void write_file(const char *path, const void *data, size_t size_bytes)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, size_bytes, file), size_bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+static whit_result load_text(struct heard *heard, const char *text, struct scene **out)
+{
+    char path[128];
+    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    heard->error_count = 0;
+    snprintf(path, sizeof path, "%s/test.json", heard->folder);
+    write_file(path, text, strlen(text));
+    whit_result result = load_scene(&log, path, NULL, out);
+    unlink(path);
+    return result;
+}
+
+/* The one error: behind the folder's name it reads `expected` and goes on with anything. */
+static void assert_error(void **state, const char *text, const char *expected)
+{
+    struct heard *heard = *state;
+    struct scene *scene = NULL;
+    assert_int_equal(load_text(heard, text, &scene), WHIT_ERROR_INPUT);
+    assert_null(scene);
+    assert_int_equal(heard->error_count, 1);
+    const char *message = heard->errors[0] + strlen(heard->folder) + 1;
+    if (strncmp(message, expected, strlen(expected)) != 0)
+        fail_msg("expected `%s`, got `%s`", expected, message);
+}
+
+static struct scene *load_fine(void **state, const char *text)
+{
+    struct heard *heard = *state;
+    struct scene *scene = NULL;
+    whit_result result = load_text(heard, text, &scene);
+    if (result != WHIT_OK)
+        fail_msg("refused: %s", heard->errors[0]);
+    return scene;
+}
+
+static void errors_name_line_and_column(void **state)
+{
+    assert_error(state, "{\n  \"objects\": [,]\n}", "test.json:2:15: ");
+    assert_error(state, "{\n  \"object\": []\n}",
+                 "test.json:2:3: object: unknown key; did you mean `objects`?");
+    assert_error(state, "{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
+                 "test.json:3:3: objects[1].shape: `bxo` is not one of: box, plane, sphere");
+    assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\"tube\":1}]}",
+                 "test.json:1:31: objects[0].tube: unknown key");
+    assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\n\"radius\":\"big\"}]}",
+                 "test.json:2:1: objects[0].radius: a number is expected");
+    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\n\"translation\":[0,\n0,\n\"x\"]}]}",
+                 "test.json:4:1: objects[0].translation[2]: a number is expected");
+    assert_error(state, "{\"objects\":[{\"shape\":\"box\", \"translation\":[0,0]}]}",
+                 "test.json:1:29: objects[0].translation: 3 numbers in [ ] are expected");
+    assert_error(state, "[]", "test.json:1:1: an object { } is expected");
+    assert_error(state, "{\"a\": 1, \"a\": 2}", "test.json:1:");
+    assert_error(state, "", "test.json:1:0: ");
+}
+
+/* Strings with braces, escapes and wide letters must not confuse the search for a place. */
+static void places_survive_odd_strings(void **state)
+{
+    assert_error(state,
+                 "{ \"description\": \"} ] \\\" { \\\\\",\n"
+                 "  \"materials\": {\"\xc3\xa4\": {\"diffuse\": 1}, \"b\": {\"diffuse\": -1}}}",
+                 "test.json:2:44: materials.b.diffuse: -1 is out of range");
+    assert_error(state, "{\"objects\":[{\"name\":\"[1,{\",\"shape\":\"box\",\"children\":[1]}]}",
+                 "test.json:1:53: objects[0].children[0]: an object { } is expected");
+}
+
+static void senseless_content_is_refused(void **state)
+{
+    assert_error(
+        state,
+        "{\"materials\":{\"glass\":{}},\"objects\":[{\"shape\":\"box\",\"material\":\"glas\"}]}",
+        "test.json:1:53: objects[0].material: there is no material `glas`; did you mean "
+        "`glass`?");
+    assert_error(state, "{\"objects\":[{\"name\":\"x\"}]}",
+                 "test.json:1:13: objects[0]: an object needs a `shape`, a `model` or `children`");
+    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\"scale\":0}]}",
+                 "test.json:1:28: objects[0].scale: a scale of 0");
+    assert_error(state,
+                 "{\"objects\":[{\"shape\":\"box\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0],"
+                 "\"scale\":2}]}",
+                 "test.json:1:28: objects[0].matrix: `matrix` and `scale` exclude each other");
+    assert_error(state, "{\"objects\":[{\"model\":\"nowhere.obj\"}]}",
+                 "test.json:1:14: objects[0].model: there is no file");
+    assert_error(state, "{\"objects\":[{\"model\":\"other.json\"}]}",
+                 "test.json:1:14: objects[0].model: `other.json` is no model");
+    assert_error(state, "{\"lights\":[{\"kind\":\"spot\",\"position\":[0,1,0]}]}",
+                 "test.json:1:12: lights[0]: this light needs a `direction` or a `target`");
+    assert_error(state, "{\"camera\":{\"eye\":[1,2,3],\"target\":[1,2,3]}}",
+                 "test.json:1:2: camera: `eye` and `target` are the same point");
+    assert_error(state, "{\"environment\":{\"map\":\"no.hdr\"}}",
+                 "test.json:1:17: environment.map: there is no file");
+    assert_error(state, "{\"environment\":\"#12345\"}",
+                 "test.json:1:2: environment: `#12345` is no colour");
+    assert_error(state, "{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",
+                 "test.json:1:20: materials.m.diffuse: unknown key");
+    assert_error(
+        state,
+        "{\"objects\":[{\"shape\":\"box\",\"animation\":{\"scale\":{\"times\":[1,1],\"values\":"
+        "[[1,1,1],[1,1,1]]}}}]}",
+        "test.json:1:61: objects[0].animation.scale.times[1]: times must increase");
+    assert_error(state,
+                 "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[100000,100000,1]}}]}",
+                 "test.json:1:38: objects[0].repeat.count: more than 4000000 copies");
+}
+
+static void nested_repeats_have_a_limit(void **state)
+{
+    assert_error(
+        state,
+        "{\"objects\":[{\"repeat\":{\"count\":[2000,1,1]},\"children\":[{\"shape\":\"box\","
+        "\"repeat\":{\"count\":[2001,1,1]}}]}]}",
+        "test.json:1:13: objects[0]: more than 4000000 instances");
+}
+
+static void deep_children_are_refused(void **state)
+{
+    enum { DEEP = 100 };
+    char text[DEEP * 32] = "{\"objects\":[";
+    for (int i = 0; i < DEEP; ++i)
+        strcat(text, "{\"children\":[");
+    for (int i = 0; i < DEEP; ++i)
+        strcat(text, "]}");
+    strcat(text, "]}");
+    assert_error(state, text, "test.json:1:");
+}
+
+static void shapes_are_placed(void **state)
+{
+    struct scene *scene = load_fine(
+        state,
+        "{\"objects\":[{\"shape\":\"box\",\"size\":[1,2,3],\"translation\":[5,0,0],"
+        "\"rotation\":[0,90,0],\"scale\":2,\"children\":[{\"shape\":\"sphere\",\"segments\":8,"
+        "\"rings\":4,\"translation\":[0,0,1]}]}]}");
+    struct scene_pose pose;
+    assert_int_equal(scene->mesh_count, 2);
+    assert_int_equal(scene->meshes[0].triangle_count, 12);
+    assert_int_equal(scene->meshes[1].triangle_count, 2 * 8 * 3);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    /* A quarter turn about y takes z to x: the child sits at 5 + 2 * 1. */
+    assert_true(fabs(pose.instances[1].m[3] - 7.0) < 1e-12);
+    assert_true(fabs(pose.instances[1].m[11]) < 1e-12);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static void equal_shapes_share_a_mesh(void **state)
+{
+    struct scene *scene = load_fine(
+        state, "{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
+               "{\"shape\":\"box\",\"size\":2}]}");
+    assert_int_equal(scene->mesh_count, 2);
+    assert_int_equal(scene->instance_count, 3);
+    assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
+    assert_int_equal(scene->material_count, 1);
+    scene_destroy(scene);
+}
+
+static void repeat_places_copies_around(void **state)
+{
+    struct scene *scene = load_fine(
+        state, "{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
+               "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
+    struct scene_pose pose;
+    double least_x = 1e9, most_x = -1e9, most_z = -1e9;
+    assert_int_equal(scene->instance_count, 12);
+    assert_int_equal(scene->mesh_count, 2);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    for (uint32_t i = 0; i < pose.instance_count; ++i) {
+        least_x = fmin(least_x, pose.instances[i].m[3]);
+        most_x = fmax(most_x, pose.instances[i].m[3]);
+        most_z = fmax(most_z, pose.instances[i].m[11]);
+        assert_true(pose.instances[i].m[7] == 7.0);
+    }
+    assert_true(least_x == -10.0 && most_x == 10.0 && most_z == 2.0);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static void repeated_animation_moves_every_copy(void **state)
+{
+    struct scene *scene = load_fine(
+        state, "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
+               "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
+    struct scene_pose pose;
+    assert_int_equal(scene->channel_count, 4);
+    assert_int_equal(scene_pose_init(scene, 1.0, &pose), WHIT_OK);
+    for (uint32_t i = 0; i < 4; ++i)
+        assert_true(fabs(pose.instances[i].m[7] - 4.0) < 1e-6);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static void sphereflake_is_instances(void **state)
+{
+    struct scene *scene =
+        load_fine(state, "{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
+                         "\"rings\":4,\"radius\":2}]}");
+    struct scene_pose pose;
+    assert_int_equal(scene->mesh_count, 1);
+    assert_int_equal(scene->instance_count, 91);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_true(pose.instances[0].m[0] == 2.0);
+    assert_true(fabs(pose.instances[90].m[0]) < 0.3);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static const struct scene_material *material_named(const struct scene *scene, const char *name)
+{
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        if (strcmp(scene->materials[i].name, name) == 0)
+            return &scene->materials[i];
+    }
+    fail_msg("no material `%s`", name);
+    return NULL;
+}
+
+static void materials_mean_what_they_say(void **state)
+{
+    struct scene *scene =
+        load_fine(state, "{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
+                         "\"glass\":{\"transmission\":0.9,\"ior\":1.33,\"absorption\":[1,2,3]},\n"
+                         "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
+                         "\"metal\":{\"base_color\":0.5,\"metallic\":1,\"roughness\":0.25},\n"
+                         "\"veil\":{\"opacity\":0.5},\n\"grid\":{\"alpha_cutoff\":0.3},\n"
+                         "\"sign\":{\"unlit\":true,\"color\":[0,1,0]}}}");
+    const struct scene_material *m = material_named(scene, "plain");
+    assert_true(m->diffuse[0] == 1.0f && m->diffuse[1] == 0.0f);
+    assert_true(fabsf(m->diffuse[2] - 0.21586f) < 1e-4f); /* 0x80 in sRGB */
+    assert_memory_equal(m->ambient, m->diffuse, sizeof m->diffuse);
+    assert_int_equal(m->origin.line, 2);
+    m = material_named(scene, "glass");
+    assert_true(m->fresnel && m->ior == 1.33f && m->transmission[1] == 0.9f);
+    assert_true(m->absorption[2] == 3.0f && m->diffuse[0] == 0.0f);
+    assert_int_equal(m->origin.line, 3);
+    m = material_named(scene, "mirror");
+    assert_true(!m->fresnel && m->reflection[2] == 0.7f && m->diffuse[0] < 0.08f);
+    m = material_named(scene, "metal");
+    assert_int_equal(m->model, SCENE_MODEL_METAL_ROUGH);
+    assert_true(m->metallic == 1.0f && m->roughness == 0.25f && m->diffuse[1] == 0.5f);
+    assert_int_equal(material_named(scene, "veil")->alpha, SCENE_ALPHA_BLEND);
+    assert_int_equal(material_named(scene, "grid")->alpha, SCENE_ALPHA_MASK);
+    assert_int_equal(material_named(scene, "sign")->model, SCENE_MODEL_UNLIT);
+    scene_destroy(scene);
+}
+
+static void patterns_become_textures(void **state)
+{
+    struct scene *scene = load_fine(
+        state,
+        "{\"materials\":{\"a\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"],"
+        "\"size\":8}}},\"b\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"]}}},"
+        "\"c\":{\"texture\":{\"brick\":{\"colors\":[1,0]},\"rotation\":90,\"wrap\":\"mirror\"}}}}");
+    const struct scene_texture_use *a = &material_named(scene, "a")->textures[0];
+    const struct scene_texture_use *c = &material_named(scene, "c")->textures[0];
+    assert_int_equal(scene->texture_count, 2); /* equal patterns are one */
+    const uint8_t texels[] = {255, 255, 255, 255, 32,  64,  96,  255,
+                              32,  64,  96,  255, 255, 255, 255, 255};
+    assert_int_equal(scene->textures[a->texture].width, 2);
+    assert_memory_equal(scene->textures[a->texture].rgba, texels, sizeof texels);
+    assert_true(a->nearest && a->transform[0] == 4.0f && a->transform[4] == 4.0f);
+    assert_true(fabsf(c->transform[1] + 1.0f) < 1e-6f && fabsf(c->transform[3] - 1.0f) < 1e-6f);
+    assert_int_equal(c->wrap_u, SCENE_WRAP_MIRROR);
+    assert_true(material_named(scene, "a")->diffuse[0] == 1.0f);
+    scene_destroy(scene);
+}
+
+static void lights_cameras_and_sky(void **state)
+{
+    struct scene *scene = load_fine(
+        state,
+        "{\"ambient\":[0.1,0.2,0.3],\"environment\":{\"map\":\"sky.pfm\",\"scale\":2},"
+        "\"cameras\":[{\"eye\":[0,0,3],\"fov\":90},{\"eye\":[0,0,3],\"height\":2}],"
+        "\"lights\":[{\"kind\":\"spot\",\"position\":[0,4,0],\"target\":[0,0,0],\"outer\":60,"
+        "\"inner\":30,\"color\":[1,0.5,0],\"intensity\":8},"
+        "{\"kind\":\"directional\",\"direction\":[0,-3,4]}]}");
+    assert_int_equal(scene->environment.kind, SCENE_ENVIRONMENT_MAP);
+    assert_int_equal(scene->environment.width, 2);
+    assert_true(scene->environment.rgb[0] == 4.0f); /* PFM starts at the bottom row */
+    assert_true(scene->environment.scale[1] == 2.0f);
+    assert_true(scene->ambient[2] == 0.3f);
+    assert_true(fabsf(scene->cameras[0].fov_y - 1.5707964f) < 1e-6f);
+    assert_int_equal(scene->cameras[1].kind, SCENE_CAMERA_ORTHOGRAPHIC);
+    const struct scene_light *spot = &scene->lights[0], *sun = &scene->lights[1];
+    assert_true(spot->direction[1] == -1.0 && spot->falloff && spot->color[1] == 4.0f);
+    assert_true(fabsf(spot->cos_outer - 0.5f) < 1e-6f && spot->cos_inner > 0.86f);
+    assert_true(fabs(sun->direction[2] - 0.8) < 1e-12 && !sun->falloff);
+    scene_destroy(scene);
+}
+
+static void sky_test(void **state)
+{
+    struct heard *heard = *state;
+    char path[128];
+    const char header[] = "PF\n2 2\n-1.0\n";
+    float pixels[12] = {0};
+    for (int i = 6; i < 12; ++i)
+        pixels[i] = 4.0f;
+    uint8_t file[sizeof header - 1 + sizeof pixels];
+    memcpy(file, header, sizeof header - 1);
+    memcpy(file + sizeof header - 1, pixels, sizeof pixels);
+    snprintf(path, sizeof path, "%s/sky.pfm", heard->folder);
+    write_file(path, file, sizeof file);
+    lights_cameras_and_sky(state);
+    unlink(path);
+}
+
+/* An uncompressed TGA, found despite the wrong case and slash; a missing one is magenta. */
+static void textures_are_found_and_missed(void **state)
+{
+    struct heard *heard = *state;
+    char path[128];
+    const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0, 0, 0, 0, 0, 0,
+                           2, 0, 1, 0, 24, 0x20, 3, 2, 1, 6, 5, 4};
+    snprintf(path, sizeof path, "%s/Wood.TGA", heard->folder);
+    write_file(path, tga, sizeof tga);
+    struct scene *scene =
+        load_fine(state, "{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
+                         "\"b\":{\"texture\":\"Wood.TGA\"},\"c\":{\"texture\":\"no.png\"}}}");
+    unlink(path);
+    const struct scene_texture *found =
+        &scene->textures[material_named(scene, "a")->textures[0].texture];
+    const struct scene_texture *missed =
+        &scene->textures[material_named(scene, "c")->textures[0].texture];
+    const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255}, magenta[] = {255, 0, 255, 255};
+    assert_int_equal(found->width, 2);
+    assert_memory_equal(found->rgba, texels, sizeof texels);
+    assert_int_equal(missed->width, 1);
+    assert_memory_equal(missed->rgba, magenta, sizeof magenta);
+    scene_destroy(scene);
+}
+
+static void large_textures_are_halved(void **state)
+{
+    struct heard *heard = *state;
+    struct scene *scene = scene_create(NULL, "test");
+    const struct load_params params = {.texture_limit = 1};
+    uint32_t index;
+    const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
+                           2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
+    const uint8_t mean[] = {46, 30, 15, 255};
+    (void)heard;
+    assert_int_equal(load_texture(scene, "memory", tga, sizeof tga, &params, &index), WHIT_OK);
+    assert_int_equal(scene->textures[index].width, 1);
+    assert_memory_equal(scene->textures[index].rgba, mean, sizeof mean);
+    assert_int_equal(load_texture(scene, "cut", tga, 20, &params, &index), WHIT_OK);
+    assert_int_equal(scene->textures[index].width, 1);
+    scene_destroy(scene);
+}
+
+static void unknown_files_are_refused(void **state)
+{
+    struct heard *heard = *state;
+    struct scene *scene;
+    char path[128];
+    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    heard->error_count = 0;
+    snprintf(path, sizeof path, "%s/nothing.json", heard->folder);
+    assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_ERROR_INPUT);
+    snprintf(path, sizeof path, "%s/scene.blend", heard->folder);
+    write_file(path, "x", 1);
+    assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_ERROR_INPUT);
+    unlink(path);
+    assert_null(scene);
+    assert_int_equal(heard->error_count, 2);
+    assert_non_null(strstr(heard->errors[0], "there is no such file"));
+    assert_non_null(strstr(heard->errors[1], "`.blend` is not known"));
+}
+
+static void shipped_scenes_have_their_sizes(void **state)
+{
+    static const struct {
+        const char *name;
+        uint32_t triangles, instances;
+    } scenes[] = {
+        {"cube", 12, 1},
+        {"8k", 8192, 1},
+        {"34k", 34226, 7},
+        {"54k", 54450, 1},
+        {"default", 25934, 6},
+        {"whitted", 32258, 3},
+        {"sphereflake", 787202, 821},
+        {"spin", 9358, 5},
+        {"many", 169986, 1025},
+        {"spotlight", 4356, 5},
+        {"room", 3992, 8},
+        {"layers", 11914, 8},
+    };
+    struct heard *heard = *state;
+    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
+        char path[512];
+        struct scene *scene;
+        snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, scenes[i].name);
+        assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_OK);
+        assert_int_equal(scene->triangle_total, scenes[i].triangles);
+        assert_int_equal(scene->instance_count, scenes[i].instances);
+        for (uint32_t k = 0; k < scene->note_count; ++k)
+            assert_int_equal(scene->notes[k].level, SCENE_NOTE_INFO);
+        scene_destroy(scene);
+    }
+}
+
+#define FOLDER_TEST(test) cmocka_unit_test_setup_teardown(test, open_folder, close_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FOLDER_TEST(errors_name_line_and_column),
+        FOLDER_TEST(places_survive_odd_strings),
+        FOLDER_TEST(senseless_content_is_refused),
+        FOLDER_TEST(nested_repeats_have_a_limit),
+        FOLDER_TEST(deep_children_are_refused),
+        FOLDER_TEST(shapes_are_placed),
+        FOLDER_TEST(equal_shapes_share_a_mesh),
+        FOLDER_TEST(repeat_places_copies_around),
+        FOLDER_TEST(repeated_animation_moves_every_copy),
+        FOLDER_TEST(sphereflake_is_instances),
+        FOLDER_TEST(materials_mean_what_they_say),
+        FOLDER_TEST(patterns_become_textures),
+        FOLDER_TEST(sky_test),
+        FOLDER_TEST(textures_are_found_and_missed),
+        FOLDER_TEST(large_textures_are_halved),
+        FOLDER_TEST(unknown_files_are_refused),
+        FOLDER_TEST(shipped_scenes_have_their_sizes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
