@@ -1,0 +1,477 @@
+/* OpenEXR through OpenEXRCore, from and to memory: the library writes its chunk table last, which
+   a pipe would not allow. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <OpenEXR/openexr.h>
+
+#include "base/array.h"
+#include "image/formats.h"
+
+enum { REASON_BYTES = 256, CHANNELS_MAX = 4 };
+
+/* What the library's callbacks see. */
+struct memory_file {
+    const uint8_t *read_data;
+    uint8_t *data; /* written */
+    size_t size_bytes, capacity_bytes;
+    char reason[REASON_BYTES]; /* the first one: what follows is its consequence */
+};
+
+/* The file in work on this thread. The error callback cannot ask the context for its user data:
+   exr_get_user_data takes a lock that the library holds when it reports an error while writing. */
+static _Thread_local struct memory_file *current;
+
+static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context;
+    if (!current || current->reason[0])
+        return;
+    snprintf(current->reason, sizeof current->reason, "%s",
+             message && message[0] ? message : exr_get_default_error_message(code));
+    current->reason[strcspn(current->reason, "\r\n")] = 0;
+}
+
+static int64_t on_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    const struct memory_file *file = user;
+    return (int64_t)file->size_bytes;
+}
+
+static int64_t on_read(exr_const_context_t context, void *user, void *to, uint64_t size_bytes,
+                       uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context, (void)error;
+    const struct memory_file *file = user;
+    if (offset >= file->size_bytes)
+        return 0;
+    if (size_bytes > file->size_bytes - offset)
+        size_bytes = file->size_bytes - offset;
+    memcpy(to, file->read_data + offset, size_bytes);
+    return (int64_t)size_bytes;
+}
+
+static bool grow(struct memory_file *file, size_t needed_bytes)
+{
+    if (needed_bytes <= file->capacity_bytes)
+        return true;
+    size_t capacity_bytes = needed_bytes + needed_bytes / 2 + 65536;
+    uint8_t *moved = realloc(file->data, capacity_bytes);
+    if (!moved)
+        return false;
+    /* Parts that the library skips and fills later must not hold old memory. */
+    memset(moved + file->capacity_bytes, 0, capacity_bytes - file->capacity_bytes);
+    file->data = moved;
+    file->capacity_bytes = capacity_bytes;
+    return true;
+}
+
+static int64_t on_write(exr_const_context_t context, void *user, const void *from,
+                        uint64_t size_bytes, uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    struct memory_file *file = user;
+    if (offset > SIZE_MAX / 4 || size_bytes > SIZE_MAX / 4 || !grow(file, offset + size_bytes)) {
+        error(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+        return -1;
+    }
+    memcpy(file->data + offset, from, size_bytes);
+    if (offset + size_bytes > file->size_bytes)
+        file->size_bytes = offset + size_bytes;
+    return (int64_t)size_bytes;
+}
+
+/* `file` is in work until finish(). */
+static exr_context_initializer_t callbacks(struct memory_file *file)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    current = file;
+    init.error_handler_fn = on_error;
+    init.user_data = file;
+    init.max_image_width = init.max_image_height = IMAGE_SIDE_MAX;
+    init.max_tile_width = init.max_tile_height = IMAGE_SIDE_MAX;
+    init.zip_level = 4;
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    return init;
+}
+
+static exr_result_t finish(exr_context_t *context)
+{
+    exr_result_t code = exr_finish(context);
+    current = NULL;
+    return code;
+}
+
+static whit_result report(const struct log *log, const char *path, const struct memory_file *file,
+                          exr_result_t code, whit_result result)
+{
+    log_error(log, "%s: EXR: %s", path,
+              file->reason[0] ? file->reason : exr_get_default_error_message(code));
+    return code == EXR_ERR_OUT_OF_MEMORY ? WHIT_ERROR_MEMORY : result;
+}
+
+/* Names in the order of the image's channels. */
+static const char *const *channel_names(const struct image *image)
+{
+    static const char *const grey[] = {"Y"}, *const id[] = {"id"};
+    static const char *const identity[] = {"instance", "primitive", "word2", "word3"};
+    static const char *const colour[] = {"R", "G", "B", "A"};
+    if (image->words)
+        return image->channels == 1 ? id : identity;
+    return image->channels == 1 ? grey : colour;
+}
+
+static int channel_index(const struct image *image, const char *name)
+{
+    const char *const *names = channel_names(image);
+    for (uint32_t i = 0; i < image->channels; ++i) {
+        if (strcmp(names[i], name) == 0)
+            return (int)i;
+    }
+    return -1;
+}
+
+static exr_result_t write_header(exr_context_t context, const struct image_target *target,
+                                 const struct image *image)
+{
+    int part;
+    exr_result_t code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_initialize_required_attr_simple(context, part, (int32_t)image->width,
+                                                   (int32_t)image->height, EXR_COMPRESSION_ZIP);
+    const char *const *names = channel_names(image);
+    for (uint32_t i = 0; i < image->channels && code == EXR_ERR_SUCCESS; ++i)
+        code = exr_add_channel(context, part, names[i],
+                               image->words ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                               EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (uint32_t i = 0; i < target->text_count && code == EXR_ERR_SUCCESS; ++i) {
+        if (strlen(target->texts[i].key) > 31)
+            code = exr_set_longname_support(context, 1);
+        if (code == EXR_ERR_SUCCESS)
+            code = exr_attr_set_string(context, part, target->texts[i].key, target->texts[i].value);
+    }
+    return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
+}
+
+static const uint8_t *image_bytes(const struct image *image)
+{
+    return image->words ? (const uint8_t *)image->words : (const uint8_t *)image->pixels;
+}
+
+static void set_sources(exr_encode_pipeline_t *encode, const struct image *image, uint32_t y)
+{
+    size_t row_bytes = (size_t)image->width * image->channels * 4;
+    for (int16_t i = 0; i < encode->channel_count; ++i) {
+        exr_coding_channel_info_t *channel = &encode->channels[i];
+        size_t at = (size_t)channel_index(image, channel->channel_name);
+        channel->encode_from_ptr = image_bytes(image) + y * row_bytes + at * 4;
+        channel->user_pixel_stride = (int32_t)image->channels * 4;
+        channel->user_line_stride = (int32_t)row_bytes;
+    }
+}
+
+static exr_result_t write_chunks(exr_context_t context, const struct image *image)
+{
+    int32_t chunk_rows = 0;
+    bool first = true;
+    exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t code = exr_get_scanlines_per_chunk(context, 0, &chunk_rows);
+    for (uint32_t y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += (uint32_t)chunk_rows) {
+        exr_chunk_info_t chunk;
+        code = exr_write_scanline_chunk_info(context, 0, (int)y, &chunk);
+        if (code != EXR_ERR_SUCCESS)
+            break;
+        code = first ? exr_encoding_initialize(context, 0, &chunk, &encode)
+                     : exr_encoding_update(context, 0, &chunk, &encode);
+        if (code != EXR_ERR_SUCCESS)
+            break;
+        set_sources(&encode, image, y);
+        if (first)
+            code = exr_encoding_choose_default_routines(context, 0, &encode);
+        first = false;
+        if (code == EXR_ERR_SUCCESS)
+            code = exr_encoding_run(context, 0, &encode);
+    }
+    exr_encoding_destroy(context, &encode);
+    return code;
+}
+
+whit_result exr_write(const struct image_target *target, const struct image *image)
+{
+    struct memory_file file = {0};
+    exr_context_initializer_t init = callbacks(&file);
+    init.write_fn = on_write;
+    exr_context_t context = NULL;
+    whit_result result = WHIT_OK;
+    exr_result_t code = exr_start_write(&context, target->path, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (code == EXR_ERR_SUCCESS)
+        code = write_header(context, target, image);
+    if (code == EXR_ERR_SUCCESS)
+        code = write_chunks(context, image);
+    exr_result_t end_code = finish(&context); /* writes the chunk table */
+    if (code == EXR_ERR_SUCCESS)
+        code = end_code;
+    if (code == EXR_ERR_SUCCESS)
+        fwrite(file.data, 1, file.size_bytes, target->stream);
+    else
+        result = report(target->log, target->path, &file, code, WHIT_ERROR_OUTPUT);
+    free(file.data);
+    return result;
+}
+
+/* Which of the file's channels go where. */
+struct selection {
+    const char *names[CHANNELS_MAX];
+    uint32_t count;
+    bool integers;
+};
+
+static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list, const char *name)
+{
+    for (int i = 0; i < list->num_channels; ++i) {
+        if (strcmp(list->entries[i].name.str, name) == 0)
+            return &list->entries[i];
+    }
+    return NULL;
+}
+
+static bool select_named(const exr_attr_chlist_t *list, const char *const *names, uint32_t count,
+                         struct selection *selection)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!find_channel(list, names[i]))
+            return false;
+        selection->names[i] = names[i];
+    }
+    selection->count = count;
+    return true;
+}
+
+static bool all_integers(const exr_attr_chlist_t *list)
+{
+    for (int i = 0; i < list->num_channels; ++i) {
+        if (list->entries[i].pixel_type != EXR_PIXEL_UINT)
+            return false;
+    }
+    return true;
+}
+
+/* RGBA, RGB or Y, else all channels of a file of integers, else the only channel. */
+static bool select_channels(const exr_attr_chlist_t *list, struct selection *selection)
+{
+    static const char *const colour[] = {"R", "G", "B", "A"}, *const grey[] = {"Y"};
+    *selection = (struct selection){0};
+    if (list->num_channels < 1)
+        return false;
+    if (all_integers(list) && list->num_channels <= CHANNELS_MAX) {
+        selection->integers = true;
+        selection->count = (uint32_t)list->num_channels;
+        for (uint32_t i = 0; i < selection->count; ++i)
+            selection->names[i] = list->entries[i].name.str;
+        return true;
+    }
+    if (select_named(list, colour, 4, selection) || select_named(list, colour, 3, selection))
+        return true;
+    bool chroma = find_channel(list, "RY") || find_channel(list, "BY");
+    if (!chroma && select_named(list, grey, 1, selection))
+        return true;
+    selection->names[0] = list->entries[0].name.str;
+    selection->count = 1;
+    return list->num_channels == 1;
+}
+
+static const char *why_not_readable(exr_context_t context, const exr_attr_chlist_t *list,
+                                    struct selection *selection)
+{
+    exr_storage_t storage;
+    if (exr_get_storage(context, 0, &storage) != EXR_ERR_SUCCESS ||
+        (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED))
+        return "deep pictures are not supported";
+    if (!select_channels(list, selection))
+        return "it has no channels R, G, B or Y";
+    for (int i = 0; i < list->num_channels; ++i) {
+        if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
+            return "subsampled channels are not supported";
+    }
+    return NULL;
+}
+
+/* `x` and `y` are those of the chunk's first pixel in the image. */
+static exr_result_t check_chunk(const exr_chunk_info_t *chunk, const struct image *image,
+                                uint32_t x, uint32_t y)
+{
+    bool inside = chunk->width > 0 && chunk->height > 0 && x < image->width && y < image->height &&
+                  (uint32_t)chunk->width <= image->width - x &&
+                  (uint32_t)chunk->height <= image->height - y;
+    return inside ? EXR_ERR_SUCCESS : EXR_ERR_CORRUPT_CHUNK;
+}
+
+static void set_destinations(exr_decode_pipeline_t *decode, const struct selection *selection,
+                             const struct image *image, uint32_t x, uint32_t y)
+{
+    size_t row_bytes = (size_t)image->width * image->channels * 4;
+    uint8_t *pixels = image->words ? (uint8_t *)image->words : (uint8_t *)image->pixels;
+    for (int16_t i = 0; i < decode->channel_count; ++i) {
+        exr_coding_channel_info_t *channel = &decode->channels[i];
+        channel->decode_to_ptr = NULL;
+        for (uint32_t c = 0; c < selection->count; ++c) {
+            if (strcmp(selection->names[c], channel->channel_name) != 0)
+                continue;
+            channel->decode_to_ptr = pixels + y * row_bytes + ((size_t)x * image->channels + c) * 4;
+            channel->user_bytes_per_element = 4;
+            channel->user_data_type = selection->integers ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+            channel->user_pixel_stride = (int32_t)image->channels * 4;
+            channel->user_line_stride = (int32_t)row_bytes;
+        }
+    }
+}
+
+struct decoder {
+    exr_context_t context;
+    const struct selection *selection;
+    const struct image *image;
+    exr_decode_pipeline_t pipeline;
+    bool started;
+};
+
+static exr_result_t decode_chunk(struct decoder *decoder, const exr_chunk_info_t *chunk, uint32_t x,
+                                 uint32_t y)
+{
+    exr_result_t code = check_chunk(chunk, decoder->image, x, y);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    exr_decode_pipeline_t *pipeline = &decoder->pipeline;
+    code = decoder->started ? exr_decoding_update(decoder->context, 0, chunk, pipeline)
+                            : exr_decoding_initialize(decoder->context, 0, chunk, pipeline);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    set_destinations(pipeline, decoder->selection, decoder->image, x, y);
+    if (!decoder->started)
+        code = exr_decoding_choose_default_routines(decoder->context, 0, pipeline);
+    decoder->started = true;
+    return code == EXR_ERR_SUCCESS ? exr_decoding_run(decoder->context, 0, pipeline) : code;
+}
+
+static exr_result_t decode_scanlines(struct decoder *decoder, int32_t top)
+{
+    int32_t chunk_rows = 0;
+    exr_result_t code = exr_get_scanlines_per_chunk(decoder->context, 0, &chunk_rows);
+    if (code == EXR_ERR_SUCCESS && chunk_rows < 1)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (uint32_t y = 0; y < decoder->image->height && code == EXR_ERR_SUCCESS;
+         y += (uint32_t)chunk_rows) {
+        exr_chunk_info_t chunk;
+        code = exr_read_scanline_chunk_info(decoder->context, 0, top + (int)y, &chunk);
+        if (code == EXR_ERR_SUCCESS)
+            code = decode_chunk(decoder, &chunk, 0, y);
+    }
+    return code;
+}
+
+static exr_result_t decode_tiles(struct decoder *decoder)
+{
+    int32_t width = 0, height = 0;
+    exr_result_t code = exr_get_tile_sizes(decoder->context, 0, 0, 0, &width, &height);
+    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
+        return EXR_ERR_CORRUPT_CHUNK;
+    uint32_t step_x = (uint32_t)width, step_y = (uint32_t)height;
+    for (uint32_t y = 0; y < decoder->image->height && code == EXR_ERR_SUCCESS; y += step_y) {
+        for (uint32_t x = 0; x < decoder->image->width && code == EXR_ERR_SUCCESS; x += step_x) {
+            exr_chunk_info_t chunk;
+            code = exr_read_tile_chunk_info(decoder->context, 0, (int)(x / step_x),
+                                            (int)(y / step_y), 0, 0, &chunk);
+            if (code == EXR_ERR_SUCCESS)
+                code = decode_chunk(decoder, &chunk, x, y);
+        }
+    }
+    return code;
+}
+
+static exr_result_t decode_pixels(exr_context_t context, const struct selection *selection,
+                                  const struct image *image, int32_t top)
+{
+    exr_storage_t storage;
+    struct decoder decoder = {.context = context, .selection = selection, .image = image};
+    exr_result_t code = exr_get_storage(context, 0, &storage);
+    if (code == EXR_ERR_SUCCESS)
+        code =
+            storage == EXR_STORAGE_TILED ? decode_tiles(&decoder) : decode_scanlines(&decoder, top);
+    exr_decoding_destroy(context, &decoder.pipeline);
+    return code;
+}
+
+static exr_result_t open_memory(const struct image_source *source, struct memory_file *file,
+                                exr_context_t *context)
+{
+    *file = (struct memory_file){.read_data = source->data, .size_bytes = source->size_bytes};
+    exr_context_initializer_t init = callbacks(file);
+    init.read_fn = on_read;
+    init.size_fn = on_size;
+    *context = NULL;
+    return exr_start_read(context, source->path, &init);
+}
+
+whit_result exr_load(const struct image_source *source, struct image *image)
+{
+    struct memory_file file;
+    exr_context_t context;
+    const exr_attr_chlist_t *list = NULL;
+    exr_attr_box2i_t window = {0};
+    struct selection selection;
+    whit_result result = WHIT_OK;
+    exr_result_t code = open_memory(source, &file, &context);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_channels(context, 0, &list);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_data_window(context, 0, &window);
+    if (code != EXR_ERR_SUCCESS)
+        goto fail;
+    const char *reason = why_not_readable(context, list, &selection);
+    if (reason) {
+        log_error(source->log, "%s: EXR: %s", source->path, reason);
+        result = WHIT_ERROR_INPUT;
+        goto done;
+    }
+    int64_t width = (int64_t)window.max.x - window.min.x + 1;
+    int64_t height = (int64_t)window.max.y - window.min.y + 1;
+    result =
+        image_init_loaded(source, image, width < 0 ? 0 : (uint64_t)width,
+                          height < 0 ? 0 : (uint64_t)height, selection.count, selection.integers);
+    if (result != WHIT_OK)
+        goto done;
+    code = decode_pixels(context, &selection, image, window.min.y);
+fail:
+    if (code != EXR_ERR_SUCCESS)
+        result = report(source->log, source->path, &file, code, WHIT_ERROR_INPUT);
+done:
+    finish(&context);
+    return result;
+}
+
+static bool is_recipe(const exr_attribute_t *attribute)
+{
+    return attribute->type == EXR_ATTR_STRING && attribute->string && attribute->string->str &&
+           strcmp(attribute->name, "name") != 0 && strcmp(attribute->name, "type") != 0;
+}
+
+whit_result exr_load_texts(const struct image_source *source, struct text_list *list)
+{
+    struct memory_file file;
+    exr_context_t context;
+    int32_t count = 0;
+    exr_result_t code = open_memory(source, &file, &context);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_attribute_count(context, 0, &count);
+    for (int32_t i = 0; i < count && code == EXR_ERR_SUCCESS; ++i) {
+        const exr_attribute_t *attribute;
+        code = exr_get_attribute_by_index(context, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute);
+        if (code == EXR_ERR_SUCCESS && is_recipe(attribute) &&
+            !text_list_add(list, attribute->name, attribute->string->str))
+            code = EXR_ERR_OUT_OF_MEMORY;
+    }
+    whit_result result = WHIT_OK;
+    if (code != EXR_ERR_SUCCESS)
+        result = report(source->log, source->path, &file, code, WHIT_ERROR_INPUT);
+    finish(&context);
+    return result;
+}

@@ -1,0 +1,59 @@
+/* The file formats behind image_save and image_load. Private to this module. */
+#ifndef IMAGE_FORMATS_H
+#define IMAGE_FORMATS_H
+
+#include <stdio.h>
+
+#include "image/image.h"
+
+/* A file larger or wider than this is refused: none of these formats says how much its contents
+   will grow. */
+enum { IMAGE_SIDE_MAX = 65535 };
+#define IMAGE_BYTES_MAX ((uint64_t)1 << 30)
+
+/* A picture file in memory; `path` is for messages. */
+struct image_source {
+    const struct log *log;
+    const char *path;
+    const uint8_t *data;
+    size_t size_bytes;
+};
+
+/* Where a picture goes. What `stream` has not taken is the caller's to notice: file_write_commit
+   looks at its error flag. */
+struct image_target {
+    const struct log *log;
+    const char *path;
+    FILE *stream;
+    const struct image_text *texts;
+    uint32_t text_count;
+};
+
+/* Key and value pairs that grow; the strings are its own. A zeroed one is empty. */
+struct text_list {
+    struct image_text *texts;
+    uint32_t count, capacity;
+};
+
+/* False when memory runs out. */
+bool text_list_add(struct text_list *list, const char *key, const char *value);
+
+/* image_init with the limits above; logs. */
+WHIT_CHECK whit_result image_init_loaded(const struct image_source *source, struct image *image,
+                                         uint64_t width, uint64_t height, uint32_t channels,
+                                         bool integers);
+
+WHIT_CHECK whit_result png_write(const struct image_target *target, const struct image *image);
+WHIT_CHECK whit_result png_load(const struct image_source *source, struct image *image);
+WHIT_CHECK whit_result png_load_texts(const struct image_source *source, struct text_list *list);
+
+WHIT_CHECK whit_result exr_write(const struct image_target *target, const struct image *image);
+WHIT_CHECK whit_result exr_load(const struct image_source *source, struct image *image);
+WHIT_CHECK whit_result exr_load_texts(const struct image_source *source, struct text_list *list);
+
+WHIT_CHECK whit_result pfm_write(const struct image_target *target, const struct image *image);
+WHIT_CHECK whit_result pfm_load(const struct image_source *source, struct image *image);
+
+WHIT_CHECK whit_result hdr_load(const struct image_source *source, struct image *image);
+
+#endif

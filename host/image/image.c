@@ -1,0 +1,316 @@
+#include "image/image.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "image/formats.h"
+
+enum format { FORMAT_UNKNOWN, FORMAT_PNG, FORMAT_EXR, FORMAT_PFM, FORMAT_HDR };
+
+whit_result image_init(struct image *image, uint32_t width, uint32_t height, uint32_t channels,
+                       bool integers)
+{
+    *image = (struct image){0};
+    if (width == 0 || height == 0 || channels == 0 || channels > 4)
+        return WHIT_ERROR_USAGE;
+    uint64_t pixel_count = (uint64_t)width * height;
+    if (pixel_count > SIZE_MAX / 2 / (sizeof(float) * channels))
+        return WHIT_ERROR_MEMORY;
+    void *memory = array_alloc_zeroed((size_t)pixel_count, sizeof(float) * channels);
+    if (!memory)
+        return WHIT_ERROR_MEMORY;
+    image->width = width;
+    image->height = height;
+    image->channels = channels;
+    if (integers)
+        image->words = memory;
+    else
+        image->pixels = memory;
+    return WHIT_OK;
+}
+
+void image_finish(struct image *image)
+{
+    if (!image)
+        return;
+    free(image->pixels);
+    free(image->words);
+    *image = (struct image){0};
+}
+
+whit_result image_init_loaded(const struct image_source *source, struct image *image,
+                              uint64_t width, uint64_t height, uint32_t channels, bool integers)
+{
+    if (width == 0 || height == 0) {
+        log_error(source->log, "%s: the picture is empty", source->path);
+        return WHIT_ERROR_INPUT;
+    }
+    if (width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX ||
+        width * height > IMAGE_BYTES_MAX / (sizeof(float) * channels)) {
+        log_error(source->log, "%s: %llu x %llu pixels are too many", source->path,
+                  (unsigned long long)width, (unsigned long long)height);
+        return WHIT_ERROR_INPUT;
+    }
+    whit_result result = image_init(image, (uint32_t)width, (uint32_t)height, channels, integers);
+    if (result != WHIT_OK)
+        log_error(source->log, "%s: no memory for %llu x %llu pixels", source->path,
+                  (unsigned long long)width, (unsigned long long)height);
+    return result;
+}
+
+/* IEC 61966-2-1. */
+float image_srgb_from_linear(float linear)
+{
+    if (!(linear > 0.0f))
+        return 0.0f;
+    if (linear >= 1.0f)
+        return 1.0f;
+    double value = linear;
+    return (float)(value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1.0 / 2.4) - 0.055);
+}
+
+float image_linear_from_srgb(float srgb)
+{
+    if (!(srgb > 0.0f))
+        return 0.0f;
+    if (srgb >= 1.0f)
+        return 1.0f;
+    double value = srgb;
+    return (float)(value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
+}
+
+static enum format format_of_path(const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    if (strcmp(extension, "png") == 0)
+        return FORMAT_PNG;
+    if (strcmp(extension, "exr") == 0)
+        return FORMAT_EXR;
+    if (strcmp(extension, "pfm") == 0)
+        return FORMAT_PFM;
+    return FORMAT_UNKNOWN;
+}
+
+bool image_format_known(const char *path, bool integers)
+{
+    enum format format = format_of_path(path);
+    return format == FORMAT_EXR || (format != FORMAT_UNKNOWN && !integers);
+}
+
+static whit_result check_savable(const struct log *log, const struct image *image, const char *path)
+{
+    bool integers = image->words != NULL;
+    if (!image->pixels == !image->words || image->width == 0 || image->height == 0 ||
+        image->channels == 0 || image->channels > 4 || (!integers && image->channels == 2)) {
+        log_error(log, "%s: not a picture that can be saved", path);
+        return WHIT_ERROR_USAGE;
+    }
+    if (image->width > IMAGE_SIDE_MAX || image->height > IMAGE_SIDE_MAX) {
+        log_error(log, "%s: %u x %u pixels are too many", path, image->width, image->height);
+        return WHIT_ERROR_USAGE;
+    }
+    if (!image_format_known(path, integers)) {
+        log_error(log, "%s: unknown picture format; use %s", path,
+                  integers ? ".exr, which keeps integers" : ".png, .exr or .pfm");
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
+static uint64_t count_nonfinite(const struct image *image)
+{
+    uint64_t count = 0;
+    size_t pixel_count = (size_t)image->width * image->height;
+    for (size_t i = 0; image->pixels && i < pixel_count; ++i) {
+        const float *pixel = image->pixels + i * image->channels;
+        bool finite = true;
+        for (uint32_t c = 0; c < image->channels; ++c)
+            finite = finite && isfinite(pixel[c]);
+        count += !finite;
+    }
+    return count;
+}
+
+static void warn_of_nonfinite(const struct log *log, const struct image *image, const char *path)
+{
+    uint64_t count = count_nonfinite(image);
+    if (count)
+        log_warning(log, "%s: %llu of %llu pixels are not finite%s", path,
+                    (unsigned long long)count, (unsigned long long)image->width * image->height,
+                    format_of_path(path) == FORMAT_PNG ? " and shown as magenta" : "");
+}
+
+whit_result image_save(const struct log *log, const struct image *image, const char *path,
+                       const struct image_text *texts, uint32_t text_count)
+{
+    whit_result result = check_savable(log, image, path);
+    if (result != WHIT_OK)
+        return result;
+    warn_of_nonfinite(log, image, path);
+    struct file_write file;
+    result = file_write_begin(log, path, &file);
+    if (result != WHIT_OK)
+        return result;
+    struct image_target target = {.log = log,
+                                  .path = path,
+                                  .stream = file.stream,
+                                  .texts = texts,
+                                  .text_count = texts ? text_count : 0};
+    switch (format_of_path(path)) {
+    case FORMAT_EXR:
+        result = exr_write(&target, image);
+        break;
+    case FORMAT_PFM:
+        result = pfm_write(&target, image);
+        break;
+    default:
+        result = png_write(&target, image);
+        break;
+    }
+    if (result == WHIT_OK)
+        return file_write_commit(log, &file);
+    file_write_abandon(&file);
+    return result;
+}
+
+/* By content: names lie. */
+static enum format format_of_data(const uint8_t *data, size_t size_bytes)
+{
+    static const uint8_t png[4] = {0x89, 'P', 'N', 'G'}, exr[4] = {0x76, 0x2f, 0x31, 0x01};
+    if (size_bytes < 4)
+        return FORMAT_UNKNOWN;
+    if (memcmp(data, png, 4) == 0)
+        return FORMAT_PNG;
+    if (memcmp(data, exr, 4) == 0)
+        return FORMAT_EXR;
+    if (data[0] == 'P' && (data[1] == 'F' || data[1] == 'f'))
+        return FORMAT_PFM;
+    return data[0] == '#' && data[1] == '?' ? FORMAT_HDR : FORMAT_UNKNOWN;
+}
+
+static whit_result unknown_format(const struct image_source *source)
+{
+    log_error(source->log, "%s: %s", source->path,
+              source->size_bytes ? "not a PNG, EXR, PFM or HDR picture" : "the file is empty");
+    return WHIT_ERROR_INPUT;
+}
+
+whit_result image_load(const struct log *log, const char *path, struct image *image)
+{
+    *image = (struct image){0};
+    uint8_t *data;
+    struct image_source source = {.log = log, .path = path};
+    whit_result result = file_read(log, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
+    if (result != WHIT_OK)
+        return result;
+    source.data = data;
+    switch (format_of_data(data, source.size_bytes)) {
+    case FORMAT_PNG:
+        result = png_load(&source, image);
+        break;
+    case FORMAT_EXR:
+        result = exr_load(&source, image);
+        break;
+    case FORMAT_PFM:
+        result = pfm_load(&source, image);
+        break;
+    case FORMAT_HDR:
+        result = hdr_load(&source, image);
+        break;
+    case FORMAT_UNKNOWN:
+        result = unknown_format(&source);
+        break;
+    }
+    free(data);
+    if (result != WHIT_OK)
+        image_finish(image);
+    return result;
+}
+
+bool text_list_add(struct text_list *list, const char *key, const char *value)
+{
+    struct image_text text = {.key = string_copy(key), .value = string_copy(value)};
+    if (text.key && text.value && ARRAY_PUSH(list->texts, list->count, list->capacity, text))
+        return true;
+    free((void *)(uintptr_t)text.key);
+    free((void *)(uintptr_t)text.value);
+    return false;
+}
+
+static void text_list_finish(struct text_list *list)
+{
+    for (uint32_t i = 0; i < list->count; ++i) {
+        free((void *)(uintptr_t)list->texts[i].key);
+        free((void *)(uintptr_t)list->texts[i].value);
+    }
+    free(list->texts);
+    *list = (struct text_list){0};
+}
+
+static const char *pack_string(char **end, const char *text)
+{
+    size_t bytes = strlen(text) + 1;
+    char *copy = memcpy(*end, text, bytes);
+    *end += bytes;
+    return copy;
+}
+
+/* The whole list in one block; NULL when memory runs out. */
+static struct image_text *pack_texts(const struct text_list *list)
+{
+    size_t bytes = sizeof(struct image_text) * list->count + 1;
+    for (uint32_t i = 0; i < list->count; ++i)
+        bytes += strlen(list->texts[i].key) + strlen(list->texts[i].value) + 2;
+    struct image_text *packed = malloc(bytes);
+    if (!packed)
+        return NULL;
+    char *end = (char *)(packed + list->count);
+    for (uint32_t i = 0; i < list->count; ++i) {
+        packed[i].key = pack_string(&end, list->texts[i].key);
+        packed[i].value = pack_string(&end, list->texts[i].value);
+    }
+    return packed;
+}
+
+whit_result image_load_texts(const struct log *log, const char *path, struct image_text **texts,
+                             uint32_t *text_count)
+{
+    *texts = NULL;
+    *text_count = 0;
+    uint8_t *data;
+    struct text_list list = {0};
+    struct image_source source = {.log = log, .path = path};
+    whit_result result = file_read(log, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
+    if (result != WHIT_OK)
+        return result;
+    source.data = data;
+    switch (format_of_data(data, source.size_bytes)) {
+    case FORMAT_PNG:
+        result = png_load_texts(&source, &list);
+        break;
+    case FORMAT_EXR:
+        result = exr_load_texts(&source, &list);
+        break;
+    case FORMAT_PFM:
+    case FORMAT_HDR:
+        break;
+    case FORMAT_UNKNOWN:
+        result = unknown_format(&source);
+        break;
+    }
+    if (result == WHIT_OK) {
+        *texts = pack_texts(&list);
+        *text_count = *texts ? list.count : 0;
+        if (!*texts) {
+            log_error(log, "%s: no memory for its texts", path);
+            result = WHIT_ERROR_MEMORY;
+        }
+    }
+    text_list_finish(&list);
+    free(data);
+    return result;
+}

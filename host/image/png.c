@@ -1,0 +1,359 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <png.h>
+
+#include "base/array.h"
+#include "image/formats.h"
+
+/* libpng leaves its functions by longjmp. Whatever must survive that lives in here, outside the
+   frame that calls setjmp. */
+struct job {
+    const struct log *log;
+    const char *path;
+    const struct image_source *source;
+    size_t read_bytes;
+    FILE *stream;
+    png_structp png;
+    png_infop info;
+    uint8_t *bytes;  /* the picture or one row of it */
+    png_bytepp rows; /* into `bytes` */
+    png_textp texts;
+    whit_result result;
+};
+
+static void on_error(png_structp png, png_const_charp message)
+{
+    struct job *job = png_get_error_ptr(png);
+    bool memory = strstr(message, "memory") != NULL;
+    job->result = memory ? WHIT_ERROR_MEMORY : job->source ? WHIT_ERROR_INPUT : WHIT_ERROR_OUTPUT;
+    log_error(job->log, "%s: PNG: %s", job->path, message);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message)
+{
+    struct job *job = png_get_error_ptr(png);
+    log_debug(job->log, "%s: PNG: %s", job->path, message);
+}
+
+static void *allocate(struct job *job, size_t count, size_t element_bytes)
+{
+    void *memory = array_alloc(count, element_bytes);
+    if (!memory)
+        png_error(job->png, "out of memory");
+    return memory;
+}
+
+static void write_data(png_structp png, png_bytep data, size_t size_bytes)
+{
+    struct job *job = png_get_io_ptr(png);
+    fwrite(data, 1, size_bytes, job->stream); /* errors are found at the commit */
+}
+
+static void flush_data(png_structp png)
+{
+    (void)png;
+}
+
+static void read_data(png_structp png, png_bytep data, size_t size_bytes)
+{
+    struct job *job = png_get_io_ptr(png);
+    if (size_bytes > job->source->size_bytes - job->read_bytes)
+        png_error(png, "the file is cut short");
+    memcpy(data, job->source->data + job->read_bytes, size_bytes);
+    job->read_bytes += size_bytes;
+}
+
+static void finish(struct job *job)
+{
+    if (job->source)
+        png_destroy_read_struct(&job->png, &job->info, NULL);
+    else
+        png_destroy_write_struct(&job->png, &job->info);
+    free(job->bytes);
+    free(job->rows);
+    free(job->texts);
+}
+
+/* linear -> 8-bit sRGB, rounded to nearest: `first` gives for each of 4096 cells of [0, 1] the
+   code at its start, `from` the smallest linear value of each code. */
+enum { CELL_COUNT = 4096 };
+struct encoder {
+    uint8_t first[CELL_COUNT + 1];
+    float from[257];
+};
+
+static void encoder_init(struct encoder *encoder)
+{
+    encoder->from[0] = 0.0f;
+    for (int code = 1; code < 256; ++code) {
+        double srgb = (code - 0.5) / 255.0;
+        double linear = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+        float rounded = (float)linear;
+        encoder->from[code] = (double)rounded < linear ? nextafterf(rounded, 2.0f) : rounded;
+    }
+    encoder->from[256] = INFINITY;
+    int code = 0;
+    for (int cell = 0; cell <= CELL_COUNT; ++cell) {
+        while ((float)cell / CELL_COUNT >= encoder->from[code + 1])
+            ++code;
+        encoder->first[cell] = (uint8_t)code;
+    }
+}
+
+static uint8_t encode(const struct encoder *encoder, float linear)
+{
+    if (!(linear > 0.0f))
+        return 0;
+    if (linear >= 1.0f)
+        return 255;
+    uint32_t code = encoder->first[(int)(linear * CELL_COUNT)];
+    while (linear >= encoder->from[code + 1])
+        ++code;
+    return (uint8_t)code;
+}
+
+static uint8_t encode_alpha(float alpha)
+{
+    return (uint8_t)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
+}
+
+static void encode_pixel(const struct encoder *encoder, const float *pixel, uint32_t channels,
+                         uint8_t *to, uint32_t to_channels)
+{
+    bool finite = true;
+    for (uint32_t c = 0; c < channels; ++c)
+        finite = finite && isfinite(pixel[c]);
+    if (!finite) {
+        memcpy(to, (const uint8_t[]){255, 0, 255, 255}, to_channels);
+        return;
+    }
+    for (uint32_t c = 0; c < to_channels; ++c) {
+        float value = pixel[channels == 1 ? 0 : c];
+        to[c] = c == 3 ? encode_alpha(value) : encode(encoder, value);
+    }
+}
+
+/* Grey has no magenta: a grey picture that needs it is written in colour. */
+static uint32_t written_channels(const struct image *image)
+{
+    size_t pixel_count = (size_t)image->width * image->height;
+    for (size_t i = 0; image->channels == 1 && i < pixel_count; ++i) {
+        if (!isfinite(image->pixels[i]))
+            return 3;
+    }
+    return image->channels;
+}
+
+static bool is_ascii(const char *text)
+{
+    for (; *text; ++text) {
+        if ((unsigned char)*text > 126)
+            return false;
+    }
+    return true;
+}
+
+static void set_texts(struct job *job, const struct image_target *target)
+{
+    if (target->text_count == 0)
+        return;
+    job->texts = allocate(job, target->text_count, sizeof *job->texts);
+    memset(job->texts, 0, target->text_count * sizeof *job->texts);
+    for (uint32_t i = 0; i < target->text_count; ++i) {
+        const struct image_text *text = &target->texts[i];
+        bool ascii = is_ascii(text->value);
+        job->texts[i].compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+        job->texts[i].key = (char *)(uintptr_t)text->key; /* copied by libpng */
+        job->texts[i].text = (char *)(uintptr_t)text->value;
+        if (ascii)
+            job->texts[i].text_length = strlen(text->value);
+        else
+            job->texts[i].itxt_length = strlen(text->value);
+    }
+    png_set_text(job->png, job->info, job->texts, (int)target->text_count);
+}
+
+static void write_rows(struct job *job, const struct image *image, uint32_t to_channels)
+{
+    struct encoder encoder;
+    encoder_init(&encoder);
+    job->bytes = allocate(job, (size_t)image->width * to_channels, 1);
+    for (uint32_t y = 0; y < image->height; ++y) {
+        const float *pixel = image->pixels + (size_t)y * image->width * image->channels;
+        uint8_t *to = job->bytes;
+        for (uint32_t x = 0; x < image->width; ++x) {
+            encode_pixel(&encoder, pixel, image->channels, to, to_channels);
+            pixel += image->channels;
+            to += to_channels;
+        }
+        png_write_row(job->png, job->bytes);
+    }
+}
+
+whit_result png_write(const struct image_target *target, const struct image *image)
+{
+    static const int colour_types[5] = {0, PNG_COLOR_TYPE_GRAY, 0, PNG_COLOR_TYPE_RGB,
+                                        PNG_COLOR_TYPE_RGB_ALPHA};
+    struct job *job = calloc(1, sizeof *job);
+    if (!job)
+        goto no_memory;
+    *job = (struct job){.log = target->log, .path = target->path, .stream = target->stream};
+    job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info)
+        goto no_memory;
+    if (setjmp(png_jmpbuf(job->png)) == 0) {
+        uint32_t channels = written_channels(image);
+        png_set_write_fn(job->png, job, write_data, flush_data);
+        png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+        png_set_IHDR(job->png, job->info, image->width, image->height, 8, colour_types[channels],
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_sRGB_gAMA_and_cHRM(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
+        set_texts(job, target);
+        /* One filter and a low level: 6 times as fast as the defaults, files 10 % larger. */
+        png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+        png_set_compression_level(job->png, 2);
+        png_write_info(job->png, job->info);
+        write_rows(job, image, channels);
+        png_write_end(job->png, NULL);
+    }
+    whit_result result = job->result;
+    finish(job);
+    free(job);
+    return result;
+no_memory:
+    log_error(target->log, "%s: no memory to write a PNG", target->path);
+    if (job)
+        finish(job);
+    free(job);
+    return WHIT_ERROR_MEMORY;
+}
+
+static bool begin_read(struct job *job, const struct image_source *source)
+{
+    *job = (struct job){.log = source->log, .path = source->path, .source = source};
+    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (job->info)
+        return true;
+    log_error(source->log, "%s: no memory to read a PNG", source->path);
+    job->result = WHIT_ERROR_MEMORY;
+    return false;
+}
+
+static void read_info(struct job *job)
+{
+    enum { CHUNK_BYTES_MAX = 16 << 20, CHUNK_COUNT_MAX = 1000 };
+    png_set_read_fn(job->png, job, read_data);
+    png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+    png_set_chunk_malloc_max(job->png, CHUNK_BYTES_MAX);
+    png_set_chunk_cache_max(job->png, CHUNK_COUNT_MAX);
+    png_read_info(job->png, job->info);
+}
+
+/* 8 or 16 bits a channel; grey, RGB or RGBA. */
+static void set_transforms(struct job *job)
+{
+    png_set_expand(job->png);
+    if (png_get_color_type(job->png, job->info) == PNG_COLOR_TYPE_GRAY_ALPHA ||
+        (png_get_color_type(job->png, job->info) == PNG_COLOR_TYPE_GRAY &&
+         png_get_valid(job->png, job->info, PNG_INFO_tRNS)))
+        png_set_gray_to_rgb(job->png);
+    png_set_interlace_handling(job->png);
+    png_read_update_info(job->png, job->info);
+}
+
+static void read_pixels(struct job *job)
+{
+    size_t row_bytes = png_get_rowbytes(job->png, job->info);
+    uint32_t height = png_get_image_height(job->png, job->info);
+    job->bytes = allocate(job, height, row_bytes);
+    job->rows = allocate(job, height, sizeof *job->rows);
+    for (uint32_t y = 0; y < height; ++y)
+        job->rows[y] = job->bytes + y * row_bytes;
+    png_read_image(job->png, job->rows);
+    png_read_end(job->png, NULL);
+}
+
+static void decode_8(const uint8_t *from, struct image *image)
+{
+    float linear[256];
+    for (int i = 0; i < 256; ++i)
+        linear[i] = image_linear_from_srgb((float)i / 255.0f);
+    size_t count = (size_t)image->width * image->height * image->channels;
+    for (size_t i = 0; i < count; ++i)
+        image->pixels[i] =
+            image->channels == 4 && i % 4 == 3 ? (float)from[i] / 255.0f : linear[from[i]];
+}
+
+static void decode_16(const uint8_t *from, struct image *image)
+{
+    size_t count = (size_t)image->width * image->height * image->channels;
+    for (size_t i = 0; i < count; ++i) {
+        float value = (float)((uint32_t)from[2 * i] << 8 | from[2 * i + 1]) / 65535.0f;
+        bool alpha = image->channels == 4 && i % 4 == 3;
+        image->pixels[i] = alpha ? value : image_linear_from_srgb(value);
+    }
+}
+
+static void read_picture(struct job *job, struct image *image)
+{
+    read_info(job);
+    set_transforms(job);
+    job->result = image_init_loaded(job->source, image, png_get_image_width(job->png, job->info),
+                                    png_get_image_height(job->png, job->info),
+                                    png_get_channels(job->png, job->info), false);
+    if (job->result != WHIT_OK)
+        return;
+    read_pixels(job);
+    if (png_get_bit_depth(job->png, job->info) == 16)
+        decode_16(job->bytes, image);
+    else
+        decode_8(job->bytes, image);
+}
+
+whit_result png_load(const struct image_source *source, struct image *image)
+{
+    struct job *job = calloc(1, sizeof *job);
+    if (!job) {
+        log_error(source->log, "%s: no memory to read a PNG", source->path);
+        return WHIT_ERROR_MEMORY;
+    }
+    if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0)
+        read_picture(job, image);
+    whit_result result = job->result;
+    finish(job);
+    free(job);
+    return result;
+}
+
+static void read_texts(struct job *job, struct text_list *list)
+{
+    read_info(job);
+    png_textp texts;
+    int count = 0;
+    png_get_text(job->png, job->info, &texts, &count);
+    for (int i = 0; i < count; ++i) {
+        if (!text_list_add(list, texts[i].key, texts[i].text ? texts[i].text : ""))
+            png_error(job->png, "out of memory");
+    }
+}
+
+whit_result png_load_texts(const struct image_source *source, struct text_list *list)
+{
+    struct job *job = calloc(1, sizeof *job);
+    if (!job) {
+        log_error(source->log, "%s: no memory to read a PNG", source->path);
+        return WHIT_ERROR_MEMORY;
+    }
+    if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0)
+        read_texts(job, list);
+    whit_result result = job->result;
+    finish(job);
+    free(job);
+    return result;
+}

@@ -1,0 +1,422 @@
+#include "image_fixture.h"
+
+#include <math.h>
+
+#include <png.h>
+
+#include <OpenEXR/openexr.h>
+
+static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
+                                           {"options", "--aa 4 --depth 8"},
+                                           {"note", "\xc3\xbc 5\xc2\xb0"}};
+enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
+
+static void save_and_load(struct fixture *fixture, const char *name, const struct image *image,
+                          struct image *loaded)
+{
+    char *path = fixture_path(fixture, name);
+    assert_int_equal(image_save(&fixture->log, image, path, recipe, RECIPE_COUNT), WHIT_OK);
+    assert_int_equal(image_load(&fixture->log, path, loaded), WHIT_OK);
+    assert_int_equal(fixture->errors, 0);
+    free(path);
+}
+
+static void floats_keep_every_bit(void **state)
+{
+    static const uint32_t sizes[][2] = {{1, 1}, {37, 1}, {1, 33}, {70, 49}};
+    for (int i = 0; i < 4; ++i) {
+        for (uint32_t channels = 1; channels <= 4; ++channels) {
+            if (channels == 2)
+                continue;
+            struct image image = fixture_floats(sizes[i][0], sizes[i][1], channels), loaded;
+            image.pixels[0] = NAN;
+            save_and_load(*state, "a.exr", &image, &loaded);
+            assert_images_equal(&image, &loaded);
+            image_finish(&loaded);
+            if (channels != 4) {
+                save_and_load(*state, "a.pfm", &image, &loaded);
+                assert_images_equal(&image, &loaded);
+                image_finish(&loaded);
+            }
+            image_finish(&image);
+        }
+    }
+}
+
+static void integers_keep_every_bit(void **state)
+{
+    for (uint32_t channels = 1; channels <= 4; ++channels) {
+        struct image image = fixture_words(53, 41, channels), loaded;
+        save_and_load(*state, "ids.exr", &image, &loaded);
+        assert_images_equal(&image, &loaded);
+        image_finish(&loaded);
+        image_finish(&image);
+    }
+}
+
+static void pfm_is_bottom_up_little_endian(void **state)
+{
+    struct fixture *fixture = *state;
+    struct image image, loaded;
+    assert_int_equal(image_init(&image, 1, 2, 1, false), WHIT_OK);
+    image.pixels[0] = 1.0f;
+    image.pixels[1] = -2.0f;
+    save_and_load(fixture, "a.pfm", &image, &loaded);
+    image_finish(&loaded);
+    uint8_t *data;
+    size_t size_bytes;
+    char *path = fixture_path(fixture, "a.pfm");
+    assert_int_equal(file_read(NULL, path, 0, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(size_bytes, 20);
+    assert_memory_equal(data, "Pf\n1 2\n-1.0\n\0\0\0\xc0\0\0\x80\x3f", 20);
+    free(data);
+    fixture_put(path, "Pf 1 2 2.5 \xc0\0\0\0\x3f\x80\0\0", 19);
+    assert_int_equal(image_load(&fixture->log, path, &loaded), WHIT_OK);
+    assert_images_equal(&image, &loaded);
+    image_finish(&loaded);
+    image_finish(&image);
+    free(path);
+}
+
+/* The nearest of 256 codes, from the formula in double. */
+static int srgb_code(float linear)
+{
+    double v = linear < 0.0f ? 0.0 : linear > 1.0f ? 1.0 : (double)linear;
+    v = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+    return (int)floor(v * 255.0 + 0.5);
+}
+
+static int code_of(float linear)
+{
+    return (int)lroundf(image_srgb_from_linear(linear) * 255.0f);
+}
+
+static void png_rounds_to_nearest_srgb(void **state)
+{
+    struct image image = fixture_floats(211, 97, 4), loaded;
+    for (uint32_t i = 0; i < 4000; ++i)
+        image.pixels[i] = (float)i / 1e6f; /* where the codes lie close */
+    save_and_load(*state, "a.png", &image, &loaded);
+    assert_int_equal(loaded.channels, 4);
+    for (size_t i = 0; i < (size_t)211 * 97 * 4; ++i) {
+        if (i % 4 == 3) {
+            float alpha = fminf(fmaxf(image.pixels[i], 0.0f), 1.0f);
+            assert_true(fabsf(loaded.pixels[i] - alpha) <= 0.5f / 255.0f + 1e-6f);
+        } else {
+            assert_int_equal(code_of(loaded.pixels[i]), srgb_code(image.pixels[i]));
+        }
+    }
+    image_finish(&loaded);
+    image_finish(&image);
+}
+
+static void png_survives_its_own_round_trip(void **state)
+{
+    for (uint32_t channels = 1; channels <= 3; channels += 2) {
+        struct image image = fixture_floats(64, 64, channels), first, second;
+        save_and_load(*state, "a.png", &image, &first);
+        save_and_load(*state, "b.png", &first, &second);
+        assert_int_equal(first.channels, channels);
+        assert_images_equal(&first, &second);
+        image_finish(&first);
+        image_finish(&second);
+        image_finish(&image);
+    }
+}
+
+static void nonfinite_is_magenta_and_counted(void **state)
+{
+    struct fixture *fixture = *state;
+    for (uint32_t channels = 1; channels <= 4; ++channels) {
+        if (channels == 2)
+            continue;
+        struct image image = fixture_floats(8, 8, channels), loaded;
+        image.pixels[5 * channels] = INFINITY;
+        image.pixels[9 * channels + channels - 1] = NAN;
+        fixture->warnings = 0;
+        save_and_load(fixture, "a.png", &image, &loaded);
+        assert_int_equal(fixture->warnings, 1);
+        assert_non_null(strstr(fixture->last, " 2 of 64 "));
+        static const float magenta[4] = {1.0f, 0.0f, 1.0f, 1.0f};
+        assert_true(loaded.channels >= 3);
+        size_t bytes = loaded.channels * sizeof(float);
+        assert_memory_equal(loaded.pixels + 5 * loaded.channels, magenta, bytes);
+        assert_memory_equal(loaded.pixels + 9 * loaded.channels, magenta, bytes);
+        assert_memory_not_equal(loaded.pixels + 6 * loaded.channels, magenta, bytes);
+        image_finish(&loaded);
+        fixture->warnings = 0;
+        save_and_load(fixture, "a.exr", &image, &loaded);
+        assert_int_equal(fixture->warnings, 1);
+        image_finish(&loaded);
+        image_finish(&image);
+    }
+}
+
+static void recipe_comes_back(void **state)
+{
+    struct fixture *fixture = *state;
+    static const char *const names[] = {"a.png", "a.exr", "a.pfm"};
+    struct image image = fixture_floats(9, 7, 3);
+    for (int i = 0; i < 3; ++i) {
+        char *path = fixture_path(fixture, names[i]);
+        struct image_text *texts;
+        uint32_t count, found = 0;
+        assert_int_equal(image_save(&fixture->log, &image, path, recipe, RECIPE_COUNT), WHIT_OK);
+        assert_int_equal(image_load_texts(&fixture->log, path, &texts, &count), WHIT_OK);
+        for (uint32_t t = 0; t < count; ++t) {
+            for (int r = 0; r < RECIPE_COUNT; ++r)
+                found += strcmp(texts[t].key, recipe[r].key) == 0 &&
+                         strcmp(texts[t].value, recipe[r].value) == 0;
+        }
+        assert_int_equal(count, i == 2 ? 0 : RECIPE_COUNT);
+        assert_int_equal(found, count);
+        free(texts);
+        free(path);
+    }
+    assert_int_equal(fixture->errors, 0);
+    image_finish(&image);
+}
+
+static void refusals_leave_nothing_behind(void **state)
+{
+    struct fixture *fixture = *state;
+    struct image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2);
+    char *jpg = fixture_path(fixture, "a.jpg"), *png = fixture_path(fixture, "a.png");
+    char *folder = fixture_path(fixture, "none/a.exr");
+    assert_int_equal(image_save(&fixture->log, &floats, jpg, NULL, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(image_save(&fixture->log, &words, png, NULL, 0), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(fixture->last, ".exr"));
+    assert_int_equal(image_save(&fixture->log, &floats, folder, NULL, 0), WHIT_ERROR_OUTPUT);
+    assert_int_equal(image_save(&fixture->log, &(struct image){0}, png, NULL, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(fixture->errors, 4);
+    /* An empty key is refused half-way. */
+    struct image_text empty = {"", "value"};
+    char *exr = fixture_path(fixture, "a.exr");
+    assert_int_equal(image_save(&fixture->log, &floats, exr, &empty, 1), WHIT_ERROR_OUTPUT);
+    assert_int_equal(rmdir(fixture->folder), 0);
+    assert_non_null(mkdtemp(strcpy(fixture->folder, "/tmp/whit-image-XXXXXX")));
+    assert_true(image_format_known("x.PNG", false) && image_format_known("x.exr", true));
+    assert_false(image_format_known("x.png", true) || image_format_known("exr", false));
+    free(jpg), free(png), free(folder), free(exr);
+    image_finish(&floats);
+    image_finish(&words);
+}
+
+static void png_write_raw(const char *path, int colour_type, int bit_depth, int interlace)
+{
+    static const png_color palette[2] = {{0, 0, 0}, {255, 128, 0}};
+    static const png_byte alpha[2] = {51, 255};
+    FILE *stream = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, stream);
+    png_set_IHDR(png, info, 8, 8, bit_depth, colour_type, interlace, 0, 0);
+    if (colour_type == PNG_COLOR_TYPE_PALETTE) {
+        png_set_PLTE(png, info, palette, 2);
+        png_set_tRNS(png, info, alpha, 2, NULL);
+    }
+    png_write_info(png, info);
+    png_byte rows[8][64];
+    png_bytep pointers[8];
+    for (int y = 0; y < 8; ++y) {
+        for (int i = 0; i < 64; ++i)
+            rows[y][i] = (png_byte)(bit_depth == 1 ? 0xaa : y * 29 + i * 3);
+        pointers[y] = rows[y];
+    }
+    png_write_image(png, pointers);
+    png_write_end(png, NULL);
+    png_destroy_write_struct(&png, &info);
+    fclose(stream);
+}
+
+static float linear_of(int code, int largest)
+{
+    return image_linear_from_srgb((float)code / (float)largest);
+}
+
+static void png_kinds_are_converted(void **state)
+{
+    struct fixture *fixture = *state;
+    char *path = fixture_path(fixture, "a.png");
+    struct image image;
+    for (int interlace = 0; interlace <= 1; ++interlace) {
+        png_write_raw(path, PNG_COLOR_TYPE_PALETTE, 1, interlace);
+        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+        assert_int_equal(image.channels, 4);
+        const float expected[8] = {1.0f, linear_of(128, 255), 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.2f};
+        assert_memory_equal(image.pixels + 8 * 4 * 3, expected, sizeof expected);
+        image_finish(&image);
+
+        png_write_raw(path, PNG_COLOR_TYPE_GRAY, 1, interlace);
+        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+        assert_int_equal(image.channels, 1);
+        assert_true(image.pixels[0] == 1.0f && image.pixels[1] == 0.0f);
+        image_finish(&image);
+
+        png_write_raw(path, PNG_COLOR_TYPE_GRAY_ALPHA, 8, interlace);
+        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+        assert_int_equal(image.channels, 4);
+        assert_true(image.pixels[4] == linear_of(6, 255) && image.pixels[5] == image.pixels[4] &&
+                    image.pixels[6] == image.pixels[4] && image.pixels[7] == 9.0f / 255.0f);
+        image_finish(&image);
+
+        png_write_raw(path, PNG_COLOR_TYPE_RGB, 16, interlace);
+        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+        assert_int_equal(image.channels, 3);
+        int word = (29 + 2 * 3) << 8 | (29 + 3 * 3); /* row 1, bytes 2 and 3 */
+        assert_true(image.pixels[8 * 3 + 1] == linear_of(word, 65535));
+        image_finish(&image);
+    }
+    assert_int_equal(fixture->errors, 0);
+    free(path);
+}
+
+/* A picture with R, G, B written by the library's own calls. */
+static void exr_write_raw(const char *path, const struct image *image, bool tiled, bool half,
+                          exr_compression_t compression)
+{
+    enum { TILE = 16, LEFT = -5, TOP = 7 };
+    exr_context_t context;
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    int part;
+    assert_int_equal(exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &init), 0);
+    assert_int_equal(
+        exr_add_part(context, "p", tiled ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE, &part), 0);
+    exr_attr_box2i_t window;
+    window.min.x = LEFT;
+    window.min.y = TOP;
+    window.max.x = LEFT + (int)image->width - 1;
+    window.max.y = TOP + (int)image->height - 1;
+    exr_attr_v2f_t centre;
+    centre.x = centre.y = 0.0f;
+    assert_int_equal(exr_initialize_required_attr(context, part, &window, &window, 1.0f, &centre,
+                                                  1.0f, EXR_LINEORDER_INCREASING_Y, compression),
+                     0);
+    if (tiled)
+        assert_int_equal(exr_set_tile_descriptor(context, part, TILE, TILE, EXR_TILE_ONE_LEVEL,
+                                                 EXR_TILE_ROUND_DOWN),
+                         0);
+    for (int c = 0; c < 3; ++c)
+        assert_int_equal(exr_add_channel(context, part, (const char *[]){"B", "G", "R"}[c],
+                                         half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                                         EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1),
+                         0);
+    assert_int_equal(exr_write_header(context), 0);
+    int32_t rows = TILE;
+    if (!tiled)
+        assert_int_equal(exr_get_scanlines_per_chunk(context, part, &rows), 0);
+    uint32_t step_x = tiled ? TILE : image->width;
+    for (uint32_t y = 0; y < image->height; y += (uint32_t)rows) {
+        for (uint32_t x = 0; x < image->width; x += step_x) {
+            exr_chunk_info_t chunk;
+            exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
+            assert_int_equal(
+                tiled ? exr_write_tile_chunk_info(context, part, (int)(x / TILE), (int)(y / TILE),
+                                                  0, 0, &chunk)
+                      : exr_write_scanline_chunk_info(context, part, TOP + (int)y, &chunk),
+                0);
+            assert_int_equal(exr_encoding_initialize(context, part, &chunk, &encode), 0);
+            for (int c = 0; c < 3; ++c) {
+                exr_coding_channel_info_t *channel = &encode.channels[c];
+                channel->user_bytes_per_element = 4;
+                channel->user_data_type = EXR_PIXEL_FLOAT;
+                channel->user_pixel_stride = 12;
+                channel->user_line_stride = (int32_t)image->width * 12;
+                channel->encode_from_ptr =
+                    (const uint8_t *)(image->pixels + (y * image->width + x) * 3 + 2 - (uint32_t)c);
+            }
+            assert_int_equal(exr_encoding_choose_default_routines(context, part, &encode), 0);
+            assert_int_equal(exr_encoding_run(context, part, &encode), 0);
+            exr_encoding_destroy(context, &encode);
+        }
+    }
+    assert_int_equal(exr_finish(&context), 0);
+}
+
+static void exr_kinds_are_read(void **state)
+{
+    struct fixture *fixture = *state;
+    static const exr_compression_t compressions[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,
+                                                     EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
+                                                     EXR_COMPRESSION_PIZ};
+    char *path = fixture_path(fixture, "a.exr");
+    struct image image = fixture_floats(45, 37, 3), loaded;
+    for (size_t i = 0; i < (size_t)45 * 37 * 3; ++i)
+        image.pixels[i] = roundf(image.pixels[i] * 1024.0f) / 1024.0f; /* a half holds these */
+    for (int kind = 0; kind < 4; ++kind) {
+        for (int c = 0; c < 5; ++c) {
+            exr_write_raw(path, &image, kind & 1, kind & 2, compressions[c]);
+            assert_int_equal(image_load(&fixture->log, path, &loaded), WHIT_OK);
+            assert_images_equal(&image, &loaded);
+            image_finish(&loaded);
+        }
+    }
+    assert_int_equal(fixture->errors, 0);
+    image_finish(&image);
+    free(path);
+}
+
+static void hdr_rows_of_all_kinds(void **state)
+{
+    struct fixture *fixture = *state;
+    char *path = fixture_path(fixture, "a.hdr");
+    /* Row 0 flat with an old repeat mark, row 1 run-length coded: red runs, green plain. */
+    static const char file[] = "#?RADIANCE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n"
+                               "\x80\x40\x20\x81"
+                               "\1\1\1\6"
+                               "\0\0\0\0"
+                               "\2\2\0\x08"
+                               "\x88\x80"
+                               "\x08\x01\x02\x03\x04\x05\x06\x07\x08"
+                               "\x84\x10\x84\x20"
+                               "\x88\x88";
+    struct image image;
+    fixture_put(path, file, sizeof file - 1);
+    assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+    assert_int_equal(image.width, 8);
+    assert_int_equal(image.height, 2);
+    assert_int_equal(image.channels, 3);
+    for (int x = 0; x < 7; ++x) {
+        const float expected[3] = {1.0f, 0.5f, 0.25f};
+        assert_memory_equal(image.pixels + 3 * x, expected, sizeof expected);
+    }
+    assert_true(image.pixels[21] == 0.0f);
+    for (int x = 0; x < 8; ++x) {
+        const float expected[3] = {128.0f, (float)(x + 1), x < 4 ? 16.0f : 32.0f};
+        assert_memory_equal(image.pixels + 24 + 3 * x, expected, sizeof expected);
+    }
+    image_finish(&image);
+    free(path);
+}
+
+static void sizes_out_of_range(void **state)
+{
+    (void)state;
+    struct image image;
+    assert_int_equal(image_init(&image, UINT32_MAX, UINT32_MAX, 4, false), WHIT_ERROR_MEMORY);
+    assert_int_equal(image_init(&image, 0, 4, 4, false), WHIT_ERROR_USAGE);
+    assert_int_equal(image_init(&image, 4, 4, 5, false), WHIT_ERROR_USAGE);
+    image_finish(&image);
+    image_finish(NULL);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(floats_keep_every_bit),
+        TEST(integers_keep_every_bit),
+        TEST(pfm_is_bottom_up_little_endian),
+        TEST(png_rounds_to_nearest_srgb),
+        TEST(png_survives_its_own_round_trip),
+        TEST(nonfinite_is_magenta_and_counted),
+        TEST(recipe_comes_back),
+        TEST(refusals_leave_nothing_behind),
+        TEST(png_kinds_are_converted),
+        TEST(exr_kinds_are_read),
+        TEST(hdr_rows_of_all_kinds),
+        cmocka_unit_test(sizes_out_of_range),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,119 @@
+/* Pictures and folders for the image tests. */
+#ifndef IMAGE_FIXTURE_H
+#define IMAGE_FIXTURE_H
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/array.h"
+#include "base/file.h"
+#include "image/image.h"
+
+struct fixture {
+    char folder[32];
+    struct log log;
+    int errors, warnings;
+    char last[512];
+};
+
+static inline void fixture_collect(void *user, whit_log_level level, const char *message)
+{
+    struct fixture *fixture = user;
+    if (level > WHIT_LOG_WARNING)
+        return;
+    *(level == WHIT_LOG_ERROR ? &fixture->errors : &fixture->warnings) += 1;
+    snprintf(fixture->last, sizeof fixture->last, "%s", message);
+}
+
+static inline int fixture_begin(void **state)
+{
+    struct fixture *fixture = calloc(1, sizeof *fixture);
+    if (!fixture)
+        return -1;
+    strcpy(fixture->folder, "/tmp/whit-image-XXXXXX");
+    fixture->log = (struct log){.fn = fixture_collect, .user = fixture, .level = WHIT_LOG_INFO};
+    *state = fixture;
+    return mkdtemp(fixture->folder) ? 0 : -1;
+}
+
+static inline int fixture_end(void **state)
+{
+    struct fixture *fixture = *state;
+    DIR *dir = opendir(fixture->folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        char *path = string_format("%s/%s", fixture->folder, entry->d_name);
+        remove(path);
+        free(path);
+    }
+    closedir(dir);
+    int result = rmdir(fixture->folder);
+    free(fixture);
+    return result;
+}
+
+/* Release with free(). */
+static inline char *fixture_path(const struct fixture *fixture, const char *name)
+{
+    char *path = string_format("%s/%s", fixture->folder, name);
+    assert_non_null(path);
+    return path;
+}
+
+static inline void fixture_put(const char *path, const void *data, size_t size_bytes)
+{
+    FILE *stream = fopen(path, "wb");
+    assert_non_null(stream);
+    assert_int_equal(fwrite(data, 1, size_bytes, stream), size_bytes);
+    assert_int_equal(fclose(stream), 0);
+}
+
+static inline uint32_t fixture_random(uint32_t *seed)
+{
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 17;
+    *seed ^= *seed << 5;
+    return *seed;
+}
+
+/* Values on [-0.1, 1.1], all different. */
+static inline struct image fixture_floats(uint32_t width, uint32_t height, uint32_t channels)
+{
+    struct image image;
+    uint32_t seed = 12345;
+    assert_int_equal(image_init(&image, width, height, channels, false), WHIT_OK);
+    for (size_t i = 0; i < (size_t)width * height * channels; ++i)
+        image.pixels[i] = (float)fixture_random(&seed) / 4294967296.0f * 1.2f - 0.1f;
+    return image;
+}
+
+static inline struct image fixture_words(uint32_t width, uint32_t height, uint32_t channels)
+{
+    struct image image;
+    uint32_t seed = 54321;
+    assert_int_equal(image_init(&image, width, height, channels, true), WHIT_OK);
+    for (size_t i = 0; i < (size_t)width * height * channels; ++i)
+        image.words[i] = fixture_random(&seed);
+    return image;
+}
+
+static inline void assert_images_equal(const struct image *a, const struct image *b)
+{
+    assert_int_equal(a->width, b->width);
+    assert_int_equal(a->height, b->height);
+    assert_int_equal(a->channels, b->channels);
+    assert_int_equal(!a->pixels, !b->pixels);
+    size_t bytes = (size_t)a->width * a->height * a->channels * 4;
+    assert_memory_equal(a->pixels ? (void *)a->pixels : (void *)a->words,
+                        b->pixels ? (void *)b->pixels : (void *)b->words, bytes);
+}
+
+#endif
