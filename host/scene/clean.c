@@ -18,29 +18,18 @@ static bool usable_vertex(const float *p)
            fabsf(p[2]) <= LARGEST_COORDINATE;
 }
 
-/* Edge scaled so that its largest component is in [1/2, 1): products neither overflow nor vanish.
- */
-static bool scaled_edge(const float *from, const float *to, double out[3])
+static void edge(const float *from, const float *to, double out[3])
 {
-    double largest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        out[i] = (double)to[i] - (double)from[i];
-        largest = fmax(largest, fabs(out[i]));
-    }
-    if (largest == 0.0)
-        return false;
-    int exponent;
-    (void)frexp(largest, &exponent);
     for (int i = 0; i < 3; ++i)
-        out[i] = ldexp(out[i], -exponent);
-    return true;
+        out[i] = (double)to[i] - (double)from[i];
 }
 
+/* Products of two differences of floats below 1e18 neither overflow nor vanish in double. */
 static bool has_area(const float *a, const float *b, const float *c)
 {
-    double e1[3], e2[3], e3[3];
-    if (!scaled_edge(a, b, e1) || !scaled_edge(a, c, e2) || !scaled_edge(b, c, e3))
-        return false;
+    double e1[3], e2[3];
+    edge(a, b, e1);
+    edge(a, c, e2);
     return e1[1] * e2[2] != e1[2] * e2[1] || e1[2] * e2[0] != e1[0] * e2[2] ||
            e1[0] * e2[1] != e1[1] * e2[0];
 }

@@ -122,7 +122,7 @@ static void places_survive_odd_strings(void **state)
                  "  \"materials\": {\"\xc3\xa4\": {\"diffuse\": 1}, \"b\": {\"diffuse\": -1}}}",
                  "test.json:2:44: materials.b.diffuse: -1 is out of range");
     assert_error(state, "{\"objects\":[{\"name\":\"[1,{\",\"shape\":\"box\",\"children\":[1]}]}",
-                 "test.json:1:53: objects[0].children[0]: an object { } is expected");
+                 "test.json:1:54: objects[0].children[0]: an object { } is expected");
 }
 
 static void senseless_content_is_refused(void **state)
