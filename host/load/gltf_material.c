@@ -130,8 +130,8 @@ static bool read_volume(struct reading *r, const json_t *volume)
     return true;
 }
 
-/* What passes is tinted by the base colour, as the extension says; its texture is left to the
-   renderer. */
+/* The factor alone: the base colour, which tints what passes, is the renderer's part for this
+ * model. */
 static whit_result read_transmission(struct reading *r)
 {
     json_t *object, *volume, *ior;
@@ -148,7 +148,7 @@ static whit_result read_transmission(struct reading *r)
     if (!object || factor <= 0)
         return WHIT_OK;
     for (int i = 0; i < 3; i++)
-        out->transmission[i] = factor * out->diffuse[i];
+        out->transmission[i] = factor;
     out->fresnel = true;
     out->thin_walled = true;
     if (volume && !read_volume(r, volume))

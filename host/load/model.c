@@ -56,7 +56,7 @@ static void make_default(const char *name, bool colored, struct scene_material *
 {
     scene_material_init(out, name);
     for (int i = 0; colored && i < 3; i++)
-        out->diffuse[i] = 1.0f;
+        out->diffuse[i] = out->ambient[i] = 1.0f;
 }
 
 static whit_result make_material(struct scene *scene, const struct model_request *request,

@@ -200,8 +200,10 @@ static void set_colors(const struct mtl_entry *entry, bool ambient_known,
     set_color(entry, MTL_KS, maps[MTL_MAP_KS].file ? 1.0f : 0.0f, out->specular);
     set_color(entry, MTL_KE, maps[MTL_MAP_KE].file ? 1.0f : 0.0f, out->emission);
     /* A library in which every Ka is 0 was written by something that knows no ambient light. */
-    if (ambient_known)
-        set_color(entry, MTL_KA, 1.0f, out->ambient);
+    if (ambient_known && entry->has_color[MTL_KA])
+        set_color(entry, MTL_KA, 0.0f, out->ambient);
+    else
+        memcpy(out->ambient, out->diffuse, sizeof out->ambient);
     if (entry->has_number[MTL_NS])
         out->shininess = fmaxf(entry->numbers[MTL_NS], 0.0f);
     if (entry->has_number[MTL_NI] && entry->numbers[MTL_NI] > 0)

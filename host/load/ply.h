@@ -8,9 +8,9 @@
 
 #include "base/whit_base.h"
 
-/* assimp 5.2 takes blanks and line ends at the start of binary data (one file in fifty, as chance
-   has it) for a part of the header. Such a file gets an element of one harmless byte in front.
-   Replaces *data (malloc'ed); false when memory runs out, *data intact. */
+/* assimp 5.2 takes a first data byte of 10 (one binary file in 256, as chance has it) for the end
+   of the header's last line. Such a file gets a second one. Replaces *data (malloc'ed); false when
+   memory runs out, *data intact. */
 WHIT_CHECK bool ply_repair(uint8_t **data, size_t *size_bytes);
 
 #endif
