@@ -382,8 +382,13 @@ whit_result commands_wait(struct commands *commands, double timeout_ms)
         timeout_ns = (uint64_t)(timeout_ms * 1e6);
     VK_TRY(device, vkWaitForFences(device->vk, 1, &commands->fence, VK_TRUE, timeout_ns));
     commands->state = COMMANDS_IDLE;
-    result = read_spans(commands);
+    return read_spans(commands);
 fail:
+    if (result != WHIT_ERROR_TIME_LIMIT) {
+        /* Whoever gives up now and destroys what was used must find it idle. */
+        (void)vkDeviceWaitIdle(device->vk);
+        commands->state = COMMANDS_IDLE;
+    }
     return result;
 }
 

@@ -1,0 +1,169 @@
+#include "device_fixture.h"
+
+/* More than one staging buffer, and no multiple of anything. */
+enum { LARGE_BYTES = (33 << 20) + 12345 };
+
+static struct device *device;
+static struct messages messages;
+
+static int open_direct(void **state)
+{
+    (void)state;
+    unsetenv("WHIT_STAGING");
+    device = device_open(&messages, false);
+    return 0;
+}
+
+static int open_staged(void **state)
+{
+    (void)state;
+    setenv("WHIT_STAGING", "1", 1);
+    device = device_open(&messages, false);
+    return 0;
+}
+
+static int close_device(void **state)
+{
+    (void)state;
+    unsetenv("WHIT_STAGING");
+    device_close(device, &messages);
+    return 0;
+}
+
+static void sizes_are_rounded_up(void **state)
+{
+    (void)state;
+    const uint64_t sizes[][2] = {{0, 16}, {1, 16}, {16, 16}, {17, 32}, {4095, 4096}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
+        struct buffer *buffer = buffer_make(device, sizes[i][0], BUFFER_STORAGE, "size");
+        assert_int_equal(buffer_size(buffer), sizes[i][1]);
+        buffer_destroy(buffer);
+    }
+}
+
+static void starts_as_zeros(void **state)
+{
+    (void)state;
+    uint8_t bytes[4096];
+    for (int turn = 0; turn < 8; ++turn) {
+        struct buffer *buffer =
+            buffer_make(device, sizeof bytes, turn & 1 ? BUFFER_HOST : BUFFER_STORAGE, "zeros");
+        memset(bytes, 0xa5, sizeof bytes);
+        assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
+        for (size_t i = 0; i < sizeof bytes; ++i)
+            assert_int_equal(bytes[i], 0);
+        memset(bytes, 0xa5, sizeof bytes); /* what the next one may be given */
+        assert_int_equal(buffer_write(buffer, 0, bytes, sizeof bytes), WHIT_OK);
+        buffer_destroy(buffer);
+    }
+}
+
+static void keeps_what_is_written_where(void **state)
+{
+    (void)state;
+    const uint32_t uses[] = {BUFFER_STORAGE, BUFFER_STORAGE | BUFFER_HOST};
+    uint8_t *bytes = malloc(LARGE_BYTES), *back = malloc(LARGE_BYTES);
+    assert_true(bytes && back);
+    for (size_t i = 0; i < LARGE_BYTES; ++i)
+        bytes[i] = (uint8_t)(i * 2654435761u >> 13);
+    for (size_t i = 0; i < 2; ++i) {
+        struct buffer *buffer = buffer_make(device, LARGE_BYTES, uses[i], "large");
+        assert_int_equal(buffer_write(buffer, 0, bytes, LARGE_BYTES), WHIT_OK);
+        memset(back, 0, LARGE_BYTES);
+        assert_int_equal(buffer_read(buffer, 0, back, LARGE_BYTES), WHIT_OK);
+        assert_memory_equal(bytes, back, LARGE_BYTES);
+        /* A part in the middle, at odd places, leaves its neighbours alone. */
+        assert_int_equal(buffer_write(buffer, 1001, bytes, 20 << 20), WHIT_OK);
+        assert_int_equal(buffer_read(buffer, 77, back, LARGE_BYTES - 77), WHIT_OK);
+        assert_memory_equal(back, bytes + 77, 1001 - 77);
+        assert_memory_equal(back + 1001 - 77, bytes, 20 << 20);
+        size_t end = 1001 + (20 << 20);
+        assert_memory_equal(back + end - 77, bytes + end, LARGE_BYTES - end);
+        buffer_destroy(buffer);
+    }
+    free(bytes);
+    free(back);
+}
+
+static void refuses_access_outside(void **state)
+{
+    (void)state;
+    struct buffer *buffer = buffer_make(device, 64, BUFFER_STORAGE, "small");
+    uint8_t bytes[65] = {0};
+    assert_int_equal(buffer_write(buffer, 0, bytes, 65), WHIT_ERROR_USAGE);
+    assert_int_equal(buffer_write(buffer, 63, bytes, 2), WHIT_ERROR_USAGE);
+    assert_int_equal(buffer_read(buffer, 65, bytes, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(buffer_read(buffer, UINT64_MAX, bytes, 2), WHIT_ERROR_USAGE);
+    assert_int_equal(buffer_read(buffer, 2, bytes, UINT64_MAX), WHIT_ERROR_USAGE);
+    assert_int_equal(buffer_read(buffer, 64, bytes, 0), WHIT_OK);
+    assert_int_equal(buffer_write(buffer, 60, bytes, 4), WHIT_OK);
+    buffer_destroy(buffer);
+}
+
+static void refuses_what_is_over_the_limits(void **state)
+{
+    (void)state;
+    const struct device_info *info = device_get_info(device);
+    const struct {
+        uint64_t size_bytes;
+        uint32_t uses;
+        const char *what;
+    } cases[] = {
+        {info->max_storage_range_bytes + 1, BUFFER_STORAGE, "a storage buffer"},
+        {info->max_texel_elements * 16 + 1, BUFFER_TEXELS, "a texel buffer"},
+        {info->max_allocation_bytes + 1, BUFFER_HOST, "one allocation"},
+        {UINT64_MAX, BUFFER_HOST, "one allocation"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct buffer *buffer = (struct buffer *)&messages;
+        messages = (struct messages){0};
+        assert_int_equal(
+            buffer_create(device, cases[i].size_bytes, cases[i].uses, "nodes", &buffer),
+            WHIT_ERROR_DEVICE);
+        assert_null(buffer);
+        assert_int_equal(messages.errors, 1);
+        assert_non_null(strstr(messages.text, "buffer \"nodes\": "));
+        assert_non_null(strstr(messages.text, "over the device's limit of "));
+        assert_non_null(strstr(messages.text, cases[i].what));
+    }
+    messages = (struct messages){0};
+}
+
+static void names_sizes_in_mebibytes(void **state)
+{
+    (void)state;
+    struct buffer *buffer;
+    uint64_t size = (device_get_info(device)->max_storage_range_bytes + 1 + (1 << 20)) >> 20 << 20;
+    char expected[64];
+    snprintf(expected, sizeof expected, "buffer \"nodes\": %llu MiB is over",
+             (unsigned long long)size >> 20);
+    messages = (struct messages){0};
+    assert_int_equal(buffer_create(device, size, BUFFER_STORAGE, "nodes", &buffer),
+                     WHIT_ERROR_DEVICE);
+    assert_non_null(strstr(messages.text, expected));
+}
+
+static void destroy_accepts_null(void **state)
+{
+    (void)state;
+    buffer_destroy(NULL);
+    pipeline_destroy(NULL);
+    binding_set_destroy(NULL);
+    commands_destroy(NULL);
+}
+
+int main(void)
+{
+    setenv("WHIT_NO_CACHE", "1", 1);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sizes_are_rounded_up),
+        cmocka_unit_test(starts_as_zeros),
+        cmocka_unit_test(keeps_what_is_written_where),
+        cmocka_unit_test(refuses_access_outside),
+        cmocka_unit_test(refuses_what_is_over_the_limits),
+        cmocka_unit_test(names_sizes_in_mebibytes),
+        cmocka_unit_test(destroy_accepts_null),
+    };
+    int failed = cmocka_run_group_tests_name("direct", tests, open_direct, close_device);
+    return failed + cmocka_run_group_tests_name("staged", tests, open_staged, close_device);
+}

@@ -1,0 +1,396 @@
+#include "device_fixture.h"
+
+#include "device_affine.h"
+#include "device_count.h"
+#include "device_spin.h"
+#include "device_texels.h"
+
+static struct device *device;
+static struct messages messages;
+
+static int open_device(void **state)
+{
+    (void)state;
+    device = device_open(&messages, false);
+    return 0;
+}
+
+static int close_device(void **state)
+{
+    (void)state;
+    device_close(device, &messages);
+    return 0;
+}
+
+static const enum binding_kind one_storage[] = {BINDING_STORAGE};
+
+static struct pipeline_params affine_params(const uint32_t spec[3])
+{
+    return (struct pipeline_params){
+        .spirv = device_affine,
+        .spirv_bytes = sizeof device_affine,
+        .spec = spec,
+        .spec_count = 3,
+        .bindings = one_storage,
+        .binding_count = 1,
+        .push_bytes = 8,
+        .name = "affine",
+    };
+}
+
+static void constants_reach_the_shader(void **state)
+{
+    (void)state;
+    enum { COUNT = 1000 };
+    const uint32_t specs[][3] = {{64, 3, 7}, {16, 0xffffffffu, 5}, {1, 2, 0}};
+    for (size_t i = 0; i < 3; ++i) {
+        struct buffer *buffer = buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE, "values");
+        struct pipeline_params params = affine_params(specs[i]);
+        struct kernel_run run = kernel_make(device, &params, &buffer);
+        struct commands *commands = commands_make(device);
+        const uint32_t push[] = {COUNT, 1000000 * (uint32_t)i};
+        assert_int_equal(commands_begin(commands), WHIT_OK);
+        commands_bind(commands, run.pipeline, run.set);
+        commands_push(commands, push, sizeof push);
+        commands_dispatch(commands, (COUNT + specs[i][0] - 1) / specs[i][0], 1, 1);
+        commands_finish(commands);
+        uint32_t values[COUNT + 1];
+        assert_int_equal(buffer_read(buffer, 0, values, sizeof values), WHIT_OK);
+        for (uint32_t j = 0; j < COUNT; ++j)
+            assert_int_equal(values[j], j * specs[i][1] + specs[i][2] + push[1]);
+        assert_int_equal(values[COUNT], 0);
+        commands_destroy(commands);
+        kernel_free(&run);
+        buffer_destroy(buffer);
+    }
+}
+
+static void texels_equal_storage(void **state)
+{
+    (void)state;
+    enum { ROWS = 4096 };
+    uint32_t(*rows)[4] = malloc(ROWS * sizeof *rows), (*sums)[4] = malloc(ROWS * sizeof *sums);
+    assert_true(rows && sums);
+    for (uint32_t i = 0; i < 4 * ROWS; ++i)
+        rows[i / 4][i % 4] = i * 2654435761u; /* every bit pattern counts: NaNs as well */
+    struct buffer *in =
+        buffer_make(device, ROWS * sizeof *rows, BUFFER_STORAGE | BUFFER_TEXELS, "rows");
+    struct buffer *out = buffer_make(device, ROWS * sizeof *sums, BUFFER_STORAGE, "sums");
+    assert_int_equal(buffer_write(in, 0, rows, ROWS * sizeof *rows), WHIT_OK);
+
+    const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_NONE, BINDING_TEXELS,
+                                          BINDING_STORAGE};
+    struct buffer *const buffers[] = {in, NULL, in, out};
+    struct pipeline_params params = {.spirv = device_texels,
+                                     .spirv_bytes = sizeof device_texels,
+                                     .bindings = bindings,
+                                     .binding_count = 4,
+                                     .name = "texels"};
+    struct kernel_run run = kernel_make(device, &params, buffers);
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_bind(commands, run.pipeline, run.set);
+    commands_dispatch(commands, ROWS / 64, 1, 1);
+    commands_finish(commands);
+    assert_int_equal(buffer_read(out, 0, sums, ROWS * sizeof *sums), WHIT_OK);
+    for (uint32_t i = 0; i < 4 * ROWS; ++i)
+        assert_int_equal(sums[i / 4][i % 4], rows[i / 4][i % 4] * 2 + 1);
+
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(in);
+    buffer_destroy(out);
+    free(rows);
+    free(sums);
+}
+
+static struct pipeline_params count_params(void)
+{
+    return (struct pipeline_params){.spirv = device_count,
+                                    .spirv_bytes = sizeof device_count,
+                                    .bindings = one_storage,
+                                    .binding_count = 1,
+                                    .name = "count"};
+}
+
+static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
+{
+    uint32_t word = 0xdeadbeefu;
+    assert_int_equal(buffer_read(buffer, offset_bytes, &word, sizeof word), WHIT_OK);
+    return word;
+}
+
+/* Arguments made on the device in the same submission, at an offset. */
+static void indirect_dispatch_takes_its_arguments(void **state)
+{
+    (void)state;
+    struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE, "count");
+    struct buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
+    struct pipeline_params params = count_params();
+    struct kernel_run run = kernel_make(device, &params, &count);
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_fill(commands, arguments, 16, 12, 3);
+    commands_barrier(commands);
+    commands_fill(commands, arguments, 16, 4, 5);
+    commands_barrier(commands);
+    commands_bind(commands, run.pipeline, run.set);
+    commands_dispatch_indirect(commands, arguments, 16);
+    commands_finish(commands);
+    assert_int_equal(read_word(count, 0), 5 * 3 * 3);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(count);
+    buffer_destroy(arguments);
+}
+
+static void fill_and_copy_keep_to_their_range(void **state)
+{
+    (void)state;
+    struct buffer *a = buffer_make(device, 64, BUFFER_STORAGE, "a");
+    struct buffer *b = buffer_make(device, 64, BUFFER_HOST, "b");
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_fill(commands, a, 8, 16, 0x12345678u);
+    commands_barrier(commands);
+    commands_copy(commands, a, 4, b, 32, 16);
+    commands_finish(commands);
+    uint32_t words[16];
+    assert_int_equal(buffer_read(a, 0, words, sizeof words), WHIT_OK);
+    for (size_t i = 0; i < 16; ++i)
+        assert_int_equal(words[i], i >= 2 && i < 6 ? 0x12345678u : 0);
+    assert_int_equal(buffer_read(b, 0, words, sizeof words), WHIT_OK);
+    for (size_t i = 0; i < 16; ++i)
+        assert_int_equal(words[i], i >= 9 && i < 12 ? 0x12345678u : 0);
+    commands_destroy(commands);
+    buffer_destroy(a);
+    buffer_destroy(b);
+}
+
+static struct kernel_run spin_make(struct buffer *buffer)
+{
+    struct pipeline_params params = {.spirv = device_spin,
+                                     .spirv_bytes = sizeof device_spin,
+                                     .bindings = one_storage,
+                                     .binding_count = 1,
+                                     .push_bytes = 4,
+                                     .name = "spin"};
+    return kernel_make(device, &params, &buffer);
+}
+
+static void spin(struct commands *commands, const struct kernel_run *run, uint32_t groups)
+{
+    const uint32_t turns = 20000;
+    commands_bind(commands, run->pipeline, run->set);
+    commands_push(commands, &turns, sizeof turns);
+    commands_dispatch(commands, groups, 1, 1);
+}
+
+static void spans_are_timed(void **state)
+{
+    (void)state;
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct kernel_run run = spin_make(buffer);
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_span_count(commands), 0);
+    assert_true(commands_span_ms(commands, 0) < 0.0);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    spin(commands, &run, 1); /* drivers may compile at the first use */
+    commands_finish(commands);
+    assert_int_equal(commands_span_count(commands), 0);
+
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_span_begin(commands, "short");
+    spin(commands, &run, 1);
+    commands_span_end(commands);
+    commands_barrier(commands);
+    commands_span_begin(commands, "long");
+    spin(commands, &run, 4096);
+    commands_span_end(commands);
+    commands_finish(commands);
+    assert_int_equal(commands_span_count(commands), 2);
+    if (device_get_info(device)->timestamps) {
+        assert_true(commands_span_ms(commands, 0) > 0.0);
+        assert_true(commands_span_ms(commands, 1) > commands_span_ms(commands, 0));
+        assert_true(commands_span_ms(commands, 1) < 60e3);
+    }
+    assert_true(commands_span_ms(commands, 2) < 0.0);
+
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    for (int i = 0; i < COMMANDS_SPANS; ++i) {
+        commands_span_begin(commands, "empty");
+        commands_span_end(commands);
+    }
+    commands_finish(commands);
+    assert_int_equal(commands_span_count(commands), COMMANDS_SPANS);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(buffer);
+}
+
+static void wait_obeys_its_limit(void **state)
+{
+    (void)state;
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct kernel_run run = spin_make(buffer);
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_wait(commands, 0.0), WHIT_OK); /* nothing to wait for */
+    bool ran_out = false;
+    /* From some length on, even the fastest device is still at it. */
+    for (uint32_t groups = 512; groups <= 65535 && !ran_out; groups = groups * 2 - 1) {
+        assert_int_equal(commands_begin(commands), WHIT_OK);
+        spin(commands, &run, groups);
+        assert_int_equal(commands_submit(commands), WHIT_OK);
+        whit_result result = commands_wait(commands, 1.0);
+        ran_out = result == WHIT_ERROR_TIME_LIMIT;
+        if (ran_out) {
+            messages = (struct messages){0};
+            assert_int_equal(commands_begin(commands), WHIT_ERROR_USAGE); /* still in flight */
+            assert_int_equal(messages.errors, 1);
+        } else {
+            assert_int_equal(result, WHIT_OK);
+        }
+        assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
+    }
+    const char *validation = getenv("WHIT_VALIDATION"); /* its layer waits inside submit */
+    assert_true(ran_out || (validation && strcmp(validation, "0") != 0));
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    spin(commands, &run, 64);
+    assert_int_equal(commands_submit(commands), WHIT_OK);
+    commands_destroy(commands); /* in flight: waits */
+    kernel_free(&run);
+    buffer_destroy(buffer);
+}
+
+static void recording_errors_surface_at_submit(void **state)
+{
+    (void)state;
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct pipeline_params params = count_params();
+    struct kernel_run run = kernel_make(device, &params, &buffer);
+    struct commands *commands = commands_make(device);
+    const uint32_t word = 0;
+    for (int fault = 0; fault < 9; ++fault) {
+        messages = (struct messages){0};
+        assert_int_equal(commands_begin(commands), WHIT_OK);
+        if (fault != 0)
+            commands_bind(commands, run.pipeline, run.set);
+        switch (fault) {
+        case 0: /* no pipeline */
+            commands_dispatch(commands, 1, 1, 1);
+            break;
+        case 1:
+            commands_dispatch(commands, device_get_info(device)->max_group_count_x, 1, 1);
+            commands_dispatch(commands, UINT32_MAX, 1, 1);
+            break;
+        case 2: /* none declared */
+            commands_push(commands, &word, sizeof word);
+            break;
+        case 3: /* no BUFFER_INDIRECT */
+            commands_dispatch_indirect(commands, buffer, 0);
+            break;
+        case 4:
+            commands_fill(commands, buffer, 252, 8, 0);
+            break;
+        case 5: /* overlap */
+            commands_copy(commands, buffer, 0, buffer, 60, 64);
+            break;
+        case 6:
+            commands_span_begin(commands, "outer");
+            commands_span_begin(commands, "inner");
+            break;
+        case 7:
+            commands_span_end(commands);
+            break;
+        case 8:
+            for (int i = 0; i <= COMMANDS_SPANS; ++i) {
+                commands_span_begin(commands, "many");
+                commands_span_end(commands);
+            }
+            break;
+        }
+        assert_int_equal(commands_submit(commands),
+                         fault == 1 ? WHIT_ERROR_DEVICE : WHIT_ERROR_USAGE);
+        assert_int_equal(messages.errors, 1);
+        assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
+    }
+    /* None of them ran, and the object is as good as new. */
+    assert_int_equal(read_word(buffer, 0), 0);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_bind(commands, run.pipeline, run.set);
+    commands_dispatch(commands, 7, 1, 1);
+    commands_finish(commands);
+    assert_int_equal(read_word(buffer, 0), 7);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(buffer);
+}
+
+static void later_submissions_see_earlier_ones(void **state)
+{
+    (void)state;
+    struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE, "count");
+    struct pipeline_params params = count_params();
+    struct kernel_run run = kernel_make(device, &params, &buffer);
+    struct commands *commands[2] = {commands_make(device), commands_make(device)};
+    for (int i = 0; i < 20; ++i) {
+        struct commands *one = commands[i & 1];
+        assert_int_equal(commands_wait(one, -1.0), WHIT_OK);
+        assert_int_equal(commands_begin(one), WHIT_OK);
+        commands_bind(one, run.pipeline, run.set);
+        commands_dispatch(one, 10, 1, 1);
+        assert_int_equal(commands_submit(one), WHIT_OK);
+    }
+    for (int i = 0; i < 2; ++i) {
+        assert_int_equal(commands_wait(commands[i], -1.0), WHIT_OK);
+        commands_destroy(commands[i]);
+    }
+    assert_int_equal(read_word(buffer, 0), 200);
+    kernel_free(&run);
+    buffer_destroy(buffer);
+}
+
+static void refuses_wrong_pipelines_and_sets(void **state)
+{
+    (void)state;
+    struct pipeline_params params = count_params();
+    struct pipeline *pipeline;
+    params.spirv_bytes = 7;
+    assert_int_equal(pipeline_create(device, &params, &pipeline), WHIT_ERROR_USAGE);
+    assert_null(pipeline);
+    params = count_params();
+    params.push_bytes = 1 << 20;
+    assert_int_equal(pipeline_create(device, &params, &pipeline), WHIT_ERROR_DEVICE);
+    assert_null(pipeline);
+
+    params = count_params();
+    assert_int_equal(pipeline_create(device, &params, &pipeline), WHIT_OK);
+    struct buffer *texels = buffer_make(device, 16, BUFFER_TEXELS, "texels");
+    struct buffer *none = NULL;
+    struct binding_set *set;
+    messages = (struct messages){0};
+    assert_int_equal(binding_set_create(pipeline, &texels, 1, &set), WHIT_ERROR_USAGE);
+    assert_null(set);
+    assert_int_equal(binding_set_create(pipeline, &none, 1, &set), WHIT_ERROR_USAGE);
+    assert_int_equal(binding_set_create(pipeline, &texels, 0, &set), WHIT_ERROR_USAGE);
+    assert_int_equal(messages.errors, 3);
+    buffer_destroy(texels);
+    pipeline_destroy(pipeline);
+}
+
+int main(void)
+{
+    setenv("WHIT_NO_CACHE", "1", 1);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(constants_reach_the_shader),
+        cmocka_unit_test(texels_equal_storage),
+        cmocka_unit_test(indirect_dispatch_takes_its_arguments),
+        cmocka_unit_test(fill_and_copy_keep_to_their_range),
+        cmocka_unit_test(spans_are_timed),
+        cmocka_unit_test(wait_obeys_its_limit),
+        cmocka_unit_test(recording_errors_surface_at_submit),
+        cmocka_unit_test(later_submissions_see_earlier_ones),
+        cmocka_unit_test(refuses_wrong_pipelines_and_sets),
+    };
+    return cmocka_run_group_tests(tests, open_device, close_device);
+}

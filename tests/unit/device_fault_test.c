@@ -1,0 +1,289 @@
+/* Every checked Vulkan call is made to fail in turn; and the pipeline cache's file is damaged. */
+#include <dirent.h>
+#include <unistd.h>
+
+#include "device_fixture.h"
+
+#include "device_affine.h"
+
+/* Everything a user does with a device, once. */
+struct cycle {
+    struct device *device;
+    struct buffer *buffer;
+    struct pipeline *pipeline;
+    struct binding_set *set;
+    struct commands *commands;
+    uint32_t words[64];
+};
+
+static whit_result cycle_prepare(struct cycle *cycle)
+{
+    static const enum binding_kind bindings[] = {BINDING_STORAGE};
+    static const uint32_t spec[] = {64, 3, 1};
+    struct pipeline_params params = {.spirv = device_affine,
+                                     .spirv_bytes = sizeof device_affine,
+                                     .spec = spec,
+                                     .spec_count = 3,
+                                     .bindings = bindings,
+                                     .binding_count = 1,
+                                     .push_bytes = 8,
+                                     .name = "affine"};
+    whit_result result = buffer_create(cycle->device, sizeof cycle->words,
+                                       BUFFER_STORAGE | BUFFER_TEXELS, "values", &cycle->buffer);
+    if (result == WHIT_OK)
+        result = buffer_write(cycle->buffer, 0, cycle->words, sizeof cycle->words);
+    if (result == WHIT_OK)
+        result = pipeline_create(cycle->device, &params, &cycle->pipeline);
+    if (result == WHIT_OK)
+        result = binding_set_create(cycle->pipeline, &cycle->buffer, 1, &cycle->set);
+    if (result == WHIT_OK)
+        result = commands_create(cycle->device, "cycle", &cycle->commands);
+    return result;
+}
+
+static whit_result cycle_dispatch(struct cycle *cycle)
+{
+    const uint32_t push[] = {64, 0};
+    whit_result result = commands_begin(cycle->commands);
+    if (result != WHIT_OK)
+        return result;
+    commands_span_begin(cycle->commands, "affine");
+    commands_bind(cycle->commands, cycle->pipeline, cycle->set);
+    commands_push(cycle->commands, push, sizeof push);
+    commands_dispatch(cycle->commands, 1, 1, 1);
+    commands_span_end(cycle->commands);
+    result = commands_submit(cycle->commands);
+    if (result == WHIT_OK)
+        result = commands_wait(cycle->commands, -1.0);
+    if (result == WHIT_OK)
+        result = buffer_read(cycle->buffer, 0, cycle->words, sizeof cycle->words);
+    return result;
+}
+
+static whit_result cycle_run(struct messages *messages, bool validation)
+{
+    struct log log = messages_log(messages);
+    struct device_params params = {.validation = validation};
+    struct cycle cycle = {0};
+    whit_result result = device_create(&log, &params, &cycle.device);
+    if (result == WHIT_OK)
+        result = cycle_prepare(&cycle);
+    if (result == WHIT_OK)
+        result = cycle_dispatch(&cycle);
+    if (result == WHIT_OK)
+        assert_int_equal(cycle.words[63], 190);
+    commands_destroy(cycle.commands);
+    binding_set_destroy(cycle.set);
+    pipeline_destroy(cycle.pipeline);
+    buffer_destroy(cycle.buffer);
+    device_destroy(cycle.device);
+    return result;
+}
+
+/* Until a run has fewer calls than the number of the one that is to fail. */
+static void fail_each_call(bool staged, bool validation)
+{
+    struct messages messages;
+    whit_result result = WHIT_ERROR_FAILED;
+    unsigned call = 0;
+    setenv("WHIT_STAGING", staged ? "1" : "0", 1);
+    while (result != WHIT_OK && ++call < 200) {
+        char fault[32];
+        snprintf(fault, sizeof fault, "*:%u", call);
+        setenv("WHIT_FAULT", fault, 1);
+        result = cycle_run(&messages, validation);
+        if (result != WHIT_OK) {
+            assert_true(result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_DEVICE);
+            assert_int_equal(messages.errors - messages.validation, 1);
+        }
+        /* An object left behind is reported when its device goes. */
+        if (messages.validation > 0)
+            print_message("call %u: %s", call, messages.text);
+        assert_int_equal(messages.validation, 0);
+    }
+    unsetenv("WHIT_FAULT");
+    unsetenv("WHIT_STAGING");
+    assert_int_equal(result, WHIT_OK);
+    print_message("%u checked calls\n", call - 1);
+    assert_true(call > (staged ? 50 : 28)); /* that it failed all along */
+}
+
+static void each_call_may_fail(void **state)
+{
+    (void)state;
+    fail_each_call(false, false);
+}
+
+static void each_call_may_fail_with_staging(void **state)
+{
+    (void)state;
+    fail_each_call(true, false);
+}
+
+static void nothing_is_left_behind(void **state)
+{
+    (void)state;
+    fail_each_call(true, true);
+}
+
+static void memory_running_out_is_told_apart(void **state)
+{
+    (void)state;
+    struct messages messages;
+    setenv("WHIT_FAULT", "vkAllocateMemory:2", 1);
+    struct device *device = device_open(&messages, false);
+    unsetenv("WHIT_FAULT");
+    struct buffer *first = buffer_make(device, 16, BUFFER_STORAGE, "first");
+    struct buffer *second = NULL;
+    messages = (struct messages){0};
+    assert_int_equal(buffer_create(device, 16, BUFFER_STORAGE, "second", &second),
+                     WHIT_ERROR_MEMORY);
+    assert_null(second);
+    assert_non_null(strstr(messages.text, "VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+    assert_non_null(strstr(messages.text, "buffer.c:"));
+    /* The device lives on. */
+    second = buffer_make(device, 16, BUFFER_STORAGE, "second");
+    buffer_destroy(first);
+    buffer_destroy(second);
+    device_destroy(device);
+}
+
+static void loss_is_for_good(void **state)
+{
+    (void)state;
+    struct messages messages;
+    setenv("WHIT_FAULT", "vkWaitForFences:1", 1);
+    struct device *device = device_open(&messages, false);
+    unsetenv("WHIT_FAULT");
+    struct buffer *buffer = buffer_make(device, 64, BUFFER_HOST, "values");
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_fill(commands, buffer, 0, 64, 1);
+    assert_int_equal(commands_submit(commands), WHIT_OK);
+    assert_int_equal(commands_wait(commands, -1.0), WHIT_ERROR_DEVICE);
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.text, "VK_ERROR_DEVICE_LOST"));
+
+    uint32_t word = 0;
+    struct buffer *other_buffer;
+    struct commands *other;
+    assert_int_equal(commands_wait(commands, -1.0), WHIT_ERROR_DEVICE);
+    assert_int_equal(buffer_read(buffer, 0, &word, sizeof word), WHIT_ERROR_DEVICE);
+    assert_int_equal(buffer_write(buffer, 0, &word, sizeof word), WHIT_ERROR_DEVICE);
+    assert_int_equal(buffer_create(device, 16, BUFFER_HOST, "b", &other_buffer), WHIT_ERROR_DEVICE);
+    assert_int_equal(commands_create(device, "c", &other), WHIT_ERROR_DEVICE);
+    assert_int_equal(messages.lines, 1); /* said once */
+    commands_destroy(commands);
+    buffer_destroy(buffer);
+    device_destroy(device);
+}
+
+static void fifty_devices_in_turn(void **state)
+{
+    (void)state;
+    struct messages messages;
+    for (int i = 0; i < 50; ++i)
+        assert_int_equal(cycle_run(&messages, false), WHIT_OK);
+}
+
+/* The one file in `folder`/whit, "" when there is none. */
+static void cache_file(const char *folder, char *path, size_t path_bytes)
+{
+    char cache[128];
+    snprintf(cache, sizeof cache, "%s/whit", folder);
+    path[0] = '\0';
+    DIR *dir = opendir(cache);
+    if (!dir)
+        return;
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(dir));)
+        if (entry->d_name[0] != '.' && ++count)
+            snprintf(path, path_bytes, "%s/%s", cache, entry->d_name);
+    closedir(dir);
+    assert_int_equal(count, 1);
+}
+
+static size_t read_all(const char *path, uint8_t *data, size_t data_bytes)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t bytes = fread(data, 1, data_bytes, file);
+    fclose(file);
+    return bytes;
+}
+
+static void write_all(const char *path, const uint8_t *data, size_t data_bytes)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, data_bytes, file), data_bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void damaged_cache_files_are_replaced(void **state)
+{
+    (void)state;
+    static uint8_t good[1 << 20], now[1 << 20];
+    char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
+    struct messages messages;
+    assert_non_null(mkdtemp(folder));
+    setenv("XDG_CACHE_HOME", folder, 1);
+    assert_int_equal(cycle_run(&messages, false), WHIT_OK); /* WHIT_NO_CACHE is on */
+    cache_file(folder, path, sizeof path);
+    assert_string_equal(path, "");
+
+    unsetenv("WHIT_NO_CACHE");
+    assert_int_equal(cycle_run(&messages, false), WHIT_OK);
+    cache_file(folder, path, sizeof path);
+    assert_true(path[0] != '\0');
+    size_t bytes = read_all(path, good, sizeof good);
+    assert_true(bytes > 32 && bytes < sizeof good);
+    for (int damage = 0; damage < 4; ++damage) {
+        memcpy(now, good, bytes);
+        now[bytes - 1] ^= damage == 0;
+        now[0] ^= damage == 1;
+        write_all(path, now, damage == 2 ? bytes / 2 : damage == 3 ? 0 : bytes);
+        assert_int_equal(cycle_run(&messages, false), WHIT_OK);
+        assert_int_equal(messages.lines, 0);
+        size_t bytes_now = read_all(path, now, sizeof now);
+        assert_int_equal(bytes_now, bytes);
+        assert_memory_equal(now, good, 8); /* ours again, at the size it had */
+    }
+    assert_int_equal(unlink(path), 0);
+    snprintf(cache, sizeof cache, "%s/whit", folder);
+    assert_int_equal(rmdir(cache), 0);
+    /* A file where the folder should be: no cache, and no complaint. */
+    write_all(cache, good, 1);
+    assert_int_equal(cycle_run(&messages, false), WHIT_OK);
+    assert_int_equal(messages.lines, 0);
+    assert_int_equal(unlink(cache), 0);
+    (void)rmdir(folder); /* unless a driver keeps something there too */
+    setenv("WHIT_NO_CACHE", "1", 1);
+    unsetenv("XDG_CACHE_HOME");
+}
+
+/* For the tests that count calls or messages: the plain case, whatever the suite runs under. */
+static int plain_environment(void **state)
+{
+    (void)state;
+    struct messages messages;
+    unsetenv("WHIT_VALIDATION");
+    setenv("WHIT_NO_CACHE", "1", 1);
+    device_destroy(device_open(&messages, false));
+    return 0;
+}
+
+int main(void)
+{
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_call_may_fail),
+        cmocka_unit_test(each_call_may_fail_with_staging),
+        cmocka_unit_test(nothing_is_left_behind),
+        cmocka_unit_test(memory_running_out_is_told_apart),
+        cmocka_unit_test(loss_is_for_good),
+        cmocka_unit_test(fifty_devices_in_turn),
+        cmocka_unit_test(damaged_cache_files_are_replaced),
+    };
+    return cmocka_run_group_tests(tests, plain_environment, NULL);
+}

@@ -1,0 +1,107 @@
+/* Shared by the device tests: a device whose messages are kept, and small pipelines on it. */
+#ifndef DEVICE_FIXTURE_H
+#define DEVICE_FIXTURE_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "device/device.h"
+
+struct messages {
+    int errors, validation, lines; /* lines: errors and warnings */
+    char text[16384];              /* one a line, from the first */
+};
+
+static inline void messages_collect(void *user, whit_log_level level, const char *message)
+{
+    struct messages *messages = user;
+    if (level > WHIT_LOG_WARNING)
+        return;
+    messages->errors += level == WHIT_LOG_ERROR;
+    messages->validation += strncmp(message, "validation: ", 12) == 0;
+    ++messages->lines;
+    size_t used = strlen(messages->text);
+    snprintf(messages->text + used, sizeof messages->text - used, "%s\n", message);
+}
+
+static inline struct log messages_log(struct messages *messages)
+{
+    *messages = (struct messages){0};
+    return (struct log){.fn = messages_collect, .user = messages, .level = WHIT_LOG_DEBUG};
+}
+
+/* No device fails the test, unless WHIT_TEST_NO_DEVICE=skip says that there is none. */
+static inline struct device *device_open(struct messages *messages, bool validation)
+{
+    struct log log = messages_log(messages);
+    struct device_params params = {.validation = validation};
+    struct device *device;
+    whit_result result = device_create(&log, &params, &device);
+    const char *no_device = getenv("WHIT_TEST_NO_DEVICE");
+    if (result == WHIT_ERROR_NO_DEVICE && no_device && strcmp(no_device, "skip") == 0)
+        skip();
+    if (result != WHIT_OK)
+        print_message("%s", messages->text);
+    assert_int_equal(result, WHIT_OK);
+    return device;
+}
+
+/* Leaks show here as validation messages, when validation is on. */
+static inline void device_close(struct device *device, struct messages *messages)
+{
+    device_destroy(device);
+    if (messages->validation > 0)
+        print_message("%s", messages->text);
+    assert_int_equal(messages->validation, 0);
+}
+
+struct kernel_run {
+    struct pipeline *pipeline;
+    struct binding_set *set;
+};
+
+static inline struct kernel_run kernel_make(struct device *device,
+                                            const struct pipeline_params *params,
+                                            struct buffer *const *buffers)
+{
+    struct kernel_run run;
+    assert_int_equal(pipeline_create(device, params, &run.pipeline), WHIT_OK);
+    assert_int_equal(binding_set_create(run.pipeline, buffers, params->binding_count, &run.set),
+                     WHIT_OK);
+    return run;
+}
+
+static inline void kernel_free(struct kernel_run *run)
+{
+    binding_set_destroy(run->set);
+    pipeline_destroy(run->pipeline);
+}
+
+static inline struct buffer *buffer_make(struct device *device, uint64_t size_bytes, uint32_t uses,
+                                         const char *name)
+{
+    struct buffer *buffer;
+    assert_int_equal(buffer_create(device, size_bytes, uses, name, &buffer), WHIT_OK);
+    return buffer;
+}
+
+static inline struct commands *commands_make(struct device *device)
+{
+    struct commands *commands;
+    assert_int_equal(commands_create(device, "test", &commands), WHIT_OK);
+    return commands;
+}
+
+static inline void commands_finish(struct commands *commands)
+{
+    assert_int_equal(commands_submit(commands), WHIT_OK);
+    assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
+}
+
+#endif

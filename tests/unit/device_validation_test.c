@@ -1,0 +1,153 @@
+/* The Khronos layer is part of the test suite's requirements: its absence fails these tests. */
+#include "device_fixture.h"
+
+#include "device_affine.h"
+#include "device_overrun.h"
+
+static const enum binding_kind one_storage[] = {BINDING_STORAGE};
+
+static void run_affine(struct device *device, bool with_barrier)
+{
+    const uint32_t spec[] = {64, 1, 0}, push[] = {64, 0};
+    struct buffer *values = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct buffer *copy = buffer_make(device, 256, BUFFER_HOST, "copy");
+    struct pipeline_params params = {.spirv = device_affine,
+                                     .spirv_bytes = sizeof device_affine,
+                                     .spec = spec,
+                                     .spec_count = 3,
+                                     .bindings = one_storage,
+                                     .binding_count = 1,
+                                     .push_bytes = sizeof push,
+                                     .name = "affine"};
+    struct kernel_run run = kernel_make(device, &params, &values);
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_span_begin(commands, "affine");
+    commands_bind(commands, run.pipeline, run.set);
+    commands_push(commands, push, sizeof push);
+    commands_dispatch(commands, 1, 1, 1);
+    commands_span_end(commands);
+    if (with_barrier)
+        commands_barrier(commands);
+    commands_copy(commands, values, 0, copy, 0, 256);
+    commands_finish(commands);
+    uint32_t word = 0;
+    assert_int_equal(buffer_read(copy, 4 * 63, &word, sizeof word), WHIT_OK);
+    if (with_barrier)
+        assert_int_equal(word, 63);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(values);
+    buffer_destroy(copy);
+}
+
+static void normal_use_is_silent(void **state)
+{
+    (void)state;
+    for (int staged = 0; staged < 2; ++staged) {
+        struct messages messages;
+        setenv("WHIT_STAGING", staged ? "1" : "0", 1);
+        struct device *device = device_open(&messages, true);
+        run_affine(device, true);
+        assert_int_equal(device_validation_messages(device), 0);
+        device_close(device, &messages);
+    }
+    unsetenv("WHIT_STAGING");
+}
+
+static void missing_barrier_is_reported(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct device *device = device_open(&messages, true);
+    run_affine(device, false);
+    assert_true(device_validation_messages(device) >= 1);
+    assert_int_equal(device_validation_messages(device), (uint32_t)messages.validation);
+    assert_non_null(strstr(messages.text, "SYNC-HAZARD-READ"));
+    device_destroy(device);
+}
+
+static void write_outside_is_reported(void **state)
+{
+    (void)state;
+    for (uint32_t index = 3; index <= 100; index += 97) {
+        struct messages messages;
+        struct device *device = device_open(&messages, true);
+        struct buffer *values = buffer_make(device, 16, BUFFER_STORAGE, "values");
+        struct pipeline_params params = {.spirv = device_overrun,
+                                         .spirv_bytes = sizeof device_overrun,
+                                         .bindings = one_storage,
+                                         .binding_count = 1,
+                                         .push_bytes = 4,
+                                         .name = "overrun"};
+        struct kernel_run run = kernel_make(device, &params, &values);
+        struct commands *commands = commands_make(device);
+        assert_int_equal(commands_begin(commands), WHIT_OK);
+        commands_bind(commands, run.pipeline, run.set);
+        commands_push(commands, &index, sizeof index);
+        commands_dispatch(commands, 1, 1, 1);
+        commands_finish(commands);
+        assert_int_equal(device_validation_messages(device) > 0, index > 3);
+        commands_destroy(commands);
+        kernel_free(&run);
+        buffer_destroy(values);
+        device_destroy(device);
+    }
+}
+
+static void leaks_are_reported(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct device *device = device_open(&messages, true);
+    struct buffer *lost = buffer_make(device, 16, BUFFER_STORAGE, "forgotten");
+    device_destroy(device);
+    assert_true(messages.validation >= 1);
+    assert_non_null(strstr(messages.text, "forgotten")); /* the debug name */
+    free(lost);
+}
+
+static void environment_turns_it_on(void **state)
+{
+    (void)state;
+    struct messages messages;
+    setenv("WHIT_VALIDATION", "1", 1);
+    struct device *device = device_open(&messages, false);
+    run_affine(device, false);
+    assert_true(device_validation_messages(device) >= 1);
+    device_destroy(device);
+    setenv("WHIT_VALIDATION", "0", 1);
+    device = device_open(&messages, false);
+    run_affine(device, false);
+    assert_int_equal(device_validation_messages(device), 0);
+    device_destroy(device);
+    unsetenv("WHIT_VALIDATION");
+}
+
+/* Last, since it hides the layer. */
+static void absence_is_an_error(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct log log = messages_log(&messages);
+    struct device_params params = {.validation = true};
+    struct device *device;
+    setenv("VK_LAYER_PATH", "/nonexistent", 1);
+    assert_int_equal(device_create(&log, &params, &device), WHIT_ERROR_DEVICE);
+    assert_null(device);
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.text, "vulkan-validationlayers"));
+    unsetenv("VK_LAYER_PATH");
+}
+
+int main(void)
+{
+    setenv("WHIT_NO_CACHE", "1", 1);
+    unsetenv("WHIT_VALIDATION");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(normal_use_is_silent),      cmocka_unit_test(missing_barrier_is_reported),
+        cmocka_unit_test(write_outside_is_reported), cmocka_unit_test(leaks_are_reported),
+        cmocka_unit_test(environment_turns_it_on),   cmocka_unit_test(absence_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
