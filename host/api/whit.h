@@ -212,7 +212,7 @@ void whit_renderer_destroy(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
 typedef enum whit_aov {
-    WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 (0 where only background) */
+    WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
 } whit_aov;
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov,

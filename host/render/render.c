@@ -216,9 +216,7 @@ static whit_result create_parts(struct renderer *renderer)
     double uploaded_ms = clock_ms();
     renderer->stats.upload_ms = uploaded_ms - start_ms;
     if (result == WHIT_OK)
-        result = variant_create_whitted(renderer, true, &renderer->primary);
-    if (result == WHIT_OK && renderer->has_secondary)
-        result = variant_create_whitted(renderer, false, &renderer->secondary);
+        result = variant_create_whitted(renderer, &renderer->whitted);
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
     renderer->stats.compile_ms = clock_ms() - uploaded_ms;
@@ -261,8 +259,7 @@ void renderer_destroy(struct renderer *renderer)
     if (!renderer)
         return;
     commands_destroy(renderer->commands);
-    pass_finish(&renderer->primary);
-    pass_finish(&renderer->secondary);
+    pass_finish(&renderer->whitted);
     trace_finish(&renderer->trace);
     pixel_buffers_finish(&renderer->pixel_buffers);
     upload_finish(&renderer->scene_buffers);
@@ -337,7 +334,7 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
     clear_work(renderer, 1);
     commands_barrier(commands);
     commands_span_begin(commands, "sample");
-    commands_bind(commands, renderer->primary.pipeline, renderer->primary.sets[0]);
+    commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[0]);
     commands_push(commands, chunk, sizeof *chunk);
     commands_dispatch(commands, chunk->block_count * RENDER_BLOCK_PIXELS / RENDER_GROUP_SIZE, 1, 1);
     ++renderer->stats.dispatches;
@@ -350,13 +347,15 @@ static void record_passes(struct renderer *renderer, const struct gpu_chunk *chu
                           uint32_t passes)
 {
     struct commands *commands = renderer->commands;
+    struct gpu_chunk stacked = *chunk;
+    stacked.stacked = 1;
     for (uint32_t i = first; i < first + passes; ++i) {
         uint32_t in = (i + 1) % 2;
         commands_barrier(commands);
         clear_work(renderer, 1 - in);
         commands_barrier(commands);
-        commands_bind(commands, renderer->secondary.pipeline, renderer->secondary.sets[in]);
-        commands_push(commands, chunk, sizeof *chunk);
+        commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[in]);
+        commands_push(commands, &stacked, sizeof stacked);
         commands_dispatch_indirect(commands, renderer->pixel_buffers.work[in], 0);
         ++renderer->stats.dispatches;
     }

@@ -51,7 +51,7 @@ struct renderer {
     struct scene_effects effects;
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
-    struct pass primary, secondary;
+    struct pass whitted;
     struct trace_state trace;
     struct commands *commands;
     struct gpu_frame frame;
@@ -81,8 +81,7 @@ WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */
 struct gpu_spec variant_spec(const struct renderer *renderer);
-WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer, bool primary,
-                                              struct pass *pass);
+WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 void pass_finish(struct pass *pass);
 

@@ -13,9 +13,11 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
     spec.SPEC_STACK_SIZE = depth > 0 ? depth : 1;
     spec.SPEC_INSTANCED = !accel->single_identity;
+    spec.SPEC_SECONDARY = renderer->has_secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Shadows and camera kind are asked for by the user, not found in the scene. */
     spec.SPEC_SHADOWS = !renderer->params.no_shadows;
+    spec.SPEC_ORTHOGRAPHIC = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC];
     if (renderer->params.all_effects)
         return spec;
     const bool *called = effects->called;
@@ -90,7 +92,7 @@ static whit_result create_pass(struct renderer *renderer, enum kernel kernel,
     return pipeline_create(renderer->device, &params, &pass->pipeline);
 }
 
-whit_result variant_create_whitted(struct renderer *renderer, bool primary, struct pass *pass)
+whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
@@ -119,10 +121,8 @@ whit_result variant_create_whitted(struct renderer *renderer, bool primary, stru
         bind_or_none(&buffers[own[i].binding], own[i].buffer, scene->none);
     }
     struct gpu_spec spec = variant_spec(renderer);
-    spec.SPEC_PRIMARY = primary;
-    whit_result result =
-        create_pass(renderer, KERNEL_WHITTED, &spec, kinds, BIND_WHITTED_COUNT,
-                    sizeof(struct gpu_chunk), primary ? "whitted primary" : "whitted", pass);
+    whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, kinds, BIND_WHITTED_COUNT,
+                                     sizeof(struct gpu_chunk), "whitted", pass);
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
         bind_or_none(&buffers[BIND_WORK_IN], pixels->work[i], scene->none);
         bind_or_none(&buffers[BIND_WORK_OUT], pixels->work[1 - i], scene->none);

@@ -139,8 +139,12 @@ struct gpu_chunk {
     gpu_vec2 sample_xy; /* within the pixel, 0..1 */
     gpu_uint sample_index;
     gpu_float sample_weight;
+    gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
+    gpu_uint pad0;
+    gpu_uint pad1;
+    gpu_uint pad2;
 };
-GPU_ASSERT_SIZE(gpu_chunk, 32)
+GPU_ASSERT_SIZE(gpu_chunk, 48)
 
 /* Push constants of the ray batch kernel. */
 struct gpu_batch {

@@ -273,7 +273,7 @@ bool worth(vec3 weight)
 void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit,
                    inout gpu_counts count, inout uint status)
 {
-    if (ray.bounces >= frame.depth)
+    if (SPEC_SECONDARY == 0u || ray.bounces >= frame.depth)
         return;
     uint bounces = ray.bounces + 1u;
     float solid = 1.0 - o.straight;
@@ -350,30 +350,26 @@ void list_for_next(uint slot)
 
 void main()
 {
+    bool stacked = SPEC_SECONDARY != 0u && chunk.stacked != 0u;
     uint slot = own_slot();
-    if (SPEC_PRIMARY != 0u) {
-        if (slot >= chunk.block_count * BLOCK_PIXELS)
-            return;
-    } else {
-        if (slot >= work_in.count)
-            return;
+    if (slot >= (stacked ? work_in.count : chunk.block_count * BLOCK_PIXELS))
+        return;
+    if (stacked)
         slot = slots_in[slot];
-    }
     uvec2 at = slot_pixel(slot);
     if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
         return;
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
 
     gpu_counts count = gpu_counts(0u, 0u, 0u, 0u);
-    if (SPEC_PRIMARY == 0u || chunk.sample_index != 0u)
+    if (stacked || chunk.sample_index != 0u)
         count = counts[pixel];
-    Ray ray;
-    if (SPEC_PRIMARY != 0u) {
-        count.stack = 0u;
-        ray = camera_ray(at);
-    } else {
+    Ray ray = camera_ray(at);
+    if (stacked) {
         count.stack--;
         ray = stacked_ray(slot * frame.stack_size + count.stack);
+    } else {
+        count.stack = 0u;
     }
     Hit hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
                        ray.skip_instance, ray.skip_primitive);
@@ -385,16 +381,14 @@ void main()
 
     if (any(isnan(radiance)) || any(isinf(radiance)))
         status |= STATUS_NON_FINITE;
-    vec4 sum = vec4(radiance, met ? 1.0 : 0.0) * chunk.sample_weight;
-    if (SPEC_PRIMARY == 0u)
-        sum.a = 0.0;
-    if (SPEC_PRIMARY == 0u || chunk.sample_index != 0u)
-        sum += pixels[pixel];
+    vec4 sum = vec4(radiance * chunk.sample_weight, 1.0);
+    if (stacked || chunk.sample_index != 0u)
+        sum.rgb += pixels[pixel].rgb;
     pixels[pixel] = sum;
     counts[pixel] = count;
-    if (SPEC_PRIMARY != 0u && chunk.sample_index == 0u)
+    if (!stacked && chunk.sample_index == 0u)
         ids[pixel] = uvec2(hit.instance, hit.primitive);
-    if (count.stack != 0u)
+    if (SPEC_SECONDARY != 0u && count.stack != 0u)
         list_for_next(slot);
     report_status(status);
 }
