@@ -205,7 +205,7 @@ static void spans_are_timed(void **state)
     commands_span_end(commands);
     commands_barrier(commands);
     commands_span_begin(commands, "long");
-    spin(commands, &run, 4096);
+    spin(commands, &run, 1024);
     commands_span_end(commands);
     commands_finish(commands);
     assert_int_equal(commands_span_count(commands), 2);

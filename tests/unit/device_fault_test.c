@@ -223,7 +223,7 @@ static void write_all(const char *path, const uint8_t *data, size_t data_bytes)
 static void damaged_cache_files_are_replaced(void **state)
 {
     (void)state;
-    static uint8_t good[1 << 20], now[1 << 20];
+    static uint8_t good[1 << 20], broken[1 << 20], now[1 << 20];
     char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
     struct messages messages;
     assert_non_null(mkdtemp(folder));
@@ -239,14 +239,15 @@ static void damaged_cache_files_are_replaced(void **state)
     size_t bytes = read_all(path, good, sizeof good);
     assert_true(bytes > 32 && bytes < sizeof good);
     for (int damage = 0; damage < 4; ++damage) {
-        memcpy(now, good, bytes);
-        now[bytes - 1] ^= damage == 0;
-        now[0] ^= damage == 1;
-        write_all(path, now, damage == 2 ? bytes / 2 : damage == 3 ? 0 : bytes);
+        size_t broken_bytes = damage == 2 ? bytes / 2 : damage == 3 ? 0 : bytes;
+        memcpy(broken, good, bytes);
+        broken[bytes - 1] ^= damage == 0;
+        broken[0] ^= damage == 1;
+        write_all(path, broken, broken_bytes);
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
         assert_int_equal(messages.lines, 0);
-        size_t bytes_now = read_all(path, now, sizeof now);
-        assert_int_equal(bytes_now, bytes);
+        assert_int_equal(read_all(path, now, sizeof now), bytes);
+        assert_true(broken_bytes != bytes || memcmp(now, broken, bytes) != 0);
         assert_memory_equal(now, good, 8); /* ours again, at the size it had */
     }
     assert_int_equal(unlink(path), 0);
