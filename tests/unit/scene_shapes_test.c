@@ -55,8 +55,8 @@ static double volume(const struct scene_mesh *mesh)
             p[i] = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + i];
         for (int i = 0; i < 3; ++i) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
-            sum += (double)p[0][i] * ((double)p[1][j] * (double)p[2][k] -
-                                      (double)p[1][k] * (double)p[2][j]);
+            sum += (double)p[0][i] *
+                   ((double)p[1][j] * (double)p[2][k] - (double)p[1][k] * (double)p[2][j]);
         }
     }
     return sum / 6.0;
@@ -250,14 +250,10 @@ static void senseless_parameters_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(box),
-        cmocka_unit_test(box_pictures_stand_upright),
-        cmocka_unit_test(spheres),
-        cmocka_unit_test(rings_and_rods),
-        cmocka_unit_test(open_shapes),
-        cmocka_unit_test(terrain_follows_its_seed),
-        cmocka_unit_test(sphereflake),
-        cmocka_unit_test(senseless_parameters_are_refused),
+        cmocka_unit_test(box),         cmocka_unit_test(box_pictures_stand_upright),
+        cmocka_unit_test(spheres),     cmocka_unit_test(rings_and_rods),
+        cmocka_unit_test(open_shapes), cmocka_unit_test(terrain_follows_its_seed),
+        cmocka_unit_test(sphereflake), cmocka_unit_test(senseless_parameters_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
