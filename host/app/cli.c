@@ -12,7 +12,7 @@
 #include <jansson.h>
 
 /* Time that interrupted work has to stop by itself; Ctrl+C takes 0.2 s at most. */
-enum { GRACE_MS = 120 };
+enum { GRACE_MS = 80 };
 
 volatile bool cli_cancel;
 static volatile sig_atomic_t interrupt_signal;
@@ -20,6 +20,7 @@ static timer_t grace_timer;
 static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
 static bool error_said;
+static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
 
@@ -117,6 +118,9 @@ int cli_exit_of(whit_result result)
 
 static void put(const char *text)
 {
+    static const char line_end[] = "\n";
+    if (progress_drawn && write(STDERR_FILENO, line_end, 1) < 0)
+        return;
     ssize_t written = write(STDERR_FILENO, text, strlen(text));
     (void)written;
 }
@@ -127,10 +131,10 @@ static void on_alarm(int number)
     (void)number;
     whit_file_abandon_all();
     if (interrupt_signal) {
-        put("\nwhit: interrupted, nothing was written\n");
+        put("whit: interrupted, nothing was written\n");
         _exit(128 + (int)interrupt_signal);
     }
-    put("\nwhit: error: the time limit has passed\n");
+    put("whit: error: the time limit has passed\n");
     _exit(EXIT_TIME);
 }
 
@@ -255,6 +259,7 @@ void cli_progress_update(void *user, double done)
         return;
     progress->last_ms = now_ms;
     progress->drawn = true;
+    progress_drawn = 1;
     done = done < 0.0 ? 0.0 : done > 1.0 ? 1.0 : done;
     char bar[PROGRESS_WIDTH + 1] = {0};
     for (int i = 0; i < PROGRESS_WIDTH; ++i)
@@ -271,4 +276,5 @@ void cli_progress_finish(struct cli_progress *progress)
     if (progress->drawn)
         fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + 30, "");
     progress->drawn = progress->shown = false;
+    progress_drawn = 0;
 }

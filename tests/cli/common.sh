@@ -1,0 +1,58 @@
+# Sourced by the tests of the command line: sh TEST WHIT SCENES. A failing check fails the script.
+set -u
+WHIT=$1
+SCENES=$2
+FAILED=0
+OUT=$(mktemp -d) || exit 1
+trap 'rm -rf "$OUT"' EXIT
+case $WHIT in */*) WHIT=$(cd "$(dirname "$WHIT")" && pwd)/$(basename "$WHIT") ;; esac
+SCENES=$(cd "$SCENES" && pwd)
+CUBE=$SCENES/cube.json
+
+# check WHAT COMMAND...: the command succeeds.
+check() {
+    what=$1
+    shift
+    if "$@"; then
+        echo "ok      $what"
+    else
+        echo "FAILED  $what"
+        FAILED=1
+    fi
+}
+
+# run ARGUMENT...: runs whit; leaves $status, $OUT/stdout and $OUT/stderr.
+run() {
+    "$WHIT" "$@" >"$OUT/stdout" 2>"$OUT/stderr"
+    status=$?
+}
+
+# expect CODE WHAT ARGUMENT...: whit exits with CODE.
+expect() {
+    code=$1
+    what=$2
+    shift 2
+    run "$@"
+    check "$what: exit code $code (got $status)" test "$status" -eq "$code"
+}
+
+# refuse CODE WHAT PATTERN ARGUMENT...: exits with CODE and says why in one line.
+refuse() {
+    code=$1
+    what=$2
+    pattern=$3
+    shift 3
+    expect "$code" "$what" "$@"
+    check "$what: one line" test "$(grep -c . "$OUT/stderr")" -eq 1
+    check "$what: says \`$pattern\`" grep -q "^whit: error: .*$pattern" "$OUT/stderr"
+}
+
+# Nothing but what the test made lies in the folder, hidden files included.
+is_empty() {
+    test -z "$(ls -A "$1")"
+}
+
+finish() {
+    [ "$FAILED" -eq 0 ] || { echo "last messages:"; cat "$OUT/stderr"; }
+    exit "$FAILED"
+}

@@ -1,0 +1,79 @@
+#!/bin/sh
+# Pictures: written whole, the same bytes from the same inputs, with their recipe inside.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/pictures"
+cd "$OUT/pictures" || exit 1
+
+# The strings of a file that may hold zero bytes.
+has_text() {
+    tr -d '\000' <"$1" | grep -aqF "$2"
+}
+
+expect 0 "render" render "$CUBE" -o a.png --size 96x64 --ids a.exr
+check "the picture is a PNG" test "$(head -c 4 a.png | tail -c 3)" = PNG
+check "only the pictures are there" test "$(ls -A | tr '\n' ' ')" = "a.exr a.png "
+check "it says what it did" grep -q "^whit: a.png: 96 x 64, rendered in" "$OUT/stderr"
+expect 0 "again, under another name" render "$CUBE" -o b.png --size 96x64 --ids b.exr --quiet
+check "--quiet prints nothing" test ! -s "$OUT/stderr"
+check "two runs give the same picture" cmp a.png b.png
+check "two runs give the same identities" cmp a.exr b.exr
+for tile in 16 32 512; do
+    expect 0 "--tile $tile" render "$CUBE" -o b.png --size 96x64 --tile $tile --quiet
+    check "tiles of $tile give the same picture" cmp a.png b.png
+done
+for option in "--effects all" "--load-path storage" "--load-path texel" "--build median" \
+    "--build binned:4" "--threads 1" "--stats json"; do
+    # shellcheck disable=SC2086
+    expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
+    check "$option gives the same picture" cmp a.png b.png
+done
+expect 0 "other bounces" render "$CUBE" -o b.png --size 96x64 --no-shadows --quiet
+check "another option is another file" sh -c '! cmp -s a.png b.png'
+
+command="whit render $CUBE -o whit.png --size 96x64 --aa 1 --depth 8"
+check "the recipe has the command" has_text a.png "$command"
+check "the recipe has the options" has_text a.png '"width":96,"height":64'
+check "the recipe has the counters" has_text a.png '"rays":{"primary":6144,'
+for key in Software whit:device whit:driver whit:scene whit:scene_hash; do
+    check "the recipe has $key" has_text a.png $key
+done
+cp "$CUBE" "it's a cube.json"
+expect 0 "a name with a quote" render "it's a cube.json" -o q.exr --size 8x8 --quiet
+check "is quoted for the shell" has_text q.exr "whit render 'it'\\''s a cube.json' -o whit.exr"
+expect 0 "a PFM" render "$CUBE" -o a.pfm --size 8x8 --quiet
+check "has its header" test "$(head -n 1 a.pfm)" = PF
+
+for camera in camera 0 1.6,1.3,2.4,0,0,0,0,1,0,35; do
+    expect 0 "--camera $camera" render "$CUBE" -o b.pfm --size 8x8 --camera "$camera" --quiet
+    check "--camera $camera is the first camera" cmp a.pfm b.pfm
+done
+expect 0 "another camera" render "$CUBE" -o b.pfm --size 8x8 --camera 1,1,2.4,0,0,0,0,1,0,35 --quiet
+check "another camera is another picture" sh -c '! cmp -s a.pfm b.pfm'
+expect 0 "an animation" render "$SCENES/spin.json" -o a.pfm --size 16x16 --time 0.5 --quiet
+expect 0 "by frame" render "$SCENES/spin.json" -o b.pfm --size 16x16 --frame 12 --quiet
+check "frame 12 is at 0.5 s" cmp a.pfm b.pfm
+expect 0 "by frame and rate" render "$SCENES/spin.json" -o b.pfm --size 16x16 --frame 1 --fps 2 --quiet
+check "frame 1 of 2 a second is at 0.5 s" cmp a.pfm b.pfm
+expect 0 "at the start" render "$SCENES/spin.json" -o b.pfm --size 16x16 --quiet
+check "things have moved" sh -c '! cmp -s a.pfm b.pfm'
+
+expect 0 "--stats json" render "$CUBE" -o b.png --size 96x64 --stats json
+for key in load_ms build_ms upload_ms compile_ms render_ms primary mrays_per_s nodes depth \
+    sah_cost driver host_peak_bytes; do
+    check "stats have $key" grep -q "\"$key\": " "$OUT/stdout"
+done
+check "as many primary rays as pixels" grep -q '"primary": 6144,' "$OUT/stdout"
+expect 0 "--stats text" render "$CUBE" -o b.png --size 96x64 --stats text
+check "stats as text" grep -Eq "^  primary +6144" "$OUT/stdout"
+
+if [ -c /dev/full ]; then
+    ln -s /dev/full full.png
+    refuse 2 "a full disk" "full.png" render "$CUBE" -o full.png --size 8x8
+    "$WHIT" scene "$CUBE" >/dev/full 2>"$OUT/stderr"
+    check "standard output on a full disk: exit code 2" test $? -eq 2
+fi
+echo old >keep.png
+refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png --camera nobody
+check "leaves the old file alone" test "$(cat keep.png)" = old
+check "no hidden file is left" test -z "$(find . -name '.*' -type f)"
+finish

@@ -1,0 +1,43 @@
+#!/bin/sh
+# `whit scene`: what is in it, as text, JSON and triangles.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/files"
+
+expect 0 "scene" scene "$CUBE"
+check "counts triangles" grep -q "triangles    12 " "$OUT/stdout"
+check "lists the camera" grep -q "0  camera .*35 degrees" "$OUT/stdout"
+check "lists the light" grep -q "0  lamp .*point at 2 4 3" "$OUT/stdout"
+check "lists the material" grep -q "0  cube .*phong" "$OUT/stdout"
+check "has the receipt" grep -Eq "^  shadows +yes +light .lamp." "$OUT/stdout"
+check "has what is not called for" grep -Eq "^  refraction +- " "$OUT/stdout"
+expect 0 "scene --json" scene "$CUBE" --json
+cp "$OUT/stdout" "$OUT/first"
+for key in hash bounds meshes instances materials lights cameras effects notes; do
+    check "JSON has $key" grep -q "^  \"$key\": " "$OUT/stdout"
+done
+expect 0 "scene --json again" scene "$CUBE" --json
+check "JSON is stable" cmp "$OUT/first" "$OUT/stdout"
+
+T=$OUT/files/triangles
+expect 0 "scene --triangles" scene "$CUBE" --triangles "$T" --quiet
+check "12 records of 44 bytes" test "$(wc -c <"$T")" -eq 528
+ids=$(od -An -v -tu4 -w44 "$T" | awk '{ printf "%s:%s ", $10, $11 }')
+check "instance 0, primitives 0 to 11" \
+    test "$ids" = "0:0 0:1 0:2 0:3 0:4 0:5 0:6 0:7 0:8 0:9 0:10 0:11 "
+corners=$(od -An -v -tf4 -w44 "$T" | awk '{ for (i = 1; i <= 9; ++i) print ($i < 0 ? -$i : $i) }' |
+    sort -u)
+check "every coordinate is half an edge" test "$corners" = 0.5
+rm "$T"
+
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$OUT/bare.obj"
+expect 0 "a model without camera and light" scene "$OUT/bare.obj"
+check "says that a camera was added" grep -q "no camera in the file" "$OUT/stdout"
+check "says that a light was added" grep -q "no light in the file" "$OUT/stdout"
+expect 0 "the degenerate triangle is gone" scene "$OUT/bare.obj" --triangles "$T" --quiet
+check "one record is left" test "$(wc -c <"$T")" -eq 44
+rm "$T"
+
+refuse 2 "triangles into no folder" "nowhere/t" scene "$CUBE" --triangles "$OUT/nowhere/t"
+refuse 2 "missing scene" "missing.obj" scene "$OUT/missing.obj"
+check "no file was left" is_empty "$OUT/files"
+finish

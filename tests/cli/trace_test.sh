@@ -1,0 +1,47 @@
+#!/bin/sh
+# `whit trace`: rays in, hits out, the same on the device, on its twin and without trees.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/files"
+R=$OUT/files/rays
+
+# Little-endian floats: 0, 1, -1, 4, 0.125 and infinity.
+ZERO='\000\000\000\000' MINUS='\000\000\200\277' FOUR='\000\000\200\100'
+EIGHTH='\000\000\000\076' INF='\000\000\200\177'
+# Down onto the cube's top at y = 0.5; then the same beside it; then a ray that ends above it.
+printf "$EIGHTH$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO$INF" >"$R"
+printf "$FOUR$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO$INF" >>"$R"
+printf "$EIGHTH$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO\000\000\000\100" >>"$R"
+
+for on in device cpu brute; do
+    expect 0 "trace --on $on" trace "$CUBE" --rays "$R" -o "$OUT/files/$on" --on $on --quiet
+    check "three hits of 32 bytes" test "$(wc -c <"$OUT/files/$on")" -eq 96
+    t=$(od -An -v -tf4 -w32 "$OUT/files/$on" | awk '{ printf "%s ", $1 }')
+    check "t is 3.5, nothing, nothing ($t)" test "$t" = "3.5 inf inf "
+    ids=$(od -An -v -tu4 -w32 "$OUT/files/$on" | awk '{ printf "%s:%s ", ($4 > 11), $5 }')
+    check "a triangle of instance 0, and two misses" \
+        test "${ids%% *}" = "0:0" -a "$(echo "$ids" | grep -o '1:' | wc -l)" -eq 2
+    up=$(od -An -v -tf4 -w32 -N32 "$OUT/files/$on" | awk '{ print ($6 == 0 && $7 > 0 && $8 == 0) }')
+    check "the normal points up" test "$up" = 1
+done
+check "the device equals its twin" cmp "$OUT/files/device" "$OUT/files/cpu"
+check "the twin equals brute force" cmp "$OUT/files/cpu" "$OUT/files/brute"
+expect 0 "any hit" trace "$CUBE" --rays "$R" -o "$OUT/files/any" --any --quiet
+any=$(od -An -v -tu4 -w32 "$OUT/files/any" | awk '{ printf "%s ", ($4 == 4294967295) }')
+check "finds the same rays blocked ($any)" test "$any" = "0 1 1 "
+
+expect 0 "no rays at all" trace "$CUBE" --rays /dev/null -o "$OUT/files/none" --on cpu --quiet
+check "gives no hits" test ! -s "$OUT/files/none"
+cat "$R" | "$WHIT" trace "$CUBE" --rays /dev/stdin -o "$OUT/files/piped" --on cpu --quiet
+check "rays from a pipe: exit code 0" test $? -eq 0
+check "rays from a pipe give the same hits" cmp "$OUT/files/cpu" "$OUT/files/piped"
+
+find "$OUT/files" -type f ! -name rays -exec rm {} +
+printf 'xxx' >"$OUT/short"
+cat "$R" "$OUT/short" >"$OUT/cut"
+refuse 2 "a ray cut short" "cut: 99 bytes .*at byte 96" \
+    trace "$CUBE" --rays "$OUT/cut" -o "$OUT/files/hits"
+refuse 2 "missing rays" "missing: cannot read" \
+    trace "$CUBE" --rays "$OUT/missing" -o "$OUT/files/hits"
+refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --rays "$OUT" -o "$OUT/files/hits"
+check "no file was left" test "$(ls -A "$OUT/files")" = rays
+finish

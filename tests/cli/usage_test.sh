@@ -1,0 +1,70 @@
+#!/bin/sh
+# Usage errors and bad files: exit code 2, one line that names what is wrong, no file left behind,
+# and no device started.
+. "$(dirname "$0")/common.sh"
+VK_DRIVER_FILES=/nonexistent
+VK_ICD_FILENAMES=/nonexistent
+export VK_DRIVER_FILES VK_ICD_FILENAMES
+mkdir "$OUT/pictures"
+P=$OUT/pictures/x.png
+
+expect 0 "help" --help
+check "help lists render" grep -q "^  render " "$OUT/stdout"
+for command in render scene trace devices; do
+    expect 0 "$command --help" "$command" --help
+    check "$command --help shows its usage" grep -q "^usage: whit $command" "$OUT/stdout"
+done
+expect 0 "version" --version
+check "version is a number" grep -Eq '^whit [0-9]+\.[0-9]+\.[0-9]+$' "$OUT/stdout"
+
+expect 2 "no arguments"
+check "no arguments: usage on stderr" grep -q "^usage: whit" "$OUT/stderr"
+refuse 2 "unknown command" "there is no command .paint." paint
+refuse 2 "misspelt command" "did you mean .whit render." rendre
+refuse 2 "unknown option of the program" "there is no option .--paint." --paint
+
+refuse 2 "no scene" "a scene is missing" render -o "$P"
+refuse 2 "two scenes" "too many" render "$CUBE" "$CUBE" -o "$P"
+refuse 2 "no output" "-o FILE is missing" render "$CUBE"
+refuse 2 "unknown option" "whit render --help" render "$CUBE" -o "$P" --paint
+refuse 2 "misspelt option" "did you mean .--camera." render "$CUBE" -o "$P" --camrea 1
+refuse 2 "value missing" "needs a value" render "$CUBE" -o "$P" --size
+refuse 2 "value not wanted" "takes no value" render "$CUBE" -o "$P" --quiet=yes
+for size in 0x10 10x0 10 x 10x10x10 -5x5 99999x10 10x 1e2x10; do
+    refuse 2 "--size $size" "WxH" render "$CUBE" -o "$P" --size "$size"
+done
+for samples in 0 2 3 65 -1 four ""; do
+    refuse 2 "--aa '$samples'" "1, 4, 16, 64" render "$CUBE" -o "$P" --aa "$samples"
+done
+refuse 2 "--depth -1" "whole number" render "$CUBE" -o "$P" --depth -1
+refuse 2 "--tile 5" "from 16 to 512" render "$CUBE" -o "$P" --tile 5
+refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
+refuse 2 "--build best" "binned, median" render "$CUBE" -o "$P" --build best
+refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
+refuse 2 "--stats xml" "text, json" render "$CUBE" -o "$P" --stats xml
+refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame 2
+
+refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictures/x.gif"
+refuse 2 "identities as PNG" "x.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$P"
+refuse 2 "no such folder" "nowhere/x.png" render "$CUBE" -o "$OUT/nowhere/x.png"
+refuse 2 "missing scene" "missing.json" render "$OUT/missing.json" -o "$P"
+refuse 2 "folder as scene" "$OUT" render "$OUT" -o "$P"
+printf '{ "objects": [\n  oops ] }\n' >"$OUT/broken.json"
+refuse 2 "broken scene names its line" "broken.json:2" render "$OUT/broken.json" -o "$P"
+refuse 2 "unknown camera" "there is no camera .front." render "$CUBE" -o "$P" --camera front
+refuse 2 "misspelt camera" "did you mean .camera." render "$CUBE" -o "$P" --camera camrea
+refuse 2 "camera number too large" "there is no camera .7." render "$CUBE" -o "$P" --camera 7
+refuse 2 "nine numbers" "there is no camera" render "$CUBE" -o "$P" --camera 0,0,5,0,0,0,0,1,0
+refuse 2 "camera without length" "same point" \
+    render "$CUBE" -o "$P" --camera 0,0,0,0,0,0,0,1,0,40
+refuse 2 "angle of 180 degrees" "between 0 and 180" \
+    render "$CUBE" -o "$P" --camera 0,0,5,0,0,0,0,1,0,180
+
+refuse 2 "trace without rays" "--rays FILE is missing" trace "$CUBE" -o "$OUT/pictures/hits"
+refuse 2 "devices with an argument" "too many" devices "$CUBE"
+
+# The same environment stops what does need a device.
+refuse 3 "no driver: render" "Vulkan" render "$CUBE" -o "$P"
+refuse 3 "no driver: devices" "Vulkan" devices
+check "no file was left" is_empty "$OUT/pictures"
+finish
