@@ -238,11 +238,12 @@ static void damaged_cache_files_are_replaced(void **state)
     assert_true(path[0] != '\0');
     size_t bytes = read_all(path, good, sizeof good);
     assert_true(bytes > 32 && bytes < sizeof good);
-    for (int damage = 0; damage < 4; ++damage) {
+    for (int damage = 0; damage < 5; ++damage) {
         size_t broken_bytes = damage == 2 ? bytes / 2 : damage == 3 ? 0 : bytes;
         memcpy(broken, good, bytes);
         broken[bytes - 1] ^= damage == 0;
         broken[0] ^= damage == 1;
+        broken[24] ^= damage == 4; /* the driver's first byte, which only the checksum guards */
         write_all(path, broken, broken_bytes);
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
         assert_int_equal(messages.lines, 0);
