@@ -8,7 +8,8 @@
 
 #include "base/log.h"
 
-/* Row 0 is the top. `channels` is 1, 3 or 4 floats, linear; or, for hit identities, uint32. */
+/* Row 0 is the top. `channels` is 1, 3 or 4 floats, linear; or, for hit identities, 1 to 4 uint32
+   (1: `id`, 2: `instance`, `primitive`). */
 struct image {
     uint32_t width, height, channels;
     float *pixels;    /* width * height * channels, or NULL */
@@ -36,7 +37,9 @@ WHIT_CHECK whit_result image_save(const struct log *log, const struct image *ima
 /* True for extensions that image_save writes; `integers`: that keep uint32 exactly (.exr). */
 bool image_format_known(const char *path, bool integers);
 
-/* PNG (8-bit, sRGB to linear), EXR (float or uint channels), PFM, HDR. */
+/* PNG (sRGB to linear; palettes and 1 to 16 bits are converted), EXR (half, float or uint channels;
+   scanlines or tiles), PFM, HDR; told apart by content. At most 65535 pixels a side and 1 GiB. A
+   damaged file is one logged error; *image is then empty. */
 WHIT_CHECK whit_result image_load(const struct log *log, const char *path, struct image *image);
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
 WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
@@ -49,7 +52,9 @@ struct image_difference {
     double rmse, largest; /* linear, over RGB; largest also of integers (1: they differ) */
 };
 
-/* WHIT_ERROR_INPUT when sizes or kinds differ. */
+/* WHIT_ERROR_INPUT when sizes or kinds differ. Pixels that are not finite in one of the two count
+   as differing and over_1_255 unless their bits are the same; they are left out of rmse and
+   largest. */
 WHIT_CHECK whit_result image_compare(const struct log *log, const struct image *a,
                                      const struct image *b, struct image_difference *out);
 

@@ -70,6 +70,7 @@ static inline char *fixture_path(const struct fixture *fixture, const char *name
 
 static inline void fixture_put(const char *path, const void *data, size_t size_bytes)
 {
+    remove(path); /* some file systems wait for the disk when a file is cut and filled again */
     FILE *stream = fopen(path, "wb");
     assert_non_null(stream);
     assert_int_equal(fwrite(data, 1, size_bytes, stream), size_bytes);

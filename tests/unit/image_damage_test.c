@@ -1,0 +1,161 @@
+/* Damaged pictures: one error and no picture, or a picture; never more than that. Run under the
+   sanitizers this also finds accesses out of bounds. */
+#include "image_fixture.h"
+
+enum { FLIPS = 3000 };
+
+struct sample {
+    const char *name;
+    uint8_t *data;
+    size_t size_bytes;
+};
+
+static struct sample sample_of(struct fixture *fixture, const char *name, const struct image *image)
+{
+    static const struct image_text text = {"scene", "a.json"};
+    struct sample sample = {.name = name};
+    char *path = fixture_path(fixture, name);
+    assert_int_equal(image_save(&fixture->log, image, path, &text, 1), WHIT_OK);
+    assert_int_equal(file_read(&fixture->log, path, 0, &sample.data, &sample.size_bytes), WHIT_OK);
+    free(path);
+    return sample;
+}
+
+static struct sample hdr_sample(void)
+{
+    static const char header[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
+    struct sample sample = {.name = "a.hdr", .data = malloc(512)};
+    assert_non_null(sample.data);
+    sample.size_bytes = sizeof header - 1;
+    memcpy(sample.data, header, sample.size_bytes);
+    for (int y = 0; y < 8; ++y) {
+        memcpy(sample.data + sample.size_bytes,
+               "\2\2\0\x10\x90\x80\x88\x40\x88\x20\x90\x10\x90\x81", 14);
+        sample.size_bytes += 14;
+    }
+    return sample;
+}
+
+/* True when it loaded. Everything about the outcome must agree. */
+static bool try_load(struct fixture *fixture, const char *path, const uint8_t *data,
+                     size_t size_bytes)
+{
+    struct image image;
+    struct image_text *texts;
+    uint32_t text_count;
+    fixture_put(path, data, size_bytes);
+    fixture->errors = 0;
+    whit_result result = image_load(&fixture->log, path, &image);
+    assert_int_equal(fixture->errors, result == WHIT_OK ? 0 : 1);
+    if (result == WHIT_OK) {
+        assert_true(image.width > 0 && image.height > 0 && !image.pixels != !image.words);
+    } else {
+        assert_true(result == WHIT_ERROR_INPUT || result == WHIT_ERROR_MEMORY);
+        assert_non_null(strstr(fixture->last, path));
+        assert_true(!image.pixels && !image.words);
+    }
+    image_finish(&image);
+    fixture->errors = 0;
+    whit_result texts_result = image_load_texts(&fixture->log, path, &texts, &text_count);
+    assert_int_equal(fixture->errors, texts_result == WHIT_OK ? 0 : 1);
+    free(texts);
+    return result == WHIT_OK;
+}
+
+static void damage(struct fixture *fixture, struct sample *sample)
+{
+    char *path = fixture_path(fixture, sample->name);
+    assert_true(try_load(fixture, path, sample->data, sample->size_bytes));
+    for (size_t length = 0; length < sample->size_bytes; ++length)
+        assert_false(try_load(fixture, path, sample->data, length));
+    uint32_t seed = 99;
+    uint8_t *copy = malloc(sample->size_bytes);
+    assert_non_null(copy);
+    for (int i = 0; i < FLIPS; ++i) {
+        memcpy(copy, sample->data, sample->size_bytes);
+        /* Every other time in the first bytes, where the sizes are. */
+        size_t range = i % 2 && sample->size_bytes > 64 ? 64 : sample->size_bytes;
+        for (uint32_t n = 1 + fixture_random(&seed) % 3; n; --n)
+            copy[fixture_random(&seed) % range] = (uint8_t)fixture_random(&seed);
+        try_load(fixture, path, copy, sample->size_bytes);
+    }
+    free(copy);
+    free(sample->data);
+    free(path);
+}
+
+static void damaged_png(void **state)
+{
+    struct image image = fixture_floats(7, 5, 4);
+    struct sample sample = sample_of(*state, "a.png", &image);
+    damage(*state, &sample);
+    image_finish(&image);
+}
+
+static void damaged_exr(void **state)
+{
+    struct image image = fixture_floats(7, 5, 3);
+    struct sample sample = sample_of(*state, "a.exr", &image);
+    damage(*state, &sample);
+    image_finish(&image);
+}
+
+static void damaged_identities(void **state)
+{
+    struct image image = fixture_words(5, 20, 2);
+    memset(image.words, 0, 5 * 20 * 2 * sizeof(uint32_t)); /* compresses well */
+    struct sample sample = sample_of(*state, "ids.exr", &image);
+    damage(*state, &sample);
+    image_finish(&image);
+}
+
+static void damaged_pfm(void **state)
+{
+    struct image image = fixture_floats(7, 5, 3);
+    struct sample sample = sample_of(*state, "a.pfm", &image);
+    damage(*state, &sample);
+    image_finish(&image);
+}
+
+static void damaged_hdr(void **state)
+{
+    struct sample sample = hdr_sample();
+    damage(*state, &sample);
+}
+
+static void headers_that_lie(void **state)
+{
+    struct fixture *fixture = *state;
+    static const char *const files[] = {
+        "PF\n-3 4\n-1.0\n",
+        "PF\n99999999999999999999 1\n-1.0\n",
+        "PF\n65535 65535\n-1.0\n",
+        "PF\n0 4\n-1.0\n",
+        "PF\n2 2\nnan\n",
+        "PF\n2 2\n0\n",
+        "PFx\n1 1\n-1.0\n............",
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 999999999 +X 999999999\n....",
+        "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n....",
+        "#?RADIANCE\n\n",
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+X 1 -Y 1\n....",
+        "\x89PNG\r\n\x1a\n",
+        "\x76\x2f\x31\x01",
+        "GIF89a",
+        "",
+    };
+    char *path = fixture_path(fixture, "a.png");
+    for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
+        assert_false(try_load(fixture, path, (const uint8_t *)files[i], strlen(files[i])));
+    free(path);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(damaged_png), TEST(damaged_exr), TEST(damaged_identities),
+        TEST(damaged_pfm), TEST(damaged_hdr), TEST(headers_that_lie),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
