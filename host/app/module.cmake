@@ -8,3 +8,5 @@ target_include_directories(whit_program PRIVATE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 target_link_libraries(whit_program PRIVATE whit_flags whit PkgConfig::JANSSON m)
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES app/completion/whit.bash
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)

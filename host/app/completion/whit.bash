@@ -1,0 +1,24 @@
+# bash completion for whit: commands and options as `--help` lists them.
+_whit() {
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} words=
+    if [ "$COMP_CWORD" -eq 1 ]; then
+        words="$("$1" --help 2>/dev/null | sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p') --help --version"
+    elif [ "${current#-}" != "$current" ]; then
+        words=$("$1" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -o -- '--[a-z][a-z-]*')
+    else
+        case $previous in
+        --aa) words="1 4 16 64" ;;
+        --build) words="binned median" ;;
+        --effects) words="auto all" ;;
+        --load-path) words="auto storage texel" ;;
+        --on) words="device cpu brute" ;;
+        --stats) words="text json" ;;
+        esac
+    fi
+    if [ -n "$words" ]; then
+        mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+    else
+        mapfile -t COMPREPLY < <(compgen -f -- "$current")
+    fi
+}
+complete -o filenames -F _whit whit
