@@ -208,8 +208,8 @@ static bool read_environment(struct reader *reader, const struct place *place, c
     static const char *const keys[] = {"zenith", "horizon", "ground", "scale", NULL};
     struct scene_environment sky = {.kind = SCENE_ENVIRONMENT_GRADIENT,
                                     .zenith = {0.22f, 0.40f, 0.72f},
-                                    .horizon = {0.80f, 0.86f, 0.92f},
-                                    .ground = {0.22f, 0.20f, 0.18f},
+                                    .horizon = {0.72f, 0.77f, 0.82f},
+                                    .ground = {0.52f, 0.52f, 0.52f},
                                     .scale = {1, 1, 1}};
     if (json_is_object(value) && json_object_get(value, "map"))
         return read_map(reader, place, value);

@@ -82,8 +82,8 @@ static void add_sky(struct scene *scene)
     struct scene_environment *sky = &scene->environment;
     sky->kind = SCENE_ENVIRONMENT_GRADIENT;
     set_color(sky->zenith, 0.22f, 0.40f, 0.72f);
-    set_color(sky->horizon, 0.80f, 0.86f, 0.92f);
-    set_color(sky->ground, 0.22f, 0.20f, 0.18f);
+    set_color(sky->horizon, 0.72f, 0.77f, 0.82f);
+    set_color(sky->ground, 0.52f, 0.52f, 0.52f);
     set_color(sky->scale, 1.0f, 1.0f, 1.0f);
     sky->made_by_whit = true;
 }
