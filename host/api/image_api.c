@@ -1,4 +1,5 @@
 #include <stdlib.h>
+#include <string.h>
 
 #include "api/handles.h"
 
@@ -52,6 +53,25 @@ whit_result whit_image_load(const char *path, const whit_log *log, whit_image **
         whit_image_destroy(image);
         return result;
     }
+    *out = image;
+    return WHIT_OK;
+}
+
+whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
+                              const float *pixels, whit_image **out)
+{
+    *out = NULL;
+    if (width == 0 || height == 0 || (channels != 1 && channels != 3 && channels != 4))
+        return WHIT_ERROR_USAGE;
+    whit_image *image = calloc(1, sizeof *image);
+    if (!image)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = image_init(&image->image, width, height, channels, false);
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    memcpy(image->image.pixels, pixels, (size_t)width * height * channels * sizeof *pixels);
     *out = image;
     return WHIT_OK;
 }

@@ -274,6 +274,9 @@ WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out);
+/* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4. */
+WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
+                                         const float *pixels, whit_image **out);
 void whit_image_destroy(whit_image *image);
 
 /* True for a path that whit_image_save can write; `integers` asks for hit identities. */

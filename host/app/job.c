@@ -173,8 +173,7 @@ whit_result job_open_device(struct job *job)
 
 int job_check_validation(const struct job *job)
 {
-    bool checked = job->validation && job->device;
-    uint32_t messages = checked ? whit_device_validation_messages(job->device) : 0;
+    uint32_t messages = job->device ? whit_device_validation_messages(job->device) : 0;
     if (messages == 0)
         return EXIT_FINE;
     cli_error("the validation layers had %u messages", messages);
