@@ -176,7 +176,7 @@ static void note_unused(const struct gltf *gltf)
     uint32_t skins = gltf_count(gltf, "skins");
     if (skins)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
-                   "%s: skins are not animated, %u is drawn in its bind pose",
+                   "%s: skins are not animated: %u drawn in the bind pose",
                    path_name(gltf->request->path), skins);
 }
 

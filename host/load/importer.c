@@ -153,7 +153,7 @@ static whit_result report(const struct log *log, const char *path, enum child_en
         log_error(log, "%s: the importer crashed on this file (signal %d)", path, reply->signal);
         return WHIT_ERROR_INPUT;
     case CHILD_TIME:
-        log_error(log, "%s: the importer did not finish within %.0f s", path, limits->time_s);
+        log_error(log, "%s: the importer did not finish within %.3g s", path, limits->time_s);
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
         log_error(log, "%s: the importer asked for more than %.0f MiB of memory", path,

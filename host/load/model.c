@@ -25,9 +25,10 @@ static whit_result import(struct scene *scene, const struct model_request *reque
     model_note_counts(scene, request->path, &block->counts);
     if (block->part_count)
         return WHIT_OK;
-    log_error(&scene->log, "%s: there are no triangles in it (%llu points, %llu lines)",
+    log_error(&scene->log,
+              "%s: there are no triangles in it (%llu points, %llu lines, %llu damaged faces)",
               request->path, (unsigned long long)block->counts.points,
-              (unsigned long long)block->counts.lines);
+              (unsigned long long)block->counts.lines, (unsigned long long)block->counts.bad_faces);
     importer_finish(block);
     return WHIT_ERROR_INPUT;
 }

@@ -1,0 +1,400 @@
+/* glTF: what comes from the JSON, and how it meets the triangles. */
+#include <math.h>
+
+#include "load_model_fixture.h"
+
+/* Binary data and the JSON around it: 60 floats, of which the first nine are a triangle. */
+static const float data[60] = {
+    0,     0,      0, 1, 0, 0, 0, 1, 0,          /*   0: a triangle */
+    0,     0.5f,   2,                            /*  36: times */
+    0,     0,      0, 1, 0, 0, 1, 5, 0,          /*  48: translations */
+    1,     2,      3, 4, 5, 6, 7, 8, 9,          /*  84: instances */
+    0,     0,      0, 1, 0, 0, 0, 1, 0, 1, 0, 0, /* 120: rotations */
+    0.25f, 0.125f, 1, 0, 1, 1,                   /* 168: texture coordinates */
+};
+
+static void append_base64(char *to, const uint8_t *from, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3, to += 4) {
+        uint32_t bits = (uint32_t)from[i] << 16 | (uint32_t)from[i + 1] << 8 | from[i + 2];
+        for (int k = 0; k < 4; k++)
+            to[k] = digits[bits >> (18 - 6 * k) & 63];
+    }
+    *to = 0;
+}
+
+#define ACCESSOR(offset, count, type)                                                              \
+    "{\"bufferView\":0,\"byteOffset\":" #offset ",\"componentType\":5126,\"count\":" #count        \
+    ",\"type\":\"" type "\"}"
+
+/* The file with `members` beside its buffer, view, accessors and one mesh. Accessors: 0 positions,
+   1 times, 2 translations, 3 instances, 4 rotations, 5 texture coordinates. */
+static const char *write_gltf(struct fixture *fixture, const char *members)
+{
+    char base64[4 * sizeof data / 3 + 1];
+    append_base64(base64, (const uint8_t *)data, sizeof data);
+    char *text = string_format(
+        "{\"asset\":{\"version\":\"2.0\"},"
+        "\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
+        "\"accessors\":[" ACCESSOR(0, 3, "VEC3") "," ACCESSOR(36, 3, "SCALAR") "," ACCESSOR(
+            48, 3,
+            "VEC3") "," ACCESSOR(84, 3,
+                                 "VEC3") "," ACCESSOR(120, 3,
+                                                      "VEC4") "," ACCESSOR(168, 3,
+                                                                           "VEC2") "],"
+                                                                                   "\"meshes\":[{"
+                                                                                   "\"name\":"
+                                                                                   "\"tri\","
+                                                                                   "\"primitives\":"
+                                                                                   "[{"
+                                                                                   "\"attributes\":"
+                                                                                   "{"
+                                                                                   "\"POSITION\":0,"
+                                                                                   "\"TEXCOORD_0\":"
+                                                                                   "5}%s}]}],%s}",
+        sizeof data, base64, sizeof data, strstr(members, "\"materials\"") ? ",\"material\":0" : "",
+        members);
+    assert_non_null(text);
+    const char *path = fixture_text(fixture, "a.gltf", text);
+    free(text);
+    return path;
+}
+
+static const struct scene *load(void **state, const char *members)
+{
+    struct fixture *fixture = *state;
+    assert_int_equal(fixture_load(fixture, write_gltf(fixture, members)), WHIT_OK);
+    assert_int_equal(fixture->errors, 0);
+    return fixture->scene;
+}
+
+static void refused(void **state, const char *members, const char *reason)
+{
+    fixture_refused(*state, write_gltf(*state, members), reason);
+}
+
+#define ONE_NODE "\"nodes\":[{\"mesh\":0}]"
+
+/* --- nodes ---------------------------------------------------------------------------------- */
+
+static void nodes_share_a_mesh(void **state)
+{
+    const struct scene *scene =
+        load(state, "\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
+                    "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"mesh\":0}],"
+                    "\"scene\":0,\"scenes\":[{\"nodes\":[1]}]");
+    assert_int_equal(scene->mesh_count, 1);
+    assert_int_equal(scene->meshes[0].triangle_count, 1);
+    assert_string_equal(scene->meshes[0].name, "tri");
+    assert_int_equal(scene->instance_count, 2);
+    assert_int_equal(scene->node_count, 3);
+    assert_string_equal(scene->nodes[0].name, "a");
+    assert_int_equal(scene->nodes[0].parent, SCENE_NONE);
+    assert_string_equal(scene->nodes[1].name, "b");
+    assert_int_equal(scene->nodes[1].parent, 0);
+    assert_float_equal(scene->nodes[1].translation[2], 3, 0);
+    assert_float_equal(scene->nodes[0].scale[1], 2, 0);
+    assert_int_equal(scene->instances[0].node, 1);
+    assert_int_equal(scene->instances[1].node, 2);
+}
+
+static void matrices_are_columns(void **state)
+{
+    const struct scene *scene =
+        load(state, "\"nodes\":[{\"mesh\":0,\"matrix\":[1,2,3,0,4,5,6,0,7,8,9,0,10,11,12,1]}]");
+    const double rows[12] = {1, 4, 7, 10, 2, 5, 8, 11, 3, 6, 9, 12};
+    assert_true(scene->nodes[0].has_matrix);
+    assert_memory_equal(scene->nodes[0].matrix.m, rows, sizeof rows);
+}
+
+static void nodes_hang_below_the_given_one(void **state)
+{
+    struct fixture *fixture = *state;
+    struct scene_node node;
+    scene_node_init(&node, "placed", SCENE_NONE);
+    assert_int_equal(scene_add_node(fixture->scene, node), 0);
+    const char *path = write_gltf(fixture, "\"nodes\":[{\"mesh\":0,\"camera\":0}],"
+                                           "\"cameras\":[{\"type\":\"perspective\","
+                                           "\"perspective\":{\"yfov\":1,\"znear\":1}}]");
+    assert_int_equal(load_model(fixture->scene, path, 0, true, false, NULL), WHIT_OK);
+    assert_int_equal(fixture->scene->nodes[1].parent, 0);
+    assert_int_equal(fixture->scene->camera_count, 0);
+}
+
+static void only_the_default_scene_is_drawn(void **state)
+{
+    const struct scene *scene =
+        load(state, "\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}],\"scene\":1,"
+                    "\"scenes\":[{\"nodes\":[0,1]},{\"nodes\":[2]}]");
+    assert_int_equal(scene->instance_count, 1);
+    assert_int_equal(scene->node_count, 1);
+}
+
+static void instances_on_the_gpu(void **state)
+{
+    const struct scene *scene =
+        load(state, "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
+                    "{\"attributes\":{\"TRANSLATION\":3}}}}],"
+                    "\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]");
+    assert_int_equal(scene->instance_count, 3);
+    assert_true(scene->instances[1].has_local);
+    assert_float_equal(scene->instances[1].local.m[3], 4, 0);
+    assert_float_equal(scene->instances[2].local.m[11], 9, 0);
+}
+
+static void bad_trees_are_refused(void **state)
+{
+    refused(state, "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]", "nodes[0]: is its own");
+}
+
+static void second_parents_are_refused(void **state)
+{
+    refused(state, "\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"mesh\":0}]",
+            "nodes[1].children[0]: node 2 is already");
+}
+
+static void indices_out_of_range_are_refused(void **state)
+{
+    refused(state, "\"nodes\":[{\"mesh\":7}]", "nodes[0].mesh: index 7 is out of range");
+}
+
+static void wrong_types_are_refused(void **state)
+{
+    refused(state, "\"nodes\":[{\"mesh\":0,\"translation\":\"up\"}]",
+            "nodes[0]: `translation` should be an array and is a string");
+}
+
+static void unknown_extensions_are_refused_by_name(void **state)
+{
+    refused(state, ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\",\"EXT_moon\"]",
+            "`EXT_moon`");
+}
+
+static void old_versions_are_refused(void **state)
+{
+    fixture_refused(*state, fixture_text(*state, "a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"),
+                    "version `1.0`");
+}
+
+static void syntax_errors_have_a_line(void **state)
+{
+    fixture_refused(*state, fixture_text(*state, "a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
+}
+
+/* --- cameras and lights --------------------------------------------------------------------- */
+
+static void camera_angles_are_exact(void **state)
+{
+    const struct scene *scene = load(
+        state, "\"nodes\":[{\"camera\":0,\"translation\":[0,0,5]},{\"camera\":1},{\"mesh\":0}],"
+               "\"cameras\":[{\"name\":\"c\",\"type\":\"perspective\",\"perspective\":"
+               "{\"yfov\":0.7,\"aspectRatio\":1.5,\"znear\":0.1}},{\"type\":\"orthographic\","
+               "\"orthographic\":{\"xmag\":3,\"ymag\":2,\"zfar\":9,\"znear\":0}}]");
+    assert_int_equal(scene->camera_count, 2);
+    const struct scene_camera *camera = &scene->cameras[0];
+    assert_string_equal(camera->name, "c");
+    assert_float_equal(camera->fov_y, 0.7f, 0);
+    assert_float_equal(camera->aspect, 1.5f, 0);
+    assert_float_equal(camera->eye[2], 0, 0);
+    assert_float_equal(camera->target[2], -1, 0);
+    assert_int_equal(camera->node, 0);
+    assert_int_equal(scene->cameras[1].kind, SCENE_CAMERA_ORTHOGRAPHIC);
+    assert_float_equal(scene->cameras[1].height, 4, 0);
+}
+
+static void lights_keep_their_numbers(void **state)
+{
+    const struct scene *scene =
+        load(state, "\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":"
+                    "0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\","
+                    "\"color\":[1,0.5,0],\"intensity\":40,\"range\":7,\"spot\":"
+                    "{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}}]}}");
+    assert_int_equal(scene->light_count, 1);
+    const struct scene_light *light = &scene->lights[0];
+    assert_int_equal(light->kind, SCENE_LIGHT_SPOT);
+    assert_float_equal(light->color[1], 20, 0);
+    assert_float_equal(light->range, 7, 0);
+    assert_true(light->falloff);
+    assert_float_equal(light->cos_inner, cosf(0.25f), 1e-6);
+    assert_float_equal(light->cos_outer, cosf(0.5f), 1e-6);
+    assert_float_equal(light->direction[2], -1, 0);
+    assert_int_equal(light->node, 1);
+}
+
+/* --- materials ------------------------------------------------------------------------------ */
+
+static void materials_and_extensions(void **state)
+{
+    const struct scene *scene =
+        load(state, ONE_NODE
+             ",\"materials\":[{\"name\":\"m\",\"emissiveFactor\":[0.5,1,0.25],"
+             "\"doubleSided\":true,\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,"
+             "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.1,0.2,0.3,0.4],"
+             "\"metallicFactor\":0.5,\"roughnessFactor\":0.75},"
+             "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8},"
+             "\"KHR_materials_specular\":{\"specularFactor\":0.5},"
+             "\"KHR_materials_transmission\":{\"transmissionFactor\":0.5},"
+             "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+             "\"attenuationColor\":[0.5,1,1]},"
+             "\"KHR_materials_ior\":{\"ior\":1.25},\"KHR_materials_clearcoat\":{}}}]");
+    const struct scene_material *m = &scene->materials[scene->meshes[0].materials[0]];
+    assert_string_equal(m->name, "m");
+    assert_int_equal(m->model, SCENE_MODEL_METAL_ROUGH);
+    assert_float_equal(m->emission[0], 4, 0);
+    assert_float_equal(m->emission[1], 8, 0);
+    assert_float_equal(m->diffuse[2], 0.3, 1e-7);
+    assert_float_equal(m->opacity, 0.4, 1e-7);
+    assert_int_equal(m->alpha, SCENE_ALPHA_MASK);
+    assert_float_equal(m->alpha_cutoff, 0.25, 0);
+    assert_float_equal(m->metallic, 0.5, 0);
+    assert_float_equal(m->roughness, 0.75, 0);
+    assert_float_equal(m->specular_level, 0.5, 0);
+    assert_float_equal(m->transmission[0], 0.5, 0);
+    assert_float_equal(m->ior, 1.25, 0);
+    assert_float_equal(m->absorption[0], 0.5f * logf(2), 1e-6);
+    assert_float_equal(m->absorption[1], 0, 0);
+    assert_false(m->thin_walled);
+    assert_true(m->two_sided);
+    assert_true(fixture_noted(*state, "KHR_materials_clearcoat is not drawn"));
+}
+
+static void glass_without_a_volume_is_thin(void **state)
+{
+    const struct scene *scene =
+        load(state, ONE_NODE ",\"materials\":[{\"extensions\":{\"KHR_materials_transmission\":"
+                             "{\"transmissionFactor\":1}}}]");
+    assert_true(scene->materials[0].thin_walled);
+    assert_true(scene->materials[0].fresnel);
+}
+
+static void texture_transforms(void **state)
+{
+    const struct scene *scene =
+        load(state, ONE_NODE ",\"images\":[{\"uri\":\"no%20such.png\"}],\"samplers\":[{\"wrapS\":"
+                             "33071,\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":"
+                             "0,\"sampler\":0}],\"materials\":[{\"pbrMetallicRoughness\":{"
+                             "\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+                             "\"KHR_texture_transform\":{\"offset\":[0.1,0.2],\"scale\":[2,4],"
+                             "\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}]");
+    const struct scene_texture_use *use = &scene->materials[0].textures[SCENE_SLOT_DIFFUSE];
+    const float expected[6] = {0, 4, 0.1f, -2, 0, 0.2f};
+    for (int i = 0; i < 6; i++)
+        assert_float_equal(use->transform[i], expected[i], 1e-6);
+    assert_int_equal(use->uv_set, 1);
+    assert_int_equal(use->wrap_u, SCENE_WRAP_CLAMP);
+    assert_int_equal(use->wrap_v, SCENE_WRAP_MIRROR);
+    assert_true(use->nearest);
+    assert_true(fixture_noted(*state, "no such.png"));
+}
+
+static void texture_coordinates_grow_downwards(void **state)
+{
+    const struct scene *scene = load(state, ONE_NODE);
+    const struct scene_mesh *mesh = &scene->meshes[0];
+    assert_non_null(mesh->uvs[0]);
+    assert_float_equal(mesh->uvs[0][2 * mesh->indices[0]], 0.25, 1e-6);
+    assert_float_equal(mesh->uvs[0][2 * mesh->indices[0] + 1], 0.125, 1e-6);
+}
+
+/* Normalized shorts, which assimp would take for floats. */
+static void quantized_attributes(void **state)
+{
+    struct fixture *fixture = *state;
+    const uint16_t uvs[6] = {0, 65535, 32768, 0, 65535, 65535};
+    uint8_t bytes[48];
+    memcpy(bytes, data, 36);
+    memcpy(bytes + 36, uvs, 12);
+    fixture_write(fixture, "b c.bin", bytes, sizeof bytes);
+    const char *path = fixture_text(
+        fixture, "q.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"b%20c.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"
+        "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":12}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":"
+        "\"VEC2\"}],\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{\"POSITION\":0}},"
+        "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1}}]}],\"nodes\":[{\"mesh\":0}]}");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(mesh->triangle_count, 1);
+    const float expected[6] = {0, 1, 32768.0f / 65535, 0, 1, 1};
+    for (uint32_t i = 0; i < 6; i++)
+        assert_float_equal(mesh->uvs[0][2 * mesh->indices[i / 2] + i % 2], expected[i], 1e-6);
+    assert_true(fixture_noted(fixture, "1 primitives of points or lines"));
+}
+
+static void accessors_past_their_view_are_refused(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_write(fixture, "b.bin", data, 48);
+    const char *path = fixture_text(
+        fixture, "q.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"b.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":4000000000,\"type\":"
+        "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"nodes\":[{\"mesh\":0}]}");
+    fixture_refused(fixture, path, "accessors[0]: runs past the end of bufferViews[0]");
+}
+
+/* --- animation ------------------------------------------------------------------------------ */
+
+static void steps_stay_steps(void **state)
+{
+    const struct scene *scene = load(
+        state, ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                        "\"path\":\"translation\"}},{\"sampler\":1,\"target\":{\"node\":0,"
+                        "\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
+                        "\"interpolation\":\"STEP\"},{\"input\":1,\"output\":4}]}]");
+    assert_int_equal(scene->channel_count, 2);
+    const struct scene_channel *channel = &scene->channels[0];
+    assert_int_equal(channel->interpolation, SCENE_STEP);
+    assert_int_equal(channel->path, SCENE_PATH_TRANSLATION);
+    assert_int_equal(channel->key_count, 3);
+    assert_float_equal(channel->times_s[1], 0.5, 0);
+    assert_float_equal(channel->values[7], 5, 0);
+    assert_int_equal(scene->channels[1].interpolation, SCENE_LINEAR);
+    assert_float_equal(scene->channels[1].values[3], 1, 0);
+}
+
+static void too_few_keys_are_refused(void **state)
+{
+    refused(state,
+            ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                     "\"path\":\"scale\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
+                     "\"interpolation\":\"CUBICSPLINE\"}]}]",
+            "animations[0].channels[0]: has 3 values where 9 are needed");
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(nodes_share_a_mesh),
+        TEST(matrices_are_columns),
+        TEST(nodes_hang_below_the_given_one),
+        TEST(only_the_default_scene_is_drawn),
+        TEST(instances_on_the_gpu),
+        TEST(bad_trees_are_refused),
+        TEST(second_parents_are_refused),
+        TEST(indices_out_of_range_are_refused),
+        TEST(wrong_types_are_refused),
+        TEST(unknown_extensions_are_refused_by_name),
+        TEST(old_versions_are_refused),
+        TEST(syntax_errors_have_a_line),
+        TEST(camera_angles_are_exact),
+        TEST(lights_keep_their_numbers),
+        TEST(materials_and_extensions),
+        TEST(glass_without_a_volume_is_thin),
+        TEST(texture_transforms),
+        TEST(texture_coordinates_grow_downwards),
+        TEST(quantized_attributes),
+        TEST(accessors_past_their_view_are_refused),
+        TEST(steps_stay_steps),
+        TEST(too_few_keys_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

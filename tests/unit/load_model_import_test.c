@@ -1,0 +1,283 @@
+/* The importer's process and its reply: nothing in it is believed. */
+#include "load/importer.h"
+#include "load/ply.h"
+#include "load_model_fixture.h"
+
+/* A block of one triangle, laid out as the child does. */
+struct block {
+    struct import_header header;
+    struct import_record record;
+    char names[16];
+    float positions[9];
+    uint32_t indices[3];
+};
+
+static struct block good_block(void)
+{
+    struct block block = {
+        .header = {.magic = IMPORT_MAGIC, .part_count = 1, .size_bytes = sizeof block},
+        .record = {.name = offsetof(struct block, names),
+                   .name_bytes = 4,
+                   .material = offsetof(struct block, names) + 5,
+                   .material_bytes = 3,
+                   .vertex_count = 3,
+                   .triangle_count = 1},
+        .names = "part\0mat",
+        .positions = {0, 0, 0, 1, 0, 0, 0, 1, 0},
+        .indices = {0, 1, 2},
+    };
+    block.record.arrays[IMPORT_POSITIONS] = offsetof(struct block, positions);
+    block.record.arrays[IMPORT_INDICES] = offsetof(struct block, indices);
+    return block;
+}
+
+static bool parse(const struct block *block, size_t size, char *reason)
+{
+    struct import_block out = {0};
+    bool ok = importer_parse((const uint8_t *)block, size, &out, reason, 128);
+    if (ok) {
+        assert_int_equal(out.part_count, 1);
+        assert_string_equal(out.parts[0].name, "part");
+        assert_string_equal(out.parts[0].material, "mat");
+        assert_int_equal(out.parts[0].indices[2], 2);
+        assert_null(out.parts[0].normals);
+    }
+    free(out.parts);
+    return ok;
+}
+
+static void good_blocks_are_taken(void **state)
+{
+    (void)state;
+    char reason[128];
+    struct block block = good_block();
+    assert_true(parse(&block, sizeof block, reason));
+}
+
+static void damaged_blocks_are_refused(void **state)
+{
+    (void)state;
+    char reason[128];
+    for (int i = 0; i < 13; i++) {
+        struct block block = good_block();
+        size_t size = sizeof block;
+        switch (i) {
+        case 0:
+            size = 3;
+            break;
+        case 1:
+            size -= 4;
+            break;
+        case 2:
+            block.header.magic++;
+            break;
+        case 3:
+            block.header.part_count = 2;
+            break;
+        case 4:
+            block.header.part_count = UINT32_MAX;
+            break;
+        case 5:
+            block.indices[1] = 3;
+            break;
+        case 6:
+            block.record.vertex_count = 64;
+            break;
+        case 7:
+            block.record.triangle_count = UINT32_MAX;
+            break;
+        case 8:
+            block.record.arrays[IMPORT_POSITIONS] = UINT64_MAX - 3;
+            break;
+        case 9:
+            block.record.arrays[IMPORT_POSITIONS] += 2;
+            break;
+        case 10:
+            block.record.arrays[IMPORT_POSITIONS] = 0;
+            break;
+        case 11:
+            block.record.name_bytes = 3;
+            break;
+        default:
+            block.record.material = sizeof block;
+            break;
+        }
+        if (parse(&block, size, reason))
+            fail_msg("damage %d was not seen", i);
+        assert_string_equal(reason, "the importer's reply is damaged");
+    }
+}
+
+/* Many arrays in one place would make a large scene out of a small block. */
+static void arrays_may_not_be_claimed_twice(void **state)
+{
+    (void)state;
+    char reason[128];
+    struct block block = good_block();
+    for (int i = IMPORT_NORMALS; i < IMPORT_INDICES; i++)
+        block.record.arrays[i] = sizeof(struct import_header);
+    assert_false(parse(&block, sizeof block, reason));
+}
+
+static void reasons_are_one_line(void **state)
+{
+    (void)state;
+    char reason[128];
+    const uint32_t magic = IMPORT_ERROR_MAGIC;
+    uint8_t reply[16] = {0};
+    struct import_block out = {0};
+    memcpy(reply, &magic, sizeof magic);
+    memcpy(reply + 4, "no\ngood\n", 8);
+    assert_false(importer_parse(reply, 12, &out, reason, sizeof reason));
+    assert_string_equal(reason, "no good");
+}
+
+/* --- PLY and STL ---------------------------------------------------------------------------- */
+
+#define PLY_HEADER                                                                                 \
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"                \
+    "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"            \
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+
+static void colors_of_scans(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(
+        fixture, "a.ply", PLY_HEADER "0 0 0 255 0 0\n1 0 0 0 128 0\n0 1 0 0 0 255\n3 0 1 2\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_non_null(mesh->colors);
+    assert_float_equal(mesh->colors[4 * mesh->indices[0]], 1, 1e-6);
+    assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.2158605, 1e-5); /* sRGB 128 */
+}
+
+/* The first byte of the data is that of a line end. */
+static void binary_data_that_looks_like_a_line_end(void **state)
+{
+    struct fixture *fixture = *state;
+    static const char header[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    const uint8_t first[4] = {0x0a, 0xf6, 0xbe, 0x40};
+    float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint8_t face[13] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
+    uint8_t file[sizeof header + sizeof positions + sizeof face];
+    memcpy(positions, first, sizeof first);
+    memcpy(file, header, sizeof header - 1);
+    memcpy(file + sizeof header - 1, positions, sizeof positions);
+    memcpy(file + sizeof header - 1 + sizeof positions, face, sizeof face);
+    const char *path = fixture_write(fixture, "a.ply", file, sizeof file - 1);
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(mesh->triangle_count, 1);
+    assert_memory_equal(mesh->positions + 3 * mesh->indices[0], positions, sizeof *positions);
+}
+
+static void facets_are_welded(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(
+        fixture, "a.stl",
+        "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 1 0\n"
+        "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(mesh->triangle_count, 2);
+    assert_int_equal(mesh->vertex_count, 4);
+    assert_null(mesh->normals);
+}
+
+/* --- hostile files -------------------------------------------------------------------------- */
+
+static void claims_of_endless_memory_are_refused(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(
+        fixture, "a.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 4000000000\n"
+        "property list uchar int vertex_indices\nend_header\n0123456789");
+    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, path));
+}
+
+/* assimp 5.2 dies of a face index far out of range; whit must not. */
+static void crashes_stay_in_the_child(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.ply",
+                     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                     "property float y\nproperty float z\nelement face 1\n"
+                     "property list uchar int vertex_indices\nend_header\n\1\1\1\1\1\1\1\1\1\1\1\1"
+                     "\377\377\377\377\377\377\377\377\377\377\377\377\377");
+    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, path));
+}
+
+static void time_limits_are_kept(void **state)
+{
+    struct fixture *fixture = *state;
+    enum { LINES = 200000 };
+    const struct load_params params = {.time_limit_s = 1e-3};
+    char *text = malloc(LINES * 8 + 64), *to = text;
+    assert_non_null(text);
+    to += sprintf(to, "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for (int i = 0; i < LINES; i++)
+        to += sprintf(to, "f 1 2 3\n");
+    const char *path = fixture_text(fixture, "a.obj", text);
+    free(text);
+    assert_int_equal(load_model(fixture->scene, path, SCENE_NONE, true, true, &params),
+                     WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, "did not finish within"));
+}
+
+static void cancelling_is_not_the_files_fault(void **state)
+{
+    struct fixture *fixture = *state;
+    const bool cancel = true;
+    const struct load_params params = {.cancel = &cancel};
+    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_int_equal(load_model(fixture->scene, path, SCENE_NONE, true, true, &params),
+                     WHIT_ERROR_CANCELLED);
+}
+
+static void unknown_kinds_are_named(void **state)
+{
+    fixture_refused(*state, fixture_text(*state, "a.fbx", "x"), "`.fbx`");
+}
+
+static void missing_files_are_named(void **state)
+{
+    struct fixture *fixture = *state;
+    char path[64];
+    snprintf(path, sizeof path, "%s/gone.obj", fixture->folder);
+    fixture_refused(fixture, path, "gone.obj");
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(good_blocks_are_taken),
+        cmocka_unit_test(damaged_blocks_are_refused),
+        cmocka_unit_test(arrays_may_not_be_claimed_twice),
+        cmocka_unit_test(reasons_are_one_line),
+        TEST(colors_of_scans),
+        TEST(binary_data_that_looks_like_a_line_end),
+        TEST(facets_are_welded),
+        TEST(claims_of_endless_memory_are_refused),
+        TEST(crashes_stay_in_the_child),
+        TEST(time_limits_are_kept),
+        TEST(cancelling_is_not_the_files_fault),
+        TEST(unknown_kinds_are_named),
+        TEST(missing_files_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

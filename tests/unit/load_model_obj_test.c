@@ -1,0 +1,340 @@
+/* OBJ and MTL. */
+#include "image/image.h"
+#include "load_model_fixture.h"
+
+#define QUAD "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static const struct scene_material *material(const struct fixture *fixture, const char *name)
+{
+    for (uint32_t i = 0; i < fixture->scene->material_count; i++)
+        if (strcmp(fixture->scene->materials[i].name, name) == 0)
+            return &fixture->scene->materials[i];
+    fail_msg("no material `%s`", name);
+    return NULL;
+}
+
+static const struct scene_mesh *only_mesh(const struct fixture *fixture)
+{
+    assert_int_equal(fixture->scene->mesh_count, 1);
+    assert_int_equal(fixture->scene->instance_count, 1);
+    assert_int_equal(fixture->scene->instances[0].mesh, 0);
+    return &fixture->scene->meshes[0];
+}
+
+/* One quad for each class of material. */
+static const struct scene_material *load_material(struct fixture *fixture, const char *mtl)
+{
+    fixture_text(fixture, "a.mtl", mtl);
+    const char *path =
+        fixture_text(fixture, "a.obj", "mtllib a.mtl\n" QUAD "usemtl m\nf 1 2 3 4\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    return material(fixture, "m");
+}
+
+static void quads_and_negative_indices(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(fixture, "a.obj",
+                                    QUAD "f -4 -3 -2\nf -4 -2 -1\n"
+                                         "v 2 0 0\nv 3 0 0\nv 3.5 1 0\nv 2.5 2 0\nv 2 1 0\n"
+                                         "f 5 6 7 8 9\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(mesh->triangle_count, 2 + 3);
+    /* One vertex for each corner of the file was welded to one for each place. */
+    assert_int_equal(mesh->vertex_count, 4 + 5);
+    assert_null(mesh->normals);
+    for (uint32_t i = 0; i < 6; i++)
+        assert_true(mesh->indices[i] < 4);
+    assert_int_equal(fixture->scene->instances[0].node, SCENE_NONE);
+}
+
+static void odd_material_lines_lose_nothing(void **state)
+{
+    struct fixture *fixture = *state;
+    const struct scene_material *m = load_material(
+        fixture, "# comment\r\nnewmtl m\r\n\taniso 0.5 none\r\n  Kd 0.25 \\\r\n 0.5 0.75 # tail\r\n"
+                 "d -halo 0.5\r\nKs spectral x.rfl\r\nrubbish\r\nrubbish again\r\nNs 12\r\n");
+    assert_float_equal(m->diffuse[0], 0.25, 0);
+    assert_float_equal(m->diffuse[1], 0.5, 0);
+    assert_float_equal(m->diffuse[2], 0.75, 0);
+    assert_float_equal(m->shininess, 12, 0);
+    assert_float_equal(m->opacity, 0.5, 0);
+    assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
+    assert_int_equal(m->origin.line, 2);
+    assert_true(fixture_noted(fixture, "a.mtl:3: `aniso`"));
+    assert_true(fixture_noted(fixture, "a.mtl:7: `Ks`"));
+    assert_true(fixture_noted(fixture, "a.mtl:8: `rubbish`"));
+    assert_false(fixture_noted(fixture, "a.mtl:9"));
+    assert_int_equal(fixture->errors, 0);
+}
+
+static void several_libraries_and_missing_ones(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_text(fixture, "b.mtl", "newmtl b\nKd 0 1 0\n");
+    fixture_text(fixture, "with blank.mtl", "newmtl c\nKd 0 0 1\n");
+    const char *path =
+        fixture_text(fixture, "a.obj",
+                     "mtllib gone.mtl b.mtl\nmtllib with blank.mtl\n" QUAD
+                     "usemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\nusemtl nobody\nf 2 3 4\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    assert_float_equal(material(fixture, "b")->diffuse[1], 1, 0);
+    assert_float_equal(material(fixture, "c")->diffuse[2], 1, 0);
+    assert_int_equal(material(fixture, "nobody")->illum, -1);
+    assert_true(fixture_noted(fixture, "`gone.mtl` is missing"));
+    assert_true(fixture_noted(fixture, "`nobody` is not defined"));
+    assert_int_equal(only_mesh(fixture)->group_count, 3);
+}
+
+static void missing_library_is_grey(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.obj", "mtllib gone.mtl\n" QUAD "usemtl b\nf 1 2 3\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_material *m = material(fixture, "b");
+    assert_float_equal(m->diffuse[0], m->diffuse[1], 0);
+    assert_int_equal(fixture->errors, 0);
+}
+
+static void groups_keep_their_materials(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_text(fixture, "a.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
+    const char *path = fixture_text(
+        fixture, "a.obj", QUAD "g left\nusemtl g\nf 1 2 3\ng right\nusemtl r\nf 1 3 4\nf 2 3 4\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(mesh->group_count, 2);
+    assert_string_equal(mesh->groups[0].name, "left");
+    assert_int_equal(mesh->groups[1].first_triangle, 1);
+    assert_int_equal(mesh->groups[1].triangle_count, 2);
+    const struct scene_material *materials = fixture->scene->materials;
+    assert_string_equal(materials[mesh->materials[0]].name, "g");
+    assert_string_equal(materials[mesh->materials[2]].name, "r");
+}
+
+static void uvs_grow_downwards(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.obj", QUAD "vt 0.25 0.25\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_non_null(mesh->uvs[0]);
+    assert_float_equal(mesh->uvs[0][2 * mesh->indices[0]], 0.25, 0);
+    assert_float_equal(mesh->uvs[0][2 * mesh->indices[0] + 1], 0.75, 0);
+}
+
+static void numbers_without_a_leading_digit(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.obj", "v .5 0 -.25\nv 1 .125e1 0\nv 0 1 0\nf 1 2 3\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    const float *a = mesh->positions + 3 * mesh->indices[0];
+    const float *b = mesh->positions + 3 * mesh->indices[1];
+    assert_float_equal(a[0], 0.5, 0);
+    assert_float_equal(a[2], -0.25, 0);
+    assert_float_equal(b[1], 1.25, 0);
+}
+
+static void vertex_colors(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_non_null(mesh->colors);
+    assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.5, 1e-6);
+    assert_float_equal(fixture->scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
+}
+
+static void flat_group_beside_a_smooth_one(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path =
+        fixture_text(fixture, "a.obj", QUAD "vn 0 1 0\ng a\nf 1//1 2//1 3//1\ng b\nf 1 3 4\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_non_null(mesh->normals);
+    assert_float_equal(mesh->normals[3 * mesh->indices[0] + 1], 1, 0);
+    assert_float_equal(mesh->normals[3 * mesh->indices[3] + 2], 1, 1e-6);
+}
+
+static void wide_text(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    uint8_t wide[256] = {0xfe, 0xff};
+    size_t size = 2;
+    for (const char *c = text; *c; c++, size += 2)
+        wide[size + 1] = (uint8_t)*c;
+    assert_int_equal(fixture_load(fixture, fixture_write(fixture, "a.obj", wide, size)), WHIT_OK);
+    assert_int_equal(only_mesh(fixture)->triangle_count, 1);
+}
+
+static void lines_and_points_are_noted(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(fixture, "a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    assert_int_equal(only_mesh(fixture)->triangle_count, 1);
+    assert_true(fixture_noted(fixture, "2 lines are not drawn"));
+    assert_true(fixture_noted(fixture, "1 points are not drawn"));
+}
+
+static void nothing_to_draw_is_refused(void **state)
+{
+    fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "l 1 2\nl 3 4\n"),
+                    "no triangles in it (0 points, 2 lines");
+}
+
+static void index_out_of_range_is_refused(void **state)
+{
+    fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
+}
+
+/* --- classes -------------------------------------------------------------------------------- */
+
+static void class_of_mirrors(void **state)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n");
+    assert_float_equal(m->reflection[1], 0.8, 1e-6);
+    assert_float_equal(m->transmission[0], 0, 0);
+    assert_false(m->fresnel);
+    assert_int_equal(m->illum, 3);
+}
+
+static void class_of_glass(void **state)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nKs 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n");
+    assert_float_equal(m->transmission[0], 0.25, 0);
+    assert_float_equal(m->transmission[1], 1, 0);
+    assert_float_equal(m->ior, 1.33, 1e-6);
+    assert_true(m->fresnel);
+    assert_false(m->thin_walled);
+    assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
+}
+
+static void dissolve_decides_what_glass_passes(void **state)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nd 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n");
+    assert_float_equal(m->transmission[0], 0.9, 1e-6);
+    assert_false(m->fresnel);
+}
+
+static void dark_filters_are_read_as_held_back(void **state)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nTf 0.1 0.1 0.1\nNi 2.5\nillum 7\n");
+    assert_float_equal(m->transmission[0], 0.9, 1e-6);
+    assert_true(fixture_noted(*state, "held back"));
+}
+
+static void transparency_the_other_way_round(void **state)
+{
+    const struct scene_material *m = load_material(*state, "newmtl m\nTr 0.25\nillum 2\n");
+    assert_float_equal(m->opacity, 0.75, 0);
+    assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
+}
+
+static void class_of_plain_colors(void **state)
+{
+    const struct scene_material *m = load_material(*state, "newmtl m\nKs 1 1 1\nillum 1\n");
+    assert_float_equal(m->specular[0], 0, 0);
+    assert_int_equal(m->model, SCENE_MODEL_PHONG);
+}
+
+/* --- maps ----------------------------------------------------------------------------------- */
+
+/* A 4x4 picture, its left half clear. */
+static void write_picture(struct fixture *fixture, const char *name, float left_alpha)
+{
+    struct image image;
+    const char *path = fixture_write(fixture, name, "", 0);
+    assert_int_equal(image_init(&image, 4, 4, 4, false), WHIT_OK);
+    for (uint32_t i = 0; i < 16; i++)
+        for (uint32_t k = 0; k < 4; k++)
+            image.pixels[4 * i + k] = k == 3 && i % 4 < 2 ? left_alpha : 1.0f;
+    assert_int_equal(image_save(&fixture->log, &image, path, NULL, 0), WHIT_OK);
+    image_finish(&image);
+}
+
+static void maps_with_options(void **state)
+{
+    struct fixture *fixture = *state;
+    write_picture(fixture, "a b.png", 1);
+    const struct scene_material *m =
+        load_material(fixture, "newmtl m\nmap_Kd -s 2 4 1 -o 0.25 -clamp on a b.png\n"
+                               "map_Bump -imfchan r a b.png -bm 1.5\nmap_Ks gone.png\n");
+    const struct scene_texture_use *use = &m->textures[SCENE_SLOT_DIFFUSE];
+    assert_int_equal(fixture->scene->texture_count, 1);
+    assert_int_equal(use->texture, 0);
+    assert_int_equal(use->wrap_u, SCENE_WRAP_CLAMP);
+    assert_float_equal(use->transform[0], 2, 0);
+    assert_float_equal(use->transform[2], 0.25, 0);
+    assert_float_equal(use->transform[4], 4, 0);
+    assert_float_equal(use->transform[5], 1 - 4, 0); /* v_down = 0 is v = 1, sampled at v = 4 */
+    assert_float_equal(m->diffuse[0], 1, 0);
+    assert_int_equal(m->textures[SCENE_SLOT_BUMP].texture, 0);
+    assert_float_equal(m->normal_scale, 1.5, 0);
+    assert_int_equal(m->textures[SCENE_SLOT_SPECULAR].texture, SCENE_NONE);
+    assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png` is missing"));
+}
+
+static void alpha_cuts_out_once(void **state)
+{
+    struct fixture *fixture = *state;
+    write_picture(fixture, "leaf.png", 0);
+    const struct scene_material *m =
+        load_material(fixture, "newmtl m\nmap_Kd leaf.png\nmap_d .\\leaf.png\n");
+    assert_int_equal(m->alpha, SCENE_ALPHA_MASK);
+    assert_float_equal(m->alpha_cutoff, 0.5, 0);
+    assert_int_equal(m->textures[SCENE_SLOT_DIFFUSE].texture, 0);
+    assert_int_equal(m->textures[SCENE_SLOT_OPACITY].texture, SCENE_NONE);
+}
+
+static void whole_pictures_cut_out_nothing(void **state)
+{
+    write_picture(*state, "wall.png", 1);
+    assert_int_equal(load_material(*state, "newmtl m\nmap_Kd wall.png\n")->alpha,
+                     SCENE_ALPHA_OPAQUE);
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(quads_and_negative_indices),
+        TEST(odd_material_lines_lose_nothing),
+        TEST(several_libraries_and_missing_ones),
+        TEST(missing_library_is_grey),
+        TEST(groups_keep_their_materials),
+        TEST(uvs_grow_downwards),
+        TEST(numbers_without_a_leading_digit),
+        TEST(vertex_colors),
+        TEST(flat_group_beside_a_smooth_one),
+        TEST(wide_text),
+        TEST(lines_and_points_are_noted),
+        TEST(nothing_to_draw_is_refused),
+        TEST(index_out_of_range_is_refused),
+        TEST(class_of_mirrors),
+        TEST(class_of_glass),
+        TEST(dissolve_decides_what_glass_passes),
+        TEST(dark_filters_are_read_as_held_back),
+        TEST(transparency_the_other_way_round),
+        TEST(class_of_plain_colors),
+        TEST(maps_with_options),
+        TEST(alpha_cuts_out_once),
+        TEST(whole_pictures_cut_out_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
