@@ -3,8 +3,8 @@
    time, so that no submission runs long. */
 #include "render/render.h"
 
+#include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +23,8 @@ enum {
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_TARGET_MS = 40.0;
 static const double SUBMISSION_LIMIT_MS = 100.0;
+/* A quarter of what 8 bits can show. */
+static const double BAILOUT_DEFAULT = 1.0 / 1024.0;
 
 whit_result status_check(struct renderer *renderer)
 {
@@ -108,6 +110,10 @@ static whit_result create_frame(struct renderer *renderer)
         frame->shade_base = mesh->shade_base;
     }
     frame->depth = renderer->params.depth;
+    double bailout = renderer->params.bailout;
+    frame->bailout = bailout == 0.0  ? (float)BAILOUT_DEFAULT
+                     : bailout < 0.0 ? FLT_MIN
+                                     : (float)bailout;
     frame->triangle_total = renderer->scene_buffers.triangle_total;
     frame->stack_size = renderer->pixel_buffers.stack_size;
     return upload_words(renderer, frame, sizeof *frame, BUFFER_STORAGE, "frame",

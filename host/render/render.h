@@ -18,6 +18,7 @@ struct render_params {
     double time_s;
     uint32_t samples; /* 1, 4, 16 or 64; 0: 1 */
     uint32_t depth;   /* most bounces */
+    double bailout;   /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
     bool no_shadows, all_effects;
     uint32_t tile_size; /* 16..512; 0: by measured time */
     const volatile bool *cancel;

@@ -93,32 +93,12 @@ static void fill_material(const struct scene_mesh *mesh, uint32_t triangle, uint
     *out = mesh->materials[triangle];
 }
 
-static void fill_flat_normal(const struct scene_mesh *mesh, const uint32_t *corners, float *out)
-{
-    double e[2][3];
-    for (int i = 0; i < 3; ++i) {
-        double v0 = (double)mesh->positions[3 * (size_t)corners[0] + (size_t)i];
-        e[0][i] = (double)mesh->positions[3 * (size_t)corners[1] + (size_t)i] - v0;
-        e[1][i] = (double)mesh->positions[3 * (size_t)corners[2] + (size_t)i] - v0;
-    }
-    double n[3] = {e[0][1] * e[1][2] - e[0][2] * e[1][1], e[0][2] * e[1][0] - e[0][0] * e[1][2],
-                   e[0][0] * e[1][1] - e[0][1] * e[1][0]};
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int i = 0; i < 3; ++i)
-        out[i] = length > 0.0 ? (float)(n[i] / length) : i == 2 ? 1.0f : 0.0f;
-}
-
+/* Zeros for flat meshes: shading then takes the geometric normal. */
 static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
     const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
-    float normals[9];
-    for (size_t k = 0; k < 3; ++k) {
-        if (mesh->normals)
-            memcpy(&normals[3 * k], &mesh->normals[3 * (size_t)corners[k]], 3 * sizeof(float));
-        else
-            fill_flat_normal(mesh, corners, &normals[3 * k]);
-    }
-    memcpy(out, normals, sizeof normals);
+    for (size_t k = 0; mesh->normals && k < 3; ++k)
+        memcpy(&out[3 * k], &mesh->normals[3 * (size_t)corners[k]], 3 * sizeof(float));
 }
 
 static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out, int set)
@@ -201,6 +181,7 @@ static whit_result upload_attributes(struct renderer *renderer)
 {
     const struct scene *scene = renderer->scene;
     struct scene_buffers *buffers = &renderer->scene_buffers;
+    bool all = renderer->params.all_effects; /* then kernels read every array */
     uint64_t total = 0;
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         total += scene->meshes[i].triangle_count;
@@ -209,12 +190,12 @@ static whit_result upload_attributes(struct renderer *renderer)
         return WHIT_OK;
     whit_result result = upload_per_triangle(renderer, 1, fill_material, "triangle materials",
                                              &buffers->triangle_materials);
-    if (result == WHIT_OK && any_mesh(scene, has_normals))
+    if (result == WHIT_OK && (all || any_mesh(scene, has_normals)))
         result =
             upload_per_triangle(renderer, 9, fill_normals, "triangle normals", &buffers->normals);
-    if (result == WHIT_OK && any_mesh(scene, has_colors))
+    if (result == WHIT_OK && (all || any_mesh(scene, has_colors)))
         result = upload_per_triangle(renderer, 6, fill_colors, "triangle colors", &buffers->colors);
-    if (result == WHIT_OK && any_mesh(scene, has_uvs))
+    if (result == WHIT_OK && (all || any_mesh(scene, has_uvs)))
         result = upload_uvs(renderer);
     return result;
 }

@@ -111,7 +111,7 @@ struct gpu_frame {
     gpu_vec3 ambient;
     gpu_uint triangle_total; /* per-triangle arrays: where uv set 1 starts */
     gpu_uint stack_size;     /* rays of one pixel's ray stack */
-    gpu_uint pad0;
+    gpu_float bailout;       /* rays that can add less than this to a pixel are not traced */
     gpu_uint pad1;
     gpu_uint pad2;
 };

@@ -13,7 +13,7 @@ layout(set = 0, binding = BIND_TRIANGLE_MATERIALS, std430) readonly buffer Trian
 };
 layout(set = 0, binding = BIND_TRIANGLE_NORMALS, std430) readonly buffer TriangleNormalBuffer
 {
-    float triangle_normals[]; // 9 per triangle
+    float triangle_normals[]; // 9 per triangle, zeros where a mesh is flat
 };
 layout(set = 0, binding = BIND_TRIANGLE_COLORS, std430) readonly buffer TriangleColorBuffer
 {
@@ -141,9 +141,11 @@ Surface fetch_surface(Hit hit)
     if (SPEC_VERTEX_COLORS != 0u) {
         uint at = s.shade_index * 3u;
         uvec2 a = triangle_colors[at], b = triangle_colors[at + 1u], c = triangle_colors[at + 2u];
-        vec4 mixed = vec4(unpackUnorm2x16(a.x), unpackUnorm2x16(a.y)) * w +
-                     vec4(unpackUnorm2x16(b.x), unpackUnorm2x16(b.y)) * s.u +
-                     vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y)) * s.v;
+        vec4 first = vec4(unpackUnorm2x16(a.x), unpackUnorm2x16(a.y));
+        vec4 second = vec4(unpackUnorm2x16(b.x), unpackUnorm2x16(b.y));
+        vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
+        // By differences: three equal colours give just that colour.
+        vec4 mixed = first + (second - first) * s.u + (third - first) * s.v;
         s.color = mixed.rgb;
         s.color_alpha = mixed.a;
     }
@@ -163,6 +165,8 @@ vec4 sample_use(Surface s, uint use)
 // Bends s.ns by a tangent-space map or by the slope of a height map.
 void bend_normal(inout Surface s, gpu_material material)
 {
+    if (material.tex_normal == TEXTURE_NONE && material.tex_bump == TEXTURE_NONE)
+        return;
     vec3 t = normalize_or(s.tangent - s.ns * dot(s.ns, s.tangent), vec3(0.0));
     vec3 b = normalize_or(s.bitangent - s.ns * dot(s.ns, s.bitangent), vec3(0.0));
     vec3 bent = s.ns;
@@ -170,7 +174,7 @@ void bend_normal(inout Surface s, gpu_material material)
         vec3 map = sample_use(s, material.tex_normal).rgb * 2.0 - 1.0;
         map.xy *= material.normal_scale;
         bent = t * map.x - b * map.y + s.ns * map.z;
-    } else if (material.tex_bump != TEXTURE_NONE) {
+    } else {
         gpu_texture texture_use = textures[material.tex_bump];
         vec2 uv = use_uv(s, material.tex_bump);
         vec2 size = vec2(float(texture_use.size & 0xffffu), float(texture_use.size >> 16));

@@ -29,8 +29,6 @@ layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
 };
 
 const uint BLOCK_PIXELS = 64u; // 8 x 8
-// Rays that cannot add this much to a pixel, in units of its radiance, are not traced.
-const float BAILOUT = 1.0 / 1024.0;
 
 struct Ray {
     vec3 origin, dir, weight;
@@ -224,7 +222,7 @@ vec3 local_light(Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays
         lit = lit && cos_light > 0.0 && dot(to_light, s.ng) > 0.0;
         vec3 reflected = o.diffuse * cos_light;
         if (SPEC_HIGHLIGHTS != 0u) {
-            vec3 middle = normalize(to_light + view);
+            vec3 middle = normalize_or(to_light + view, s.ns);
             float cos_half = clamp(dot(middle, s.ns), 0.0, 1.0);
             reflected += o.metal_rough
                              ? o.highlight * cos_light *
@@ -266,7 +264,7 @@ void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uin
 
 bool worth(vec3 weight)
 {
-    return max(weight.r, max(weight.g, weight.b)) >= BAILOUT;
+    return max(weight.r, max(weight.g, weight.b)) >= frame.bailout;
 }
 
 // The rays that the surface calls for.

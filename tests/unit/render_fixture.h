@@ -26,7 +26,7 @@ static void fixture_message(void *user, whit_log_level level, const char *messag
 
 static const struct log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
 
-static uint32_t fixture_random(uint32_t *state)
+static inline uint32_t fixture_random(uint32_t *state)
 {
     *state ^= *state << 13;
     *state ^= *state >> 17;
@@ -35,13 +35,13 @@ static uint32_t fixture_random(uint32_t *state)
 }
 
 /* [-1, 1) */
-static float fixture_signed(uint32_t *state)
+static inline float fixture_signed(uint32_t *state)
 {
     return (float)((double)fixture_random(state) / 2147483648.0 - 1.0);
 }
 
 /* A scene of one mesh, taken over, under one grey material; instances are added by the caller. */
-static struct scene *fixture_scene(struct scene_mesh mesh)
+static inline struct scene *fixture_scene(struct scene_mesh mesh)
 {
     struct scene *scene = scene_create(&fixture_log, "test");
     assert_non_null(scene);
@@ -54,7 +54,7 @@ static struct scene *fixture_scene(struct scene_mesh mesh)
 }
 
 /* An instance of mesh 0 under a node with this matrix; NULL: no node. */
-static void fixture_place(struct scene *scene, const struct affine *matrix)
+static inline void fixture_place(struct scene *scene, const struct affine *matrix)
 {
     uint32_t node = SCENE_NONE;
     if (matrix) {

@@ -35,8 +35,8 @@ static void make_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t se
             double center = 0.5 * (pose.lo[k] + pose.hi[k]);
             double size = pose.hi[k] - pose.lo[k] + 1e-3;
             ray->origin[k] = (float)(center + size * 1.5 * (double)fixture_signed(&state));
-            ray->dir[k] = i % 4 == 0 ? fixture_signed(&state)
-                                     : (float)(target[k] - (double)ray->origin[k]);
+            ray->dir[k] =
+                i % 4 == 0 ? fixture_signed(&state) : (float)(target[k] - (double)ray->origin[k]);
         }
         if (i % 4 == 2) {
             uint32_t axis = fixture_random(&state) % 3;

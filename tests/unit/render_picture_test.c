@@ -1,0 +1,458 @@
+/* Pictures whose radiance is known by formula, and what must not change a picture. */
+#include "render_fixture.h"
+
+/* Black, and without a name: each use gets its own. */
+static struct scene_material material(const char *name)
+{
+    struct scene_material m;
+    scene_material_init(&m, name);
+    free(m.name);
+    m.name = NULL;
+    for (int i = 0; i < 3; ++i) {
+        m.ambient[i] = 0.0f;
+        m.specular[i] = 0.0f;
+    }
+    return m;
+}
+
+static void set_rgb(float *rgb, float r, float g, float b)
+{
+    rgb[0] = r;
+    rgb[1] = g;
+    rgb[2] = b;
+}
+
+/* A scene with nothing but a black background and a camera at `eye` looking at `target`. */
+static struct scene *dark_scene(const double eye[3], const double target[3])
+{
+    struct scene *scene = scene_create(&fixture_log, "picture");
+    assert_non_null(scene);
+    scene->has_environment = true;
+    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
+    set_rgb(scene->environment.scale, 1.0f, 1.0f, 1.0f);
+    scene->has_ambient = true;
+    struct scene_camera camera = {.name = string_copy("camera"),
+                                  .kind = SCENE_CAMERA_PERSPECTIVE,
+                                  .node = SCENE_NONE,
+                                  .up = {0, 1, 0},
+                                  .fov_y = 0.6f};
+    memcpy(camera.eye, eye, sizeof camera.eye);
+    memcpy(camera.target, target, sizeof camera.target);
+    if (eye[0] == target[0] && eye[2] == target[2])
+        camera.up[1] = 0, camera.up[2] = -1;
+    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+    return scene;
+}
+
+static void add_sun(struct scene *scene, double x, double y, double z, float strength)
+{
+    double length = sqrt(x * x + y * y + z * z);
+    struct scene_light light = {.name = string_copy("sun"),
+                                .kind = SCENE_LIGHT_DIRECTIONAL,
+                                .node = SCENE_NONE,
+                                .direction = {x / length, y / length, z / length}};
+    set_rgb(light.color, strength, strength, strength);
+    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+}
+
+static void add_lamp(struct scene *scene, double x, double y, double z, float strength)
+{
+    struct scene_light light = {.name = string_copy("lamp"),
+                                .kind = SCENE_LIGHT_POINT,
+                                .node = SCENE_NONE,
+                                .position = {x, y, z},
+                                .falloff = true};
+    set_rgb(light.color, strength, strength, strength);
+    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+}
+
+/* `mesh` with `m`, moved. */
+static void add_object(struct scene *scene, struct scene_mesh mesh, struct scene_material m,
+                       double x, double y, double z)
+{
+    m.name = string_copy("material");
+    uint32_t index = scene_add_material(scene, m);
+    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
+        mesh.materials[i] = index;
+    mesh.name = string_copy("object");
+    struct scene_node node;
+    scene_node_init(&node, "node", SCENE_NONE);
+    node.translation[0] = x;
+    node.translation[1] = y;
+    node.translation[2] = z;
+    struct scene_instance instance = {.name = string_copy("object"),
+                                      .mesh = scene_add_mesh(scene, mesh),
+                                      .node = scene_add_node(scene, node)};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+static struct scene_mesh plane(double size)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_plane(size, size, 1, 1.0, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static struct scene_mesh box(double x, double y, double z)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_box((double[]){x, y, z}, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static struct image render(struct fixture *f)
+{
+    struct image image = {0};
+    assert_int_equal(renderer_render(f->renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(f->renderer, &image), WHIT_OK);
+    return image;
+}
+
+static const struct render_params picture_params = {.width = 33, .height = 33, .depth = 8};
+
+static const float *middle(const struct image *image)
+{
+    return &image->pixels[4 * ((size_t)image->height / 2 * image->width + image->width / 2)];
+}
+
+static void assert_near(float value, double expected, double relative)
+{
+    if (!(fabs((double)value - expected) <= relative * fabs(expected) + 1e-30))
+        fail_msg("%.9g is not %.9g within %g", (double)value, expected, relative);
+}
+
+static void diffuse_follows_the_cosine(void **state)
+{
+    (void)state;
+    for (int degrees = 0; degrees <= 80; degrees += 20) {
+        double angle = degrees * 3.14159265358979 / 180.0;
+        struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+        struct scene_material m = material("floor");
+        set_rgb(m.diffuse, 0.8f, 0.4f, 0.2f);
+        add_object(scene, plane(10), m, 0, 0, 0);
+        add_sun(scene, sin(angle), -cos(angle), 0, 2.0f);
+        struct fixture f = fixture_open(scene, NULL, &picture_params);
+        struct image image = render(&f);
+        for (int c = 0; c < 3; ++c)
+            assert_near(middle(&image)[c], (double)m.diffuse[c] * 2.0 * cos(angle), 2e-6);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+static void lamp_falls_with_the_square(void **state)
+{
+    (void)state;
+    for (double height = 0.5; height < 5.0; height *= 2.0) {
+        struct scene *scene = dark_scene((double[]){0, 9, 0}, (double[]){0, 0, 0});
+        struct scene_material m = material("floor");
+        set_rgb(m.diffuse, 1, 1, 1);
+        add_object(scene, plane(10), m, 0, 0, 0);
+        add_lamp(scene, 0, height, 0, 3.0f);
+        struct fixture f = fixture_open(scene, NULL, &picture_params);
+        struct image image = render(&f);
+        assert_near(middle(&image)[0], 3.0 / (height * height), 2e-6);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+static void shadow_ends_where_it_should(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("grey");
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_object(scene, plane(20), m, 0, 0, 0);
+    add_object(scene, box(2, 0.01, 2), m, -3, 1.0, 0); /* its shadow: x from -3 to -1, moved by 1 */
+    add_sun(scene, 1, -1, 0, 1.0f);
+    struct render_params params = picture_params;
+    params.width = 401;
+    params.height = 1;
+    /* A band of 401 pixels along x at z = 0, from straight above. */
+    params.camera = "0,8,0,0,0,0,0,0,-1,0.2";
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double half = 8.0 * tan(0.1 * 3.14159265358979 / 180.0) * 401.0;
+    for (uint32_t x = 0; x < image.width; ++x) {
+        double at = ((x + 0.5) / image.width * 2.0 - 1.0) * half;
+        float light = image.pixels[4 * x];
+        /* The thin box is seen itself left of -2; its slab is 0.01 thick. */
+        if (at > -1.7 && at < -1.02)
+            assert_near(light, 0.0, 0.0);
+        if (at > -0.98)
+            assert_near(light, sqrt(0.5), 2e-6);
+    }
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static void mirror_shows_what_is_behind(void **state)
+{
+    (void)state;
+    /* A mirror at 45 degrees sends the view up to an unlit wall. */
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    struct scene_material mirror = material("mirror"), wall = material("wall");
+    set_rgb(mirror.diffuse, 0, 0, 0);
+    set_rgb(mirror.reflection, 0.5f, 0.6f, 0.7f);
+    set_rgb(wall.diffuse, 0.25f, 0.5f, 1.0f);
+    wall.model = SCENE_MODEL_UNLIT;
+    struct scene_mesh tilted = plane(3);
+    for (uint32_t i = 0; i < tilted.vertex_count; ++i)
+        tilted.positions[3 * i + 1] = -tilted.positions[3 * i + 2];
+    free(tilted.normals);
+    tilted.normals = NULL;
+    add_object(scene, tilted, mirror, 0, 0, 0);
+    add_object(scene, box(6, 0.1, 6), wall, 0, 5, 0);
+    add_sun(scene, 0, -1, 0, 0.0f);
+    struct fixture f = fixture_open(scene, NULL, &picture_params);
+    struct image image = render(&f);
+    for (int c = 0; c < 3; ++c)
+        assert_near(middle(&image)[c], (double)mirror.reflection[c] * (double)wall.diffuse[c],
+                    1e-6);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static double fresnel_normal(double ior)
+{
+    double r = (ior - 1.0) / (ior + 1.0);
+    return r * r;
+}
+
+static void glass_slab_passes_and_absorbs(void **state)
+{
+    (void)state;
+    const double ior = 1.5, thickness = 2.0, sigma = 0.3;
+    struct scene *scene = dark_scene((double[]){0, 0, 9}, (double[]){0, 0, 0});
+    struct scene_material glass = material("glass"), wall = material("wall");
+    set_rgb(glass.diffuse, 0, 0, 0);
+    set_rgb(glass.transmission, 1, 1, 1);
+    set_rgb(glass.absorption, (float)sigma, 0, 0);
+    glass.ior = (float)ior;
+    glass.fresnel = true;
+    set_rgb(wall.diffuse, 1, 1, 1);
+    wall.model = SCENE_MODEL_UNLIT;
+    add_object(scene, box(8, 8, thickness), glass, 0, 0, 0);
+    add_object(scene, box(9, 9, 0.1), wall, 0, 0, -4);
+    struct render_params params = picture_params;
+    params.depth = 12;
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    /* A slab with inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), a = exp(-sigma d), wall 1
+       behind and darkness before. */
+    double r = fresnel_normal(ior), a = exp(-sigma * thickness);
+    double expected_red = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
+    double expected_green = (1 - r) * (1 - r) / (1 - r * r);
+    /* Light that goes back to the wall side is seen as wall too; to the eye's side as darkness.
+       Rays below 1/1024 of the pixel are not followed. */
+    assert_near(middle(&image)[0], expected_red, 3e-3);
+    assert_near(middle(&image)[1], expected_green, 3e-3);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* Inside a constant environment of 1, surfaces that lose nothing must show 1. */
+static void furnace_neither_gains_nor_loses(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; ++kind) {
+        struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+        set_rgb(scene->environment.zenith, 1, 1, 1);
+        set_rgb(scene->environment.horizon, 1, 1, 1);
+        set_rgb(scene->environment.ground, 1, 1, 1);
+        struct scene_material m = material("lossless");
+        set_rgb(m.diffuse, 0, 0, 0);
+        if (kind == 0) {
+            set_rgb(m.reflection, 1, 1, 1);
+        } else {
+            set_rgb(m.transmission, 1, 1, 1);
+            m.fresnel = true;
+            m.ior = 1.5f;
+        }
+        struct scene_mesh sphere = {0};
+        assert_int_equal(shape_sphere(1.2, 48, 24, &sphere), WHIT_OK);
+        add_object(scene, sphere, m, 0, 0, 0);
+        struct render_params params = picture_params;
+        params.depth = 32;
+        params.bailout = -1.0;
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        double lowest = 2.0, highest = 0.0;
+        for (uint32_t i = 0; i < image.width * image.height; ++i) {
+            lowest = fmin(lowest, (double)image.pixels[4 * i]);
+            highest = fmax(highest, (double)image.pixels[4 * i]);
+        }
+        print_message("  furnace, %s: %.7f .. %.7f\n", kind ? "glass" : "mirror", lowest, highest);
+        assert_true(highest <= 1.0001);
+        assert_near(middle(&image)[0], 1.0, 1e-4);
+        /* Near the rim the depth cuts off what is still inside: (1 - F) F^32 is 1.1 % at worst on a
+           sphere, and as much again where shading normals bend the path. */
+        assert_true(lowest >= (kind ? 0.975 : 0.9999));
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+/* Two pictures of the same scene made with different parameters. */
+static void assert_same_picture(struct scene *(*make)(void), const struct render_params *a,
+                                const struct render_params *b)
+{
+    struct fixture fa = fixture_open(make(), NULL, a), fb = fixture_open(make(), NULL, b);
+    struct image ia = render(&fa), ib = render(&fb);
+    assert_memory_equal(ia.pixels, ib.pixels, (size_t)ia.width * ia.height * 16);
+    float lowest = ia.pixels[0], highest = ia.pixels[0];
+    for (uint32_t i = 0; i < ia.width * ia.height; ++i) {
+        lowest = fminf(lowest, ia.pixels[4 * i]);
+        highest = fmaxf(highest, ia.pixels[4 * i]);
+    }
+    assert_true(highest > lowest); /* an empty picture would prove nothing */
+    image_finish(&ia);
+    image_finish(&ib);
+    fixture_close(&fa);
+    fixture_close(&fb);
+}
+
+static struct scene *mixed_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){1, 2, 7}, (double[]){0, 0.5, 0});
+    set_rgb(scene->environment.zenith, 0.2f, 0.4f, 0.9f);
+    set_rgb(scene->environment.horizon, 0.8f, 0.9f, 1.0f);
+    struct scene_material floor = material("floor"), mirror = material("mirror"),
+                          glass = material("glass");
+    set_rgb(floor.diffuse, 0.6f, 0.5f, 0.4f);
+    set_rgb(mirror.diffuse, 0.1f, 0.1f, 0.1f);
+    set_rgb(mirror.reflection, 0.8f, 0.8f, 0.8f);
+    set_rgb(mirror.specular, 0.5f, 0.5f, 0.5f);
+    mirror.shininess = 60.0f;
+    set_rgb(glass.diffuse, 0, 0, 0);
+    set_rgb(glass.transmission, 0.9f, 1, 0.9f);
+    glass.fresnel = true;
+    add_object(scene, plane(12), floor, 0, -1, 0);
+    struct scene_mesh sphere = {0};
+    assert_int_equal(shape_sphere(1.0, 32, 16, &sphere), WHIT_OK);
+    add_object(scene, sphere, mirror, -1.3, 0, 0);
+    assert_int_equal(shape_sphere(1.0, 32, 16, &sphere), WHIT_OK);
+    add_object(scene, sphere, glass, 1.3, 0, 1);
+    add_sun(scene, -1, -2, -1, 0.8f);
+    add_lamp(scene, 3, 4, 3, 6.0f);
+    return scene;
+}
+
+static struct scene *plain_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){1, 2, 7}, (double[]){0, 0.5, 0});
+    struct scene_material clay = material("clay");
+    set_rgb(clay.diffuse, 0.6f, 0.5f, 0.4f);
+    add_object(scene, box(2, 2, 2), clay, 0, 0, 0);
+    add_sun(scene, -1, -2, -1, 0.8f);
+    return scene;
+}
+
+static void tiles_do_not_matter(void **state)
+{
+    (void)state;
+    struct render_params a = {.width = 150, .height = 101, .depth = 6, .samples = 4};
+    struct render_params b = a;
+    a.tile_size = 16;
+    for (uint32_t tile = 32; tile <= 512; tile *= 4) {
+        b.tile_size = tile;
+        assert_same_picture(mixed_scene, &a, &b);
+    }
+}
+
+static void load_paths_do_not_matter(void **state)
+{
+    (void)state;
+    struct render_params a = {.width = 120, .height = 90, .depth = 6};
+    struct render_params b = a;
+    a.load_path = RENDER_LOAD_STORAGE;
+    b.load_path = RENDER_LOAD_TEXEL;
+    assert_same_picture(mixed_scene, &a, &b);
+}
+
+static void unused_effects_do_not_matter(void **state)
+{
+    (void)state;
+    struct render_params a = {.width = 120, .height = 90, .depth = 6};
+    struct render_params b = a;
+    b.all_effects = true;
+    assert_same_picture(mixed_scene, &a, &b);
+    assert_same_picture(plain_scene, &a, &b);
+}
+
+/* More loop turns than lavapipe grants: an error, never a silently wrong picture. */
+static void cut_loops_are_reported(void **state)
+{
+    (void)state;
+    struct scene *scene = plain_scene();
+    for (int i = 0; i < 40000; ++i)
+        add_lamp(scene, 3 + 0.001 * i, 4, 3, 0.001f);
+    struct render_params params = {.width = 32, .height = 32, .depth = 0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    whit_result result = renderer_render(f.renderer);
+    print_message("  40000 lights: %s\n", whit_result_name(result));
+    assert_int_equal(result, device_get_info(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
+    fixture_close(&f);
+}
+
+static void cancel_and_time_limit_stop(void **state)
+{
+    (void)state;
+    bool cancel = true;
+    struct render_params params = {.width = 64, .height = 64, .cancel = &cancel};
+    struct fixture f = fixture_open(plain_scene(), NULL, &params);
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
+    struct image image = {0};
+    assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_ERROR_USAGE);
+    fixture_close(&f);
+    params.cancel = NULL;
+    params.time_limit_s = 1e-9;
+    f = fixture_open(plain_scene(), NULL, &params);
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_TIME_LIMIT);
+    fixture_close(&f);
+}
+
+static void nonsense_is_refused(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(plain_scene(), NULL, NULL);
+    const struct render_params bad[] = {
+        {.width = 0, .height = 4},
+        {.width = 70000, .height = 4},
+        {.samples = 3},
+        {.tile_size = 8},
+        {.depth = 1000},
+        {.camera = "nobody"},
+        {.camera = "0,0,0,0,0,0,0,1,0,40"},
+        {.camera = "0,0,1,0,0,0,0,1,0,180"},
+        {.camera = "0,0,1,0,0,0,0,1,0"},
+        {.camera = "nan,0,1,0,0,0,0,1,0,40"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        struct renderer *renderer = NULL;
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &bad[i], &renderer),
+                         WHIT_ERROR_USAGE);
+        assert_null(renderer);
+    }
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(diffuse_follows_the_cosine),
+        cmocka_unit_test(lamp_falls_with_the_square),
+        cmocka_unit_test(shadow_ends_where_it_should),
+        cmocka_unit_test(mirror_shows_what_is_behind),
+        cmocka_unit_test(glass_slab_passes_and_absorbs),
+        cmocka_unit_test(furnace_neither_gains_nor_loses),
+        cmocka_unit_test(tiles_do_not_matter),
+        cmocka_unit_test(load_paths_do_not_matter),
+        cmocka_unit_test(unused_effects_do_not_matter),
+        cmocka_unit_test(cut_loops_are_reported),
+        cmocka_unit_test(cancel_and_time_limit_stop),
+        cmocka_unit_test(nonsense_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
