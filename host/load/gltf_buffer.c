@@ -79,11 +79,17 @@ bool gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
 
 /* --- buffers -------------------------------------------------------------------------------- */
 
-static whit_result read_external(struct gltf *gltf, const char *uri, struct gltf_bytes *out)
+static whit_result read_external(struct gltf *gltf, const struct gltf_place *at, const char *uri,
+                                 struct gltf_bytes *out)
 {
     char *path = gltf_uri_path(gltf, uri);
     if (!path)
         return WHIT_ERROR_MEMORY;
+    if (!file_exists(path)) {
+        gltf_fail(gltf, at, "its file `%.150s` is missing", uri);
+        free(path);
+        return WHIT_ERROR_INPUT;
+    }
     whit_result result =
         file_read(&gltf->scene->log, path, BUFFER_LIMIT, &out->owned, &out->size_bytes);
     if (result == WHIT_OK)
@@ -123,7 +129,7 @@ static whit_result load_buffer(struct gltf *gltf, uint32_t index, struct gltf_by
         gltf_fail(gltf, &at, "`%.80s` is not a file beside the model", uri);
         return WHIT_ERROR_INPUT;
     } else if (uri) {
-        result = read_external(gltf, uri, out);
+        result = read_external(gltf, &at, uri, out);
     }
     if (result == WHIT_OK && out->data && out->size_bytes < size) {
         gltf_fail(gltf, &at, "has %zu bytes, its byteLength says %llu", out->size_bytes,

@@ -339,6 +339,15 @@ static void accessors_past_their_view_are_refused(void **state)
     fixture_refused(fixture, path, "accessors[0]: runs past the end of bufferViews[0]");
 }
 
+static void missing_buffers_are_named(void **state)
+{
+    fixture_refused(*state,
+                    fixture_text(*state, "q.gltf",
+                                 "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,"
+                                 "\"uri\":\"gone.bin\"}]}"),
+                    "buffers[0]: its file `gone.bin` is missing");
+}
+
 /* --- animation ------------------------------------------------------------------------------ */
 
 static void steps_stay_steps(void **state)
@@ -393,6 +402,7 @@ int main(void)
         TEST(texture_coordinates_grow_downwards),
         TEST(quantized_attributes),
         TEST(accessors_past_their_view_are_refused),
+        TEST(missing_buffers_are_named),
         TEST(steps_stay_steps),
         TEST(too_few_keys_are_refused),
     };
