@@ -3,6 +3,7 @@
 #define ACCEL_BUILD_H
 
 #include <float.h>
+#include <math.h>
 #include <stdalign.h>
 
 #include "accel/accel.h"
@@ -49,6 +50,12 @@ enum build_choice split_binned(struct build_record *records, const struct build_
                                const struct build_params *params, uint32_t thread_count,
                                uint32_t *left_count, struct build_bounds halves[2]);
 
+/* The same over every position instead of bins, for at most BUILD_FEW records. */
+enum { BUILD_FEW = 8 };
+enum build_choice split_few(struct build_record *records, const struct build_range *range,
+                            const struct build_params *params, uint32_t *left_count,
+                            struct build_bounds halves[2]);
+
 /* Halves the records along the axis of the widest centroids; equal centroids by primitive. */
 void split_median(struct build_record *records, const struct build_range *range,
                   uint32_t *left_count, struct build_bounds halves[2]);
@@ -66,6 +73,29 @@ static inline f4 build_centroid(f4 lo, f4 hi)
 {
     f4 quarter = f4_splat(0.25f);
     return f4_add(f4_mul(lo, quarter), f4_mul(hi, quarter));
+}
+
+/* A power of two that brings the node's largest extent into [0.5, 1): areas neither overflow nor
+   vanish, whatever the scene's unit. */
+static inline f4 build_area_scale(const struct build_bounds *bounds)
+{
+    alignas(16) float lo[4], hi[4];
+    f4_store(lo, bounds->lo);
+    f4_store(hi, bounds->hi);
+    double extent = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double along = (double)hi[i] - (double)lo[i];
+        extent = along > extent ? along : extent;
+    }
+    int exponent;
+    (void)frexp(extent, &exponent);
+    exponent = exponent < -126 ? -126 : exponent > 126 ? 126 : exponent;
+    return f4_splat(ldexpf(1.0f, -exponent));
+}
+
+static inline float build_scaled_area(f4 lo, f4 hi, f4 scale)
+{
+    return f4_half_area(f4_sub(f4_mul(hi, scale), f4_mul(lo, scale)));
 }
 
 static inline struct build_bounds build_bounds_empty(void)

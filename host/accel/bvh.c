@@ -126,9 +126,12 @@ static bool range_split(struct build *build, const struct build_range *range, ui
     struct build_bounds bounds[2];
     uint32_t left = 0;
     enum build_choice choice = range->count <= 1 ? BUILD_LEAF : BUILD_NONE;
-    if (choice == BUILD_NONE && build->params.builder == BVH_BINNED &&
-        range->depth < DEPTH_OF_MEDIANS)
-        choice = split_binned(build->records, range, &build->params, thread_count, &left, bounds);
+    bool heuristic = build->params.builder == BVH_BINNED && range->depth < DEPTH_OF_MEDIANS;
+    if (choice == BUILD_NONE && heuristic)
+        choice =
+            range->count <= BUILD_FEW
+                ? split_few(build->records, range, &build->params, &left, bounds)
+                : split_binned(build->records, range, &build->params, thread_count, &left, bounds);
     if (choice == BUILD_NONE && range->count <= build->params.leaf_limit)
         choice = BUILD_LEAF;
     if (choice == BUILD_LEAF) {

@@ -21,9 +21,9 @@ struct accel_extent accel_transformed_box(const double rows[12], const struct bv
         for (int c = 0; c < 3; ++c) {
             double a = rows[4 * r + c] * (double)box->lo[c];
             double b = rows[4 * r + c] * (double)box->hi[c];
-            out.lo[r] += fmin(a, b);
-            out.hi[r] += fmax(a, b);
-            out.size[r] += fmax(fabs(a), fabs(b));
+            out.lo[r] += a < b ? a : b;
+            out.hi[r] += a < b ? b : a;
+            out.size[r] += fabs(a) > fabs(b) ? fabs(a) : fabs(b);
         }
     }
     return out;

@@ -129,27 +129,8 @@ static void bins_fill_threaded(struct bins *bins, const struct grid *grid,
     free(parts);
 }
 
-/* A power of two that brings the node's largest extent into [0.5, 1): areas neither overflow nor
-   vanish, whatever the scene's unit. */
-static f4 area_scale(const struct build_bounds *bounds)
-{
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, bounds->lo);
-    f4_store(hi, bounds->hi);
-    double extent = 0.0;
-    for (int i = 0; i < 3; ++i)
-        extent = fmax(extent, (double)hi[i] - (double)lo[i]);
-    int exponent;
-    frexp(extent, &exponent);
-    exponent = exponent < -126 ? -126 : exponent > 126 ? 126 : exponent;
-    return f4_splat(ldexpf(1.0f, -exponent));
-}
-
-static inline float scaled_area(f4 lo, f4 hi, f4 scale)
-{
-    return f4_half_area(f4_sub(f4_mul(hi, scale), f4_mul(lo, scale)));
-}
-
+/* Where centroids differ, the smallest is in the first bin and the largest in the last, so neither
+   side is ever empty; bins without records change nothing. */
 static void sweep_axis(const struct bins *bins, uint32_t bin_count, uint32_t count, f4 scale,
                        uint32_t axis, struct plane *best)
 {
@@ -158,28 +139,19 @@ static void sweep_axis(const struct bins *bins, uint32_t bin_count, uint32_t cou
     if (in[0] == count)
         return;
     float right_cost[BINS_MAX];
-    struct build_bounds empty = build_bounds_empty();
-    struct bin sum = {empty.lo, empty.hi};
+    struct bin sum = bin[bin_count - 1];
     uint32_t right = 0;
     for (uint32_t i = bin_count - 1; i > 0; --i) {
-        if (in[i] > 0) {
-            bin_add(&sum, bin[i].lo, bin[i].hi);
-            right += in[i];
-            right_cost[i] = scaled_area(sum.lo, sum.hi, scale) * (float)right;
-        } else {
-            right_cost[i] = i + 1 < bin_count ? right_cost[i + 1] : 0.0f;
-        }
+        bin_add(&sum, bin[i].lo, bin[i].hi);
+        right += in[i];
+        right_cost[i] = build_scaled_area(sum.lo, sum.hi, scale) * (float)right;
     }
-    sum = (struct bin){empty.lo, empty.hi};
+    sum = bin[0];
     uint32_t left = 0;
     for (uint32_t i = 1; i < bin_count; ++i) {
-        if (in[i - 1] == 0)
-            continue;
         bin_add(&sum, bin[i - 1].lo, bin[i - 1].hi);
         left += in[i - 1];
-        if (left == count)
-            break;
-        float cost = scaled_area(sum.lo, sum.hi, scale) * (float)left + right_cost[i];
+        float cost = build_scaled_area(sum.lo, sum.hi, scale) * (float)left + right_cost[i];
         if (cost < best->cost)
             *best = (struct plane){axis, i, left, cost};
     }
@@ -232,8 +204,8 @@ enum build_choice split_binned(struct build_record *records, const struct build_
     else
         bins_fill(&bins, &grid, own, range->count);
 
-    f4 scale = area_scale(&range->bounds);
-    float area = scaled_area(range->bounds.lo, range->bounds.hi, scale);
+    f4 scale = build_area_scale(&range->bounds);
+    float area = build_scaled_area(range->bounds.lo, range->bounds.hi, scale);
     struct plane best = {.cost = INFINITY};
     if (area > 0.0f) {
         for (uint32_t axis = 0; axis < 3; ++axis)
