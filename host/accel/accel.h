@@ -38,8 +38,8 @@ struct bvh {
 };
 
 /* Boxes must be finite with lo <= hi. Deterministic. */
-WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes,
-                                 uint32_t count, const struct bvh_params *params, struct bvh *out);
+WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                                 const struct bvh_params *params, struct bvh *out);
 void bvh_finish(struct bvh *bvh);
 
 /* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
@@ -117,12 +117,12 @@ void traverse_float(const struct accel *accel, const struct gpu_ray *ray, bool a
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
                           struct gpu_hit *hit);
 
-/* The double-precision oracle's closest hit, with how sure it is: |edge_margin| is by how many error
-   bounds of the float test the ray keeps away from another answer: losing the hit at an edge or an
-   end of the interval, or a hit on another triangle that is narrowly missed, or as near. Below 1
-   the float test may decide otherwise. Negative for a miss. Triangles far off do not enter it when
-   traced by tree: then only what is below 1 is exact. `second_t` is the next hit behind (infinity:
-   none; equal: a tie). */
+/* The double-precision oracle's closest hit, with how sure it is: |edge_margin| is by how many
+   error bounds of the float test the ray keeps away from another answer: losing the hit at an edge
+   or an end of the interval, or a hit on another triangle that is narrowly missed, or as near.
+   Below 1 the float test may decide otherwise. Negative for a miss. Triangles far off do not enter
+   it when traced by tree: then only what is below 1 is exact. `second_t` is the next hit behind
+   (infinity: none; equal: a tie). */
 struct oracle_hit {
     double t, u, v;
     uint32_t primitive, instance;

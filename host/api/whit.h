@@ -41,10 +41,10 @@ typedef struct whit_log {
 /* ---- Scene ---- */
 
 typedef struct whit_load_params {
-    double time_limit_s;           /* for a foreign importer; 0: 60 */
-    uint64_t memory_limit_bytes;   /* for a foreign importer; 0: 4 GiB */
-    uint32_t texture_limit;        /* longest side, larger ones are halved; 0: 4096 */
-    const volatile bool *cancel;   /* polled; NULL: never */
+    double time_limit_s;         /* for a foreign importer; 0: 60 */
+    uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
+    uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */
+    const volatile bool *cancel; /* polled; NULL: never */
 } whit_load_params;
 
 /* .json scene files and .obj .gltf .glb .ply .stl models. */
@@ -59,10 +59,10 @@ typedef struct whit_scene_info {
     uint64_t triangle_count;      /* over all instances */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
-    uint32_t channel_count;       /* animated properties of nodes */
-    double time_end_s;            /* 0: nothing moves */
-    double lo[3], hi[3];          /* world bounds at time 0; lo > hi when empty */
-    const char *environment;      /* "gradient" or "map": what rays that miss see */
+    uint32_t channel_count;  /* animated properties of nodes */
+    double time_end_s;       /* 0: nothing moves */
+    double lo[3], hi[3];     /* world bounds at time 0; lo > hi when empty */
+    const char *environment; /* "gradient" or "map": what rays that miss see */
     bool environment_made_by_whit;
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
@@ -85,14 +85,14 @@ typedef struct whit_material_info {
 } whit_material_info;
 typedef struct whit_light_info {
     const char *name;
-    const char *kind; /* "point", "directional", "spot", "area-sample" */
+    const char *kind;                 /* "point", "directional", "spot", "area-sample" */
     double position[3], direction[3]; /* world, at time 0 */
     float color[3];
     bool made_by_whit;
 } whit_light_info;
 typedef struct whit_camera_info {
     const char *name;
-    const char *kind; /* "perspective", "orthographic" */
+    const char *kind;                /* "perspective", "orthographic" */
     double eye[3], target[3], up[3]; /* world, at time 0 */
     double fov_y_degrees, height;
     bool made_by_whit;
@@ -183,22 +183,22 @@ uint32_t whit_device_validation_messages(const whit_device *device);
 /* ---- Rendering ---- */
 
 typedef struct whit_renderer_params {
-    uint32_t width, height;     /* pixels; 0: 640 x 480 */
-    const char *camera;         /* name or index of a camera of the scene, or
-                                   "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
-    double time_s;              /* of the animation */
-    uint32_t samples;           /* a pixel: 1, 4, 16 or 64; 0: 1 */
-    uint32_t depth;             /* most bounces; 0: 8 */
-    bool no_bounces;            /* depth 0: what the primary ray sees, with its shadows */
+    uint32_t width, height; /* pixels; 0: 640 x 480 */
+    const char *camera;     /* name or index of a camera of the scene, or
+                               "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
+    double time_s;          /* of the animation */
+    uint32_t samples;       /* a pixel: 1, 4, 16 or 64; 0: 1 */
+    uint32_t depth;         /* most bounces; 0: 8 */
+    bool no_bounces;        /* depth 0: what the primary ray sees, with its shadows */
     bool no_shadows;
-    bool all_effects;           /* compile everything, not only what the scene calls for */
-    uint32_t tile_size;         /* pixels on a side, 16..512; 0: by measured time */
+    bool all_effects;   /* compile everything, not only what the scene calls for */
+    uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
     void *progress_user;
-    double time_limit_s;        /* 0: none */
-    const char *load_path;      /* "auto" or NULL, "storage", "texel": how kernels read trees */
+    double time_limit_s;   /* 0: none */
+    const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
 } whit_renderer_params;
 
 /* `device` may be NULL: then only whit_trace on the CPU works. */
@@ -215,8 +215,7 @@ typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
 } whit_aov;
-WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov,
-                                           whit_image **out);
+WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
@@ -245,12 +244,12 @@ typedef struct whit_hit {
 
 typedef enum whit_trace_on {
     WHIT_TRACE_DEVICE = 0,
-    WHIT_TRACE_CPU_FLOAT,  /* the twin: the same bits */
-    WHIT_TRACE_CPU_BRUTE,  /* the twin without trees */
+    WHIT_TRACE_CPU_FLOAT, /* the twin: the same bits */
+    WHIT_TRACE_CPU_BRUTE, /* the twin without trees */
 } whit_trace_on;
 
-/* Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays that
-   are not finite miss. Cut-outs count as solid. */
+/* Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
+   that are not finite miss. Cut-outs count as solid. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits);
 
@@ -274,7 +273,8 @@ WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out);
-/* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4. */
+/* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.
+ */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
                                          const float *pixels, whit_image **out);
 void whit_image_destroy(whit_image *image);

@@ -37,9 +37,9 @@ struct device_info {
     uint32_t max_push_bytes, max_group_count_x, max_group_invocations;
     uint32_t subgroup_size;
     bool float64, int64, timestamps;
-    bool loop_limited;    /* a driver known to end shaders after 65535 loop turns (lavapipe) */
-    bool usable;          /* has what whit needs */
-    char why_not[128];    /* when not usable */
+    bool loop_limited; /* a driver known to end shaders after 65535 loop turns (lavapipe) */
+    bool usable;       /* has what whit needs */
+    char why_not[128]; /* when not usable */
 };
 
 /* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all

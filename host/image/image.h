@@ -12,8 +12,8 @@
    (1: `id`, 2: `instance`, `primitive`). */
 struct image {
     uint32_t width, height, channels;
-    float *pixels;    /* width * height * channels, or NULL */
-    uint32_t *words;  /* the same for integers, or NULL; exactly one of the two is set */
+    float *pixels;   /* width * height * channels, or NULL */
+    uint32_t *words; /* the same for integers, or NULL; exactly one of the two is set */
 };
 
 /* Zeroed pixels. WHIT_ERROR_MEMORY, also for sizes whose product overflows. */

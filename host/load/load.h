@@ -13,9 +13,9 @@ struct load_params {
     const volatile bool *cancel; /* polled; may be NULL */
 };
 
-/* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl models.
-   On failure *out is NULL and one error naming the file and the reason (and the line, where the
-   format has lines) was logged. NULL params mean defaults. */
+/* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl
+   models. On failure *out is NULL and one error naming the file and the reason (and the line, where
+   the format has lines) was logged. NULL params mean defaults. */
 WHIT_CHECK whit_result load_scene(const struct log *log, const char *path,
                                   const struct load_params *params, struct scene **out);
 

@@ -37,14 +37,14 @@ struct scene_texture_use {
 };
 
 enum scene_slot {
-    SCENE_SLOT_DIFFUSE,       /* RGB sRGB, times diffuse; alpha times opacity */
-    SCENE_SLOT_SPECULAR,      /* RGB linear, times specular */
-    SCENE_SLOT_EMISSION,      /* RGB sRGB, times emission */
-    SCENE_SLOT_NORMAL,        /* tangent-space normal, OpenGL orientation (green up) */
-    SCENE_SLOT_BUMP,          /* height in red */
-    SCENE_SLOT_METAL_ROUGH,   /* green roughness, blue metallic */
-    SCENE_SLOT_OPACITY,       /* red, or alpha where the picture has one, times opacity */
-    SCENE_SLOT_TRANSMISSION,  /* red, times transmission */
+    SCENE_SLOT_DIFFUSE,      /* RGB sRGB, times diffuse; alpha times opacity */
+    SCENE_SLOT_SPECULAR,     /* RGB linear, times specular */
+    SCENE_SLOT_EMISSION,     /* RGB sRGB, times emission */
+    SCENE_SLOT_NORMAL,       /* tangent-space normal, OpenGL orientation (green up) */
+    SCENE_SLOT_BUMP,         /* height in red */
+    SCENE_SLOT_METAL_ROUGH,  /* green roughness, blue metallic */
+    SCENE_SLOT_OPACITY,      /* red, or alpha where the picture has one, times opacity */
+    SCENE_SLOT_TRANSMISSION, /* red, times transmission */
     SCENE_SLOT_COUNT
 };
 
@@ -96,12 +96,12 @@ struct scene_group {
 struct scene_mesh {
     char *name;
     uint32_t vertex_count, triangle_count, group_count;
-    float *positions;   /* 3 per vertex */
-    float *normals;     /* 3 per vertex, or NULL: flat */
-    float *uvs[2];      /* 2 per vertex (v downwards), or NULL */
-    float *colors;      /* 4 per vertex linear RGBA, or NULL */
-    float *tangents;    /* 4 per vertex, w = sign of the bitangent, or NULL */
-    uint32_t *indices;  /* 3 per triangle */
+    float *positions;    /* 3 per vertex */
+    float *normals;      /* 3 per vertex, or NULL: flat */
+    float *uvs[2];       /* 2 per vertex (v downwards), or NULL */
+    float *colors;       /* 4 per vertex linear RGBA, or NULL */
+    float *tangents;     /* 4 per vertex, w = sign of the bitangent, or NULL */
+    uint32_t *indices;   /* 3 per triangle */
     uint32_t *materials; /* 1 per triangle: index into the scene's materials */
     struct scene_group *groups;
     float lo[3], hi[3]; /* bounds, set by scene_freeze; lo > hi when empty */
@@ -120,7 +120,8 @@ enum scene_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE 
 /* Rotations: LINEAR is slerp. CUBIC is glTF's Hermite spline, tangents per second. */
 enum scene_interpolation { SCENE_STEP, SCENE_LINEAR, SCENE_CUBIC };
 
-/* Keys of one property of one node. Before the first key and after the last one the value is held. */
+/* Keys of one property of one node. Before the first key and after the last one the value is held.
+ */
 struct scene_channel {
     uint32_t node;
     enum scene_path path;
@@ -133,8 +134,8 @@ struct scene_channel {
 struct scene_instance {
     char *name;
     uint32_t mesh;
-    uint32_t node;        /* or SCENE_NONE: identity */
-    bool has_local;       /* `local` applies below the node (EXT_mesh_gpu_instancing) */
+    uint32_t node;  /* or SCENE_NONE: identity */
+    bool has_local; /* `local` applies below the node (EXT_mesh_gpu_instancing) */
     struct affine local;
 };
 
@@ -172,9 +173,9 @@ struct scene_camera {
     enum scene_camera_kind kind;
     uint32_t node;
     double eye[3], target[3], up[3];
-    float fov_y;    /* PERSPECTIVE: full vertical angle */
-    float height;   /* ORTHOGRAPHIC: full height of the picture, world units */
-    float aspect;   /* width / height the file asks for; 0: any */
+    float fov_y;  /* PERSPECTIVE: full vertical angle */
+    float height; /* ORTHOGRAPHIC: full height of the picture, world units */
+    float aspect; /* width / height the file asks for; 0: any */
     bool made_by_whit;
 };
 
@@ -264,14 +265,14 @@ WHIT_CHECK whit_result scene_freeze(struct scene *scene);
 struct scene_pose {
     double time_s;
     uint32_t instance_count, light_count, camera_count;
-    struct affine *instances; /* object to world */
+    struct affine *instances;     /* object to world */
     struct scene_light *lights;   /* node resolved; name and origin borrowed from the scene */
     struct scene_camera *cameras; /* likewise */
     double lo[3], hi[3];          /* bounds of all instances; lo > hi when empty */
 };
 
-/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance's matrix is singular or
-   not finite at that time (named in the log), WHIT_ERROR_MEMORY. */
+/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance's matrix is singular
+   or not finite at that time (named in the log), WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
                                        struct scene_pose *pose);
 void scene_pose_finish(struct scene_pose *pose);
@@ -284,20 +285,20 @@ enum scene_effect {
     SCENE_EFFECT_REFRACTION,
     SCENE_EFFECT_FRESNEL,
     SCENE_EFFECT_ABSORPTION,
-    SCENE_EFFECT_CUTOUTS,      /* alpha mask or blend */
+    SCENE_EFFECT_CUTOUTS, /* alpha mask or blend */
     SCENE_EFFECT_TEXTURES,
-    SCENE_EFFECT_NORMAL_MAPS,  /* and bump maps */
+    SCENE_EFFECT_NORMAL_MAPS, /* and bump maps */
     SCENE_EFFECT_EMISSION,
     SCENE_EFFECT_HIGHLIGHTS,
     SCENE_EFFECT_POINT_LIGHTS,
     SCENE_EFFECT_DIRECTIONAL_LIGHTS,
     SCENE_EFFECT_SPOT_LIGHTS,
-    SCENE_EFFECT_AREA_LIGHTS,  /* emissive surfaces, sampled as lights */
+    SCENE_EFFECT_AREA_LIGHTS, /* emissive surfaces, sampled as lights */
     SCENE_EFFECT_ENVIRONMENT_MAP,
     SCENE_EFFECT_SMOOTH_NORMALS,
     SCENE_EFFECT_VERTEX_COLORS,
     SCENE_EFFECT_METAL_ROUGH,
-    SCENE_EFFECT_INSTANCES,    /* more than one instance, or one that is moved */
+    SCENE_EFFECT_INSTANCES, /* more than one instance, or one that is moved */
     SCENE_EFFECT_ORTHOGRAPHIC,
     SCENE_EFFECT_COUNT
 };
