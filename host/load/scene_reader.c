@@ -363,7 +363,7 @@ static bool hex_color(const char *text, float out[3])
 bool reader_color_value(struct reader *reader, const struct place *place, const json_t *value,
                         float out[3])
 {
-    double rgb[3];
+    double rgb[3] = {0};
     if (json_is_string(value)) {
         if (hex_color(json_string_value(value), out))
             return true;
