@@ -1,0 +1,42 @@
+#!/bin/sh
+# Every kernel, as it is embedded and with its specialization constants set, passes spirv-val.
+#     spirv_test.sh KERNEL_DUMP
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$1" "$folder" > "$folder/constants"
+validations=0
+
+validate() {
+    spirv-val --target-env vulkan1.2 "$1" || { echo "spirv-val refuses $2"; exit 1; }
+    validations=$((validations + 1))
+}
+
+# specialise KERNEL "id:value id:value ...": constants frozen, what they switch off removed.
+specialise() {
+    spirv-opt --target-env=vulkan1.2 --set-spec-const-default-value="$2" --freeze-spec-const \
+        --fold-spec-const-op-composite --ccp --eliminate-dead-branches --eliminate-dead-functions \
+        "$1" -o "$folder/variant" || { echo "spirv-opt refuses $1 with $2"; exit 1; }
+    validate "$folder/variant" "$1 with $2"
+}
+
+switches=$(awk '$3 <= 1 && $2 != "SPEC_GROUP_SIZE" { print $1 }' "$folder/constants")
+[ -n "$switches" ]
+none=
+all=
+for id in $switches; do
+    none="$none $id:0"
+    all="$all $id:1"
+done
+# A constant that a kernel does not use is not in it: spirv-opt passes over that.
+for kernel in "$folder"/*.spv; do
+    validate "$kernel" "$kernel"
+    specialise "$kernel" "0:64 2:1$none"
+    specialise "$kernel" "0:64 2:64$all"
+    for id in $switches; do
+        specialise "$kernel" "$(echo "0:64 2:24$all" | sed "s/ $id:1/ $id:0/")"
+        specialise "$kernel" "$(echo "0:64 2:24$none" | sed "s/ $id:0/ $id:1/")"
+    done
+done
+echo "$validations modules are valid"
+[ "$validations" -gt 50 ]
