@@ -33,7 +33,7 @@ vec3 environment_radiance(vec3 dir)
                           fetch_environment(c + ivec2(1, 1), size), part.x);
         return mix(top, bottom, part.y);
     }
-    return dir.y >= 0.0 ? mix(frame.horizon, frame.zenith, min(dir.y, 1.0)) : frame.ground;
+    return mix(frame.horizon, dir.y >= 0.0 ? frame.zenith : frame.ground, min(abs(dir.y), 1.0));
 }
 
 // Direction to a light (unit), its distance, and what arrives there over pi, before shadows.
