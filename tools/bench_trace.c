@@ -328,9 +328,12 @@ int main(int argc, char **argv)
     embree_build(&embree, scene, &pose);
 #endif
     for (int s = 0; s < SETS; ++s) {
-        static struct series whit, peer;
+        static struct series whit;
         whit = (struct series){.name = "whit watertight"};
+#ifdef BENCH_EMBREE
+        static struct series peer;
         peer = (struct series){.name = "Embree robust 1"};
+#endif
         for (int run = -1; run < runs; ++run) { /* -1: warm-up */
             int at = run < 0 ? 0 : run;
             double wall = clock_ms(), cpu = clock_cpu_ms();
