@@ -15,6 +15,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_INSTANCED = !accel->single_identity;
     spec.SPEC_SECONDARY = renderer->has_secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    spec.SPEC_SHORT_STACK = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Shadows and camera kind are asked for by the user, not found in the scene. */
     spec.SPEC_SHADOWS = !renderer->params.no_shadows;
     spec.SPEC_ORTHOGRAPHIC = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC];

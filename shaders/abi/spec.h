@@ -33,7 +33,8 @@
     X(18, SPEC_HIGHLIGHTS, 1)                                                                      \
     X(19, SPEC_LIGHTS, 1)                                                                          \
     X(20, SPEC_ORTHOGRAPHIC, 1)                                                                    \
-    X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */
+    X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */                  \
+    X(22, SPEC_SHORT_STACK, 0)        /* top of the node stack in registers: for lavapipe */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

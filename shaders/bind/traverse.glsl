@@ -41,7 +41,26 @@ Hit make_hit(float t_max)
     return hit;
 }
 
+// The node stack. In memory alone (SPEC_SHORT_STACK 0) it is node_stack[base..in_memory). Short, its
+// top entries are the registers, and only the outer loop of traverse_mesh moves entries between
+// them and memory: on lavapipe a store to a private array costs as much as half a box test, even
+// where nothing is stored, while registers cost a few selects.
 uint node_stack[SPEC_STACK_SIZE];
+
+const uint STACK_REGISTERS = 6u;
+
+struct NodeStack {
+    uint base, in_memory, in_registers;
+    uint r0, r1, r2, r3, r4, r5; // r0: top
+};
+
+// What pop_ref gives when the registers are empty and memory is not: refill_stack answers it.
+const uint REF_PENDING = 0xfffffffeu;
+
+NodeStack make_stack(uint base)
+{
+    return NodeStack(base, base, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
 
 bool is_inner(uint ref)
 {
@@ -50,25 +69,81 @@ bool is_inner(uint ref)
 
 bool is_leaf(uint ref)
 {
-    return ref - REF_ONE_PRIMITIVE < REF_DONE - REF_ONE_PRIMITIVE;
+    return ref - REF_ONE_PRIMITIVE < REF_PENDING - REF_ONE_PRIMITIVE;
 }
 
-void push_ref(uint ref, inout uint top, inout uint status)
+void push_memory(uint ref, inout NodeStack stack, inout uint status)
 {
-    if (top < SPEC_STACK_SIZE) {
-        node_stack[top] = ref;
-        top++;
+    if (stack.in_memory < SPEC_STACK_SIZE) {
+        node_stack[stack.in_memory] = ref;
+        stack.in_memory++;
     } else {
         status |= STATUS_NODE_STACK_OVERFLOW;
     }
 }
 
-uint pop_ref(uint base, inout uint top)
+uint pop_memory(inout NodeStack stack)
 {
-    if (top == base)
+    if (stack.in_memory == stack.base)
         return REF_DONE;
-    top--;
-    return node_stack[top];
+    stack.in_memory--;
+    return node_stack[stack.in_memory];
+}
+
+// Short, the stack must have room: see has_room.
+void push_ref(bool wanted, uint ref, inout NodeStack stack, inout uint status)
+{
+    if (SPEC_SHORT_STACK == 0u) {
+        if (wanted)
+            push_memory(ref, stack, status);
+        return;
+    }
+    stack.r5 = wanted ? stack.r4 : stack.r5;
+    stack.r4 = wanted ? stack.r3 : stack.r4;
+    stack.r3 = wanted ? stack.r2 : stack.r3;
+    stack.r2 = wanted ? stack.r1 : stack.r2;
+    stack.r1 = wanted ? stack.r0 : stack.r1;
+    stack.r0 = wanted ? ref : stack.r0;
+    stack.in_registers += wanted ? 1u : 0u;
+}
+
+// `ref` itself where nothing is `wanted`.
+uint pop_ref(bool wanted, uint ref, inout NodeStack stack)
+{
+    if (SPEC_SHORT_STACK == 0u) {
+        if (wanted)
+            ref = pop_memory(stack);
+        return ref;
+    }
+    bool some = stack.in_registers != 0u;
+    uint top = some ? stack.r0 : stack.in_memory == stack.base ? REF_DONE : REF_PENDING;
+    bool shift = wanted && some;
+    stack.r0 = shift ? stack.r1 : stack.r0;
+    stack.r1 = shift ? stack.r2 : stack.r1;
+    stack.r2 = shift ? stack.r3 : stack.r2;
+    stack.r3 = shift ? stack.r4 : stack.r3;
+    stack.r4 = shift ? stack.r5 : stack.r4;
+    stack.in_registers -= shift ? 1u : 0u;
+    return wanted ? top : ref;
+}
+
+bool has_room(NodeStack stack)
+{
+    return SPEC_SHORT_STACK == 0u || stack.in_registers < STACK_REGISTERS;
+}
+
+// Makes room in full registers, and answers a pending pop.
+uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
+{
+    if (SPEC_SHORT_STACK == 0u)
+        return ref;
+    if (stack.in_registers == STACK_REGISTERS) {
+        push_memory(stack.r5, stack, status);
+        stack.in_registers--;
+    }
+    if (ref == REF_PENDING)
+        ref = pop_memory(stack);
+    return ref;
 }
 
 // Extra room for boxes whose rays are transformed below: float error of the transform, relative to
@@ -76,7 +151,7 @@ uint pop_ref(uint base, inout uint top)
 const float SLAB_NEAR_SCALE_INSTANCES = 1.0 - 1.0 / 524288.0;
 
 // One step down: both children of `pair` are tested, the nearer is returned, the farther pushed.
-uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, uint base, inout uint top,
+uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
                inout Hit hit)
 {
     uvec4 a0 = fetch_node_row(pair * 2u);
@@ -101,12 +176,8 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, uint base
     uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
     uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
     bool b_first = hit_b && (!hit_a || b_near < a_near);
-    if (hit_a && hit_b)
-        push_ref(b_first ? ref_a : ref_b, top, hit.status);
-    uint nearer = b_first ? ref_b : ref_a;
-    if (!hit_a && !hit_b)
-        nearer = pop_ref(base, top);
-    return nearer;
+    push_ref(hit_a && hit_b, b_first ? ref_a : ref_b, stack, hit.status);
+    return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
 // Tests one triangle record and keeps it when it is nearer, or as near with smaller ids.
@@ -149,28 +220,28 @@ bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint
     return mode != TRAVERSE_CLOSEST && accepted;
 }
 
-// A mesh tree, with the stack above `base`.
+// A mesh tree, with its stack in memory from `base` up.
 void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint base, uint instance,
                    uint skip_instance, uint skip_primitive, inout Hit hit)
 {
-    uint top = base;
+    NodeStack stack = make_stack(base);
     uint ref = root;
     do {
         do {
-            if (is_inner(ref))
-                ref = step_pair(ray, t_min, 1.0, ref, base, top, hit);
-        } while (is_inner(ref));
+            if (is_inner(ref) && has_room(stack))
+                ref = step_pair(ray, t_min, 1.0, ref, stack, hit);
+        } while (is_inner(ref) && has_room(stack));
         do {
             if (is_leaf(ref)) {
                 bool done = test_triangle(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
                                           skip_instance, skip_primitive, hit);
                 ref += 1u - REF_ONE_PRIMITIVE;
-                if (is_inner(ref))
-                    ref = pop_ref(base, top);
+                ref = pop_ref(is_inner(ref), ref, stack);
                 if (done)
                     ref = REF_DONE;
             }
         } while (is_leaf(ref));
+        ref = refill_stack(ref, stack, hit.status);
     } while (ref != REF_DONE);
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE)
@@ -182,24 +253,25 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {
     RaySetup ray = make_ray_setup(origin, dir);
-    uint top = 0u;
+    NodeStack stack = make_stack(0u);
     uint ref = root;
     do {
         do {
-            if (is_inner(ref))
-                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, 0u, top, hit);
-        } while (is_inner(ref));
+            if (is_inner(ref) && has_room(stack))
+                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, stack, hit);
+        } while (is_inner(ref) && has_room(stack));
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;
             InstanceFrame frame = fetch_instance_frame(instance);
             uint mesh_root = fetch_instance_row(instance * INSTANCE_ROWS + 3u).x;
             RaySetup local =
                 make_ray_setup(to_object_point(frame, origin), to_object_dir(frame, dir));
-            traverse_mesh(mode, local, t_min, mesh_root, top, instance, skip_instance,
+            traverse_mesh(mode, local, t_min, mesh_root, stack.in_memory, instance, skip_instance,
                           skip_primitive, hit);
             bool done = mode != TRAVERSE_CLOSEST && hit.primitive != HIT_NONE;
-            ref = done ? REF_DONE : pop_ref(0u, top);
+            ref = done ? REF_DONE : pop_ref(true, ref, stack);
         }
+        ref = refill_stack(ref, stack, hit.status);
     } while (ref != REF_DONE);
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
