@@ -41,6 +41,7 @@ static whit_result render_params_from_public(const struct log *log,
         .depth = params->no_bounces ? 0
                  : params->depth    ? params->depth
                                     : DEPTH_DEFAULT,
+        .bailout = params->bailout,
         .no_shadows = params->no_shadows,
         .all_effects = params->all_effects,
         .tile_size = params->tile_size,

@@ -190,6 +190,8 @@ typedef struct whit_renderer_params {
     uint32_t samples;       /* a pixel: 1, 4, 16 or 64; 0: 1 */
     uint32_t depth;         /* most bounces; 0: 8 */
     bool no_bounces;        /* depth 0: what the primary ray sees, with its shadows */
+    double bailout;         /* rays that can add less than this to a pixel are not traced;
+                               0: 1/1024, < 0: all are */
     bool no_shadows;
     bool all_effects;   /* compile everything, not only what the scene calls for */
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */

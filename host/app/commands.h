@@ -6,10 +6,14 @@
 
 extern const struct cli_command command_render, command_scene, command_trace, command_devices;
 
+/* A quarter of what 8 bits can show. */
+#define BAILOUT_DEFAULT (1.0 / 1024.0)
+
 /* What `whit render` was asked for beside the job. */
 struct render_request {
     const char *output, *ids, *camera; /* ids, camera: NULL when not given */
     uint32_t width, height, samples, depth, tile_size;
+    double bailout; /* 0: every ray is traced */
     bool no_shadows, all_effects;
 };
 

@@ -64,6 +64,10 @@ static char *command_line(const struct job *job, const struct render_request *re
         put_number(to, job->time_s);
     }
     fprintf(to, " --aa %u --depth %u", request->samples, request->depth);
+    if (request->bailout != BAILOUT_DEFAULT) {
+        fputs(" --bailout", to);
+        put_number(to, request->bailout);
+    }
     if (request->no_shadows)
         fputs(" --no-shadows", to);
     if (job->texture_limit)
@@ -84,6 +88,7 @@ static char *options_line(const struct job *job, const struct render_request *re
     document_number(options, "time_s", job->time_s);
     document_count(options, "samples", request->samples);
     document_count(options, "depth", request->depth);
+    document_number(options, "bailout", request->bailout);
     document_flag(options, "shadows", !request->no_shadows);
     if (job->texture_limit)
         document_count(options, "texture_limit", job->texture_limit);

@@ -11,6 +11,7 @@ enum render_id {
     ID_CAMERA,
     ID_AA,
     ID_DEPTH,
+    ID_BAILOUT,
     ID_NO_SHADOWS,
     ID_EFFECTS,
     ID_TILE,
@@ -29,6 +30,9 @@ static const struct cli_option options[] = {
     JOB_OPTION_TIME,
     {ID_AA, "aa", "1|4|16|64", "samples a pixel (1)"},
     {ID_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},
+    {ID_BAILOUT, "bailout", "X",
+     "rays that can add less than X to a pixel are not traced;\n"
+     "0: all are (1/1024)"},
     {ID_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},
     {ID_EFFECTS, "effects", "auto|all",
      "compile what the scene calls for, or everything; the\n"
@@ -74,6 +78,9 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         break;
     case ID_DEPTH:
         cli_unsigned(reader, 0, DEPTH_MOST, &request->depth);
+        break;
+    case ID_BAILOUT:
+        cli_number(reader, 0.0, 1.0, &request->bailout);
         break;
     case ID_NO_SHADOWS:
         request->no_shadows = true;
@@ -194,6 +201,7 @@ static whit_result create_renderer(struct job *job, const struct render_request 
         .samples = request->samples,
         .depth = request->depth,
         .no_bounces = request->depth == 0,
+        .bailout = request->bailout > 0.0 ? request->bailout : -1.0,
         .no_shadows = request->no_shadows,
         .all_effects = request->all_effects,
         .tile_size = request->tile_size,
@@ -296,8 +304,11 @@ static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct job job;
-    struct render_request request = {
-        .width = 640, .height = 480, .samples = 1, .depth = DEPTH_DEFAULT};
+    struct render_request request = {.width = 640,
+                                     .height = 480,
+                                     .samples = 1,
+                                     .depth = DEPTH_DEFAULT,
+                                     .bailout = BAILOUT_DEFAULT};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

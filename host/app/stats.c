@@ -61,6 +61,7 @@ static json_t *picture_document(const struct job *job, const struct render_reque
     document_count(picture, "height", request->height);
     document_count(picture, "samples", request->samples);
     document_count(picture, "depth", request->depth);
+    document_number(picture, "bailout", request->bailout);
     document_number(picture, "time_s", job->time_s);
     return picture;
 }
