@@ -398,6 +398,7 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
     hit->t = s.best.t;
     hit->u = s.best.u;
     hit->v = s.best.v;
+    hit->t_error = s.best.t_error;
     hit->primitive = s.primitive;
     hit->instance = s.instance;
 }

@@ -1,0 +1,129 @@
+/* Sets of rays, the same on every machine for a seed. */
+#include <math.h>
+
+#include "peers.h"
+
+/* Steele, Lea and Flood 2014. */
+uint64_t random_bits(uint64_t *state)
+{
+    *state += 0x9e3779b97f4a7c15u;
+    uint64_t z = *state;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+double random_unit(uint64_t *state)
+{
+    return (double)(random_bits(state) >> 11) * 0x1p-53;
+}
+
+double random_signed(uint64_t *state)
+{
+    return 2.0 * random_unit(state) - 1.0;
+}
+
+struct gpu_ray ray_to(const double origin[3], const double target[3])
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = (float)origin[k];
+        ray.dir[k] = (float)(target[k] - (double)ray.origin[k]);
+    }
+    return ray;
+}
+
+void random_target(const struct scene *scene, const struct scene_pose *pose, uint64_t *state,
+                   double out[3])
+{
+    uint32_t i, triangles;
+    do {
+        i = (uint32_t)(random_bits(state) % scene->instance_count);
+        triangles = scene->meshes[scene->instances[i].mesh].triangle_count;
+    } while (triangles == 0);
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+    const uint32_t *corners = &mesh->indices[3 * (size_t)(random_bits(state) % triangles)];
+    uint32_t first = (uint32_t)(random_bits(state) % 3);
+    const float *a = &mesh->positions[3 * (size_t)corners[first]];
+    const float *b = &mesh->positions[3 * (size_t)corners[(first + 1) % 3]];
+    double s = random_bits(state) & 1 ? 0.0 : random_unit(state), at[3];
+    for (int k = 0; k < 3; ++k)
+        at[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
+    affine_point(&pose->instances[i], at, out);
+}
+
+/* ---- Cameras ---- */
+
+struct view {
+    double eye[3], forward[3], right[3], up[3];
+    bool parallel;
+};
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int k = 0; k < 3; ++k)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static void scale_to(double v[3], double length)
+{
+    double size = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int k = 0; k < 3; ++k)
+        v[k] *= length / size;
+}
+
+static struct view view_of(const struct scene_camera *camera)
+{
+    struct view view = {.parallel = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC};
+    for (int k = 0; k < 3; ++k) {
+        view.eye[k] = camera->eye[k];
+        view.forward[k] = camera->target[k] - camera->eye[k];
+    }
+    scale_to(view.forward, 1.0);
+    double half = view.parallel ? 0.5 * (double)camera->height : tan(0.5 * (double)camera->fov_y);
+    cross(view.forward, camera->up, view.right);
+    cross(view.right, view.forward, view.up);
+    scale_to(view.right, half * 16.0 / 9.0);
+    scale_to(view.up, half);
+    return view;
+}
+
+static struct gpu_ray primary_ray(const struct view *view, uint64_t *state)
+{
+    double x = random_signed(state), y = random_signed(state), origin[3], target[3];
+    for (int k = 0; k < 3; ++k) {
+        double off = x * view->right[k] + y * view->up[k];
+        origin[k] = view->eye[k] + (view->parallel ? off : 0.0);
+        target[k] = view->eye[k] + off + view->forward[k];
+    }
+    return ray_to(origin, target);
+}
+
+/* In the bounds, stretched about their middle. */
+static void random_point(const struct scene_pose *pose, double stretch, uint64_t *state,
+                         double out[3])
+{
+    for (int k = 0; k < 3; ++k)
+        out[k] = 0.5 * (pose->lo[k] + pose->hi[k]) +
+                 0.5 * stretch * random_signed(state) * (pose->hi[k] - pose->lo[k]);
+}
+
+void rays_fill(enum ray_kind kind, const struct scene *scene, const struct scene_pose *pose,
+               uint64_t seed, struct gpu_ray *rays, uint64_t count)
+{
+    const struct view view = view_of(&pose->cameras[0]);
+    uint64_t state = seed * RAYS_KINDS + (uint64_t)kind;
+    for (uint64_t i = 0; i < count; ++i) {
+        double from[3], to[3];
+        if (kind == RAYS_PRIMARY) {
+            rays[i] = primary_ray(&view, &state);
+            continue;
+        }
+        random_point(pose, 1.5, &state, from);
+        if (kind == RAYS_RANDOM)
+            random_point(pose, 1.0, &state, to);
+        else
+            random_target(scene, pose, &state, to);
+        rays[i] = ray_to(from, to);
+    }
+}
