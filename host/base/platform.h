@@ -50,7 +50,8 @@ enum child_end child_run(const struct child_limits *limits,
 void child_reply_free(struct child_reply *reply);
 
 bool platform_is_terminal(int fd);
-uint64_t platform_peak_memory_bytes(void); /* of this process and its finished children */
+/* The most that this process, or any one of its finished children, had resident. */
+uint64_t platform_peak_memory_bytes(void);
 /* Sets *flag at SIGINT and SIGTERM; a second signal removes unfinished files and ends at once. */
 void platform_catch_interrupts(volatile bool *flag);
 

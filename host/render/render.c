@@ -16,7 +16,7 @@ enum {
     TILE_MIN = 16,
     TILE_MAX = 512,
     TILE_FIRST = 64,
-    TILE_STACKED_MAX = 256, /* ray stacks cost memory; larger only when asked for */
+    TILE_STACKED_MAX = 128, /* ray stacks cost memory; larger only when asked for */
     PASSES_FIRST = 8,
     PASSES_MAX = 64,
 };
@@ -449,6 +449,26 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
     return WHIT_OK;
 }
 
+/* Sums what the kernel counted for the first `count` pixels of the band, slice by slice. */
+static whit_result add_counts(struct renderer *renderer, size_t count)
+{
+    enum { SLICE = 4096 };
+    struct gpu_counts counts[SLICE];
+    for (size_t at = 0; at < count; at += SLICE) {
+        size_t n = count - at < SLICE ? count - at : SLICE;
+        whit_result result = buffer_read(renderer->pixel_buffers.counts, at * sizeof *counts,
+                                         counts, n * sizeof *counts);
+        if (result != WHIT_OK)
+            return result;
+        for (size_t i = 0; i < n; ++i) {
+            renderer->stats.rays_shadow += counts[i].shadow;
+            renderer->stats.rays_reflected += counts[i].reflected;
+            renderer->stats.rays_refracted += counts[i].refracted;
+        }
+    }
+    return WHIT_OK;
+}
+
 /* Pixels and counts of one band from the device into the picture and the statistics. */
 static whit_result read_band(struct renderer *renderer, uint32_t band_y, uint32_t rows)
 {
@@ -460,18 +480,7 @@ static whit_result read_band(struct renderer *renderer, uint32_t band_y, uint32_
     if (result == WHIT_OK)
         result = buffer_read(p->ids, 0, &renderer->ids.words[2 * width * band_y],
                              count * 2 * sizeof(uint32_t));
-    struct gpu_counts *counts = array_alloc(count, sizeof *counts);
-    if (!counts)
-        return WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK)
-        result = buffer_read(p->counts, 0, counts, count * sizeof *counts);
-    for (size_t i = 0; result == WHIT_OK && i < count; ++i) {
-        renderer->stats.rays_shadow += counts[i].shadow;
-        renderer->stats.rays_reflected += counts[i].reflected;
-        renderer->stats.rays_refracted += counts[i].refracted;
-    }
-    free(counts);
-    return result;
+    return result == WHIT_OK ? add_counts(renderer, count) : result;
 }
 
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,

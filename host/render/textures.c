@@ -1,5 +1,5 @@
-/* Materials and the texels they use: 16 bits a channel, linear, so that shaders filter light and
-   not its encoding. */
+/* Materials and the texels they use: as in their files, 8 bits a channel; shaders decode sRGB by a
+   table before they filter, since light adds up and codes do not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,12 +7,11 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
-/* One picture in device form; sRGB and linear uses of the same file are two of them. */
+/* A picture that some material uses, in the size it gets on the device. */
 struct texel_image {
     uint32_t texture; /* of the scene */
-    bool srgb;
     uint32_t width, height, first;
-    uint16_t *texels; /* RGBA; NULL until made */
+    uint32_t halvings;
 };
 
 struct material_upload {
@@ -23,28 +22,17 @@ struct material_upload {
     uint32_t *use_images; /* image of each use */
     uint32_t use_count, use_capacity, use_image_capacity;
     struct gpu_material *materials;
-    uint16_t srgb[256], linear[256];
 };
 
-static void make_tables(struct material_upload *up)
-{
-    for (int i = 0; i < 256; ++i) {
-        double x = i / 255.0;
-        double light = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-        up->srgb[i] = (uint16_t)(light * 65535.0 + 0.5);
-        up->linear[i] = (uint16_t)(x * 65535.0 + 0.5);
-    }
-}
-
-static uint32_t find_image(struct material_upload *up, uint32_t texture, bool srgb)
+static uint32_t find_image(struct material_upload *up, uint32_t texture)
 {
     for (uint32_t i = 0; i < up->image_count; ++i) {
-        if (up->images[i].texture == texture && up->images[i].srgb == srgb)
+        if (up->images[i].texture == texture)
             return i;
     }
     const struct scene_texture *source = &up->renderer->scene->textures[texture];
     struct texel_image image = {
-        .texture = texture, .srgb = srgb, .width = source->width, .height = source->height};
+        .texture = texture, .width = source->width, .height = source->height};
     if (!ARRAY_PUSH(up->images, up->image_count, up->image_capacity, image))
         return SCENE_NONE;
     return up->image_count - 1;
@@ -64,7 +52,7 @@ static whit_result add_use(struct material_upload *up, const struct scene_textur
     *out = TEXTURE_NONE;
     if (use->texture == SCENE_NONE)
         return WHIT_OK;
-    uint32_t image = find_image(up, use->texture, srgb);
+    uint32_t image = find_image(up, use->texture);
     const float *m = use->transform;
     struct gpu_texture record = {
         .matrix = {m[0], m[1], m[3], m[4]},
@@ -72,6 +60,7 @@ static whit_result add_use(struct material_upload *up, const struct scene_textur
         .wrap = wrap_code(use->wrap_u) | wrap_code(use->wrap_v) << 2,
         .nearest = use->nearest,
         .uv_set = use->uv_set != 0,
+        .srgb = srgb,
     };
     uint32_t image_slots = up->use_count;
     if (image == SCENE_NONE || !ARRAY_PUSH(up->uses, up->use_count, up->use_capacity, record) ||
@@ -173,44 +162,6 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
     return add_opacity(up, m, out);
 }
 
-static bool make_texels(const struct material_upload *up, struct texel_image *image)
-{
-    const struct scene_texture *source = &up->renderer->scene->textures[image->texture];
-    size_t count = (size_t)source->width * source->height;
-    image->texels = array_alloc(count, 4 * sizeof(uint16_t));
-    if (!image->texels)
-        return false;
-    const uint16_t *color = image->srgb ? up->srgb : up->linear;
-    for (size_t i = 0; i < count; ++i) {
-        for (size_t c = 0; c < 3; ++c)
-            image->texels[4 * i + c] = color[source->rgba[4 * i + c]];
-        image->texels[4 * i + 3] = up->linear[source->rgba[4 * i + 3]];
-    }
-    return true;
-}
-
-/* Half the size, by averaging up to 2x2 texels, in place. */
-static void halve_image(struct texel_image *image)
-{
-    uint32_t width = (image->width + 1) / 2, height = (image->height + 1) / 2;
-    for (uint32_t y = 0; y < height; ++y) {
-        for (uint32_t x = 0; x < width; ++x) {
-            uint32_t x0 = 2 * x, y0 = 2 * y;
-            uint32_t x1 = x0 + 1 < image->width ? x0 + 1 : x0;
-            uint32_t y1 = y0 + 1 < image->height ? y0 + 1 : y0;
-            for (uint32_t c = 0; c < 4; ++c) {
-                uint32_t sum = 0u + image->texels[4 * ((size_t)y0 * image->width + x0) + c] +
-                               image->texels[4 * ((size_t)y0 * image->width + x1) + c] +
-                               image->texels[4 * ((size_t)y1 * image->width + x0) + c] +
-                               image->texels[4 * ((size_t)y1 * image->width + x1) + c];
-                image->texels[4 * ((size_t)y * width + x) + c] = (uint16_t)((sum + 2) / 4);
-            }
-        }
-    }
-    image->width = width;
-    image->height = height;
-}
-
 static uint64_t texel_total(const struct material_upload *up)
 {
     uint64_t total = 0;
@@ -222,7 +173,7 @@ static uint64_t texel_total(const struct material_upload *up)
 /* Halves the largest pictures until all fit into one buffer, and says so. */
 static void fit_images(struct material_upload *up, uint64_t limit)
 {
-    uint32_t halved = 0;
+    uint32_t halvings = 0;
     while (texel_total(up) > limit) {
         struct texel_image *largest = &up->images[0];
         for (uint32_t i = 1; i < up->image_count; ++i) {
@@ -230,13 +181,62 @@ static void fit_images(struct material_upload *up, uint64_t limit)
                 (uint64_t)largest->width * largest->height)
                 largest = &up->images[i];
         }
-        halve_image(largest);
-        ++halved;
+        largest->width = (largest->width + 1) / 2;
+        largest->height = (largest->height + 1) / 2;
+        ++largest->halvings;
+        ++halvings;
     }
-    if (halved)
+    if (halvings)
         log_warning(&up->renderer->log,
                     "textures: halved %u times, largest first, to fit the device's buffers",
-                    halved);
+                    halvings);
+}
+
+/* Half the size, by averaging up to 2x2 texels; *width and *height follow. */
+static void halve_texels(const uint8_t *from, uint32_t *width, uint32_t *height, uint8_t *to)
+{
+    uint32_t w = (*width + 1) / 2, h = (*height + 1) / 2;
+    for (uint32_t y = 0; y < h; ++y) {
+        for (uint32_t x = 0; x < w; ++x) {
+            size_t x0 = 2 * x, y0 = 2 * y;
+            size_t x1 = x0 + 1 < *width ? x0 + 1 : x0, y1 = y0 + 1 < *height ? y0 + 1 : y0;
+            for (size_t c = 0; c < 4; ++c) {
+                unsigned sum = 0u + from[4 * (y0 * *width + x0) + c] +
+                               from[4 * (y0 * *width + x1) + c] + from[4 * (y1 * *width + x0) + c] +
+                               from[4 * (y1 * *width + x1) + c];
+                to[4 * ((size_t)y * w + x) + c] = (uint8_t)((sum + 2) / 4);
+            }
+        }
+    }
+    *width = w;
+    *height = h;
+}
+
+static whit_result write_image(struct material_upload *up, const struct texel_image *image)
+{
+    const struct scene_texture *source = &up->renderer->scene->textures[image->texture];
+    struct buffer *texels = up->renderer->scene_buffers.texels;
+    uint64_t at = (uint64_t)image->first * 4;
+    uint32_t width = source->width, height = source->height;
+    if (image->halvings == 0)
+        return buffer_write(texels, at, source->rgba, (uint64_t)width * height * 4);
+    uint8_t *half = array_alloc(((size_t)width + 1) / 2 * (((size_t)height + 1) / 2), 4);
+    if (!half)
+        return WHIT_ERROR_MEMORY;
+    halve_texels(source->rgba, &width, &height, half);
+    for (uint32_t i = 1; i < image->halvings; ++i)
+        halve_texels(half, &width, &height, half); /* reads ahead of what it writes */
+    whit_result result = buffer_write(texels, at, half, (uint64_t)width * height * 4);
+    free(half);
+    return result;
+}
+
+static whit_result write_table(struct material_upload *up)
+{
+    float linear[TEXEL_TABLE_WORDS];
+    for (uint32_t i = 0; i < TEXEL_TABLE_WORDS; ++i)
+        linear[i] = image_linear_from_srgb((float)i / 255.0f);
+    return buffer_write(up->renderer->scene_buffers.texels, 0, linear, sizeof linear);
 }
 
 static whit_result upload_texels(struct material_upload *up)
@@ -244,29 +244,25 @@ static whit_result upload_texels(struct material_upload *up)
     struct renderer *renderer = up->renderer;
     struct scene_buffers *buffers = &renderer->scene_buffers;
     const struct device_info *info = device_get_info(renderer->device);
-    uint64_t limit =
-        buffers->texel_loads ? info->max_texel_elements * 2 : info->max_storage_range_bytes / 8;
-    if (limit > 0x20000000u) /* texel indices are 32 bits, bytes stay below 4 GiB */
-        limit = 0x20000000u;
-    for (uint32_t i = 0; i < up->image_count; ++i) {
-        if (!make_texels(up, &up->images[i]))
-            return WHIT_ERROR_MEMORY;
-    }
-    fit_images(up, limit);
-    uint64_t total = texel_total(up);
-    if (total == 0)
+    if (up->image_count == 0)
         return WHIT_OK;
+    uint64_t limit =
+        buffers->texel_loads ? info->max_texel_elements * 4 : info->max_storage_range_bytes / 4;
+    if (limit > UINT32_MAX) /* words are counted in 32 bits */
+        limit = UINT32_MAX;
+    fit_images(up, limit - TEXEL_TABLE_WORDS);
+    uint64_t words = TEXEL_TABLE_WORDS + texel_total(up);
     uint32_t uses = buffers->texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     whit_result result =
-        buffer_create(renderer->device, (total + 1) * 8, uses, "texels", &buffers->texels);
-    uint32_t first = 0;
+        buffer_create(renderer->device, words * 4, uses, "texels", &buffers->texels);
+    if (result == WHIT_OK)
+        result = write_table(up);
+    uint32_t first = TEXEL_TABLE_WORDS;
     for (uint32_t i = 0; result == WHIT_OK && i < up->image_count; ++i) {
         struct texel_image *image = &up->images[i];
-        uint64_t count = (uint64_t)image->width * image->height;
         image->first = first;
-        first += (uint32_t)count;
-        result =
-            buffer_write(buffers->texels, (uint64_t)image->first * 8, image->texels, count * 8);
+        first += image->width * image->height;
+        result = write_image(up, image);
     }
     if (result == WHIT_OK)
         buffers->bytes += buffer_size(buffers->texels);
@@ -284,8 +280,6 @@ static void place_uses(struct material_upload *up)
 
 static void material_upload_finish(struct material_upload *up)
 {
-    for (uint32_t i = 0; i < up->image_count; ++i)
-        free(up->images[i].texels);
     free(up->images);
     free(up->uses);
     free(up->use_images);
@@ -297,7 +291,6 @@ whit_result upload_materials(struct renderer *renderer)
     const struct scene *scene = renderer->scene;
     struct scene_buffers *buffers = &renderer->scene_buffers;
     struct material_upload up = {.renderer = renderer};
-    make_tables(&up);
     up.materials = array_alloc_zeroed(scene->material_count, sizeof *up.materials);
     whit_result result = up.materials ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < scene->material_count; ++i)

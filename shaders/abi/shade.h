@@ -56,16 +56,20 @@ GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
 #define WRAP_CLAMP  1u
 #define WRAP_MIRROR 2u
 
-/* A use of a texture. Texels are two words each, four linear 16-bit channels. */
+/* Texels are one word each, RGBA of 8 bits as in the file, behind this many words: the linear
+   values (float bits) of the 256 sRGB codes. */
+#define TEXEL_TABLE_WORDS 256u
+
+/* A use of a texture. */
 struct gpu_texture {
     gpu_vec4 matrix; /* uv' = (x u + y v, z u + w v) + offset */
     gpu_vec2 offset;
-    gpu_uint first; /* texel */
+    gpu_uint first; /* word of its first texel */
     gpu_uint size;  /* width | height << 16 */
     gpu_uint wrap;  /* u | v << 2 */
     gpu_uint nearest;
     gpu_uint uv_set;
-    gpu_uint pad;
+    gpu_uint srgb; /* red, green and blue go through the table */
 };
 GPU_ASSERT_SIZE(gpu_texture, 48)
 GPU_ASSERT_AT(gpu_texture, offset, 16)

@@ -22,13 +22,26 @@ layout(set = 0, binding = BIND_TRIANGLE_UVS, std430) readonly buffer TriangleUvB
     vec2 triangle_uvs[]; // 3 per triangle; set 1 behind set 0
 };
 
-// Four linear channels of one texel; two texels share a row.
-vec4 fetch_texel(uint texel)
+// Four words share a row.
+uint fetch_texel_word(uint word)
 {
-    uvec4 row = SPEC_LOAD_PATH == LOAD_TEXEL ? texelFetch(texel_texels, int(texel >> 1))
-                                             : texel_rows[texel >> 1];
-    uvec2 words = (texel & 1u) != 0u ? row.zw : row.xy;
-    return vec4(unpackUnorm2x16(words.x), unpackUnorm2x16(words.y));
+    uvec4 row = SPEC_LOAD_PATH == LOAD_TEXEL ? texelFetch(texel_texels, int(word >> 2))
+                                             : texel_rows[word >> 2];
+    uvec2 pair = (word & 2u) != 0u ? row.zw : row.xy;
+    return (word & 1u) != 0u ? pair.y : pair.x;
+}
+
+// Linear: a table decodes sRGB exactly, where pow() would be off by tens of ulp.
+vec4 fetch_texel(uint word, bool srgb)
+{
+    uint texel = fetch_texel_word(word);
+    vec4 linear = unpackUnorm4x8(texel);
+    if (srgb) {
+        linear.r = uintBitsToFloat(fetch_texel_word(texel & 255u));
+        linear.g = uintBitsToFloat(fetch_texel_word((texel >> 8) & 255u));
+        linear.b = uintBitsToFloat(fetch_texel_word((texel >> 16) & 255u));
+    }
+    return linear;
 }
 
 int wrap_texel(int at, int size, uint wrap)
@@ -64,8 +77,9 @@ vec4 sample_texture(uint use, vec2 uv)
     uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
     uint y0 = t.first + uint(wrap_texel(texel.y, size.y, wrap.y) * size.x);
     uint y1 = t.first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
-    vec4 top = mix(fetch_texel(y0 + x0), fetch_texel(y0 + x1), part.x);
-    vec4 bottom = mix(fetch_texel(y1 + x0), fetch_texel(y1 + x1), part.x);
+    bool srgb = t.srgb != 0u;
+    vec4 top = mix(fetch_texel(y0 + x0, srgb), fetch_texel(y0 + x1, srgb), part.x);
+    vec4 bottom = mix(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
     return mix(top, bottom, part.y);
 }
 
