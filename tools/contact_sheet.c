@@ -104,10 +104,12 @@ static void write_text(struct sheet *sheet, uint32_t x, uint32_t y, const char *
     static const float white[3] = {0.8f, 0.8f, 0.8f};
     char copy[256];
     uint32_t room = sheet->width / LABEL_SCALE - 4;
-    for (;; ++text) {
+    for (;;) {
         snprintf(copy, sizeof copy, "%s", text);
         if ((uint32_t)stb_easy_font_width(copy) <= room || !*text)
             break;
+        const char *slash = strchr(text, '/');
+        text = slash ? slash + 1 : text + 1;
     }
     int quads = stb_easy_font_print(0.0f, 0.0f, copy, NULL, corners, (int)sizeof corners);
     for (int i = 0; i < quads; ++i) {
