@@ -199,21 +199,32 @@ static void print_ray(const struct comparison *c, uint64_t i, const char *what)
 
 /* What is wrong first, then what is explained. */
 static void print_list(const struct comparison *c, const uint8_t *differs, const char *who,
-                       uint64_t limit)
+                       const char *const names[AGREEMENTS], uint64_t limit)
 {
-    static const char *const names[AGREEMENTS] = {"", "tie", "within the error bound",
-                                                  "NOT explained"};
     for (int agreement = DISAGREE; agreement >= AGREE; --agreement) {
         for (uint64_t i = 0; i < c->count && limit > 0; ++i) {
             char what[80];
             if (differs[i] != 1 + agreement)
                 continue;
-            snprintf(what, sizeof what, "%s, %s", who,
-                     agreement == AGREE ? "oracle agrees with it" : names[agreement]);
+            snprintf(what, sizeof what, "%s unlike twin, %s", who, names[agreement]);
             print_ray(c, i, what);
             --limit;
         }
     }
+}
+
+static void print_lists(const struct comparison *c, enum ray_kind kind, uint64_t limit)
+{
+    static const char *const of_oracle[AGREEMENTS] = {"", "tie", "within the error bound",
+                                                      "not explained"};
+    static const char *const of_embree[AGREEMENTS] = {"oracle's answer is Embree's", "tie",
+                                                      "within whit's error bound",
+                                                      "oracle sure of the twin's answer"};
+    if (limit == 0)
+        return;
+    printf("%s rays:\n", kind_names[kind]);
+    print_list(c, c->oracle_differs, "oracle", of_oracle, limit);
+    print_list(c, c->embree_differs, "Embree", of_embree, limit);
 }
 
 /* ---- The table ---- */
@@ -330,10 +341,7 @@ static bool compare_kind(const struct bench *bench, const struct options *option
         threads_for(HITS_THREADS, chunk_count, compare_chunk, &c);
         for (uint32_t i = 0; i < chunk_count; ++i)
             tally_add(sum, &chunks[i]);
-        if (options->list > 0)
-            printf("%s rays:\n", kind_names[kind]);
-        print_list(&c, c.oracle_differs, "oracle unlike twin", options->list);
-        print_list(&c, c.embree_differs, "Embree unlike twin", options->list);
+        print_lists(&c, kind, options->list);
     }
     free(rays);
     free(hits);
