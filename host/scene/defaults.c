@@ -4,8 +4,12 @@
 
 #include "base/array.h"
 #include "scene/freeze.h"
+#include "scene/viewpoint.h"
 
-#define DEFAULT_FOV_Y 0.69813170079773183 /* 40 degrees */
+/* What lights a scene whose file has no light. */
+struct light_kinds {
+    bool key, emitters, exposed;
+};
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -26,37 +30,79 @@ static void set_color(float out[3], float r, float g, float b)
     out[0] = r, out[1] = g, out[2] = b;
 }
 
-/* Three-quarter view that holds the bounding sphere. */
-static whit_result add_camera(struct scene *scene, const struct scene_pose *pose)
+static void note_viewpoint(struct scene *scene, enum viewpoint_kind kind)
 {
+    static const char *const places[] = {
+        [VIEWPOINT_CORNER] = "shows all of it",
+        [VIEWPOINT_TURNED] = "shows all of it, from the side that shows most fronts of surfaces",
+        [VIEWPOINT_STRAIGHT] = "shows all of it, straight on",
+        [VIEWPOINT_INSIDE] = "looks along it from inside, for it is a room",
+    };
+    scene_note(scene, SCENE_NOTE_INFO, "no camera in the file: one was added that %s",
+               places[kind]);
+}
+
+static whit_result add_camera(struct scene *scene, const struct scene_pose *pose,
+                              struct viewpoint *viewpoint)
+{
+    whit_result result = viewpoint_choose(scene, pose, viewpoint);
+    if (result != WHIT_OK)
+        return result;
     struct scene_camera camera = {
         .name = string_copy("default"),
         .kind = SCENE_CAMERA_PERSPECTIVE,
         .node = SCENE_NONE,
         .up = {0, 1, 0},
-        .fov_y = (float)DEFAULT_FOV_Y,
+        .fov_y = (float)viewpoint->fov_y,
         .made_by_whit = true,
     };
-    double toward_eye[3] = {0.5, 0.35, 1.0}, radius2 = 0.0;
-    unit(toward_eye);
-    bool empty = pose->lo[0] > pose->hi[0];
-    for (int i = 0; i < 3; ++i) {
-        double half = empty ? 0.0 : 0.5 * (pose->hi[i] - pose->lo[i]);
-        camera.target[i] = empty ? 0.0 : pose->lo[i] + half;
-        radius2 += half * half;
-    }
-    double radius = radius2 > 0.0 && isfinite(radius2) ? sqrt(radius2) : 1.0;
-    for (int i = 0; i < 3; ++i)
-        camera.eye[i] = camera.target[i] + toward_eye[i] * radius / sin(DEFAULT_FOV_Y / 2.0);
+    memcpy(camera.eye, viewpoint->eye, sizeof camera.eye);
+    memcpy(camera.target, viewpoint->target, sizeof camera.target);
     if (scene_add_camera(scene, camera) == SCENE_NONE)
         return WHIT_ERROR_MEMORY;
-    scene_note(scene, SCENE_NOTE_INFO, "no camera in the file: one was added that shows all of it");
+    note_viewpoint(scene, viewpoint->kind);
     return WHIT_OK;
 }
 
-/* One directional light from over the camera's left shoulder. */
-static whit_result add_key_light(struct scene *scene, const struct scene_camera *camera)
+/* Walls keep light from outside off a room: one lamp at the eye and one ahead of it, where the eye
+   sees that there is space. */
+static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint)
 {
+    const struct {
+        const char *name;
+        double ahead;
+        float level;
+    } lamps[] = {{"default lamp ahead", 0.45, 0.6f}, {"default lamp", 0.0, 0.3f}};
+    double forward[3];
+    for (int i = 0; i < 3; ++i)
+        forward[i] = viewpoint->target[i] - viewpoint->eye[i];
+    unit(forward);
+    for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
+        struct scene_light light = {
+            .name = string_copy(lamps[k].name),
+            .kind = SCENE_LIGHT_POINT,
+            .node = SCENE_NONE,
+            .direction = {0, -1, 0},
+            .made_by_whit = true,
+        };
+        set_color(light.color, lamps[k].level, 0.98f * lamps[k].level, 0.94f * lamps[k].level);
+        for (int i = 0; i < 3; ++i)
+            light.position[i] =
+                viewpoint->eye[i] + lamps[k].ahead * viewpoint->free_ahead * forward[i];
+        if (scene_add_light(scene, light) == SCENE_NONE)
+            return WHIT_ERROR_MEMORY;
+    }
+    scene_note(scene, SCENE_NOTE_INFO,
+               "no light in the file: two lamps were added, at the camera and ahead of it");
+    return WHIT_OK;
+}
+
+/* One directional light from over the camera's left shoulder; from less far aside where it is to
+   reach into a box. */
+static whit_result add_key_light(struct scene *scene, const struct scene_camera *camera,
+                                 enum viewpoint_kind kind)
+{
+    const double aside = kind == VIEWPOINT_STRAIGHT ? 0.3 : 1.0;
     struct scene_light light = {
         .name = string_copy("default key light"),
         .kind = SCENE_LIGHT_DIRECTIONAL,
@@ -72,7 +118,7 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
     unit(right);
     cross(right, forward, up);
     for (int i = 0; i < 3; ++i)
-        light.direction[i] = 0.6 * forward[i] + 0.6 * right[i] - 0.9 * up[i];
+        light.direction[i] = 0.6 * forward[i] + aside * (0.6 * right[i] - 0.9 * up[i]);
     unit(light.direction);
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
@@ -99,27 +145,49 @@ static void add_darkness(struct scene *scene)
     sky->made_by_whit = true;
 }
 
-static whit_result add_lights(struct scene *scene, const struct scene_pose *pose, bool *key,
-                              uint32_t *samples)
+static whit_result expose_stated_lights(struct scene *scene)
 {
-    *key = false;
-    *samples = 0;
-    if (scene->light_count)
-        return WHIT_OK;
-    whit_result result = freeze_sample_emitters(scene, pose, samples);
-    if (result != WHIT_OK)
+    double factor = 1.0;
+    whit_result result = freeze_expose(scene, false, &factor);
+    if (result == WHIT_OK && factor != 1.0)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "the lights would leave the picture %s: they are drawn %.3g times as strong",
+                   factor < 1.0 ? "burnt out" : "black", factor);
+    return result;
+}
+
+static whit_result add_emitters(struct scene *scene, const struct scene_pose *pose,
+                                struct light_kinds *found)
+{
+    uint32_t samples = 0;
+    double factor = 1.0;
+    whit_result result = freeze_sample_emitters(scene, pose, &samples);
+    if (result == WHIT_OK && samples)
+        result = freeze_expose(scene, true, &factor);
+    if (result != WHIT_OK || !samples)
         return result;
-    if (*samples) {
-        scene_note(
-            scene, SCENE_NOTE_INFO,
-            "no light in the file: its emissive surfaces light it, as %u points (area lights "
-            "are not sampled more finely yet)",
-            *samples);
-        return WHIT_OK;
-    }
-    *key = true;
+    found->emitters = true;
+    found->exposed = factor != 1.0;
+    scene_note(scene, SCENE_NOTE_INFO,
+               "no light in the file: its emissive surfaces light it, as %u points (area lights "
+               "are not sampled more finely yet), %.3g times as strongly as stated",
+               samples, factor);
+    return WHIT_OK;
+}
+
+static whit_result add_lights(struct scene *scene, const struct scene_pose *pose,
+                              const struct viewpoint *viewpoint, struct light_kinds *found)
+{
+    if (scene->light_count)
+        return expose_stated_lights(scene);
+    whit_result result = add_emitters(scene, pose, found);
+    if (result != WHIT_OK || found->emitters)
+        return result;
+    found->key = true;
+    if (viewpoint->kind == VIEWPOINT_INSIDE)
+        return add_room_lights(scene, viewpoint);
     struct scene_camera camera = pose->camera_count ? pose->cameras[0] : scene->cameras[0];
-    result = add_key_light(scene, &camera);
+    result = add_key_light(scene, &camera, viewpoint->kind);
     if (result == WHIT_OK)
         scene_note(scene, SCENE_NOTE_INFO,
                    "no light in the file: a directional one was added, over the camera's left "
@@ -127,15 +195,17 @@ static whit_result add_lights(struct scene *scene, const struct scene_pose *pose
     return result;
 }
 
-static void add_ambient(struct scene *scene, bool key, uint32_t samples)
+static void add_ambient(struct scene *scene, const struct light_kinds *lights)
 {
-    float level = key ? 0.1f : samples ? 0.03f : 0.0f;
+    /* Emission that was scaled stands for a bright picture, one that was stated for itself. */
+    float level = lights->key || lights->exposed ? 0.1f : lights->emitters ? 0.03f : 0.0f;
     set_color(scene->ambient, level, level, level);
     scene->has_ambient = true;
-    scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: %s",
-               key       ? "0.1 was added"
-               : samples ? "0.03 was added"
-                         : "there is none");
+    if (level > 0.0f)
+        scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: %g was added",
+                   (double)level);
+    else
+        scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: there is none");
 }
 
 whit_result freeze_add_defaults(struct scene *scene)
@@ -144,22 +214,22 @@ whit_result freeze_add_defaults(struct scene *scene)
     whit_result result = scene_pose_init(scene, 0.0, &pose);
     if (result != WHIT_OK)
         return result;
-    bool key = false;
-    uint32_t samples = 0;
+    struct light_kinds lights = {0};
+    struct viewpoint viewpoint = {.kind = VIEWPOINT_CORNER};
     if (!scene->camera_count)
-        result = add_camera(scene, &pose);
+        result = add_camera(scene, &pose, &viewpoint);
     if (result == WHIT_OK)
-        result = add_lights(scene, &pose, &key, &samples);
+        result = add_lights(scene, &pose, &viewpoint, &lights);
     if (result == WHIT_OK && !scene->has_ambient)
-        add_ambient(scene, key, samples);
+        add_ambient(scene, &lights);
     if (result == WHIT_OK && !scene->has_environment) {
-        if (key)
+        if (lights.key)
             add_sky(scene);
         else
             add_darkness(scene);
         scene->has_environment = true;
         scene_note(scene, SCENE_NOTE_INFO, "no environment in the file: %s",
-                   key ? "a sky was added" : "the background is black");
+                   lights.key ? "a sky was added" : "the background is black");
     }
     scene_pose_finish(&pose);
     return result;

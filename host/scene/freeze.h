@@ -12,6 +12,11 @@ WHIT_CHECK whit_result freeze_clean_mesh(struct scene *scene, uint32_t mesh);
 WHIT_CHECK whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose *pose,
                                               uint32_t *added);
 
+/* exposure.c: scales all lights so that what they light is bright, unless a scene file of whit's
+   own states them. `emitters`: they were made of emissive surfaces; else they are left alone where
+   they neither burn the picture out nor leave it black. *factor is what by. */
+WHIT_CHECK whit_result freeze_expose(struct scene *scene, bool emitters, double *factor);
+
 /* defaults.c: camera, lights, ambient light and environment where the file has none. */
 WHIT_CHECK whit_result freeze_add_defaults(struct scene *scene);
 

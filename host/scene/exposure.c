@@ -1,0 +1,189 @@
+/* How bright emissive surfaces light the rest. Files state emission in whatever unit their
+   program's camera was set to (a lamp of 1 that should fill a hall, or one of 17 in a box), so
+   lights made of them are scaled until what they light best comes out bright, and not burnt out. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "scene/freeze.h"
+
+#define PROBES     1024
+/* This share of the lit surface is to be at most that bright, for a white surface. */
+#define SHARE      0.9
+#define BRIGHTNESS 0.8
+/* Stated lights are left alone between these. */
+#define LEAST      0.02
+#define MOST       2.0
+
+struct probe_list {
+    double values[PROBES];
+    uint32_t count;
+};
+
+static double luminance(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Corner and edges of a triangle that receives light; its area, or 0 for a lamp. */
+static double receiver(const struct scene *scene, const struct scene_pose *pose, uint32_t instance,
+                       uint32_t triangle, double corner[3], double edges[2][3], double normal[3])
+{
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    if (luminance(scene->materials[mesh->materials[triangle]].emission) > 0.0)
+        return 0.0;
+    double p[3][3];
+    for (size_t i = 0; i < 3; ++i) {
+        const float *q = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)triangle + i];
+        affine_point(&pose->instances[instance],
+                     (const double[3]){(double)q[0], (double)q[1], (double)q[2]}, p[i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        corner[i] = p[0][i];
+        edges[0][i] = p[1][i] - p[0][i];
+        edges[1][i] = p[2][i] - p[0][i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        normal[i] = edges[0][j] * edges[1][k] - edges[0][k] * edges[1][j];
+    }
+    double length = sqrt(dot(normal, normal));
+    for (int i = 0; length > 0.0 && i < 3; ++i)
+        normal[i] /= length;
+    return isfinite(length) ? 0.5 * length : 0.0;
+}
+
+/* Light along the unit way, before the surface's cosine and without shadows: as the shader has it.
+ */
+static double arriving(const struct scene_light *light, const double way[3], double distance)
+{
+    double value = luminance(light->color), along = dot(way, light->direction);
+    if (light->kind == SCENE_LIGHT_DIRECTIONAL)
+        return value;
+    if (light->falloff)
+        value /= distance * distance;
+    if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+        value *= light->two_sided ? fabs(along) : fmax(along, 0.0);
+    if (light->kind == SCENE_LIGHT_SPOT && along < (double)light->cos_outer)
+        value = 0.0;
+    return light->range > 0.0f && distance > (double)light->range ? 0.0 : value;
+}
+
+/* What a white surface shows at `point`. */
+static double brightness_at(const struct scene_pose *pose, const double point[3],
+                            const double normal[3])
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < pose->light_count; ++i) {
+        const struct scene_light *light = &pose->lights[i];
+        double way[3], distance = 1.0;
+        for (int k = 0; k < 3; ++k)
+            way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
+                                                            : point[k] - light->position[k];
+        distance = sqrt(dot(way, way));
+        for (int k = 0; distance > 0.0 && k < 3; ++k)
+            way[k] /= distance;
+        if (distance > 0.0)
+            sum += arriving(light, way, distance) * fabs(dot(way, normal));
+    }
+    return sum;
+}
+
+/* Points at even steps of area, in the order of the triangles. */
+static void probe_instance(const struct scene *scene, const struct scene_pose *pose,
+                           uint32_t instance, double step, double *before, struct probe_list *list)
+{
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        double corner[3], edges[2][3], normal[3];
+        double area = receiver(scene, pose, instance, t, corner, edges, normal);
+        while (list->count < PROBES && (list->count + 0.5) * step < *before + area) {
+            double s = ((list->count + 0.5) * step - *before) / area;
+            double v = fmod(list->count * 0.6180339887498949, 1.0), root = sqrt(s), point[3];
+            for (int i = 0; i < 3; ++i)
+                point[i] = corner[i] + root * ((1.0 - v) * edges[0][i] + v * edges[1][i]);
+            list->values[list->count++] = brightness_at(pose, point, normal);
+        }
+        *before += area;
+    }
+}
+
+static double total_area(const struct scene *scene, const struct scene_pose *pose)
+{
+    double total = 0.0, corner[3], edges[2][3], normal[3];
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        for (uint32_t t = 0; t < mesh->triangle_count; ++t)
+            total += receiver(scene, pose, i, t, corner, edges, normal);
+    }
+    return total;
+}
+
+static int compare_values(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Whoever writes whit's own scene files means their numbers. */
+static bool is_from_model(const struct scene_origin *origin)
+{
+    char extension[8];
+    if (!origin->file)
+        return false;
+    path_extension(origin->file, extension, sizeof extension);
+    return strcmp(extension, "json") != 0;
+}
+
+static bool all_from_models(const struct scene *scene, bool emitters)
+{
+    bool all = true;
+    for (uint32_t i = 0; emitters && i < scene->material_count; ++i) {
+        if (luminance(scene->materials[i].emission) > 0.0)
+            all = all && is_from_model(&scene->materials[i].origin);
+    }
+    for (uint32_t i = 0; !emitters && i < scene->light_count; ++i)
+        all = all && is_from_model(&scene->lights[i].origin);
+    return all;
+}
+
+static whit_result measure(const struct scene *scene, double *bright)
+{
+    struct scene_pose pose;
+    struct probe_list list = {.count = 0};
+    whit_result result = scene_pose_init(scene, 0.0, &pose);
+    if (result != WHIT_OK)
+        return result;
+    double area = total_area(scene, &pose), before = 0.0;
+    for (uint32_t i = 0; area > 0.0 && isfinite(area) && i < scene->instance_count; ++i)
+        probe_instance(scene, &pose, i, area / PROBES, &before, &list);
+    scene_pose_finish(&pose);
+    qsort(list.values, list.count, sizeof *list.values, compare_values);
+    *bright = list.count ? list.values[(uint32_t)(SHARE * (list.count - 1))] : 0.0;
+    return WHIT_OK;
+}
+
+whit_result freeze_expose(struct scene *scene, bool emitters, double *factor)
+{
+    double bright = 0.0;
+    *factor = 1.0;
+    if (!all_from_models(scene, emitters))
+        return WHIT_OK;
+    whit_result result = measure(scene, &bright);
+    if (result != WHIT_OK || !(bright > 0.0) || !isfinite(BRIGHTNESS / bright) ||
+        (!emitters && bright >= LEAST && bright <= MOST))
+        return result;
+    *factor = BRIGHTNESS / bright;
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        float *color = scene->lights[i].color;
+        for (int k = 0; k < 3; ++k)
+            color[k] = (float)fmin(*factor * (double)color[k], 1e30);
+    }
+    return WHIT_OK;
+}

@@ -1,0 +1,26 @@
+/* Where to look at a scene from when its file has no camera. Part of scene_freeze. */
+#ifndef SCENE_VIEWPOINT_H
+#define SCENE_VIEWPOINT_H
+
+#include "scene/scene.h"
+
+enum viewpoint_kind {
+    VIEWPOINT_CORNER,   /* three-quarter view from the front, right and above */
+    VIEWPOINT_TURNED,   /* the same from another side */
+    VIEWPOINT_STRAIGHT, /* along x or z: boards, boxes with an open side */
+    VIEWPOINT_INSIDE    /* rooms */
+};
+
+struct viewpoint {
+    enum viewpoint_kind kind;
+    double eye[3], target[3]; /* world; up is +y */
+    double fov_y;
+    double free_ahead; /* INSIDE: how far the eye sees straight ahead, world units */
+};
+
+/* From the triangles as `pose` places them. The picture is taken to be 4:3; a wider one shows all
+   of it too. WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
+                                        struct viewpoint *out);
+
+#endif

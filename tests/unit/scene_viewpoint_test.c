@@ -1,0 +1,348 @@
+/* Where whit looks from, and how brightly models' lights are drawn, when a file leaves it open. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scene/scene.h"
+#include "scene/shapes.h"
+
+static struct scene *empty_scene(void)
+{
+    struct scene *scene = scene_create(NULL, "test");
+    assert_non_null(scene);
+    struct scene_material material;
+    scene_material_init(&material, "plain");
+    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
+    return scene;
+}
+
+static void place(struct scene *scene, struct scene_mesh mesh, uint32_t node)
+{
+    mesh.name = string_copy("m");
+    struct scene_instance instance = {.node = node, .mesh = scene_add_mesh(scene, mesh)};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+/* The walls of a box of half size `half` around the origin, seen from inside, but for those in
+   `open`: bit 2 * axis + (1: the high side). `turned`: seen from outside. */
+static struct scene_mesh walls(const float half[3], unsigned open, bool turned)
+{
+    struct scene_mesh mesh = {0};
+    mesh.positions = calloc(6 * 4 * 3, sizeof *mesh.positions);
+    mesh.indices = calloc(sizeof *mesh.indices, 6 * 2 * 3);
+    mesh.materials = calloc(sizeof *mesh.materials, 6 * 2);
+    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    for (uint32_t wall = 0; wall < 6; ++wall) {
+        if (open >> wall & 1)
+            continue;
+        uint32_t axis = wall / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        float side = wall & 1 ? 1.0f : -1.0f;
+        for (uint32_t i = 0; i < 4; ++i) {
+            float *p = mesh.positions + 3 * (size_t)(mesh.vertex_count + i);
+            p[axis] = side * half[axis];
+            p[u] = (i == 1 || i == 2 ? 1.0f : -1.0f) * half[u];
+            p[v] = (i >= 2 ? 1.0f : -1.0f) * half[v];
+        }
+        bool outward = side > 0.0f; /* of u, v going round as 0 1 2 3 */
+        const uint32_t order[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 2, 1, 0, 3, 2}};
+        for (uint32_t i = 0; i < 6; ++i)
+            mesh.indices[3 * mesh.triangle_count + i] =
+                mesh.vertex_count + order[outward != turned][i];
+        mesh.vertex_count += 4;
+        mesh.triangle_count += 2;
+    }
+    return mesh;
+}
+
+static const struct scene_camera *camera_of(struct scene *scene, double forward[3])
+{
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene->camera_count, 1);
+    const struct scene_camera *camera = &scene->cameras[0];
+    double length = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        forward[i] = camera->target[i] - camera->eye[i];
+        length += forward[i] * forward[i];
+    }
+    for (int i = 0; i < 3; ++i)
+        forward[i] /= sqrt(length);
+    return camera;
+}
+
+static bool noted(const struct scene *scene, const char *text)
+{
+    for (uint32_t i = 0; i < scene->note_count; ++i) {
+        if (strstr(scene->notes[i].text, text))
+            return true;
+    }
+    return false;
+}
+
+static double reach(const struct scene_camera *camera, const double forward[3], const float *p,
+                    double slope[2])
+{
+    double right[3] = {-forward[2], 0, forward[0]}, up[3], way[3], at[3] = {0, 0, 0};
+    double length = sqrt(right[0] * right[0] + right[2] * right[2]);
+    right[0] /= length, right[2] /= length;
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        up[i] = right[j] * forward[k] - right[k] * forward[j];
+        way[i] = (double)p[i] - camera->eye[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        at[0] += way[i] * right[i];
+        at[1] += way[i] * up[i];
+        at[2] += way[i] * forward[i];
+    }
+    double tangent = tan(0.5 * (double)camera->fov_y);
+    slope[0] = at[0] / at[2] / (tangent * 4.0 / 3.0);
+    slope[1] = at[1] / at[2] / tangent;
+    return at[2];
+}
+
+/* All vertices lie in a 4:3 picture, and some near its border on both sides. */
+static void closed_shapes_fill_the_usual_view(void **state)
+{
+    (void)state;
+    const double scales[] = {1.0, 1e-6, 1e9};
+    for (size_t k = 0; k < 3; ++k) {
+        struct scene *scene = empty_scene();
+        struct scene_mesh ball;
+        assert_int_equal(shape_sphere(scales[k], 24, 12, &ball), WHIT_OK);
+        place(scene, ball, SCENE_NONE);
+        double forward[3], lo[2] = {1, 1}, hi[2] = {-1, -1};
+        const struct scene_camera *camera = camera_of(scene, forward);
+        const struct scene_mesh *mesh = &scene->meshes[0];
+        for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
+            double slope[2];
+            assert_true(reach(camera, forward, mesh->positions + 3 * (size_t)i, slope) > 0.0);
+            for (int a = 0; a < 2; ++a) {
+                lo[a] = fmin(lo[a], slope[a]);
+                hi[a] = fmax(hi[a], slope[a]);
+            }
+        }
+        assert_true(lo[0] > -0.95 && hi[0] < 0.95 && lo[1] > -0.95 && hi[1] < 0.95);
+        assert_true(lo[1] < -0.9 && hi[1] > 0.9);
+        assert_true(forward[0] < -0.3 && forward[1] < -0.2 && forward[2] < -0.7);
+        assert_true(noted(scene, "one was added that shows all of it"));
+        scene_destroy(scene);
+    }
+}
+
+static void open_boxes_are_seen_through_their_opening(void **state)
+{
+    (void)state;
+    const float half[3] = {1, 1, 1};
+    const unsigned sides[] = {1, 0, 5, 4};
+    const double expected[][3] = {{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}};
+    for (size_t k = 0; k < 4; ++k) {
+        struct scene *scene = empty_scene();
+        place(scene, walls(half, 1u << sides[k], false), SCENE_NONE);
+        double forward[3];
+        const struct scene_camera *camera = camera_of(scene, forward);
+        for (int i = 0; i < 3; ++i)
+            assert_true(fabs(forward[i] - expected[k][i]) < 1e-6);
+        assert_true(fabs(camera->eye[0]) + fabs(camera->eye[2]) > 2.0);
+        assert_true(noted(scene, "straight on"));
+        scene_destroy(scene);
+    }
+}
+
+/* A mirrored copy of an inward box shows its inside still. */
+static void mirrors_do_not_turn_surfaces(void **state)
+{
+    (void)state;
+    const float half[3] = {1, 1, 1};
+    struct scene *scene = empty_scene();
+    struct scene_node node;
+    scene_node_init(&node, "mirror", SCENE_NONE);
+    node.scale[0] = -1.0;
+    uint32_t mirror = scene_add_node(scene, node);
+    place(scene, walls(half, 1u << 5, false), mirror);
+    double forward[3];
+    camera_of(scene, forward);
+    assert_true(fabs(forward[2] + 1.0) < 1e-6);
+    scene_destroy(scene);
+}
+
+static void rooms_are_seen_from_inside(void **state)
+{
+    (void)state;
+    const float half[3] = {6, 2, 3};
+    for (int thick = 0; thick < 2; ++thick) {
+        struct scene *scene = empty_scene();
+        place(scene, walls(half, 0, false), SCENE_NONE);
+        if (thick)
+            place(scene, walls((const float[]){6.3f, 2.3f, 3.3f}, 0, true), SCENE_NONE);
+        double forward[3];
+        const struct scene_camera *camera = camera_of(scene, forward);
+        assert_true(noted(scene, "for it is a room"));
+        assert_true(fabs(fabs(forward[0]) - 1.0) < 1e-9);
+        for (int i = 0; i < 3; ++i)
+            assert_true(fabs(camera->eye[i]) < (double)half[i]);
+        assert_true(camera->eye[0] * forward[0] < -3.0);
+        assert_int_equal(scene->light_count, 2);
+        for (uint32_t i = 0; i < 2; ++i) {
+            assert_int_equal(scene->lights[i].kind, SCENE_LIGHT_POINT);
+            assert_true(fabs(scene->lights[i].position[0]) < 6.0);
+        }
+        scene_destroy(scene);
+    }
+    /* The same walls as a solid. */
+    struct scene *scene = empty_scene();
+    place(scene, walls(half, 0, true), SCENE_NONE);
+    double forward[3];
+    camera_of(scene, forward);
+    assert_false(noted(scene, "room"));
+    assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
+    scene_destroy(scene);
+}
+
+static void boards_are_seen_straight_on(void **state)
+{
+    (void)state;
+    struct scene *scene = empty_scene();
+    place(scene, walls((const float[]){2, 1, 0.02f}, 0, true), SCENE_NONE);
+    double forward[3];
+    camera_of(scene, forward);
+    assert_true(fabs(forward[2] + 1.0) < 1e-9);
+    scene_destroy(scene);
+}
+
+/* What flies away later is in the picture from the start. */
+static void animations_stay_in_the_picture(void **state)
+{
+    (void)state;
+    struct scene *scene = empty_scene();
+    struct scene_node node;
+    scene_node_init(&node, "flies", SCENE_NONE);
+    uint32_t flies = scene_add_node(scene, node);
+    place(scene, walls((const float[]){1, 1, 1}, 0, true), flies);
+    struct scene_channel channel = {.node = flies,
+                                    .path = SCENE_PATH_TRANSLATION,
+                                    .interpolation = SCENE_LINEAR,
+                                    .key_count = 2};
+    channel.times_s = calloc(2, sizeof(float));
+    channel.values = calloc(6, sizeof(float));
+    assert_true(channel.times_s && channel.values);
+    channel.times_s[1] = 2.0f;
+    channel.values[4] = 20.0f;
+    assert_int_not_equal(scene_add_channel(scene, channel), SCENE_NONE);
+    double forward[3], slope[2];
+    const struct scene_camera *camera = camera_of(scene, forward);
+    assert_true(reach(camera, forward, (const float[]){1, 21, 1}, slope) > 0.0);
+    assert_true(fabs(slope[1]) < 0.95);
+    assert_true(reach(camera, forward, (const float[]){1, -1, 1}, slope) > 0.0);
+    assert_true(fabs(slope[1]) < 0.95);
+    scene_destroy(scene);
+}
+
+/* A floor under a lamp that glows with `emission`, both stated in `file`. */
+static struct scene *lamp_scene(float emission, const char *file)
+{
+    struct scene *scene = empty_scene();
+    struct scene_material material;
+    struct scene_mesh floor, lamp;
+    scene_material_init(&material, "lamp");
+    for (int i = 0; i < 3; ++i)
+        material.emission[i] = emission;
+    material.origin.file = string_copy(file);
+    uint32_t glowing = scene_add_material(scene, material);
+    assert_int_equal(shape_plane(4.0, 4.0, 1, 1.0, &floor), WHIT_OK);
+    assert_int_equal(shape_plane(1.0, 1.0, 1, 1.0, &lamp), WHIT_OK);
+    for (uint32_t i = 0; i < lamp.triangle_count; ++i)
+        lamp.materials[i] = glowing;
+    struct scene_node node;
+    scene_node_init(&node, "up", SCENE_NONE);
+    node.translation[1] = 3.0;
+    uint32_t up = scene_add_node(scene, node);
+    place(scene, floor, SCENE_NONE);
+    place(scene, lamp, up);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static double light_total(const struct scene *scene)
+{
+    double total = 0.0;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        total += (double)scene->lights[i].color[1];
+    return total;
+}
+
+/* Straight under the lamp: total / height^2, somewhat above what 9 of 10 points get. */
+static void lamps_of_models_light_their_scene(void **state)
+{
+    (void)state;
+    const float emissions[] = {0.5f, 17.0f, 900.0f};
+    for (size_t i = 0; i < 3; ++i) {
+        struct scene *scene = lamp_scene(emissions[i], "lamp.mtl");
+        double under = light_total(scene) / 9.0;
+        assert_true(under > 0.7 && under < 1.2);
+        assert_true(scene->ambient[0] == 0.1f);
+        scene_destroy(scene);
+    }
+    struct scene *scene = lamp_scene(17.0f, "lamp.json");
+    assert_true(fabs(light_total(scene) - 17.0 / 3.14159265358979) < 1e-4);
+    assert_true(scene->ambient[0] == 0.03f);
+    scene_destroy(scene);
+}
+
+static struct scene *lit_scene(float level, const char *file)
+{
+    struct scene *scene = empty_scene();
+    struct scene_mesh floor;
+    struct scene_light light = {.kind = SCENE_LIGHT_POINT,
+                                .node = SCENE_NONE,
+                                .position = {0, 2, 0},
+                                .color = {level, level, level},
+                                .falloff = true};
+    light.origin.file = string_copy(file);
+    assert_int_equal(shape_plane(4.0, 4.0, 1, 1.0, &floor), WHIT_OK);
+    place(scene, floor, SCENE_NONE);
+    scene_add_light(scene, light);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static void stated_lights_change_only_where_nothing_is_seen(void **state)
+{
+    (void)state;
+    const struct {
+        float level;
+        const char *file;
+        double lo, hi;
+    } cases[] = {{1000.0f, "a.glb", 2.5, 4.5},
+                 {4.0f, "a.glb", 4.0, 4.0},
+                 {0.001f, "a.glb", 2.5, 4.5},
+                 {1000.0f, "a.json", 1000.0, 1000.0}};
+    for (size_t i = 0; i < 4; ++i) {
+        struct scene *scene = lit_scene(cases[i].level, cases[i].file);
+        double level = (double)scene->lights[0].color[1];
+        assert_true(level >= cases[i].lo && level <= cases[i].hi);
+        assert_int_equal(noted(scene, "times as strong"), cases[i].lo != cases[i].hi);
+        scene_destroy(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closed_shapes_fill_the_usual_view),
+        cmocka_unit_test(open_boxes_are_seen_through_their_opening),
+        cmocka_unit_test(mirrors_do_not_turn_surfaces),
+        cmocka_unit_test(rooms_are_seen_from_inside),
+        cmocka_unit_test(boards_are_seen_straight_on),
+        cmocka_unit_test(animations_stay_in_the_picture),
+        cmocka_unit_test(lamps_of_models_light_their_scene),
+        cmocka_unit_test(stated_lights_change_only_where_nothing_is_seen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
