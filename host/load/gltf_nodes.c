@@ -284,7 +284,8 @@ static bool read_spot(const struct gltf *gltf, const json_t *object, const struc
     return true;
 }
 
-/* Photometric numbers (candela, lux) are taken as radiant ones. */
+/* Photometric numbers (candela, lux) are taken as radiant ones. glTF's diffuse surfaces send out
+   albedo / pi of what arrives, the scene's send out albedo of it. */
 static bool read_light(const struct gltf *gltf, const json_t *object, const struct gltf_place *at,
                        struct scene_light *out)
 {
@@ -296,7 +297,7 @@ static bool read_light(const struct gltf *gltf, const json_t *object, const stru
         !gltf_number(gltf, object, at, "range", &range))
         return false;
     for (int i = 0; i < 3; i++)
-        out->color[i] = (float)(color[i] * intensity);
+        out->color[i] = (float)(color[i] * intensity / acos(-1.0));
     out->range = (float)fmax(range, 0);
     out->falloff = true;
     if (type && strcmp(type, "directional") == 0) {
