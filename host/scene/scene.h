@@ -182,7 +182,8 @@ struct scene_camera {
 enum scene_environment_kind { SCENE_ENVIRONMENT_GRADIENT, SCENE_ENVIRONMENT_MAP };
 
 /* What rays that miss see. GRADIENT runs from horizon to zenith above and to ground below (+y is
-   up); all three equal is a constant colour. MAP is equirectangular, row 0 up, u = 0 at -z. */
+   up); all three equal is a constant colour. MAP is equirectangular, row 0 up, its middle towards
+   -z. */
 struct scene_environment {
     enum scene_environment_kind kind;
     float zenith[3], horizon[3], ground[3];
