@@ -114,7 +114,6 @@ static whit_result create_frame(struct renderer *renderer)
     frame->bailout = bailout == 0.0  ? (float)BAILOUT_DEFAULT
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
-    frame->triangle_total = renderer->scene_buffers.triangle_total;
     frame->stack_size = renderer->pixel_buffers.stack_size;
     return upload_words(renderer, frame, sizeof *frame, BUFFER_STORAGE, "frame",
                         &renderer->scene_buffers.frame);

@@ -10,10 +10,11 @@
 /* The scene in device memory. `none` stands in for what the scene lacks. */
 struct scene_buffers {
     struct buffer *nodes, *triangles, *instances;
-    struct buffer *materials, *textures, *texels, *uvs;
-    struct buffer *triangle_materials, *normals, *colors, *lights, *environment, *frame;
+    struct buffer *shading; /* rows of materials, texture uses, lights, triangles */
+    struct buffer *texels, *environment, *frame;
     struct buffer *none;
-    uint32_t environment_size, triangle_total;
+    uint32_t environment_size, uv_sets;
+    bool smooth_normals, colors; /* what the shading rows hold */
     bool texel_loads;
     uint64_t bytes;
 };
@@ -74,8 +75,15 @@ void upload_finish(struct scene_buffers *buffers);
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
                                     uint64_t size_bytes, uint32_t uses, const char *name,
                                     struct buffer **out);
-/* textures.c: uploads all texels and writes the material records that use them. */
-WHIT_CHECK whit_result upload_materials(struct renderer *renderer);
+/* textures.c: uploads all texels and makes the records that use them. */
+struct material_records {
+    struct gpu_material *materials; /* one for each of the scene's */
+    struct gpu_texture *uses;
+    uint32_t use_count;
+};
+WHIT_CHECK whit_result material_records_init(struct renderer *renderer,
+                                             struct material_records *records);
+void material_records_finish(struct material_records *records);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 

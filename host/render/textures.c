@@ -278,36 +278,30 @@ static void place_uses(struct material_upload *up)
     }
 }
 
-static void material_upload_finish(struct material_upload *up)
-{
-    free(up->images);
-    free(up->uses);
-    free(up->use_images);
-    free(up->materials);
-}
-
-whit_result upload_materials(struct renderer *renderer)
+whit_result material_records_init(struct renderer *renderer, struct material_records *records)
 {
     const struct scene *scene = renderer->scene;
-    struct scene_buffers *buffers = &renderer->scene_buffers;
     struct material_upload up = {.renderer = renderer};
+    *records = (struct material_records){0};
     up.materials = array_alloc_zeroed(scene->material_count, sizeof *up.materials);
     whit_result result = up.materials ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < scene->material_count; ++i)
         result = add_material(&up, i);
     if (result == WHIT_OK)
         result = upload_texels(&up);
-    if (result == WHIT_OK) {
-        place_uses(&up);
-        result = upload_words(renderer, up.materials,
-                              (uint64_t)scene->material_count * sizeof *up.materials,
-                              BUFFER_STORAGE, "materials", &buffers->materials);
-    }
     if (result == WHIT_OK)
-        result = upload_words(renderer, up.uses, (uint64_t)up.use_count * sizeof *up.uses,
-                              BUFFER_STORAGE, "textures", &buffers->textures);
-    if (result == WHIT_ERROR_MEMORY)
-        log_error(&renderer->log, "out of memory for materials");
-    material_upload_finish(&up);
+        place_uses(&up);
+    free(up.images);
+    free(up.use_images);
+    *records = (struct material_records){up.materials, up.uses, up.use_count};
+    if (result != WHIT_OK)
+        material_records_finish(records);
     return result;
+}
+
+void material_records_finish(struct material_records *records)
+{
+    free(records->materials);
+    free(records->uses);
+    *records = (struct material_records){0};
 }

@@ -6,6 +6,8 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
+enum { ROW_BYTES = 16 };
+
 static bool fits_storage(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -62,43 +64,54 @@ static whit_result upload_trees(struct renderer *renderer)
     return result;
 }
 
-/* Calls `fill` for every triangle of every mesh, each mesh once, into one array of
-   `words` 32-bit words a triangle. */
+/* Writes one record of `words` words for a triangle. */
 typedef void (*fill_triangle)(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out);
 
-static whit_result upload_per_triangle(struct renderer *renderer, uint32_t words,
-                                       fill_triangle fill, const char *name, struct buffer **out)
+/* `fill` for every triangle of every mesh, each mesh once, into the shading rows from `row` on. */
+static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint32_t rows_each,
+                                   fill_triangle fill)
 {
+    enum { SLICE_WORDS = 1 << 16 };
     const struct scene *scene = renderer->scene;
-    uint32_t total = renderer->scene_buffers.triangle_total;
-    uint32_t *data = array_alloc_zeroed(total, words * sizeof *data);
-    if (!data) {
-        log_error(&renderer->log, "out of memory for %s", name);
+    uint32_t *slice = array_alloc(SLICE_WORDS, sizeof *slice);
+    if (!slice)
         return WHIT_ERROR_MEMORY;
-    }
-    uint32_t *at = data;
-    for (uint32_t m = 0; m < scene->mesh_count; ++m) {
+    uint32_t words = rows_each * 4, used = 0;
+    uint64_t at_bytes = (uint64_t)row * ROW_BYTES;
+    whit_result result = WHIT_OK;
+    for (uint32_t m = 0; result == WHIT_OK && m < scene->mesh_count; ++m) {
         const struct scene_mesh *mesh = &scene->meshes[m];
-        for (uint32_t t = 0; t < mesh->triangle_count; ++t, at += words)
-            fill(mesh, t, at);
+        for (uint32_t t = 0; result == WHIT_OK && t < mesh->triangle_count; ++t) {
+            memset(&slice[used], 0, words * sizeof *slice);
+            fill(mesh, t, &slice[used]);
+            used += words;
+            if (used + words <= SLICE_WORDS)
+                continue;
+            result = buffer_write(renderer->scene_buffers.shading, at_bytes, slice, used * 4);
+            at_bytes += used * 4;
+            used = 0;
+        }
     }
-    whit_result result = upload_words(renderer, data, (uint64_t)total * words * sizeof *data,
-                                      BUFFER_STORAGE, name, out);
-    free(data);
+    if (result == WHIT_OK && used)
+        result = buffer_write(renderer->scene_buffers.shading, at_bytes, slice, used * 4);
+    free(slice);
     return result;
 }
 
 static void fill_material(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
-    *out = mesh->materials[triangle];
+    out[3] = mesh->materials[triangle];
 }
 
 /* Zeros for flat meshes: shading then takes the geometric normal. */
 static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
     const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
-    for (size_t k = 0; mesh->normals && k < 3; ++k)
-        memcpy(&out[3 * k], &mesh->normals[3 * (size_t)corners[k]], 3 * sizeof(float));
+    for (size_t k = 0; k < 3; ++k) {
+        if (mesh->normals)
+            memcpy(&out[4 * k], &mesh->normals[3 * (size_t)corners[k]], 3 * sizeof(float));
+        out[4 * k + 3] = mesh->materials[triangle];
+    }
 }
 
 static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out, int set)
@@ -107,6 +120,16 @@ static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t 
     const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
     for (size_t k = 0; uvs && k < 3; ++k)
         memcpy(&out[2 * k], &uvs[2 * (size_t)corners[k]], 2 * sizeof(float));
+}
+
+static void fill_first_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+{
+    fill_uvs(mesh, triangle, out, 0);
+}
+
+static void fill_second_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+{
+    fill_uvs(mesh, triangle, out, 1);
 }
 
 static uint32_t pack_unorm2x16(float x, float y)
@@ -155,51 +178,6 @@ static bool has_colors(const struct scene_mesh *mesh)
     return mesh->colors != NULL;
 }
 
-/* Set 0 for every triangle, then set 1 where any mesh has one. */
-static whit_result upload_uvs(struct renderer *renderer)
-{
-    const struct scene *scene = renderer->scene;
-    uint64_t total = renderer->scene_buffers.triangle_total;
-    int sets = any_mesh(scene, has_second_uvs) ? 2 : 1;
-    uint32_t *data = array_alloc_zeroed((size_t)total * (size_t)sets, 6 * sizeof *data);
-    if (!data)
-        return WHIT_ERROR_MEMORY;
-    uint32_t *at = data;
-    for (int set = 0; set < sets; ++set) {
-        for (uint32_t m = 0; m < scene->mesh_count; ++m) {
-            for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t, at += 6)
-                fill_uvs(&scene->meshes[m], t, at, set);
-        }
-    }
-    whit_result result = upload_words(renderer, data, total * (uint64_t)sets * 6 * sizeof *data,
-                                      BUFFER_STORAGE, "triangle uvs", &renderer->scene_buffers.uvs);
-    free(data);
-    return result;
-}
-
-static whit_result upload_attributes(struct renderer *renderer)
-{
-    const struct scene *scene = renderer->scene;
-    struct scene_buffers *buffers = &renderer->scene_buffers;
-    bool all = renderer->params.all_effects; /* then kernels read every array */
-    uint64_t total = 0;
-    for (uint32_t i = 0; i < scene->mesh_count; ++i)
-        total += scene->meshes[i].triangle_count;
-    buffers->triangle_total = (uint32_t)total;
-    if (total == 0)
-        return WHIT_OK;
-    whit_result result = upload_per_triangle(renderer, 1, fill_material, "triangle materials",
-                                             &buffers->triangle_materials);
-    if (result == WHIT_OK && (all || any_mesh(scene, has_normals)))
-        result =
-            upload_per_triangle(renderer, 9, fill_normals, "triangle normals", &buffers->normals);
-    if (result == WHIT_OK && (all || any_mesh(scene, has_colors)))
-        result = upload_per_triangle(renderer, 6, fill_colors, "triangle colors", &buffers->colors);
-    if (result == WHIT_OK && (all || any_mesh(scene, has_uvs)))
-        result = upload_uvs(renderer);
-    return result;
-}
-
 static uint32_t light_code(enum scene_light_kind kind)
 {
     switch (kind) {
@@ -233,7 +211,7 @@ static struct gpu_light make_light(const struct scene_light *light)
     return out;
 }
 
-static whit_result upload_lights(struct renderer *renderer)
+static whit_result write_lights(struct renderer *renderer)
 {
     const struct scene_pose *pose = &renderer->pose;
     struct gpu_light *lights = array_alloc(pose->light_count, sizeof *lights);
@@ -241,10 +219,76 @@ static whit_result upload_lights(struct renderer *renderer)
         return WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; i < pose->light_count; ++i)
         lights[i] = make_light(&pose->lights[i]);
-    whit_result result =
-        upload_words(renderer, lights, (uint64_t)pose->light_count * sizeof *lights, BUFFER_STORAGE,
-                     "lights", &renderer->scene_buffers.lights);
+    whit_result result = buffer_write(renderer->scene_buffers.shading,
+                                      (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,
+                                      (uint64_t)pose->light_count * sizeof *lights);
     free(lights);
+    return result;
+}
+
+/* Which row each kind of record starts at, in renderer->frame. Gives the number of rows. */
+static uint64_t lay_out_rows(struct renderer *renderer, uint32_t use_count)
+{
+    const struct scene *scene = renderer->scene;
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    struct gpu_frame *frame = &renderer->frame;
+    bool all = renderer->params.all_effects; /* then kernels read every kind */
+    uint64_t triangles = 0;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        triangles += scene->meshes[i].triangle_count;
+    buffers->smooth_normals = all || any_mesh(scene, has_normals);
+    buffers->uv_sets = any_mesh(scene, has_second_uvs) ? 2 : all || any_mesh(scene, has_uvs);
+    buffers->colors = all || any_mesh(scene, has_colors);
+    uint64_t rows = (uint64_t)scene->material_count * MATERIAL_ROWS;
+    frame->use_row = (uint32_t)rows;
+    rows += (uint64_t)use_count * TEXTURE_ROWS;
+    frame->light_row = (uint32_t)rows;
+    rows += (uint64_t)renderer->pose.light_count * LIGHT_ROWS;
+    frame->triangle_row = (uint32_t)rows;
+    rows += triangles * (buffers->smooth_normals ? TRIANGLE_SHADE_ROWS : TRIANGLE_FLAT_ROWS);
+    frame->uv0_row = (uint32_t)rows;
+    rows += buffers->uv_sets > 0 ? triangles * TRIANGLE_UV_ROWS : 0;
+    frame->uv1_row = buffers->uv_sets > 1 ? (uint32_t)rows : frame->uv0_row;
+    rows += buffers->uv_sets > 1 ? triangles * TRIANGLE_UV_ROWS : 0;
+    frame->color_row = (uint32_t)rows;
+    rows += buffers->colors ? triangles * TRIANGLE_COLOR_ROWS : 0;
+    return rows;
+}
+
+static whit_result upload_shading(struct renderer *renderer)
+{
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    const struct gpu_frame *frame = &renderer->frame;
+    struct material_records records;
+    whit_result result = material_records_init(renderer, &records);
+    if (result != WHIT_OK)
+        return result;
+    uint64_t rows = lay_out_rows(renderer, records.use_count);
+    result = buffer_create(renderer->device, rows * ROW_BYTES,
+                           buffers->texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE, "shading",
+                           &buffers->shading);
+    if (result == WHIT_OK)
+        result =
+            buffer_write(buffers->shading, 0, records.materials,
+                         (uint64_t)renderer->scene->material_count * sizeof *records.materials);
+    if (result == WHIT_OK && records.use_count)
+        result = buffer_write(buffers->shading, (uint64_t)frame->use_row * ROW_BYTES, records.uses,
+                              (uint64_t)records.use_count * sizeof *records.uses);
+    material_records_finish(&records);
+    if (result == WHIT_OK)
+        result = write_lights(renderer);
+    if (result == WHIT_OK && buffers->smooth_normals)
+        result = write_triangles(renderer, frame->triangle_row, TRIANGLE_SHADE_ROWS, fill_normals);
+    else if (result == WHIT_OK)
+        result = write_triangles(renderer, frame->triangle_row, TRIANGLE_FLAT_ROWS, fill_material);
+    if (result == WHIT_OK && buffers->uv_sets > 0)
+        result = write_triangles(renderer, frame->uv0_row, TRIANGLE_UV_ROWS, fill_first_uvs);
+    if (result == WHIT_OK && buffers->uv_sets > 1)
+        result = write_triangles(renderer, frame->uv1_row, TRIANGLE_UV_ROWS, fill_second_uvs);
+    if (result == WHIT_OK && buffers->colors)
+        result = write_triangles(renderer, frame->color_row, TRIANGLE_COLOR_ROWS, fill_colors);
+    if (result == WHIT_OK)
+        buffers->bytes += buffer_size(buffers->shading);
     return result;
 }
 
@@ -257,26 +301,19 @@ whit_result upload_scene(struct renderer *renderer)
     if (result == WHIT_OK)
         result = upload_trees(renderer);
     if (result == WHIT_OK)
-        result = upload_attributes(renderer);
-    if (result == WHIT_OK)
-        result = upload_materials(renderer);
+        result = upload_shading(renderer);
     if (result == WHIT_OK)
         result = upload_environment(renderer);
-    if (result == WHIT_OK)
-        result = upload_lights(renderer);
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(&renderer->log, "out of memory for the scene's arrays");
     return result;
 }
 
 void upload_finish(struct scene_buffers *buffers)
 {
     struct buffer *all[] = {
-        buffers->nodes,     buffers->triangles,
-        buffers->instances, buffers->materials,
-        buffers->textures,  buffers->texels,
-        buffers->uvs,       buffers->frame,
-        buffers->normals,   buffers->triangle_materials,
-        buffers->colors,    buffers->lights,
-        buffers->none,      buffers->environment,
+        buffers->nodes,       buffers->triangles, buffers->instances, buffers->shading,
+        buffers->environment, buffers->texels,    buffers->frame,     buffers->none,
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);

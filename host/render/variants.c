@@ -22,6 +22,8 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     if (renderer->params.all_effects)
         return spec;
     const bool *called = effects->called;
+    spec.SPEC_SMOOTH_NORMALS = renderer->scene_buffers.smooth_normals;
+    spec.SPEC_VERTEX_COLORS = renderer->scene_buffers.colors;
     spec.SPEC_REFRACTION = called[SCENE_EFFECT_REFRACTION];
     spec.SPEC_REFLECTION = called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_FRESNEL];
     spec.SPEC_ABSORPTION = called[SCENE_EFFECT_ABSORPTION];
@@ -29,8 +31,6 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_TEXTURES = called[SCENE_EFFECT_TEXTURES];
     spec.SPEC_NORMAL_MAPS = called[SCENE_EFFECT_NORMAL_MAPS];
     spec.SPEC_ENVIRONMENT_MAP = called[SCENE_EFFECT_ENVIRONMENT_MAP];
-    spec.SPEC_SMOOTH_NORMALS = called[SCENE_EFFECT_SMOOTH_NORMALS];
-    spec.SPEC_VERTEX_COLORS = called[SCENE_EFFECT_VERTEX_COLORS];
     spec.SPEC_METAL_ROUGH = called[SCENE_EFFECT_METAL_ROUGH];
     spec.SPEC_HIGHLIGHTS = called[SCENE_EFFECT_HIGHLIGHTS] || called[SCENE_EFFECT_METAL_ROUGH];
     spec.SPEC_LIGHTS = renderer->pose.light_count > 0;
@@ -38,41 +38,38 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     return spec;
 }
 
-/* The scene lacks what is NULL. */
-static void bind_or_none(struct buffer **at, struct buffer *buffer, struct buffer *none)
+/* What a kernel is bound to, while it is put together. */
+struct bindings {
+    enum binding_kind kinds[BIND_WHITTED_COUNT];
+    struct buffer *buffers[BIND_WHITTED_COUNT];
+    struct buffer *none; /* in place of what the scene lacks */
+};
+
+static void bind(struct bindings *bindings, int at, enum binding_kind kind, struct buffer *buffer)
 {
-    *at = buffer ? buffer : none;
+    bindings->kinds[at] = kind;
+    bindings->buffers[at] = buffer ? buffer : bindings->none;
+}
+
+/* A buffer that kernels read through either view, of which it has one. */
+static void bind_loads(struct bindings *bindings, int storage, int texels, bool texel_loads,
+                       struct buffer *buffer)
+{
+    bind(bindings, storage, BINDING_STORAGE, texel_loads ? NULL : buffer);
+    bind(bindings, texels, BINDING_TEXELS, texel_loads ? buffer : NULL);
 }
 
 /* The bindings that every kernel has. */
-static void bind_shared(const struct renderer *renderer, enum binding_kind *kinds,
-                        struct buffer **buffers)
+static struct bindings bind_trees(const struct renderer *renderer)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
-    struct buffer *none = scene->none;
-    const struct {
-        int storage, texels;
-        struct buffer *buffer;
-    } doubles[] = {
-        {BIND_NODES, BIND_NODE_TEXELS, scene->nodes},
-        {BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, scene->triangles},
-        {BIND_INSTANCES, BIND_INSTANCE_TEXELS, scene->instances},
-        {BIND_TEXELS, BIND_TEXEL_TEXELS, scene->texels},
-    };
-    for (size_t i = 0; i < sizeof doubles / sizeof *doubles; ++i) {
-        kinds[doubles[i].storage] = BINDING_STORAGE;
-        kinds[doubles[i].texels] = BINDING_TEXELS;
-        bind_or_none(&buffers[doubles[i].storage], scene->texel_loads ? NULL : doubles[i].buffer,
-                     none);
-        bind_or_none(&buffers[doubles[i].texels], scene->texel_loads ? doubles[i].buffer : NULL,
-                     none);
-    }
-    kinds[BIND_STATUS] = kinds[BIND_MATERIALS] = BINDING_STORAGE;
-    kinds[BIND_TEXTURES] = kinds[BIND_TRIANGLE_UVS] = BINDING_STORAGE;
-    bind_or_none(&buffers[BIND_STATUS], renderer->pixel_buffers.status, none);
-    bind_or_none(&buffers[BIND_MATERIALS], scene->materials, none);
-    bind_or_none(&buffers[BIND_TEXTURES], scene->textures, none);
-    bind_or_none(&buffers[BIND_TRIANGLE_UVS], scene->uvs, none);
+    struct bindings bindings = {.none = scene->none};
+    bool texels = scene->texel_loads;
+    bind_loads(&bindings, BIND_NODES, BIND_NODE_TEXELS, texels, scene->nodes);
+    bind_loads(&bindings, BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, texels, scene->triangles);
+    bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
+    bind(&bindings, BIND_STATUS, BINDING_STORAGE, renderer->pixel_buffers.status);
+    return bindings;
 }
 
 static whit_result create_pass(struct renderer *renderer, enum kernel kernel,
@@ -97,58 +94,45 @@ whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
-    enum binding_kind kinds[BIND_WHITTED_COUNT] = {BINDING_NONE};
-    struct buffer *buffers[BIND_WHITTED_COUNT] = {NULL};
-    bind_shared(renderer, kinds, buffers);
-    const struct {
-        int binding;
-        struct buffer *buffer;
-    } own[] = {
-        {BIND_TRIANGLE_MATERIALS, scene->triangle_materials},
-        {BIND_TRIANGLE_NORMALS, scene->normals},
-        {BIND_TRIANGLE_COLORS, scene->colors},
-        {BIND_FRAME, scene->frame},
-        {BIND_LIGHTS, scene->lights},
-        {BIND_ENVIRONMENT, scene->environment},
-        {BIND_PIXELS, pixels->pixels},
-        {BIND_IDS, pixels->ids},
-        {BIND_COUNTS, pixels->counts},
-        {BIND_RAY_STACKS, pixels->ray_stacks},
-        {BIND_WORK_IN, pixels->work[0]},
-        {BIND_WORK_OUT, pixels->work[1]},
-    };
-    for (size_t i = 0; i < sizeof own / sizeof *own; ++i) {
-        kinds[own[i].binding] = BINDING_STORAGE;
-        bind_or_none(&buffers[own[i].binding], own[i].buffer, scene->none);
-    }
+    struct bindings bindings = bind_trees(renderer);
+    bool texels = scene->texel_loads;
+    bind_loads(&bindings, BIND_SHADING, BIND_SHADING_TEXELS, texels, scene->shading);
+    bind_loads(&bindings, BIND_TEXELS, BIND_TEXEL_TEXELS, texels, scene->texels);
+    bind(&bindings, BIND_FRAME, BINDING_STORAGE, scene->frame);
+    bind(&bindings, BIND_ENVIRONMENT, BINDING_STORAGE, scene->environment);
+    bind(&bindings, BIND_PIXELS, BINDING_STORAGE, pixels->pixels);
+    bind(&bindings, BIND_IDS, BINDING_STORAGE, pixels->ids);
+    bind(&bindings, BIND_COUNTS, BINDING_STORAGE, pixels->counts);
+    bind(&bindings, BIND_RAY_STACKS, BINDING_STORAGE, pixels->ray_stacks);
+    bind(&bindings, BIND_WORK_IN, BINDING_STORAGE, pixels->work[0]);
+    bind(&bindings, BIND_WORK_OUT, BINDING_STORAGE, pixels->work[1]);
     struct gpu_spec spec = variant_spec(renderer);
-    whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, kinds, BIND_WHITTED_COUNT,
-                                     sizeof(struct gpu_chunk), "whitted", pass);
+    whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, bindings.kinds,
+                                     BIND_WHITTED_COUNT, sizeof(struct gpu_chunk), "whitted", pass);
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
-        bind_or_none(&buffers[BIND_WORK_IN], pixels->work[i], scene->none);
-        bind_or_none(&buffers[BIND_WORK_OUT], pixels->work[1 - i], scene->none);
-        result = binding_set_create(pass->pipeline, buffers, BIND_WHITTED_COUNT, &pass->sets[i]);
+        bindings.buffers[BIND_WORK_IN] = pixels->work[i];
+        bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
+        result = binding_set_create(pass->pipeline, bindings.buffers, BIND_WHITTED_COUNT,
+                                    &pass->sets[i]);
     }
     return result;
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
 {
-    enum binding_kind kinds[BIND_TRACE_COUNT] = {BINDING_NONE};
-    struct buffer *buffers[BIND_TRACE_COUNT] = {NULL};
-    bind_shared(renderer, kinds, buffers);
-    kinds[BIND_RAYS] = kinds[BIND_HITS] = BINDING_STORAGE;
-    buffers[BIND_RAYS] = renderer->trace.rays;
-    buffers[BIND_HITS] = renderer->trace.hits;
+    struct bindings bindings = bind_trees(renderer);
+    bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
+    bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     struct gpu_spec spec = variant_spec(renderer);
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;
     spec.SPEC_FILTERS = 0;
     whit_result result =
-        create_pass(renderer, KERNEL_TRACE, &spec, kinds, BIND_TRACE_COUNT,
+        create_pass(renderer, KERNEL_TRACE, &spec, bindings.kinds, BIND_TRACE_COUNT,
                     sizeof(struct gpu_batch), any ? "trace any" : "trace closest", pass);
     if (result == WHIT_OK)
-        result = binding_set_create(pass->pipeline, buffers, BIND_TRACE_COUNT, &pass->sets[0]);
+        result =
+            binding_set_create(pass->pipeline, bindings.buffers, BIND_TRACE_COUNT, &pass->sets[0]);
     return result;
 }
 

@@ -11,31 +11,24 @@
 #define BIND_INSTANCE_TEXELS  5
 #define BIND_STATUS           6
 
-/* Cut-outs need these in traversal, shading needs them anyway. */
-#define BIND_MATERIALS        7
-#define BIND_TEXTURES         8
-#define BIND_TEXELS           9
-#define BIND_TEXEL_TEXELS     10
-#define BIND_TRIANGLE_UVS     11
-
 /* The ray batch kernel. */
-#define BIND_RAYS             12
-#define BIND_HITS             13
-#define BIND_TRACE_COUNT      14 /* bindings of that kernel */
+#define BIND_RAYS        7
+#define BIND_HITS        8
+#define BIND_TRACE_COUNT 9 /* bindings of that kernel */
 
 /* The Whitted kernel. */
-#define BIND_TRIANGLE_MATERIALS 12
-#define BIND_TRIANGLE_NORMALS   13
-#define BIND_TRIANGLE_COLORS    14
-#define BIND_FRAME              15
-#define BIND_LIGHTS             16
-#define BIND_ENVIRONMENT        17
-#define BIND_PIXELS             18
-#define BIND_IDS                19
-#define BIND_COUNTS             20
-#define BIND_RAY_STACKS         21
-#define BIND_WORK_IN            22
-#define BIND_WORK_OUT           23
-#define BIND_WHITTED_COUNT      24
+#define BIND_SHADING        7
+#define BIND_SHADING_TEXELS 8
+#define BIND_TEXELS         9
+#define BIND_TEXEL_TEXELS   10
+#define BIND_FRAME          11
+#define BIND_ENVIRONMENT    12
+#define BIND_PIXELS         13
+#define BIND_IDS            14
+#define BIND_COUNTS         15
+#define BIND_RAY_STACKS     16
+#define BIND_WORK_IN        17
+#define BIND_WORK_OUT       18
+#define BIND_WHITTED_COUNT  19
 
 #endif

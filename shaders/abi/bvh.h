@@ -90,6 +90,14 @@ struct gpu_hit {
 GPU_ASSERT_SIZE(gpu_hit, 32)
 GPU_ASSERT_AT(gpu_hit, instance, 16)
 
+/* Push constants of the ray batch kernel. */
+struct gpu_batch {
+    gpu_uint ray_count;
+    gpu_uint root;
+    gpu_uint pad0;
+    gpu_uint pad1;
+};
+
 #define HIT_NONE 0xffffffffu
 
 /* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */

@@ -1,8 +1,22 @@
-/* What shading reads: materials, textures, lights, the frame; and the state of a pixel's ray tree. */
+/* What shading reads, and the state of a pixel's ray tree. Materials, texture uses, lights and
+   per-triangle records lie in one buffer, the shading rows, each from a row that the frame names. */
 #ifndef ABI_SHADE_H
 #define ABI_SHADE_H
 
 #include "base.h"
+
+/* Rows of 16 bytes. */
+#define MATERIAL_ROWS 10u
+#define TEXTURE_ROWS  3u
+#define LIGHT_ROWS    4u
+/* Three normals of three floats, zeros where the mesh is flat, with the material in each w; where
+   all meshes are flat only one row, for its w. */
+#define TRIANGLE_SHADE_ROWS 3u
+#define TRIANGLE_FLAT_ROWS  1u
+/* u and v of three vertices, then two unused words. */
+#define TRIANGLE_UV_ROWS 2u
+/* Three colours of four 16-bit channels, then two unused words. */
+#define TRIANGLE_COLOR_ROWS 2u
 
 #define TEXTURE_NONE 0xffffffffu
 
@@ -113,13 +127,17 @@ struct gpu_frame {
     gpu_vec3 ground;
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
-    gpu_uint triangle_total; /* per-triangle arrays: where uv set 1 starts */
+    gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
     gpu_uint stack_size;     /* rays of one pixel's ray stack */
     gpu_float bailout;       /* rays that can add less than this to a pixel are not traced */
-    gpu_uint pad1;
-    gpu_uint pad2;
+    gpu_uint light_row;    /* first light */
+    gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS each */
+    gpu_uint uv0_row;      /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
+    gpu_uint uv1_row;      /* of uv set 1; uv0_row where there is none */
+    gpu_uint color_row;    /* first triangle: TRIANGLE_COLOR_ROWS each */
+    gpu_uint pad;
 };
-GPU_ASSERT_SIZE(gpu_frame, 144)
+GPU_ASSERT_SIZE(gpu_frame, 160)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* A ray waiting on the ray stack of its pixel. */
@@ -149,14 +167,6 @@ struct gpu_chunk {
     gpu_uint pad2;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 48)
-
-/* Push constants of the ray batch kernel. */
-struct gpu_batch {
-    gpu_uint ray_count;
-    gpu_uint root;
-    gpu_uint pad0;
-    gpu_uint pad1;
-};
 
 /* Head of a work list, followed by the pixels (slots within the chunk). The first three words are
    the arguments of an indirect dispatch. */

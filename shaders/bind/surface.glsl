@@ -3,22 +3,8 @@
 #define BIND_SURFACE_GLSL
 
 #include "../lib/spawn.glsl"
-#include "frame.glsl"
-#include "materials.glsl"
+#include "shading.glsl"
 #include "traverse.glsl"
-
-layout(set = 0, binding = BIND_TRIANGLE_MATERIALS, std430) readonly buffer TriangleMaterialBuffer
-{
-    uint triangle_materials[];
-};
-layout(set = 0, binding = BIND_TRIANGLE_NORMALS, std430) readonly buffer TriangleNormalBuffer
-{
-    float triangle_normals[]; // 9 per triangle, zeros where a mesh is flat
-};
-layout(set = 0, binding = BIND_TRIANGLE_COLORS, std430) readonly buffer TriangleColorBuffer
-{
-    uvec2 triangle_colors[]; // 3 per triangle, four linear 16-bit channels
-};
 
 struct Surface {
     vec3 p, error; // world; bound of the error of p
@@ -42,31 +28,31 @@ uint shade_index_of(uint instance, uint primitive)
 bool cutout_is_solid(uint instance, uint primitive, float u, float v)
 {
     uint index = shade_index_of(instance, primitive);
-    gpu_material material = materials[triangle_materials[index]];
+    gpu_material material = fetch_material(fetch_material_index(index));
     if ((material.flags & MATERIAL_MASK) == 0u)
         return true;
     if (material.tex_opacity == TEXTURE_NONE)
         return material.opacity >= material.alpha_cutoff;
-    uint uv_set = textures[material.tex_opacity].uv_set;
-    vec2 uv = interpolate_uv(index, uv_set, frame.triangle_total, u, v);
-    return sample_opacity(material, uv) >= material.alpha_cutoff;
+    return sample_opacity(material, index, u, v) >= material.alpha_cutoff;
 }
 
+// Zero where the mesh is flat.
 vec3 smooth_normal(uint shade_index, float u, float v)
 {
-    uint at = shade_index * 9u;
-    vec3 n0 = vec3(triangle_normals[at], triangle_normals[at + 1u], triangle_normals[at + 2u]);
-    vec3 n1 = vec3(triangle_normals[at + 3u], triangle_normals[at + 4u], triangle_normals[at + 5u]);
-    vec3 n2 = vec3(triangle_normals[at + 6u], triangle_normals[at + 7u], triangle_normals[at + 8u]);
+    uint row = frame.triangle_row + shade_index * TRIANGLE_SHADE_ROWS;
+    vec3 n0 = row_vec3(fetch_shading_row(row));
+    vec3 n1 = row_vec3(fetch_shading_row(row + 1u));
+    vec3 n2 = row_vec3(fetch_shading_row(row + 2u));
     return n0 * (1.0 - u - v) + n1 * u + n2 * v;
 }
 
 // Directions in which u and v of the texture grow, in object space.
 void texture_frame(uint shade_index, vec3 e1, vec3 e2, out vec3 tangent, out vec3 bitangent)
 {
-    vec2 t0 = triangle_uvs[shade_index * 3u];
-    vec2 d1 = triangle_uvs[shade_index * 3u + 1u] - t0;
-    vec2 d2 = triangle_uvs[shade_index * 3u + 2u] - t0;
+    vec2 t0, t1, t2;
+    fetch_uvs(shade_index, 0u, t0, t1, t2);
+    vec2 d1 = t1 - t0;
+    vec2 d2 = t2 - t0;
     float det = d1.x * d2.y - d1.y * d2.x;
     float inv = det != 0.0 ? 1.0 / det : 0.0;
     tangent = (e1 * d2.y - e2 * d1.y) * inv;
@@ -111,7 +97,7 @@ Surface fetch_surface(Hit hit)
     s.p = p0 + p1 + p2;
     s.error = rounding_bound(7.0) * (abs(p0) + abs(p1) + abs(p2));
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
-    s.material = triangle_materials[s.shade_index];
+    s.material = fetch_material_index(s.shade_index);
     float scale = max(max(abs(e1.x), max(abs(e1.y), abs(e1.z))),
                       max(abs(e2.x), max(abs(e2.y), abs(e2.z))));
     vec3 ng = cross(e1 / scale, e2 / scale);
@@ -139,10 +125,11 @@ Surface fetch_surface(Hit hit)
     s.color = vec3(1.0);
     s.color_alpha = 1.0;
     if (SPEC_VERTEX_COLORS != 0u) {
-        uint at = s.shade_index * 3u;
-        uvec2 a = triangle_colors[at], b = triangle_colors[at + 1u], c = triangle_colors[at + 2u];
-        vec4 first = vec4(unpackUnorm2x16(a.x), unpackUnorm2x16(a.y));
-        vec4 second = vec4(unpackUnorm2x16(b.x), unpackUnorm2x16(b.y));
+        uint color_row = frame.color_row + s.shade_index * TRIANGLE_COLOR_ROWS;
+        uvec4 ab = fetch_shading_row(color_row);
+        uvec4 c = fetch_shading_row(color_row + 1u);
+        vec4 first = vec4(unpackUnorm2x16(ab.x), unpackUnorm2x16(ab.y));
+        vec4 second = vec4(unpackUnorm2x16(ab.z), unpackUnorm2x16(ab.w));
         vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
         // By differences: three equal colours give just that colour.
         vec4 mixed = first + (second - first) * s.u + (third - first) * s.v;
@@ -152,14 +139,9 @@ Surface fetch_surface(Hit hit)
     return s;
 }
 
-vec2 use_uv(Surface s, uint use)
-{
-    return interpolate_uv(s.shade_index, textures[use].uv_set, frame.triangle_total, s.u, s.v);
-}
-
 vec4 sample_use(Surface s, uint use)
 {
-    return sample_texture(use, use_uv(s, use));
+    return sample_use(use, s.shade_index, s.u, s.v);
 }
 
 // Bends s.ns by a tangent-space map or by the slope of a height map.
@@ -175,13 +157,13 @@ void bend_normal(inout Surface s, gpu_material material)
         map.xy *= material.normal_scale;
         bent = t * map.x - b * map.y + s.ns * map.z;
     } else {
-        gpu_texture texture_use = textures[material.tex_bump];
-        vec2 uv = use_uv(s, material.tex_bump);
+        gpu_texture texture_use = fetch_texture_use(material.tex_bump);
+        vec2 uv = interpolate_uv(s.shade_index, texture_use.uv_set, s.u, s.v);
         vec2 size = vec2(float(texture_use.size & 0xffffu), float(texture_use.size >> 16));
         vec2 texel = 1.0 / size;
-        float at = sample_texture(material.tex_bump, uv).r;
-        float du = sample_texture(material.tex_bump, uv + vec2(texel.x, 0.0)).r - at;
-        float dv = sample_texture(material.tex_bump, uv + vec2(0.0, texel.y)).r - at;
+        float at = sample_texture(texture_use, uv).r;
+        float du = sample_texture(texture_use, uv + vec2(texel.x, 0.0)).r - at;
+        float dv = sample_texture(texture_use, uv + vec2(0.0, texel.y)).r - at;
         // Heights are in units of 1/32 of the texture's side: MTL gives none.
         vec2 slope = vec2(du, dv) * size * (material.normal_scale / 32.0);
         bent = s.ns - t * slope.x - b * slope.y;

@@ -6,7 +6,9 @@
 
 #include "../lib/intersect.glsl"
 #include "trees.glsl"
-#include "materials.glsl"
+
+// Defined by the kernel: whether a cut-out triangle is solid at a point.
+bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // What may end a traversal; always a constant, so that each use is compiled for its own.
 const uint TRAVERSE_CLOSEST = 0u;

@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../lib/optics.glsl"
-#include "../bind/frame.glsl"
+#include "../bind/light.glsl"
 #include "../bind/surface.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -135,7 +135,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     }
     if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
         if (m.tex_opacity != TEXTURE_NONE)
-            opacity = sample_opacity(m, use_uv(s, m.tex_opacity)) * s.color_alpha;
+            opacity = sample_opacity(m, s.shade_index, s.u, s.v) * s.color_alpha;
         o.straight = clamp(1.0 - opacity, 0.0, 1.0);
     }
     if (SPEC_NORMAL_MAPS != 0u)
@@ -312,14 +312,14 @@ vec3 medium_transmittance(uint medium, float t)
 {
     if (SPEC_ABSORPTION == 0u || medium == 0u)
         return vec3(1.0);
-    vec3 depth = materials[medium - 1u].absorption * t;
+    vec3 depth = fetch_material(medium - 1u).absorption * t;
     return exp(-clamp(depth, vec3(0.0), vec3(100.0)));
 }
 
 vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint status)
 {
     Surface s = fetch_surface(hit);
-    gpu_material m = materials[s.material];
+    gpu_material m = fetch_material(s.material);
     ray.weight *= medium_transmittance(ray.medium, hit.t);
     bool inside = dot(ray.dir, s.ng) > 0.0;
     if (inside) {

@@ -1,14 +1,10 @@
-// Descriptors of what a picture shares: camera, environment, lights.
-#ifndef BIND_FRAME_GLSL
-#define BIND_FRAME_GLSL
+// Where light comes from: environment and lights.
+#ifndef BIND_LIGHT_GLSL
+#define BIND_LIGHT_GLSL
 
-#include "../abi/bindings.h"
-#include "../abi/shade.h"
-#include "../abi/spec.h"
 #include "../lib/octahedron.glsl"
+#include "shading.glsl"
 
-layout(set = 0, binding = BIND_FRAME, std430) readonly buffer FrameBuffer { gpu_frame frame; };
-layout(set = 0, binding = BIND_LIGHTS, std430) readonly buffer LightBuffer { gpu_light lights[]; };
 layout(set = 0, binding = BIND_ENVIRONMENT, std430) readonly buffer EnvironmentBuffer
 {
     vec4 environment_texels[];
@@ -40,7 +36,7 @@ vec3 environment_radiance(vec3 dir)
 // False: nothing arrives.
 bool light_at(uint index, vec3 p, out vec3 to_light, out float distance, out vec3 arriving)
 {
-    gpu_light light = lights[index];
+    gpu_light light = fetch_light(index);
     arriving = light.color;
     if (light.kind == LIGHT_DIRECTIONAL) {
         to_light = -light.direction;

@@ -1,0 +1,163 @@
+// Descriptors of what shading reads, with accessors: frame, materials, textures, lights, and the
+// attributes of triangles.
+#ifndef BIND_SHADING_GLSL
+#define BIND_SHADING_GLSL
+
+#include "../abi/bindings.h"
+#include "../abi/shade.h"
+#include "../abi/spec.h"
+#include "../lib/load.glsl"
+
+// A storage buffer: lavapipe compiles the values of uniform buffers that branches read into the
+// kernel, along with push constants, and would compile anew for every dispatch.
+layout(set = 0, binding = BIND_FRAME, std430) readonly buffer FrameBuffer { gpu_frame frame; };
+layout(set = 0, binding = BIND_SHADING, std430) readonly buffer ShadingBuffer
+{
+    uvec4 shading_rows[];
+};
+layout(set = 0, binding = BIND_SHADING_TEXELS) uniform usamplerBuffer shading_texels;
+layout(set = 0, binding = BIND_TEXELS, std430) readonly buffer TexelBuffer { uvec4 texel_rows[]; };
+layout(set = 0, binding = BIND_TEXEL_TEXELS) uniform usamplerBuffer texel_texels;
+
+uvec4 fetch_shading_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(shading_texels, int(row));
+    return shading_rows[row];
+}
+
+gpu_material fetch_material(uint index)
+{
+    uint row = index * MATERIAL_ROWS;
+    uvec4 r0 = fetch_shading_row(row), r1 = fetch_shading_row(row + 1u);
+    uvec4 r2 = fetch_shading_row(row + 2u), r3 = fetch_shading_row(row + 3u);
+    uvec4 r4 = fetch_shading_row(row + 4u), r5 = fetch_shading_row(row + 5u);
+    uvec4 r6 = fetch_shading_row(row + 6u), r7 = fetch_shading_row(row + 7u);
+    uvec4 r8 = fetch_shading_row(row + 8u), r9 = fetch_shading_row(row + 9u);
+    return gpu_material(row_vec3(r0), r0.w, row_vec3(r1), uintBitsToFloat(r1.w), row_vec3(r2),
+                        uintBitsToFloat(r2.w), row_vec3(r3), r3.w, row_vec3(r4),
+                        uintBitsToFloat(r4.w), row_vec3(r5), uintBitsToFloat(r5.w), row_vec3(r6),
+                        uintBitsToFloat(r6.w), uintBitsToFloat(r7.x), uintBitsToFloat(r7.y),
+                        uintBitsToFloat(r7.z), 0.0, r8.x, r8.y, r8.z, r8.w, r9.x, r9.y, r9.z, r9.w);
+}
+
+gpu_texture fetch_texture_use(uint index)
+{
+    uint row = frame.use_row + index * TEXTURE_ROWS;
+    uvec4 r0 = fetch_shading_row(row), r1 = fetch_shading_row(row + 1u);
+    uvec4 r2 = fetch_shading_row(row + 2u);
+    return gpu_texture(uintBitsToFloat(r0), uintBitsToFloat(r1.xy), r1.z, r1.w, r2.x, r2.y, r2.z,
+                       r2.w);
+}
+
+gpu_light fetch_light(uint index)
+{
+    uint row = frame.light_row + index * LIGHT_ROWS;
+    uvec4 r0 = fetch_shading_row(row), r1 = fetch_shading_row(row + 1u);
+    uvec4 r2 = fetch_shading_row(row + 2u), r3 = fetch_shading_row(row + 3u);
+    return gpu_light(row_vec3(r0), r0.w, row_vec3(r1), uintBitsToFloat(r1.w), row_vec3(r2), r2.w,
+                     uintBitsToFloat(r3.x), uintBitsToFloat(r3.y), r3.z, r3.w);
+}
+
+uint triangle_rows_each()
+{
+    return SPEC_SMOOTH_NORMALS != 0u ? TRIANGLE_SHADE_ROWS : TRIANGLE_FLAT_ROWS;
+}
+
+// `shade_index`: index of the triangle among those of all meshes.
+uint fetch_material_index(uint shade_index)
+{
+    return fetch_shading_row(frame.triangle_row + shade_index * triangle_rows_each()).w;
+}
+
+void fetch_uvs(uint shade_index, uint uv_set, out vec2 uv0, out vec2 uv1, out vec2 uv2)
+{
+    uint row = (uv_set != 0u ? frame.uv1_row : frame.uv0_row) + shade_index * TRIANGLE_UV_ROWS;
+    uvec4 r0 = fetch_shading_row(row), r1 = fetch_shading_row(row + 1u);
+    uv0 = uintBitsToFloat(r0.xy);
+    uv1 = uintBitsToFloat(r0.zw);
+    uv2 = uintBitsToFloat(r1.xy);
+}
+
+// Four words share a row.
+uint fetch_texel_word(uint word)
+{
+    uvec4 row = SPEC_LOAD_PATH == LOAD_TEXEL ? texelFetch(texel_texels, int(word >> 2))
+                                             : texel_rows[word >> 2];
+    uvec2 pair = (word & 2u) != 0u ? row.zw : row.xy;
+    return (word & 1u) != 0u ? pair.y : pair.x;
+}
+
+// Linear: a table decodes sRGB exactly, where pow() would be off by tens of ulp.
+vec4 fetch_texel(uint word, bool srgb)
+{
+    uint texel = fetch_texel_word(word);
+    vec4 linear = unpackUnorm4x8(texel);
+    if (srgb) {
+        linear.r = uintBitsToFloat(fetch_texel_word(texel & 255u));
+        linear.g = uintBitsToFloat(fetch_texel_word((texel >> 8) & 255u));
+        linear.b = uintBitsToFloat(fetch_texel_word((texel >> 16) & 255u));
+    }
+    return linear;
+}
+
+int wrap_texel(int at, int size, uint wrap)
+{
+    int clamped = clamp(at, 0, size - 1);
+    int repeated = at - size * int(floor(float(at) / float(size)));
+    int period = at - 2 * size * int(floor(float(at) / float(2 * size)));
+    int mirrored = period < size ? period : 2 * size - 1 - period;
+    int chosen = wrap == WRAP_CLAMP ? clamped : wrap == WRAP_MIRROR ? mirrored : repeated;
+    return clamp(chosen, 0, size - 1);
+}
+
+// Whole periods taken off first, so that far coordinates keep their fraction and cannot overflow
+// an int.
+float reduce_coordinate(float x, uint wrap)
+{
+    float reduced = wrap == WRAP_CLAMP ? clamp(x, -1.0, 2.0) : x - 2.0 * floor(x * 0.5);
+    return abs(reduced) <= 2.0 ? reduced : 0.0;
+}
+
+vec4 sample_texture(gpu_texture t, vec2 uv)
+{
+    ivec2 size = ivec2(int(t.size & 0xffffu), int(t.size >> 16));
+    uvec2 wrap = uvec2(t.wrap & 3u, (t.wrap >> 2) & 3u);
+    vec2 at = vec2(t.matrix.x * uv.x + t.matrix.y * uv.y, t.matrix.z * uv.x + t.matrix.w * uv.y) +
+              t.offset;
+    at = vec2(reduce_coordinate(at.x, wrap.x), reduce_coordinate(at.y, wrap.y)) * vec2(size);
+    vec2 corner = t.nearest != 0u ? floor(at) : floor(at - 0.5);
+    vec2 part = t.nearest != 0u ? vec2(0.0) : at - 0.5 - corner;
+    ivec2 texel = ivec2(corner);
+    uint x0 = uint(wrap_texel(texel.x, size.x, wrap.x));
+    uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
+    uint y0 = t.first + uint(wrap_texel(texel.y, size.y, wrap.y) * size.x);
+    uint y1 = t.first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
+    bool srgb = t.srgb != 0u;
+    vec4 top = mix(fetch_texel(y0 + x0, srgb), fetch_texel(y0 + x1, srgb), part.x);
+    vec4 bottom = mix(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
+    return mix(top, bottom, part.y);
+}
+
+vec2 interpolate_uv(uint shade_index, uint uv_set, float u, float v)
+{
+    vec2 uv0, uv1, uv2;
+    fetch_uvs(shade_index, uv_set, uv0, uv1, uv2);
+    return uv0 * (1.0 - u - v) + uv1 * u + uv2 * v;
+}
+
+// Texture `use` at a point of a triangle.
+vec4 sample_use(uint use, uint shade_index, float u, float v)
+{
+    gpu_texture t = fetch_texture_use(use);
+    return sample_texture(t, interpolate_uv(shade_index, t.uv_set, u, v));
+}
+
+float sample_opacity(gpu_material material, uint shade_index, float u, float v)
+{
+    vec4 texel = sample_use(material.tex_opacity, shade_index, u, v);
+    return material.opacity *
+           ((material.flags & MATERIAL_OPACITY_ALPHA) != 0u ? texel.a : texel.r);
+}
+
+#endif
