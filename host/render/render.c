@@ -468,18 +468,36 @@ static whit_result add_counts(struct renderer *renderer, size_t count)
     return WHIT_OK;
 }
 
-/* Pixels and counts of one band from the device into the picture and the statistics. */
+/* A picture of one band stays on the device until it is asked for. */
+static bool one_band(const struct renderer *renderer)
+{
+    return renderer->pixel_buffers.band_rows >= renderer->params.height;
+}
+
+static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)
+{
+    return buffer_read(renderer->pixel_buffers.pixels, 0, pixels,
+                       (uint64_t)renderer->params.width * rows * 4 * sizeof *pixels);
+}
+
+static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint32_t *words)
+{
+    return buffer_read(renderer->pixel_buffers.ids, 0, words,
+                       (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
+}
+
+/* What the device holds of a finished band, into the picture and the statistics. */
 static whit_result read_band(struct renderer *renderer, uint32_t band_y, uint32_t rows)
 {
-    const struct pixel_buffers *p = &renderer->pixel_buffers;
-    size_t width = renderer->params.width;
-    size_t count = width * rows;
-    whit_result result = buffer_read(p->pixels, 0, &renderer->color.pixels[4 * width * band_y],
-                                     count * 4 * sizeof(float));
+    size_t first = (size_t)renderer->params.width * band_y;
+    whit_result result = WHIT_OK;
+    if (!one_band(renderer))
+        result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
+    if (result == WHIT_OK && !one_band(renderer))
+        result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
     if (result == WHIT_OK)
-        result = buffer_read(p->ids, 0, &renderer->ids.words[2 * width * band_y],
-                             count * 2 * sizeof(uint32_t));
-    return result == WHIT_OK ? add_counts(renderer, count) : result;
+        result = add_counts(renderer, (size_t)renderer->params.width * rows);
+    return result;
 }
 
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,
@@ -522,8 +540,10 @@ whit_result renderer_render(struct renderer *renderer)
     renderer->rendered = false;
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
-    whit_result result = image_init(&renderer->color, params->width, params->height, 4, false);
-    if (result == WHIT_OK)
+    whit_result result = WHIT_OK;
+    if (!one_band(renderer))
+        result = image_init(&renderer->color, params->width, params->height, 4, false);
+    if (result == WHIT_OK && !one_band(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
     clear_stats(&renderer->stats);
     uint32_t largest = (uint32_t)sqrt((double)renderer->pixel_buffers.chunk_slots);
@@ -544,30 +564,38 @@ whit_result renderer_render(struct renderer *renderer)
     return result;
 }
 
-static whit_result copy_image(const struct renderer *renderer, const struct image *from,
+static whit_result begin_read(const struct renderer *renderer, uint32_t channels, bool integers,
                               struct image *out)
 {
     if (!renderer->rendered) {
         log_error(&renderer->log, "no picture was rendered yet");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result =
-        image_init(out, from->width, from->height, from->channels, from->words != NULL);
-    size_t bytes = (size_t)from->width * from->height * from->channels * 4;
-    if (result == WHIT_OK)
-        memcpy(from->words ? (void *)out->words : (void *)out->pixels,
-               from->words ? (const void *)from->words : (const void *)from->pixels, bytes);
-    return result;
+    return image_init(out, renderer->params.width, renderer->params.height, channels, integers);
 }
 
 whit_result renderer_read_color(struct renderer *renderer, struct image *out)
 {
-    return copy_image(renderer, &renderer->color, out);
+    whit_result result = begin_read(renderer, 4, false, out);
+    if (result != WHIT_OK)
+        return result;
+    if (one_band(renderer))
+        return read_pixels(renderer, out->height, out->pixels);
+    memcpy(out->pixels, renderer->color.pixels,
+           (size_t)out->width * out->height * 4 * sizeof(float));
+    return WHIT_OK;
 }
 
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
-    return copy_image(renderer, &renderer->ids, out);
+    whit_result result = begin_read(renderer, 2, true, out);
+    if (result != WHIT_OK)
+        return result;
+    if (one_band(renderer))
+        return read_ids(renderer, out->height, out->words);
+    memcpy(out->words, renderer->ids.words,
+           (size_t)out->width * out->height * 2 * sizeof(uint32_t));
+    return WHIT_OK;
 }
 
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)

@@ -56,7 +56,7 @@ struct renderer {
     struct trace_state trace;
     struct commands *commands;
     struct gpu_frame frame;
-    struct image color, ids; /* of the last picture */
+    struct image color, ids; /* of the last picture, where it has more than one band */
     struct render_stats stats;
     bool has_secondary; /* the scene calls for more than camera rays */
     bool rendered;
