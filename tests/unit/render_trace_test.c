@@ -227,13 +227,59 @@ static void empty_scene_misses(void **state)
     fixture_close(&f);
 }
 
+/* Slivers along one diagonal, layer on layer: a ray beside the diagonal meets every box and no
+   triangle. That is more loop turns than lavapipe grants; the kernel must say so. */
+static void cut_traversals_are_reported(void **state)
+{
+    (void)state;
+    uint32_t count = 70000;
+    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
+    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
+    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
+    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
+    for (uint32_t i = 0; i < count; ++i) {
+        float z = (float)i * 0.001f;
+        const float corners[9] = {0, 0, z, 1, 1, z, 0.99f, 1, z};
+        memcpy(&mesh.positions[9 * (size_t)i], corners, sizeof corners);
+        for (uint32_t k = 0; k < 3; ++k)
+            mesh.indices[3 * i + k] = 3 * i + k;
+    }
+    struct scene *scene = fixture_scene(mesh);
+    fixture_place(scene, NULL);
+    struct fixture f = fixture_open(scene, NULL, NULL);
+    struct gpu_ray rays[8];
+    struct gpu_hit hits[8], twin;
+    uint32_t status = 0;
+    for (int i = 0; i < 8; ++i)
+        rays[i] = (struct gpu_ray){{0.8f, 0.2f, -1}, 0, {0, 0, 1}, INFINITY};
+    struct traverse_counts counts;
+    traverse_float(f.accel, &rays[0], false, HIT_NONE, HIT_NONE, &twin, &counts, &status);
+    assert_int_equal(twin.primitive, HIT_NONE);
+    assert_int_equal(counts.triangles, count); /* the case is as hard as it should be */
+    whit_result result = renderer_trace(f.renderer, rays, 8, false, hits);
+    print_message("  %u pairs and %u triangles for one ray: %s\n", counts.pairs, counts.triangles,
+                  whit_result_name(result));
+    if (device_get_info(f.device)->loop_limited) {
+        assert_int_equal(result, WHIT_ERROR_STATUS);
+    } else {
+        assert_int_equal(result, WHIT_OK);
+        assert_int_equal(hits[0].primitive, HIT_NONE);
+    }
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sphere_equals_twin),   cmocka_unit_test(box_equals_twin),
-        cmocka_unit_test(terrain_equals_twin),  cmocka_unit_test(far_sphere_equals_twin),
-        cmocka_unit_test(soup_equals_twin),     cmocka_unit_test(instances_equal_twin),
-        cmocka_unit_test(degenerate_rays_miss), cmocka_unit_test(empty_scene_misses),
+        cmocka_unit_test(sphere_equals_twin),
+        cmocka_unit_test(box_equals_twin),
+        cmocka_unit_test(terrain_equals_twin),
+        cmocka_unit_test(far_sphere_equals_twin),
+        cmocka_unit_test(soup_equals_twin),
+        cmocka_unit_test(instances_equal_twin),
+        cmocka_unit_test(degenerate_rays_miss),
+        cmocka_unit_test(empty_scene_misses),
+        cmocka_unit_test(cut_traversals_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
