@@ -57,7 +57,7 @@ struct gpu_instance {
     gpu_vec3 inverse2;
     gpu_float origin_z;
     gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
-    gpu_uint shade_base; /* primitive 0 of the mesh in the per-triangle shading arrays */
+    gpu_uint shade_base; /* of primitive 0: index among the triangles of all meshes */
     gpu_uint mesh;
     gpu_uint pad;
     gpu_vec3 forward0; /* object to world, rows */

@@ -29,8 +29,6 @@
 #define MATERIAL_MASK           4u
 #define MATERIAL_BLEND          8u
 #define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not its red */
-#define MATERIAL_SHADOW_CATCHER 32u
-#define MATERIAL_TWO_SIDED      64u
 
 /* See struct scene_material for meaning and units. */
 struct gpu_material {
@@ -128,13 +126,13 @@ struct gpu_frame {
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
     gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
-    gpu_uint stack_size;     /* rays of one pixel's ray stack */
-    gpu_float bailout;       /* rays that can add less than this to a pixel are not traced */
-    gpu_uint light_row;    /* first light */
-    gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS each */
-    gpu_uint uv0_row;      /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
-    gpu_uint uv1_row;      /* of uv set 1; uv0_row where there is none */
-    gpu_uint color_row;    /* first triangle: TRIANGLE_COLOR_ROWS each */
+    gpu_uint stack_size; /* rays of one pixel's ray stack */
+    gpu_float bailout;   /* rays that can add less than this to a pixel are not traced */
+    gpu_uint light_row;  /* first light */
+    gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */
+    gpu_uint uv0_row;   /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
+    gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
+    gpu_uint color_row; /* first triangle: TRIANGLE_COLOR_ROWS each */
     gpu_uint pad;
 };
 GPU_ASSERT_SIZE(gpu_frame, 160)

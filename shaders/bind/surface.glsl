@@ -10,10 +10,10 @@ struct Surface {
     vec3 p, error; // world; bound of the error of p
     vec3 ng;       // unit geometric normal, to the outside of closed meshes
     vec3 ns;       // unit shading normal, on the side of ng
-    vec3 tangent, bitangent; // of texture set 0 in u and v; not unit
+    vec3 e1, e2; // edges from the first vertex, world; only with SPEC_NORMAL_MAPS
     vec3 color;              // of the vertices
     float color_alpha;
-    uint shade_index; // in the per-triangle arrays
+    uint shade_index; // index among the triangles of all meshes
     uint material;
     float u, v;
 };
@@ -44,19 +44,6 @@ vec3 smooth_normal(uint shade_index, float u, float v)
     vec3 n1 = row_vec3(fetch_shading_row(row + 1u));
     vec3 n2 = row_vec3(fetch_shading_row(row + 2u));
     return n0 * (1.0 - u - v) + n1 * u + n2 * v;
-}
-
-// Directions in which u and v of the texture grow, in object space.
-void texture_frame(uint shade_index, vec3 e1, vec3 e2, out vec3 tangent, out vec3 bitangent)
-{
-    vec2 t0, t1, t2;
-    fetch_uvs(shade_index, 0u, t0, t1, t2);
-    vec2 d1 = t1 - t0;
-    vec2 d2 = t2 - t0;
-    float det = d1.x * d2.y - d1.y * d2.x;
-    float inv = det != 0.0 ? 1.0 / det : 0.0;
-    tangent = (e1 * d2.y - e2 * d1.y) * inv;
-    bitangent = (e2 * d1.x - e1 * d2.x) * inv;
 }
 
 vec3 normalize_or(vec3 v, vec3 otherwise)
@@ -102,10 +89,8 @@ Surface fetch_surface(Hit hit)
                       max(abs(e2.x), max(abs(e2.y), abs(e2.z))));
     vec3 ng = cross(e1 / scale, e2 / scale);
     vec3 ns = SPEC_SMOOTH_NORMALS != 0u ? smooth_normal(s.shade_index, s.u, s.v) : ng;
-    s.tangent = vec3(0.0);
-    s.bitangent = vec3(0.0);
-    if (SPEC_NORMAL_MAPS != 0u)
-        texture_frame(s.shade_index, e1, e2, s.tangent, s.bitangent);
+    s.e1 = e1;
+    s.e2 = e2;
     if (SPEC_INSTANCED != 0u) {
         InstanceFrame inverse = fetch_instance_frame(hit.instance);
         vec3 f0 = row_vec3(fetch_instance_row(hit.instance * INSTANCE_ROWS + 4u));
@@ -117,8 +102,10 @@ Surface fetch_surface(Hit hit)
         vec3 c2 = vec3(inverse.inverse0.z, inverse.inverse1.z, inverse.inverse2.z);
         ng = rotate_rows(c0, c1, c2, ng);
         ns = rotate_rows(c0, c1, c2, ns);
-        s.tangent = rotate_rows(f0, f1, f2, s.tangent);
-        s.bitangent = rotate_rows(f0, f1, f2, s.bitangent);
+        if (SPEC_NORMAL_MAPS != 0u) {
+            s.e1 = rotate_rows(f0, f1, f2, e1);
+            s.e2 = rotate_rows(f0, f1, f2, e2);
+        }
     }
     s.ng = normalize_or(ng, vec3(0.0, 1.0, 0.0));
     s.ns = normalize_or(ns, s.ng);
@@ -144,28 +131,50 @@ vec4 sample_use(Surface s, uint use)
     return sample_use(use, s.shade_index, s.u, s.v);
 }
 
+// Directions in which u and v of a texture's picture grow, in world space, not unit; zero where the
+// texture is a point or a line on the triangle.
+void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangent)
+{
+    vec2 uv0, uv1, uv2;
+    fetch_uvs(s.shade_index, t.uv_set, uv0, uv1, uv2);
+    uv1 -= uv0;
+    uv2 -= uv0;
+    vec2 d1 = vec2(dot(t.matrix.xy, uv1), dot(t.matrix.zw, uv1));
+    vec2 d2 = vec2(dot(t.matrix.xy, uv2), dot(t.matrix.zw, uv2));
+    float det = d1.x * d2.y - d1.y * d2.x;
+    float inv = det != 0.0 ? 1.0 / det : 0.0;
+    tangent = (s.e1 * d2.y - s.e2 * d1.y) * inv;
+    bitangent = (s.e2 * d1.x - s.e1 * d2.x) * inv;
+}
+
 // Bends s.ns by a tangent-space map or by the slope of a height map.
 void bend_normal(inout Surface s, gpu_material material)
 {
-    if (material.tex_normal == TEXTURE_NONE && material.tex_bump == TEXTURE_NONE)
+    bool is_map = material.tex_normal != TEXTURE_NONE;
+    uint use = is_map ? material.tex_normal : material.tex_bump;
+    if (use == TEXTURE_NONE)
         return;
-    vec3 t = normalize_or(s.tangent - s.ns * dot(s.ns, s.tangent), vec3(0.0));
-    vec3 b = normalize_or(s.bitangent - s.ns * dot(s.ns, s.bitangent), vec3(0.0));
-    vec3 bent = s.ns;
-    if (material.tex_normal != TEXTURE_NONE) {
-        vec3 map = sample_use(s, material.tex_normal).rgb * 2.0 - 1.0;
+    gpu_texture picture = fetch_texture_use(use);
+    vec3 tangent, bitangent;
+    texture_frame(s, picture, tangent, bitangent);
+    vec3 t = normalize_or(tangent - s.ns * dot(s.ns, tangent), vec3(0.0));
+    vec3 b = normalize_or(bitangent - s.ns * dot(s.ns, bitangent), vec3(0.0));
+    vec2 uv = interpolate_uv(s.shade_index, picture.uv_set, s.u, s.v);
+    vec3 texel = sample_texture(picture, uv).rgb;
+    vec3 bent;
+    if (is_map) {
+        vec3 map = texel * 2.0 - 1.0;
         map.xy *= material.normal_scale;
         bent = t * map.x - b * map.y + s.ns * map.z;
     } else {
-        gpu_texture texture_use = fetch_texture_use(material.tex_bump);
-        vec2 uv = interpolate_uv(s.shade_index, texture_use.uv_set, s.u, s.v);
-        vec2 size = vec2(float(texture_use.size & 0xffffu), float(texture_use.size >> 16));
-        vec2 texel = 1.0 / size;
-        float at = sample_texture(texture_use, uv).r;
-        float du = sample_texture(texture_use, uv + vec2(texel.x, 0.0)).r - at;
-        float dv = sample_texture(texture_use, uv + vec2(0.0, texel.y)).r - at;
+        // One texel on, in the picture's own directions.
+        vec2 size = vec2(float(picture.size & 0xffffu), float(picture.size >> 16));
+        gpu_texture right = picture, below = picture;
+        right.offset.x += 1.0 / size.x;
+        below.offset.y += 1.0 / size.y;
+        vec2 rise = vec2(sample_texture(right, uv).r, sample_texture(below, uv).r) - texel.r;
         // Heights are in units of 1/32 of the texture's side: MTL gives none.
-        vec2 slope = vec2(du, dv) * size * (material.normal_scale / 32.0);
+        vec2 slope = rise * size * (material.normal_scale / 32.0);
         bent = s.ns - t * slope.x - b * slope.y;
     }
     s.ns = normalize_or(bent, s.ns);

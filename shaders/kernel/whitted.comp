@@ -147,16 +147,17 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     o.reflected = SPEC_REFLECTION != 0u ? m.reflection : vec3(0.0);
     o.alpha = 1.0;
     bool fresnel = (m.flags & MATERIAL_FRESNEL) != 0u;
+    float gloss = 1.0; // share of the mirror ray that roughness leaves
     if (o.metal_rough) {
         float r0 = (m.ior - 1.0) / (m.ior + 1.0);
         vec3 f0 = min(m.specular * (r0 * r0), vec3(1.0)) * m.specular_level;
         f0 = mix(f0, o.diffuse, metallic);
-        float gloss = (1.0 - roughness) * (1.0 - roughness);
+        gloss = (1.0 - roughness) * (1.0 - roughness);
         vec3 edge = max(vec3(1.0 - roughness), f0);
         vec3 f = f0 + (edge - f0) * schlick_weight(cos_view);
+        vec3 kept = 1.0 - clamp(transmission, 0.0, 1.0);
         transmission *= o.diffuse * (1.0 - metallic);
-        float transparent = clamp(max(m.transmission.r, 0.0), 0.0, 1.0);
-        o.diffuse *= (1.0 - metallic) * (1.0 - transparent);
+        o.diffuse *= (1.0 - metallic) * kept;
         o.ambient = o.diffuse + f0 * (1.0 - gloss);
         o.highlight = f0;
         o.alpha = max(roughness * roughness, 0.02);
@@ -178,7 +179,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
             if (total)
                 o.refracted = vec3(0.0);
             if (fresnel || total)
-                o.reflected = vec3(total ? 1.0 : share);
+                o.reflected = vec3(total ? 1.0 : share * gloss);
         } else if (fresnel && !o.metal_rough) {
             o.reflected += (vec3(1.0) - o.reflected) * schlick_weight(cos_view) *
                            float(max(o.reflected.r, max(o.reflected.g, o.reflected.b)) > 0.0);

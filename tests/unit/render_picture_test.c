@@ -294,6 +294,47 @@ static void furnace_neither_gains_nor_loses(void **state)
     }
 }
 
+/* A lit box of metal-rough material that transmits `transmission` times a texture of `texel`. */
+static struct image transmitting_box(float transmission, int texel)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    struct scene_material m = material("shell");
+    m.model = SCENE_MODEL_METAL_ROUGH;
+    set_rgb(m.diffuse, 0.8f, 0.6f, 0.4f);
+    set_rgb(m.specular, 1, 1, 1);
+    set_rgb(m.transmission, transmission, transmission, transmission);
+    m.roughness = 1.0f;
+    m.fresnel = true;
+    if (texel >= 0) {
+        struct scene_texture texture = {.name = string_copy("t"), .width = 1, .height = 1};
+        texture.rgba = array_alloc(1, 4);
+        memset(texture.rgba, texel, 4);
+        m.textures[SCENE_SLOT_TRANSMISSION].texture = scene_add_texture(scene, texture);
+    }
+    add_object(scene, box(4, 4, 0.5), m, 0, 0, 0);
+    add_sun(scene, 0, 0, -1, 1.0f);
+    struct fixture f = fixture_open(scene, NULL, &picture_params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+static void texture_of_transmission_decides(void **state)
+{
+    (void)state;
+    struct image opaque = transmitting_box(0.0f, -1);
+    struct image masked = transmitting_box(1.0f, 0);
+    struct image clear = transmitting_box(1.0f, 255);
+    for (int c = 0; c < 3; ++c) {
+        assert_near(middle(&masked)[c], (double)middle(&opaque)[c], 1e-6);
+        assert_true(middle(&opaque)[c] > 0.3f);
+        assert_true(middle(&clear)[c] < 0.1f);
+    }
+    image_finish(&opaque);
+    image_finish(&masked);
+    image_finish(&clear);
+}
+
 /* Two pictures of the same scene made with different parameters. */
 static void assert_same_picture(struct scene *(*make)(void), const struct render_params *a,
                                 const struct render_params *b)
@@ -447,6 +488,7 @@ int main(void)
         cmocka_unit_test(mirror_shows_what_is_behind),
         cmocka_unit_test(glass_slab_passes_and_absorbs),
         cmocka_unit_test(furnace_neither_gains_nor_loses),
+        cmocka_unit_test(texture_of_transmission_decides),
         cmocka_unit_test(tiles_do_not_matter),
         cmocka_unit_test(load_paths_do_not_matter),
         cmocka_unit_test(unused_effects_do_not_matter),
