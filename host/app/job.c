@@ -127,7 +127,10 @@ void job_print_notes(const struct job *job)
     for (uint32_t i = 0; !job->quiet && i < info.note_count && i < NOTES_SHOWN; ++i) {
         whit_note_info note;
         whit_scene_get_note(job->scene, i, &note);
-        cli_note("%s", note.text);
+        if (note.warning)
+            cli_warning("%s", note.text);
+        else
+            cli_note("%s", note.text);
     }
     if (!job->quiet && info.note_count > NOTES_SHOWN)
         cli_note("and %u more; `whit scene` lists them", info.note_count - NOTES_SHOWN);

@@ -25,7 +25,7 @@ static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visi
         scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%.200s` is missing",
                    path_name(gltf->request->path), uri);
     else
-        result = load_texture(gltf->scene, path, NULL, 0, gltf->request->params, texture);
+        result = load_texture(gltf->scene, path, NULL, 0, gltf->request->params, texture, NULL);
     free(path);
     return result;
 }
@@ -37,7 +37,7 @@ static whit_result load_held_image(struct gltf *gltf, uint32_t index, const uint
     if (!name)
         return WHIT_ERROR_MEMORY;
     whit_result result =
-        load_texture(gltf->scene, name, data, size_bytes, gltf->request->params, texture);
+        load_texture(gltf->scene, name, data, size_bytes, gltf->request->params, texture, NULL);
     free(name);
     return result;
 }

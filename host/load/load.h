@@ -30,10 +30,11 @@ WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
 
 /* 8-bit texture from a file or from memory (`data` non-NULL; `path` then only names it). The name
    of an already loaded file gives the index it has. On failure a warning is noted in the scene and
-   *index is a 1x1 magenta texture. */
+   *index is a 1x1 magenta texture, unless `reason` is given: then nothing is noted or added,
+   *reason says why and the result is WHIT_ERROR_INPUT. */
 WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
                                     size_t size_bytes, const struct load_params *params,
-                                    uint32_t *index);
+                                    uint32_t *index, const char **reason);
 /* Radiance .hdr, .exr, .pfm or an 8-bit picture (sRGB) into scene->environment. */
 WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path);
 

@@ -76,7 +76,7 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
     } else {
         struct scene_texture_use *use = &out->textures[slot];
         set_transform(map, use);
-        result = load_texture(scene, path, NULL, 0, params, &use->texture);
+        result = load_texture(scene, path, NULL, 0, params, &use->texture, NULL);
     }
     free(path);
     return result;

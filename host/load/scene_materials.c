@@ -146,15 +146,20 @@ static bool made_texture(struct reader *reader, const struct place *place, const
                       : add_brick(reader, colors, &use->texture);
 }
 
-static bool file_texture(struct reader *reader, const char *name, struct scene_texture_use *use)
+static bool file_texture(struct reader *reader, const struct place *place, const char *name,
+                         struct scene_texture_use *use)
 {
+    const char *reason = NULL;
     char *path = path_beside(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
-    whit_result result = load_texture(reader->scene, path, NULL, 0, reader->params, &use->texture);
-    free(path);
-    if (result != WHIT_OK)
+    whit_result result =
+        load_texture(reader->scene, path, NULL, 0, reader->params, &use->texture, &reason);
+    if (result == WHIT_ERROR_INPUT)
+        reader_fail(reader, place, "texture `%s`: %s", path, reason);
+    else if (result != WHIT_OK)
         reader->result = result;
+    free(path);
     return result == WHIT_OK;
 }
 
@@ -196,7 +201,8 @@ static bool texture_source(struct reader *reader, const struct place *place, con
     if (strcmp(kind, "file") != 0)
         return made_texture(reader, &here, json_object_get(value, kind), kind, use);
     const char *name = NULL;
-    return reader_string(reader, place, value, "file", &name) && file_texture(reader, name, use);
+    return reader_string(reader, place, value, "file", &name) &&
+           file_texture(reader, &here, name, use);
 }
 
 static bool read_texture(struct reader *reader, const struct place *place, const json_t *object,
@@ -208,7 +214,7 @@ static bool read_texture(struct reader *reader, const struct place *place, const
     if (!value)
         return true;
     if (json_is_string(value))
-        return file_texture(reader, json_string_value(value), use);
+        return file_texture(reader, &here, json_string_value(value), use);
     if (!reader_object(reader, &here, value, texture_keys) ||
         !texture_source(reader, &here, value, use) ||
         !texture_transform(reader, &here, value, use) ||

@@ -60,25 +60,33 @@ static bool shrink(struct scene *scene, const char *name, const struct load_para
 }
 
 whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
-                         size_t size_bytes, const struct load_params *params, uint32_t *index)
+                         size_t size_bytes, const struct load_params *params, uint32_t *index,
+                         const char **reason)
 {
     struct picture picture = {0};
-    const char *reason = "";
+    const char *why = "";
     char *name = data ? string_copy(path) : picture_find(path);
     *index = SCENE_NONE;
     if (!name)
         goto fail;
-    if (known(scene, name, index)) {
+    /* A model's stand-in for a missing file does not make it less missing. */
+    bool missing = reason && !data && !file_exists(name);
+    if (!missing && known(scene, name, index)) {
         free(name);
         return WHIT_OK;
     }
-    whit_result result = data ? picture_decode(data, size_bytes, false, &picture, &reason)
-                              : decode_file(scene, name, &picture, &reason);
+    whit_result result = data ? picture_decode(data, size_bytes, false, &picture, &why)
+                              : decode_file(scene, name, &picture, &why);
     if (result == WHIT_ERROR_MEMORY)
         goto fail;
+    if (result != WHIT_OK && reason) {
+        free(name);
+        *reason = why;
+        return WHIT_ERROR_INPUT;
+    }
     if (result != WHIT_OK) {
         scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place", name,
-                   reason);
+                   why);
         if (!make_magenta(&picture))
             goto fail;
     }

@@ -51,6 +51,8 @@ refuse 2 "missing scene" "missing.json" render "$OUT/missing.json" -o "$P"
 refuse 2 "folder as scene" "$OUT" render "$OUT" -o "$P"
 printf '{ "objects": [\n  oops ] }\n' >"$OUT/broken.json"
 refuse 2 "broken scene names its line" "broken.json:2" render "$OUT/broken.json" -o "$P"
+printf '{ "materials": {\n  "a": { "texture": "no.png" } } }\n' >"$OUT/bare.json"
+refuse 2 "missing texture" "bare.json:2:10: materials.a.texture" render "$OUT/bare.json" -o "$P"
 refuse 2 "unknown camera" "there is no camera .front." render "$CUBE" -o "$P" --camera front
 refuse 2 "misspelt camera" "did you mean .camera." render "$CUBE" -o "$P" --camera camrea
 refuse 2 "camera number too large" "there is no camera .7." render "$CUBE" -o "$P" --camera 7

@@ -366,8 +366,8 @@ static void sky_test(void **state)
     unlink(path);
 }
 
-/* An uncompressed TGA, found despite the wrong case and slash; a missing one is magenta. */
-static void textures_are_found_and_missed(void **state)
+/* An uncompressed TGA, found despite the wrong case and slash. */
+static void textures_are_found(void **state)
 {
     struct heard *heard = *state;
     char path[128];
@@ -375,20 +375,47 @@ static void textures_are_found_and_missed(void **state)
                            2, 0, 1, 0, 24, 0x20, 3, 2, 1, 6, 5, 4};
     snprintf(path, sizeof path, "%s/Wood.TGA", heard->folder);
     write_file(path, tga, sizeof tga);
-    struct scene *scene =
-        load_fine(state, "{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
-                         "\"b\":{\"texture\":\"Wood.TGA\"},\"c\":{\"texture\":\"no.png\"}}}");
+    struct scene *scene = load_fine(state, "{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
+                                           "\"b\":{\"texture\":\"Wood.TGA\"}}}");
     unlink(path);
     const struct scene_texture *found =
         &scene->textures[material_named(scene, "a")->textures[0].texture];
-    const struct scene_texture *missed =
-        &scene->textures[material_named(scene, "c")->textures[0].texture];
-    const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255}, magenta[] = {255, 0, 255, 255};
+    const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255};
     assert_int_equal(found->width, 2);
     assert_memory_equal(found->rgba, texels, sizeof texels);
-    assert_int_equal(missed->width, 1);
-    assert_memory_equal(missed->rgba, magenta, sizeof magenta);
     scene_destroy(scene);
+}
+
+/* Of a scene file's own textures; models do with a stand-in, even if the scene names it later. */
+static void missing_textures_are_refused(void **state)
+{
+    struct heard *heard = *state;
+    char obj[128], mtl[128];
+    assert_error(state, "{\"materials\":{\n\"a\":{\"texture\":\"no.png\"}}}",
+                 "test.json:2:6: materials.a.texture: texture `");
+    assert_error(state, "{\"materials\":{\"a\":{\"bump_map\":{\"file\":\"no.png\"}}}}",
+                 "test.json:1:32: materials.a.bump_map.file: texture `");
+    assert_non_null(strstr(heard->errors[0], "no.png`: there is no such file"));
+    assert_error(state, "{\"materials\":{\"a\":{\"texture\":\"test.json\"}}}",
+                 "test.json:1:20: materials.a.texture: texture `");
+    assert_non_null(strstr(heard->errors[0], "it is not a picture"));
+    snprintf(obj, sizeof obj, "%s/a.obj", heard->folder);
+    snprintf(mtl, sizeof mtl, "%s/a.mtl", heard->folder);
+    static const char obj_text[] = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+    static const char mtl_text[] = "newmtl m\nmap_Kd no.png\n";
+    write_file(obj, obj_text, sizeof obj_text - 1);
+    write_file(mtl, mtl_text, sizeof mtl_text - 1);
+    struct scene *scene = load_fine(state, "{\"objects\":[{\"model\":\"a.obj\"}]}");
+    const uint8_t magenta[] = {255, 0, 255, 255};
+    assert_int_equal(scene->texture_count, 1);
+    assert_memory_equal(scene->textures[0].rgba, magenta, sizeof magenta);
+    scene_destroy(scene);
+    assert_error(state,
+                 "{\"objects\":[{\"model\":\"a.obj\"},\n{\"shape\":\"box\",\"material\":"
+                 "{\"texture\":\"no.png\"}}]}",
+                 "test.json:2:28: objects[1].material.texture: texture `");
+    unlink(obj);
+    unlink(mtl);
 }
 
 static void large_textures_are_halved(void **state)
@@ -401,10 +428,11 @@ static void large_textures_are_halved(void **state)
                            2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
     const uint8_t mean[] = {46, 30, 15, 255};
     (void)heard;
-    assert_int_equal(load_texture(scene, "memory", tga, sizeof tga, &params, &index), WHIT_OK);
+    assert_int_equal(load_texture(scene, "memory", tga, sizeof tga, &params, &index, NULL),
+                     WHIT_OK);
     assert_int_equal(scene->textures[index].width, 1);
     assert_memory_equal(scene->textures[index].rgba, mean, sizeof mean);
-    assert_int_equal(load_texture(scene, "cut", tga, 20, &params, &index), WHIT_OK);
+    assert_int_equal(load_texture(scene, "cut", tga, 20, &params, &index, NULL), WHIT_OK);
     assert_int_equal(scene->textures[index].width, 1);
     scene_destroy(scene);
 }
@@ -480,7 +508,8 @@ int main(void)
         FOLDER_TEST(materials_mean_what_they_say),
         FOLDER_TEST(patterns_become_textures),
         FOLDER_TEST(sky_test),
-        FOLDER_TEST(textures_are_found_and_missed),
+        FOLDER_TEST(textures_are_found),
+        FOLDER_TEST(missing_textures_are_refused),
         FOLDER_TEST(large_textures_are_halved),
         FOLDER_TEST(unknown_files_are_refused),
         FOLDER_TEST(shipped_scenes_have_their_sizes),
