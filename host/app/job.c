@@ -120,20 +120,23 @@ whit_result job_load(struct job *job)
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 
-void job_print_notes(const struct job *job)
+void job_print_notes(const struct job *job, bool all)
 {
     whit_scene_info info;
+    uint32_t wanted = 0;
     whit_scene_get_info(job->scene, &info);
-    for (uint32_t i = 0; !job->quiet && i < info.note_count && i < NOTES_SHOWN; ++i) {
+    for (uint32_t i = 0; !job->quiet && i < info.note_count; ++i) {
         whit_note_info note;
         whit_scene_get_note(job->scene, i, &note);
+        if ((!all && !note.warning) || ++wanted > NOTES_SHOWN)
+            continue;
         if (note.warning)
             cli_warning("%s", note.text);
         else
             cli_note("%s", note.text);
     }
-    if (!job->quiet && info.note_count > NOTES_SHOWN)
-        cli_note("and %u more; `whit scene` lists them", info.note_count - NOTES_SHOWN);
+    if (wanted > NOTES_SHOWN)
+        cli_note("and %u more; `whit scene` lists them", wanted - NOTES_SHOWN);
 }
 
 static whit_result still_wanted(void)

@@ -79,7 +79,8 @@ bool job_options_done(struct job *job, struct cli_reader *reader);
 whit_result job_load(struct job *job);
 whit_result job_build(struct job *job);
 whit_result job_open_device(struct job *job);
-void job_print_notes(const struct job *job);
+/* Of the scene: warnings, and with `all` what was added as well. */
+void job_print_notes(const struct job *job, bool all);
 /* EXIT_DIFFERS when the validation layers had anything to say. */
 int job_check_validation(const struct job *job);
 void job_finish(struct job *job);

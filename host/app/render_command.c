@@ -250,7 +250,7 @@ static whit_result prepare(struct job *job, const struct render_request *request
     if (result == WHIT_OK)
         result = check_camera(job, request->camera);
     if (result == WHIT_OK) {
-        job_print_notes(job);
+        job_print_notes(job, true);
         result = job_build(job);
     }
     if (result == WHIT_OK)

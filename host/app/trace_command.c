@@ -139,7 +139,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
     if (result == WHIT_OK)
         result = job_load(job);
     if (result == WHIT_OK) {
-        job_print_notes(job);
+        job_print_notes(job, false);
         result = job_build(job);
     }
     if (result == WHIT_OK && trace->on == WHIT_TRACE_DEVICE)

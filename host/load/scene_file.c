@@ -102,6 +102,10 @@ static bool read_light(struct reader *reader, const struct place *place, const j
     if (!reader_choice(reader, place, object, "kind", kinds, &kind))
         return false;
     const char *const *lists[] = {common, own[kind]};
+    const char *foreign = reader_foreign_key(object, lists, 2, own, 3);
+    struct place at_foreign = {place, foreign, 0};
+    if (foreign)
+        return reader_fail(reader, &at_foreign, "a %s light has no `%s`", kinds[kind], foreign);
     light.kind = (enum scene_light_kind)kind;
     light.falloff = light.kind != SCENE_LIGHT_DIRECTIONAL;
     if (!reader_object_lists(reader, place, object, lists, 2) ||
@@ -246,11 +250,13 @@ static bool read_root(struct reader *reader, const json_t *root)
     const struct place place = {0};
     const char *ignored = NULL;
     const json_t *objects = json_object_get(root, "objects");
-    struct place at_objects = {&place, "objects", 0};
+    struct place at_objects = {&place, "objects", 0}, at_cameras = {&place, "cameras", 0};
     if (!reader_object(reader, &place, root, keys) ||
         !reader_string(reader, &place, root, "description", &ignored) ||
         !reader_color(reader, &place, root, "ambient", reader->scene->ambient))
         return false;
+    if (json_object_get(root, "camera") && json_object_get(root, "cameras"))
+        return reader_fail(reader, &at_cameras, "`camera` and `cameras` exclude each other");
     reader->scene->has_ambient = json_object_get(root, "ambient") != NULL;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; ++i) {
         const json_t *value = json_object_get(root, parts[i].key);

@@ -335,17 +335,38 @@ static bool read_common(struct reader *reader, const struct place *place, const 
            read_alpha(reader, place, value, out) && read_textures(reader, place, value, out);
 }
 
+/* Keys of another kind of material, and what to write instead of its colour. */
+static bool check_keys(struct reader *reader, const struct place *place, const json_t *value,
+                       const char *kind_key, const char *const *own)
+{
+    static const char *const *const kinds[] = {phong_keys, metal_keys, unlit_keys};
+    const char *const *lists[] = {common_keys, own};
+    const char *color = own == unlit_keys ? "color" : own == metal_keys ? "base_color" : "diffuse";
+    const char *foreign = reader_foreign_key(value, lists, 2, kinds, 3);
+    struct place here = {place, foreign, 0};
+    if (!foreign)
+        return reader_object_lists(reader, place, value, lists, 2);
+    bool colors = strcmp(foreign, "diffuse") == 0 || strcmp(foreign, "base_color") == 0 ||
+                  strcmp(foreign, "color") == 0;
+    const char *hint[] = {colors ? "; use `" : "", colors ? color : "", colors ? "`" : ""};
+    if (!kind_key)
+        return reader_fail(reader, &here, "`%s` goes with `unlit` only%s%s%s", foreign, hint[0],
+                           hint[1], hint[2]);
+    return reader_fail(reader, &here, "`%s` does not go with `%s`%s%s%s", foreign, kind_key,
+                       hint[0], hint[1], hint[2]);
+}
+
 static bool read_material(struct reader *reader, const struct place *place, const json_t *value,
                           struct scene_material *out)
 {
-    bool metal = false;
+    const char *metal = NULL;
     for (size_t i = 0; metal_keys[i]; ++i)
-        metal = metal || has(value, metal_keys[i]);
+        metal = !metal && has(value, metal_keys[i]) ? metal_keys[i] : metal;
     bool unlit = has(value, "unlit");
-    const char *const *lists[] = {common_keys, unlit   ? unlit_keys
-                                               : metal ? metal_keys
-                                                       : phong_keys};
-    return reader_object_lists(reader, place, value, lists, 2) &&
+    return check_keys(reader, place, value, unlit ? "unlit" : metal,
+                      unlit   ? unlit_keys
+                      : metal ? metal_keys
+                              : phong_keys) &&
            read_common(reader, place, value, out) &&
            (unlit   ? read_unlit(reader, place, value, out)
             : metal ? read_metal_rough(reader, place, value, out)

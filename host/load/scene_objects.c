@@ -551,7 +551,35 @@ static bool read_content(struct reader *reader, const struct place *place, const
     return !children || reader_objects(reader, &at_children, children, node, depth + 1);
 }
 
-/* Keys that fit what the object is; a sphere has no tube. */
+/* Keys of other kinds of objects: a sphere has no tube. */
+static bool refuse_foreign_key(struct reader *reader, const struct place *place, const char *key,
+                               const char *kind)
+{
+    struct place here = {place, key, 0};
+    const char *article = kind[0] == 'i' ? "an" : "a";
+    return reader_fail(reader, &here, "%s %s has no `%s`", article, kind, key);
+}
+
+static bool check_keys(struct reader *reader, const struct place *place, const json_t *object,
+                       uint32_t shape, bool model)
+{
+    const char *kind = shape < SHAPE_COUNT ? shape_names[shape] : model ? "model" : "group";
+    const char *const *lists[] = {object_keys, shape < SHAPE_COUNT ? shape_keys[shape]
+                                               : model             ? model_keys
+                                                                   : group_keys};
+    const char *const *others[SHAPE_COUNT + 1] = {[SHAPE_COUNT] = model_keys};
+    struct place at_model = {place, "model", 0};
+    if (model && shape < SHAPE_COUNT)
+        return reader_fail(reader, &at_model, "`shape` and `model` exclude each other");
+    memcpy(others, shape_keys, sizeof shape_keys);
+    const char *foreign = reader_foreign_key(object, lists, 2, others, SHAPE_COUNT + 1);
+    if (foreign && (shape < SHAPE_COUNT || model || json_object_get(object, "children")))
+        return refuse_foreign_key(reader, place, foreign, kind);
+    if (foreign)
+        return reader_fail(reader, place, "an object needs a `shape`, a `model` or `children`");
+    return reader_object_lists(reader, place, object, lists, 2);
+}
+
 static bool check_object(struct reader *reader, const struct place *place, const json_t *object)
 {
     uint32_t shape = SHAPE_COUNT;
@@ -561,10 +589,7 @@ static bool check_object(struct reader *reader, const struct place *place, const
         return reader_fail(reader, place, "an object { } is expected");
     if (!reader_choice(reader, place, object, "shape", shape_names, &shape))
         return false;
-    const char *const *lists[] = {object_keys, shape < SHAPE_COUNT ? shape_keys[shape]
-                                               : model             ? model_keys
-                                                                   : group_keys};
-    if (!reader_object_lists(reader, place, object, lists, 2))
+    if (!check_keys(reader, place, object, shape, model != NULL))
         return false;
     if (model || shape < SHAPE_COUNT)
         return true;

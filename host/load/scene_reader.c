@@ -201,6 +201,29 @@ static bool listed(const char *key, const char *const *known)
     return false;
 }
 
+static bool listed_in(const char *key, const char *const *const *lists, size_t list_count)
+{
+    for (size_t i = 0; i < list_count; ++i) {
+        if (listed(key, lists[i]))
+            return true;
+    }
+    return false;
+}
+
+const char *reader_foreign_key(const json_t *value, const char *const *const *lists,
+                               size_t list_count, const char *const *const *others,
+                               size_t other_count)
+{
+    const char *key;
+    json_t *member;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member)
+    {
+        if (!listed_in(key, lists, list_count) && listed_in(key, others, other_count))
+            return key;
+    }
+    return NULL;
+}
+
 bool reader_object_lists(struct reader *reader, const struct place *place, const json_t *value,
                          const char *const *const *lists, size_t list_count)
 {
@@ -211,12 +234,10 @@ bool reader_object_lists(struct reader *reader, const struct place *place, const
     /* jansson iterates through non-const pointers only; nothing is changed. */
     json_object_foreach((json_t *)(uintptr_t)value, key, member)
     {
-        bool known = strcmp(key, "comment") == 0;
+        bool known = strcmp(key, "comment") == 0 || listed_in(key, lists, list_count);
         const char *nearest = NULL;
-        for (size_t i = 0; i < list_count; ++i) {
-            known = known || listed(key, lists[i]);
-            nearest = nearest ? nearest : reader_nearest(key, lists[i]);
-        }
+        for (size_t i = 0; !nearest && i < list_count; ++i)
+            nearest = reader_nearest(key, lists[i]);
         struct place here = {place, key, 0};
         if (!known && nearest)
             return reader_fail(reader, &here, "unknown key; did you mean `%s`?", nearest);

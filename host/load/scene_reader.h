@@ -58,6 +58,11 @@ bool reader_object(struct reader *reader, const struct place *place, const json_
 bool reader_object_lists(struct reader *reader, const struct place *place, const json_t *value,
                          const char *const *const *lists, size_t list_count);
 
+/* The first key that `lists` lack and one of `others` has, or NULL. */
+const char *reader_foreign_key(const json_t *value, const char *const *const *lists,
+                               size_t list_count, const char *const *const *others,
+                               size_t other_count);
+
 bool reader_number(struct reader *reader, const struct place *place, const json_t *object,
                    const char *key, double least, double most, double *out);
 bool reader_float(struct reader *reader, const struct place *place, const json_t *object,

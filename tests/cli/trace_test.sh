@@ -44,4 +44,10 @@ refuse 2 "missing rays" "missing: cannot read" \
     trace "$CUBE" --rays "$OUT/missing" -o "$OUT/files/hits"
 refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --rays "$OUT" -o "$OUT/files/hits"
 check "no file was left" test "$(ls -A "$OUT/files")" = rays
+
+printf 'mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/bare.obj"
+head -c 32 /dev/zero >"$OUT/one.rays"
+run trace "$OUT/bare.obj" --rays "$OUT/one.rays" -o "$OUT/one.hits" --on cpu
+check "a warning about the scene" grep -q "^whit: warning: .*none.mtl" "$OUT/stderr"
+check "nothing about lights and cameras" test "$(grep -c "^whit: note:" "$OUT/stderr")" -eq 0
 finish

@@ -102,7 +102,7 @@ static void errors_name_line_and_column(void **state)
     assert_error(state, "{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
                  "test.json:3:3: objects[1].shape: `bxo` is not one of: box, plane, sphere");
     assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\"tube\":1}]}",
-                 "test.json:1:31: objects[0].tube: unknown key");
+                 "test.json:1:31: objects[0].tube: a sphere has no `tube`");
     assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\n\"radius\":\"big\"}]}",
                  "test.json:2:1: objects[0].radius: a number is expected");
     assert_error(state, "{\"objects\":[{\"shape\":\"box\",\n\"translation\":[0,\n0,\n\"x\"]}]}",
@@ -153,7 +153,21 @@ static void senseless_content_is_refused(void **state)
     assert_error(state, "{\"environment\":\"#12345\"}",
                  "test.json:1:2: environment: `#12345` is no colour");
     assert_error(state, "{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",
-                 "test.json:1:20: materials.m.diffuse: unknown key");
+                 "test.json:1:20: materials.m.diffuse: `diffuse` does not go with `metallic`; "
+                 "use `base_color`");
+    assert_error(
+        state, "{\"materials\":{\"m\":{\"color\":1}}}",
+        "test.json:1:20: materials.m.color: `color` goes with `unlit` only; use `diffuse`");
+    assert_error(state, "{\"materials\":{\"m\":{\"unlit\":true,\"shininess\":1}}}",
+                 "test.json:1:33: materials.m.shininess: `shininess` does not go with `unlit`");
+    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\"model\":\"x.obj\"}]}",
+                 "test.json:1:28: objects[0].model: `shape` and `model` exclude each other");
+    assert_error(state, "{\"objects\":[{\"children\":[],\"radius\":1}]}",
+                 "test.json:1:28: objects[0].radius: a group has no `radius`");
+    assert_error(state, "{\"lights\":[{\"position\":[0,1,0],\"direction\":[0,1,0]}]}",
+                 "test.json:1:32: lights[0].direction: a point light has no `direction`");
+    assert_error(state, "{\"camera\":{},\n\"cameras\":[]}",
+                 "test.json:2:1: cameras: `camera` and `cameras` exclude each other");
     assert_error(
         state,
         "{\"objects\":[{\"shape\":\"box\",\"animation\":{\"scale\":{\"times\":[1,1],\"values\":"
