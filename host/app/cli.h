@@ -63,6 +63,9 @@ bool cli_number(struct cli_reader *reader, double least, double most, double *ou
 bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height);
 bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out);
 
+/* Misuse when `path` is `-`, which other programs take for a pipe; `hint` says what to write. */
+bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);
+
 void cli_print_help(const struct cli_command *command, FILE *to);
 /* The name nearest to `word`, or NULL when none is near. */
 const char *cli_nearest(const char *word, const char *const *names, uint32_t count);

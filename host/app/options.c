@@ -209,6 +209,11 @@ bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t 
                       list);
 }
 
+bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
+{
+    return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
+}
+
 static void print_option(const struct cli_option *option, FILE *to)
 {
     char left[80];

@@ -101,6 +101,10 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
 {
     if (!request->output)
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
+    if (!cli_no_dash(reader, "-o", request->output,
+                     "pictures go to files, whose names say how: .png, .exr or .pfm") ||
+        !cli_no_dash(reader, "--ids", request->ids, "identities go to a file, an .exr"))
+        return false;
     if (!whit_image_format_known(request->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
     if (request->ids && !whit_image_format_known(request->ids, true))

@@ -373,14 +373,22 @@ static void print_effects(const whit_scene *scene, uint32_t count)
     }
 }
 
+static void print_count(const char *before, uint32_t count, const char *one, const char *many)
+{
+    printf("%s%u %s", before, count, count == 1 ? one : many);
+}
+
 static void print_summary(const struct job *job, const whit_scene_info *info)
 {
     print_clean(job->scene_path);
     printf("\n  triangles    %llu (%llu in the meshes)\n", (unsigned long long)info->triangle_count,
            (unsigned long long)info->mesh_triangle_count);
-    printf("  contents     %u meshes, %u instances, %u nodes, %u materials, %u textures\n",
-           info->mesh_count, info->instance_count, info->node_count, info->material_count,
-           info->texture_count);
+    print_count("  contents     ", info->mesh_count, "mesh", "meshes");
+    print_count(", ", info->instance_count, "instance", "instances");
+    print_count(", ", info->node_count, "node", "nodes");
+    print_count(", ", info->material_count, "material", "materials");
+    print_count(", ", info->texture_count, "texture", "textures");
+    putchar('\n');
     if (info->lo[0] <= info->hi[0])
         printf("  bounds       %.6g %.6g %.6g  to  %.6g %.6g %.6g\n", info->lo[0], info->lo[1],
                info->lo[2], info->hi[0], info->hi[1], info->hi[2]);
@@ -442,7 +450,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
         else
             job_option(&job, &reader, id);
     }
-    if (!job_options_done(&job, &reader))
+    if (!job_options_done(&job, &reader) ||
+        !cli_no_dash(&reader, "--triangles", triangles, "for a pipe give /dev/stdout"))
         return reader.status;
     if (triangles && !cli_can_write(triangles))
         return EXIT_USAGE;

@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "app/commands.h"
 #include "app/document.h"
 
@@ -151,15 +153,24 @@ static void print_rays(const struct figures *figures)
            figures->render->mrays_per_s);
 }
 
+/* Some drivers begin with the device's name: "llvmpipe (LLVM 15)", "llvmpipe Mesa 22.3". */
+static const char *driver_alone(const whit_device_info *device)
+{
+    size_t word = strcspn(device->name, " ");
+    bool same = word && strncmp(device->name, device->driver, word) == 0;
+    return same && device->driver[word] == ' ' ? device->driver + word + 1 : device->driver;
+}
+
 static int print_text(const struct job *job, const struct render_request *request,
                       const struct figures *figures)
 {
     const whit_accel_info *tree = &figures->tree;
-    printf("scene      %s: %llu triangles in %u instances\n", job->scene_path,
-           (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count);
+    printf("scene      %s: %llu triangles in %u instance%s\n", job->scene_path,
+           (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count,
+           figures->scene.instance_count == 1 ? "" : "s");
     printf("picture    %s: %u x %u, %u samples a pixel, depth %u\n", request->output,
            request->width, request->height, request->samples, request->depth);
-    printf("device     %s (%s)\n", figures->device.name, figures->device.driver);
+    printf("device     %s (%s)\n", figures->device.name, driver_alone(&figures->device));
     print_times(job, figures);
     print_rays(figures);
     printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",

@@ -193,6 +193,9 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
         return cli_misuse(reader, "--rays FILE is missing");
     if (!trace->output)
         return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
+    if (!cli_no_dash(reader, "--rays", trace->rays_path, "for a pipe give /dev/stdin") ||
+        !cli_no_dash(reader, "-o", trace->output, "for a pipe give /dev/stdout"))
+        return false;
     if (cli_can_write(trace->output))
         return true;
     reader->status = EXIT_USAGE;

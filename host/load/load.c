@@ -1,6 +1,7 @@
 #include "load/load.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 
@@ -36,6 +37,11 @@ whit_result load_scene(const struct log *log, const char *path, const struct loa
     *out = NULL;
     if (!file_exists(path)) {
         log_error(log, "%s: there is no such file", path);
+        return WHIT_ERROR_INPUT;
+    }
+    struct stat info;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
+        log_error(log, "%s: this is a folder, not a scene or a model", path);
         return WHIT_ERROR_INPUT;
     }
     struct scene *scene = scene_create(log, path);

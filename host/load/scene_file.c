@@ -288,7 +288,8 @@ whit_result load_scene_file(struct scene *scene, const char *path, const struct 
     scene->file_bytes += size_bytes;
     json_t *root = json_loadb((const char *)text, size_bytes, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
-        log_error(&scene->log, "%s:%d:%d: %s", path, error.line, error.column, error.text);
+        log_error(&scene->log, "%s:%d:%d: %s", path, error.line > 0 ? error.line : 1,
+                  error.column > 0 ? error.column : 1, error.text);
         free(text);
         return WHIT_ERROR_INPUT;
     }

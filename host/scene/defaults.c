@@ -1,5 +1,6 @@
 /* What a scene gets when its file has no camera, light or environment. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -168,10 +169,14 @@ static whit_result add_emitters(struct scene *scene, const struct scene_pose *po
         return result;
     found->emitters = true;
     found->exposed = factor != 1.0;
+    char strength[64];
+    snprintf(strength, sizeof strength, "%.3g", factor);
+    bool stated = strcmp(strength, "1") == 0;
+    snprintf(strength, sizeof strength, ", %.3g times as strongly as stated", factor);
     scene_note(scene, SCENE_NOTE_INFO,
                "no light in the file: its emissive surfaces light it, as %u points (area lights "
-               "are not sampled more finely yet), %.3g times as strongly as stated",
-               samples, factor);
+               "are not sampled more finely yet)%s",
+               samples, stated ? "" : strength);
     return WHIT_OK;
 }
 

@@ -46,9 +46,14 @@ refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame
 
 refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictures/x.gif"
 refuse 2 "identities as PNG" "x.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$P"
+refuse 2 "a dash as picture" "-o -: pictures go to files" render "$CUBE" -o -
+refuse 2 "a dash as identities" "--ids -: " render "$CUBE" -o "$P" --ids -
+refuse 2 "a dash as rays" "--rays -: .*/dev/stdin" trace "$CUBE" --rays - -o "$OUT/pictures/h"
+refuse 2 "a dash as hits" "-o -: .*/dev/stdout" trace "$CUBE" --rays "$CUBE" -o -
+refuse 2 "a dash as triangles" "--triangles -: .*/dev/stdout" scene "$CUBE" --triangles -
 refuse 2 "no such folder" "nowhere/x.png" render "$CUBE" -o "$OUT/nowhere/x.png"
 refuse 2 "missing scene" "missing.json" render "$OUT/missing.json" -o "$P"
-refuse 2 "folder as scene" "$OUT" render "$OUT" -o "$P"
+refuse 2 "folder as scene" "$OUT: this is a folder" render "$OUT" -o "$P"
 printf '{ "objects": [\n  oops ] }\n' >"$OUT/broken.json"
 refuse 2 "broken scene names its line" "broken.json:2" render "$OUT/broken.json" -o "$P"
 printf '{ "materials": {\n  "a": { "texture": "no.png" } } }\n' >"$OUT/bare.json"

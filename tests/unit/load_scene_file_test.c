@@ -111,7 +111,7 @@ static void errors_name_line_and_column(void **state)
                  "test.json:1:29: objects[0].translation: 3 numbers in [ ] are expected");
     assert_error(state, "[]", "test.json:1:1: an object { } is expected");
     assert_error(state, "{\"a\": 1, \"a\": 2}", "test.json:1:");
-    assert_error(state, "", "test.json:1:0: ");
+    assert_error(state, "", "test.json:1:1: ");
 }
 
 /* Strings with braces, escapes and wide letters must not confuse the search for a place. */
