@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/file.h"
 
 /* A reply holds at most this many times the size of the files, plus a constant: a vertex of an OBJ
    face needs 4 characters at least and comes back as 48 bytes and its index. */
@@ -172,6 +173,18 @@ static whit_result report(const struct log *log, const char *path, enum child_en
     }
 }
 
+/* assimp knows the file by the name that it was handed under. */
+static void log_reason(const struct log *log, const char *path, const char *handed_name,
+                       const char *reason)
+{
+    const char *at = handed_name[0] ? strstr(reason, handed_name) : NULL;
+    if (at)
+        log_error(log, "%s: %.*s%s%s", path, (int)(at - reason), reason, path_name(path),
+                  at + strlen(handed_name));
+    else
+        log_error(log, "%s: %s", path, reason);
+}
+
 whit_result importer_run(const struct log *log, const char *path,
                          const struct import_request *request, const struct load_params *params,
                          struct import_block *block)
@@ -187,7 +200,7 @@ whit_result importer_run(const struct log *log, const char *path,
     }
     char reason[512];
     if (!importer_parse(block->reply.data, block->reply.size_bytes, block, reason, sizeof reason)) {
-        log_error(log, "%s: %s", path, reason);
+        log_reason(log, path, request->files[0].name, reason);
         importer_finish(block);
         return WHIT_ERROR_INPUT;
     }

@@ -542,8 +542,9 @@ static int write_error(const char *text, void *to, child_write write)
     if (strstr(text, "bad_alloc"))
         return CHILD_EXIT_MEMORY;
     if (!text[0])
-        text = "the importer refused it without a reason";
-    bool ok = write(to, &magic, sizeof magic) && write(to, text, strlen(text));
+        text = "refused without a reason";
+    bool ok = write(to, &magic, sizeof magic) && write(to, "assimp: ", 8) &&
+              write(to, text, strlen(text));
     return ok ? 0 : 1;
 }
 

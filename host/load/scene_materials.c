@@ -27,8 +27,8 @@ static const char *const common_keys[] = {"emission",
                                           "absorption",
                                           "thin_walled",
                                           NULL};
-static const char *const phong_keys[] = {"ambient",    "diffuse", "specular",       "shininess",
-                                         "reflection", "fresnel", "shadow_catcher", NULL};
+static const char *const phong_keys[] = {"ambient",    "diffuse", "specular", "shininess",
+                                         "reflection", "fresnel", NULL};
 static const char *const metal_keys[] = {"base_color", "metallic", "roughness", "specular_level",
                                          NULL};
 static const char *const unlit_keys[] = {"unlit", "color", NULL};
@@ -269,8 +269,7 @@ static bool read_phong(struct reader *reader, const struct place *place, const j
     return reader_color(reader, place, value, "ambient", out->ambient) &&
            reader_color(reader, place, value, "specular", out->specular) &&
            reader_float(reader, place, value, "shininess", 0.0, 1e6, &out->shininess) &&
-           reader_bool(reader, place, value, "fresnel", &out->fresnel) &&
-           reader_bool(reader, place, value, "shadow_catcher", &out->shadow_catcher);
+           reader_bool(reader, place, value, "fresnel", &out->fresnel);
 }
 
 static bool read_metal_rough(struct reader *reader, const struct place *place, const json_t *value,

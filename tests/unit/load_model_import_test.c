@@ -191,6 +191,20 @@ static void facets_are_welded(void **state)
 
 /* --- hostile files -------------------------------------------------------------------------- */
 
+/* assimp sees the file under a name that says nothing to the user. */
+static void refusals_name_the_file(void **state)
+{
+    struct fixture *fixture = *state;
+    char rubbish[401] = "";
+    memset(rubbish, 'x', sizeof rubbish - 1);
+    const char *path = fixture_text(fixture, "lamp.stl", rubbish);
+    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, ": assimp: "));
+    assert_non_null(strstr(strstr(fixture->last_error, ": assimp: "), "lamp.stl"));
+    assert_null(strstr(fixture->last_error, "model.stl"));
+}
+
 static void claims_of_endless_memory_are_refused(void **state)
 {
     struct fixture *fixture = *state;
@@ -272,6 +286,7 @@ int main(void)
         TEST(colors_of_scans),
         TEST(binary_data_that_looks_like_a_line_end),
         TEST(facets_are_welded),
+        TEST(refusals_name_the_file),
         TEST(claims_of_endless_memory_are_refused),
         TEST(crashes_stay_in_the_child),
         TEST(time_limits_are_kept),
