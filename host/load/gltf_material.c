@@ -106,12 +106,9 @@ static whit_result read_specular(struct reading *r)
     if (result != WHIT_OK || !number(r, object, "specularFactor", 0, 1, &r->out->specular_level) ||
         !gltf_floats(r->gltf, object, &r->at, "specularColorFactor", 3, r->out->specular))
         return WHIT_ERROR_INPUT;
-    if (json_object_get(object, "specularTexture") ||
-        json_object_get(object, "specularColorTexture"))
-        scene_note(r->gltf->scene, SCENE_NOTE_WARNING,
-                   "%s: material `%s`: textures of KHR_materials_specular are not used",
-                   path_name(r->gltf->request->path), r->out->name);
-    return WHIT_OK;
+    result = read_texture(r, object, "specularTexture", SCENE_SLOT_SPECULAR_LEVEL);
+    return result == WHIT_OK ? read_texture(r, object, "specularColorTexture", SCENE_SLOT_SPECULAR)
+                             : result;
 }
 
 /* Attenuation is what is left after a distance; the absorption is Beer's coefficient for it. */

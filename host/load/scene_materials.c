@@ -235,9 +235,10 @@ static bool read_textures(struct reader *reader, const struct place *place, cons
         [SCENE_SLOT_EMISSION] = "emission_map", [SCENE_SLOT_NORMAL] = "normal_map",
         [SCENE_SLOT_BUMP] = "bump_map",         [SCENE_SLOT_METAL_ROUGH] = "metal_rough_map",
         [SCENE_SLOT_OPACITY] = "opacity_map",   [SCENE_SLOT_TRANSMISSION] = "transmission_map",
+        [SCENE_SLOT_SPECULAR_LEVEL] = NULL, /* glTF alone has it */
     };
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
-        if (!read_texture(reader, place, value, keys[slot], &out->textures[slot]))
+        if (keys[slot] && !read_texture(reader, place, value, keys[slot], &out->textures[slot]))
             return false;
     }
     return true;

@@ -145,12 +145,13 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
         uint32_t *use;
     } slots[] = {
         {SCENE_SLOT_DIFFUSE, true, &out->tex_diffuse},
-        {SCENE_SLOT_SPECULAR, false, &out->tex_specular},
+        {SCENE_SLOT_SPECULAR, m->model == SCENE_MODEL_METAL_ROUGH, &out->tex_specular},
         {SCENE_SLOT_EMISSION, true, &out->tex_emission},
         {SCENE_SLOT_NORMAL, false, &out->tex_normal},
         {SCENE_SLOT_BUMP, false, &out->tex_bump},
         {SCENE_SLOT_METAL_ROUGH, false, &out->tex_metal_rough},
         {SCENE_SLOT_TRANSMISSION, false, &out->tex_transmission},
+        {SCENE_SLOT_SPECULAR_LEVEL, false, &out->tex_specular_level},
     };
     for (size_t i = 0; i < sizeof slots / sizeof *slots; ++i) {
         whit_result result = add_use(up, &m->textures[slots[i].slot], slots[i].srgb, slots[i].use);

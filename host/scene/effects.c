@@ -133,8 +133,8 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
                           const struct scene_material *m)
 {
     static const char *const slots[SCENE_SLOT_COUNT] = {
-        "diffuse map", "specular map",    "emission map", "normal map",
-        "bump map",    "metal-rough map", "opacity map",  "transmission map"};
+        "diffuse map",     "specular map", "emission map",     "normal map",        "bump map",
+        "metal-rough map", "opacity map",  "transmission map", "specular level map"};
     scan_optics(out, m);
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
         if (has(m, (enum scene_slot)slot))

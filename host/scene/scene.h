@@ -37,14 +37,15 @@ struct scene_texture_use {
 };
 
 enum scene_slot {
-    SCENE_SLOT_DIFFUSE,      /* RGB sRGB, times diffuse; alpha times opacity */
-    SCENE_SLOT_SPECULAR,     /* RGB linear, times specular */
-    SCENE_SLOT_EMISSION,     /* RGB sRGB, times emission */
-    SCENE_SLOT_NORMAL,       /* tangent-space normal, OpenGL orientation (green up) */
-    SCENE_SLOT_BUMP,         /* height in red */
-    SCENE_SLOT_METAL_ROUGH,  /* green roughness, blue metallic */
-    SCENE_SLOT_OPACITY,      /* red, or alpha where the picture has one, times opacity */
-    SCENE_SLOT_TRANSMISSION, /* red, times transmission */
+    SCENE_SLOT_DIFFUSE,        /* RGB sRGB, times diffuse; alpha times opacity */
+    SCENE_SLOT_SPECULAR,       /* RGB linear (METAL_ROUGH: sRGB), times specular */
+    SCENE_SLOT_EMISSION,       /* RGB sRGB, times emission */
+    SCENE_SLOT_NORMAL,         /* tangent-space normal, OpenGL orientation (green up) */
+    SCENE_SLOT_BUMP,           /* height in red */
+    SCENE_SLOT_METAL_ROUGH,    /* green roughness, blue metallic */
+    SCENE_SLOT_OPACITY,        /* red, or alpha where the picture has one, times opacity */
+    SCENE_SLOT_TRANSMISSION,   /* red, times transmission */
+    SCENE_SLOT_SPECULAR_LEVEL, /* METAL_ROUGH: alpha, times specular_level */
     SCENE_SLOT_COUNT
 };
 

@@ -49,7 +49,7 @@ struct gpu_material {
     gpu_float normal_scale;
     gpu_float alpha_cutoff;
     gpu_float specular_level;
-    gpu_float pad;
+    gpu_uint tex_specular_level;
     gpu_uint tex_diffuse; /* uses, or TEXTURE_NONE */
     gpu_uint tex_specular;
     gpu_uint tex_emission;

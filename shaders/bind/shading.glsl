@@ -38,7 +38,7 @@ gpu_material fetch_material(uint index)
                         uintBitsToFloat(r2.w), row_vec3(r3), r3.w, row_vec3(r4),
                         uintBitsToFloat(r4.w), row_vec3(r5), uintBitsToFloat(r5.w), row_vec3(r6),
                         uintBitsToFloat(r6.w), uintBitsToFloat(r7.x), uintBitsToFloat(r7.y),
-                        uintBitsToFloat(r7.z), 0.0, r8.x, r8.y, r8.z, r8.w, r9.x, r9.y, r9.z, r9.w);
+                        uintBitsToFloat(r7.z), r7.w, r8.x, r8.y, r8.z, r8.w, r9.x, r9.y, r9.z, r9.w);
 }
 
 gpu_texture fetch_texture_use(uint index)

@@ -113,7 +113,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     o.shininess = m.shininess;
     o.straight = 0.0;
     float opacity = m.opacity * s.color_alpha;
-    float metallic = m.metallic, roughness = m.roughness;
+    float metallic = m.metallic, roughness = m.roughness, specular_level = m.specular_level;
     vec3 transmission = m.transmission;
     if (SPEC_TEXTURES != 0u) {
         vec4 texel = vec4(1.0);
@@ -130,6 +130,8 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
             roughness *= gb.x;
             metallic *= gb.y;
         }
+        if (SPEC_METAL_ROUGH != 0u && m.tex_specular_level != TEXTURE_NONE)
+            specular_level *= sample_use(s, m.tex_specular_level).a;
         if (SPEC_REFRACTION != 0u && m.tex_transmission != TEXTURE_NONE)
             transmission *= sample_use(s, m.tex_transmission).r;
     }
@@ -150,10 +152,10 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     float gloss = 1.0; // share of the mirror ray that roughness leaves
     if (o.metal_rough) {
         float r0 = (m.ior - 1.0) / (m.ior + 1.0);
-        vec3 f0 = min(m.specular * (r0 * r0), vec3(1.0)) * m.specular_level;
+        vec3 f0 = min(o.highlight * (r0 * r0), vec3(1.0)) * specular_level;
         f0 = mix(f0, o.diffuse, metallic);
         gloss = (1.0 - roughness) * (1.0 - roughness);
-        vec3 edge = max(vec3(1.0 - roughness), f0);
+        vec3 edge = max(vec3(1.0 - roughness) * mix(specular_level, 1.0, metallic), f0);
         vec3 f = f0 + (edge - f0) * schlick_weight(cos_view);
         vec3 kept = 1.0 - clamp(transmission, 0.0, 1.0);
         transmission *= o.diffuse * (1.0 - metallic);

@@ -294,6 +294,16 @@ static void furnace_neither_gains_nor_loses(void **state)
     }
 }
 
+/* A picture of one texel, all channels `value`. */
+static uint32_t add_texel(struct scene *scene, int value)
+{
+    struct scene_texture texture = {.name = string_copy("t"), .width = 1, .height = 1};
+    texture.rgba = array_alloc(1, 4);
+    assert_non_null(texture.rgba);
+    memset(texture.rgba, value, 4);
+    return scene_add_texture(scene, texture);
+}
+
 /* A lit box of metal-rough material that transmits `transmission` times a texture of `texel`. */
 static struct image transmitting_box(float transmission, int texel)
 {
@@ -305,12 +315,8 @@ static struct image transmitting_box(float transmission, int texel)
     set_rgb(m.transmission, transmission, transmission, transmission);
     m.roughness = 1.0f;
     m.fresnel = true;
-    if (texel >= 0) {
-        struct scene_texture texture = {.name = string_copy("t"), .width = 1, .height = 1};
-        texture.rgba = array_alloc(1, 4);
-        memset(texture.rgba, texel, 4);
-        m.textures[SCENE_SLOT_TRANSMISSION].texture = scene_add_texture(scene, texture);
-    }
+    if (texel >= 0)
+        m.textures[SCENE_SLOT_TRANSMISSION].texture = add_texel(scene, texel);
     add_object(scene, box(4, 4, 0.5), m, 0, 0, 0);
     add_sun(scene, 0, 0, -1, 1.0f);
     struct fixture f = fixture_open(scene, NULL, &picture_params);
@@ -333,6 +339,45 @@ static void texture_of_transmission_decides(void **state)
     image_finish(&opaque);
     image_finish(&masked);
     image_finish(&clear);
+}
+
+/* What the eye sees of a smooth black box under a white sky: its mirror image alone. */
+static float mirrored(float level, float tint, enum scene_slot slot, int texel)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    set_rgb(scene->environment.zenith, 1, 1, 1);
+    set_rgb(scene->environment.horizon, 1, 1, 1);
+    set_rgb(scene->environment.ground, 1, 1, 1);
+    struct scene_material m = material("black");
+    m.model = SCENE_MODEL_METAL_ROUGH;
+    set_rgb(m.diffuse, 0, 0, 0);
+    set_rgb(m.specular, tint, tint, tint);
+    m.specular_level = level;
+    m.roughness = 0.0f;
+    m.metallic = 0.0f;
+    m.fresnel = true;
+    m.textures[slot].texture = add_texel(scene, texel);
+    add_object(scene, box(4, 4, 0.5), m, 0, 0, 0);
+    add_sun(scene, 0, -1, 0, 0.0f); /* no light of whit's own */
+    struct render_params params = picture_params;
+    params.bailout = -1.0;
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    float seen = middle(&image)[1];
+    image_finish(&image);
+    fixture_close(&f);
+    return seen;
+}
+
+static void textures_of_specular_scale_it(void **state)
+{
+    (void)state;
+    /* ior 1.5: 0.04 straight on. The tint is sRGB, the level linear. */
+    assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR, 255), 0.04, 1e-5);
+    assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR, 188), 0.04 * 0.50288646, 1e-5);
+    assert_near(mirrored(1.0f, 0.5f, SCENE_SLOT_SPECULAR, 255), 0.02, 1e-5);
+    assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR_LEVEL, 51), 0.04 * 0.2, 1e-5);
+    assert_near(mirrored(0.5f, 1.0f, SCENE_SLOT_SPECULAR_LEVEL, 51), 0.04 * 0.1, 1e-5);
 }
 
 /* Two pictures of the same scene made with different parameters. */
@@ -489,6 +534,7 @@ int main(void)
         cmocka_unit_test(glass_slab_passes_and_absorbs),
         cmocka_unit_test(furnace_neither_gains_nor_loses),
         cmocka_unit_test(texture_of_transmission_decides),
+        cmocka_unit_test(textures_of_specular_scale_it),
         cmocka_unit_test(tiles_do_not_matter),
         cmocka_unit_test(load_paths_do_not_matter),
         cmocka_unit_test(unused_effects_do_not_matter),
