@@ -40,6 +40,11 @@ fail:
     return result;
 }
 
+void whit_scene_drop_pictures(whit_scene *scene)
+{
+    scene_drop_pictures(scene->scene);
+}
+
 void whit_scene_destroy(whit_scene *scene)
 {
     if (!scene)

@@ -51,6 +51,9 @@ typedef struct whit_load_params {
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
 void whit_scene_destroy(whit_scene *scene);
+/* Frees the texels that the scene holds on the host, for programs that make no further renderer
+   from it: making one is WHIT_ERROR_USAGE afterwards. Renderers made before are not touched. */
+void whit_scene_drop_pictures(whit_scene *scene);
 
 typedef struct whit_scene_info {
     uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,

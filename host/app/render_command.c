@@ -261,6 +261,8 @@ static whit_result prepare(struct job *job, const struct render_request *request
         result = job_open_device(job);
     if (result == WHIT_OK)
         result = create_renderer(job, request, progress, renderer);
+    if (result == WHIT_OK)
+        whit_scene_drop_pictures(job->scene);
     return result;
 }
 

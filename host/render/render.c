@@ -245,6 +245,11 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
         renderer->params = *params;
     scene_effects_scan(renderer->scene, &renderer->effects);
     whit_result result = check_params(log, &renderer->params);
+    if (renderer->scene->pictures_dropped) {
+        log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
+                  renderer->scene->name);
+        result = WHIT_ERROR_USAGE;
+    }
     if (result == WHIT_OK)
         result = scene_pose_init(renderer->scene, renderer->params.time_s, &renderer->pose);
     if (result == WHIT_OK)

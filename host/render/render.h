@@ -39,7 +39,8 @@ struct render_stats {
 struct renderer;
 
 /* `device` and `accel` (with its scene) are borrowed until renderer_destroy. Poses `accel` at
-   params->time_s. WHIT_ERROR_USAGE for a camera that does not exist or sizes out of range. */
+   params->time_s. WHIT_ERROR_USAGE for a camera that does not exist, sizes out of range, or a
+   scene whose pictures were dropped. */
 WHIT_CHECK whit_result renderer_create(const struct log *log, struct device *device,
                                        struct accel *accel, const struct render_params *params,
                                        struct renderer **out);

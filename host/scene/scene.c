@@ -68,6 +68,17 @@ static void finish_texture(struct scene_texture *texture)
     free(texture->rgba);
 }
 
+void scene_drop_pictures(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->texture_count; ++i) {
+        free(scene->textures[i].rgba);
+        scene->textures[i].rgba = NULL;
+    }
+    free(scene->environment.rgb);
+    scene->environment.rgb = NULL;
+    scene->pictures_dropped = true;
+}
+
 void scene_destroy(struct scene *scene)
 {
     if (!scene)

@@ -228,11 +228,15 @@ struct scene {
     uint64_t file_bytes;     /* of all files read */
     uint64_t hash;           /* of everything above; set by scene_freeze */
     bool frozen;
+    bool pictures_dropped; /* by scene_drop_pictures */
 };
 
 /* Never NULL fields afterwards but for arrays that are empty. NULL when memory runs out. */
 struct scene *scene_create(const struct log *log, const char *name);
 void scene_destroy(struct scene *scene);
+/* Frees the texels of textures and environment, the one thing that may leave a frozen scene: for
+   when every renderer that will be made from it has uploaded them. */
+void scene_drop_pictures(struct scene *scene);
 
 /* Fill *out with what the names above call default: grey diffuse PHONG, opaque, no textures;
    identity node under SCENE_NONE; an unused texture. `name` is copied. */

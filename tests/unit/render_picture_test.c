@@ -499,6 +499,24 @@ static void cancel_and_time_limit_stop(void **state)
     fixture_close(&f);
 }
 
+/* What a renderer has uploaded may go; another one may not be made then. */
+static void pictures_may_be_dropped(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(mixed_scene(), NULL, &picture_params);
+    struct image before = render(&f);
+    scene_drop_pictures(f.scene);
+    struct image after = render(&f);
+    assert_memory_equal(before.pixels, after.pixels, (size_t)before.width * before.height * 16);
+    struct renderer *renderer = NULL;
+    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, NULL, &renderer),
+                     WHIT_ERROR_USAGE);
+    assert_null(renderer);
+    image_finish(&before);
+    image_finish(&after);
+    fixture_close(&f);
+}
+
 static void nonsense_is_refused(void **state)
 {
     (void)state;
@@ -540,6 +558,7 @@ int main(void)
         cmocka_unit_test(unused_effects_do_not_matter),
         cmocka_unit_test(cut_loops_are_reported),
         cmocka_unit_test(cancel_and_time_limit_stop),
+        cmocka_unit_test(pictures_may_be_dropped),
         cmocka_unit_test(nonsense_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
