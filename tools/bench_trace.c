@@ -316,7 +316,8 @@ int main(int argc, char **argv)
         {"primary", NULL, 0, false}, {"shadow", NULL, 0, true}, {"diffuse", NULL, 0, false}};
     primary_rays(&pose, width, height, &sets[0]);
     struct gpu_hit *hits = array_alloc_zeroed(sets[0].count, sizeof *hits);
-    if (!hits || renderer_trace(renderer, sets[0].rays, sets[0].count, false, hits) != WHIT_OK)
+    if (!hits ||
+        renderer_trace(renderer, sets[0].rays, sets[0].count, false, hits, NULL) != WHIT_OK)
         return 1;
     secondary_rays(&sets[0], hits, &pose, &sets[1], &sets[2]);
     const struct device_info *info = device_get_info(device);
@@ -337,7 +338,8 @@ int main(int argc, char **argv)
         for (int run = -1; run < runs; ++run) { /* -1: warm-up */
             int at = run < 0 ? 0 : run;
             double wall = clock_ms(), cpu = clock_cpu_ms();
-            if (renderer_trace(renderer, sets[s].rays, sets[s].count, sets[s].any, hits) != WHIT_OK)
+            if (renderer_trace(renderer, sets[s].rays, sets[s].count, sets[s].any, hits, NULL) !=
+                WHIT_OK)
                 return 1;
             whit.runs[at] = (struct sample){clock_ms() - wall, clock_cpu_ms() - cpu};
             whit.hits = (double)count_hits(hits, sets[s].count);

@@ -179,7 +179,7 @@ static struct bvh_box node_box(const struct gpu_bvh_node *node)
 static whit_result meshes_place(struct creation *creation)
 {
     struct accel *accel = creation->accel;
-    uint64_t nodes = accel->instance_node_capacity, triangles = 0;
+    uint64_t nodes = accel->instance_node_capacity, records = 0, triangles = 0;
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         const struct bvh *tree = &creation->trees[i];
         struct accel_mesh *mesh = &accel->meshes[i];
@@ -187,7 +187,8 @@ static whit_result meshes_place(struct creation *creation)
             .root = BVH_EMPTY_REF,
             .first_node = (uint32_t)nodes,
             .node_count = tree->node_count,
-            .first_triangle = (uint32_t)triangles,
+            .first_triangle = (uint32_t)records,
+            .record_count = tree->reference_count,
             .triangle_count = tree->primitive_count,
             .shade_base = (uint32_t)triangles,
             .depth = tree->depth,
@@ -196,8 +197,10 @@ static whit_result meshes_place(struct creation *creation)
             .box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}},
         };
         nodes += tree->node_count;
+        records += tree->reference_count;
         triangles += tree->primitive_count;
-        if (nodes > BVH_FIRST_MASK || triangles > BVH_FIRST_MASK) {
+        accel->clipped |= tree->clipped;
+        if (nodes > BVH_FIRST_MASK || records > BVH_FIRST_MASK) {
             log_error(&accel->log, "%s: more than %u nodes or triangles: split the scene",
                       accel->scene->name, BVH_FIRST_MASK);
             return WHIT_ERROR_INPUT;
@@ -207,11 +210,12 @@ static whit_result meshes_place(struct creation *creation)
         if (tree->depth > accel->mesh_depth)
             accel->mesh_depth = tree->depth;
         uint32_t larger =
-            tree->node_count > tree->primitive_count ? tree->node_count : tree->primitive_count;
+            tree->node_count > tree->reference_count ? tree->node_count : tree->reference_count;
         if (!spans_add(creation, i, larger))
             return WHIT_ERROR_MEMORY;
     }
     accel->node_count = (uint32_t)nodes;
+    accel->record_count = (uint32_t)records;
     accel->triangle_count = (uint32_t)triangles;
     return WHIT_OK;
 }
@@ -242,9 +246,9 @@ static void write_span(void *context, uint32_t index)
     for (uint32_t i = span.begin; i < span.end && i < tree->node_count; ++i) {
         struct gpu_bvh_node *node = &creation->accel->nodes[mesh->first_node + i];
         *node = tree->nodes[i];
-        node->first += i == 1 ? 0 : node->count ? mesh->first_triangle : mesh->first_node;
+        node->first += i == 1 ? 0 : bvh_count(node) ? mesh->first_triangle : mesh->first_node;
     }
-    for (uint32_t i = span.begin; i < span.end && i < tree->primitive_count; ++i)
+    for (uint32_t i = span.begin; i < span.end && i < tree->reference_count; ++i)
         creation->accel->triangles[mesh->first_triangle + i] =
             triangle_record(creation, &creation->accel->scene->meshes[span.mesh], tree->order[i]);
 }
@@ -253,7 +257,7 @@ static whit_result meshes_write(struct creation *creation)
 {
     struct accel *accel = creation->accel;
     accel->nodes = array_alloc_aligned(accel->node_count, sizeof *accel->nodes);
-    accel->triangles = array_alloc_aligned(accel->triangle_count, sizeof *accel->triangles);
+    accel->triangles = array_alloc_aligned(accel->record_count, sizeof *accel->triangles);
     if (!accel->nodes || !accel->triangles)
         return WHIT_ERROR_MEMORY;
     threads_for(accel->params.mesh.thread_count, creation->span_count, write_span, creation);
@@ -372,6 +376,6 @@ void accel_destroy(struct accel *accel)
 uint64_t accel_bytes(const struct accel *accel)
 {
     return (uint64_t)accel->node_count * sizeof *accel->nodes +
-           (uint64_t)accel->triangle_count * sizeof *accel->triangles +
+           (uint64_t)accel->record_count * sizeof *accel->triangles +
            (uint64_t)accel->instance_count * sizeof *accel->instances;
 }

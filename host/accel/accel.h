@@ -15,24 +15,50 @@ struct bvh_box {
     float lo[3], hi[3];
 };
 
-enum bvh_builder { BVH_BINNED, BVH_MEDIAN };
+enum bvh_builder {
+    BVH_BINNED,      /* SAH over equal bins */
+    BVH_MEDIAN,      /* halves */
+    BVH_SWEEP,       /* SAH over every position, sorted once */
+    BVH_SPATIAL,     /* SAH over object and spatial splits (SBVH): needs `triangles` */
+    BVH_SWEEP_NAIVE, /* SAH over every position, each summed up anew: the report's, quadratic */
+    BVH_NONE,        /* no tree: `order` alone, in the order of the input */
+};
+
+/* The triangles that the boxes are of. */
+struct bvh_triangles {
+    const float *positions;  /* 3 a vertex */
+    const uint32_t *indices; /* 3 a triangle */
+    const uint8_t *whole;    /* 1: must stay in one leaf; NULL: none must */
+};
 
 struct bvh_params {
     enum bvh_builder builder;
-    uint32_t bins;         /* BVH_BINNED: 2..256; 0: 16 */
-    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
-    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
-    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
+    uint32_t bins;                         /* BVH_BINNED: 2..256; 0: 16 */
+    uint32_t leaf_limit;                   /* 1..BVH_LEAF_MAX; 0: 4 */
+    uint32_t thread_count;                 /* 0: one a core; the tree is the same for any count */
+    float traversal_cost;                  /* of one node pair relative to one primitive; 0: 1 */
+    bool optimize;                         /* improve the finished tree by reinsertion */
+    const struct bvh_triangles *triangles; /* BVH_SPATIAL */
+    float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
+                             tried (Stich et al. 2009, 4.5); 0: 1e-5 */
+    float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;
+                             < 0: none */
+    double deadline_ms;   /* by clock_ms: WHIT_ERROR_TIME_LIMIT after it; 0: none. Obeyed by the
+                             slow builder, BVH_SWEEP_NAIVE */
+    const volatile bool *cancel; /* the same, WHIT_ERROR_CANCELLED; NULL: never */
 };
 
 /* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
 struct bvh {
     struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
     uint32_t *order;            /* free() */
-    uint32_t node_count;        /* with the unused one; 0: no primitives */
+    uint32_t node_count;        /* with the unused one; 0: no primitives, or BVH_NONE */
     uint32_t primitive_count, leaf_count;
-    uint32_t depth; /* inner nodes on the longest path: the stack a traversal needs */
+    uint32_t
+        reference_count; /* length of `order`; beyond primitive_count where triangles were split */
+    uint32_t depth;      /* inner nodes on the longest path: the stack a traversal needs */
     uint32_t leaf_largest;
+    bool clipped;    /* leaf boxes may hold parts of their triangles only */
     double sah_cost; /* expected cost of a random ray, relative to the root's area */
     double build_ms;
 };
@@ -41,6 +67,24 @@ struct bvh {
 WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                                  const struct bvh_params *params, struct bvh *out);
 void bvh_finish(struct bvh *bvh);
+
+static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
+{
+    return node->count & BVH_COUNT_MASK;
+}
+
+/* Of finished nodes: the axis bits of every pair, sah_cost, leaf_count, leaf_largest, depth
+   (bvh_complete.c). Every builder ends with it. */
+void bvh_complete(struct bvh *bvh, double traversal_cost);
+/* The axis bits alone, of the pair at `first`. */
+void bvh_set_axis(struct gpu_bvh_node *first);
+
+/* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
+   "Parallel reinsertion for bounding volume hierarchy optimization". Keeps leaves as they are; the
+   depth stays within BVH_DEPTH_MAX. Deterministic whatever the thread count. */
+WHIT_CHECK whit_result bvh_optimize(const struct log *log, uint32_t thread_count,
+                                    double traversal_cost, struct bvh *bvh);
+enum { BVH_DEPTH_MAX = 128 };
 
 /* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
    sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
@@ -54,16 +98,24 @@ WHIT_CHECK whit_result bvh_validate(const struct log *log, const struct bvh *bvh
 struct accel_mesh {
     uint32_t root; /* ref, or BVH_EMPTY_REF */
     uint32_t first_node, node_count;
-    uint32_t first_triangle, triangle_count; /* records in the triangle array */
-    uint32_t shade_base;                     /* primitive 0 in arrays indexed by primitive */
+    uint32_t first_triangle, record_count; /* in the triangle array */
+    uint32_t triangle_count;               /* below record_count where triangles were split */
+    uint32_t shade_base;                   /* primitive 0 in arrays indexed by primitive */
     uint32_t depth;
     double sah_cost, build_ms;
     struct bvh_box box;
 };
 
+enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
+
 struct accel_params {
     struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */
+    /* What accel_pose does with the tree over instances when it has one: a new one, or new boxes
+       for the one it has. */
+    enum accel_update update;
     bool validate;
+    bool flatten;          /* one tree for the whole scene, in world space */
+    const char *tree_file; /* mesh trees from bvh_file.c instead of building them; NULL: build */
 };
 
 /* nodes: [0, instance_node_count) is the tree over instances, rebuilt by accel_pose within
@@ -76,12 +128,17 @@ struct accel {
     struct gpu_triangle *triangles;
     struct gpu_instance *instances; /* in the order of the scene */
     struct accel_mesh *meshes;      /* in the order of the scene */
-    uint32_t node_count, triangle_count, instance_count, mesh_count;
+    uint32_t node_count, instance_count, mesh_count;
+    uint32_t record_count, triangle_count; /* in `triangles`; of all meshes */
     uint32_t instance_node_count, instance_node_capacity;
     uint32_t instance_root;  /* ref, or BVH_EMPTY_REF */
     uint32_t instance_depth; /* of the tree over instances */
     uint32_t mesh_depth;     /* deepest mesh tree */
     bool single_identity;    /* one instance, not moved: traversal may start at meshes[..].root */
+    bool clipped;            /* some mesh tree holds clipped triangles */
+    bool flat; /* one tree over the triangles of all instances: meshes[0] is that of the world, as
+                  if it were single_identity; accel_pose builds it anew */
+    bool no_trees; /* BVH_NONE: mesh roots are BVH_EMPTY_REF, rays test every triangle */
     double build_ms, instance_build_ms;
 };
 
@@ -97,22 +154,15 @@ uint64_t accel_bytes(const struct accel *accel);
 
 /* ---- Traversal on the CPU ---- */
 
-/* What a traversal counted; the shader counts the same. */
-struct traverse_counts {
-    uint32_t pairs;     /* node pairs fetched: box tests are twice that */
-    uint32_t triangles; /* triangle tests */
-    uint32_t instances; /* instances entered */
-    uint32_t stack;     /* most entries on the stack */
-};
-
 /* The float twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
-   on a device whose arithmetic is IEEE. tests t_min <= t <= t_max; equal t goes to the smaller
-   instance, then primitive. `skip_instance`/`skip_primitive`: not hit (HIT_NONE: none). `any`: any
-   hit will do, then only `primitive` != HIT_NONE counts. `counts` may be NULL; STATUS_* bits are
-   or-ed into *status. */
-void traverse_float(const struct accel *accel, const struct gpu_ray *ray, bool any,
+   and the same costs on a device whose arithmetic is IEEE. tests t_min <= t <= t_max; equal t goes
+   to the smaller instance, then primitive. `order`: ORDER_*. `skip_instance`/`skip_primitive`: not
+   hit (HIT_NONE: none). `any`: any hit will do, then only `primitive` != HIT_NONE counts. The ray's
+   cost is added to *cost (stack and depth: the larger one), which may be NULL; STATUS_* bits are
+   or-ed into *status. Without trees it is traverse_brute_float. */
+void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
                     uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                    struct traverse_counts *counts, uint32_t *status);
+                    struct gpu_cost *cost, uint32_t *status);
 /* The same answer without any tree: every triangle of every instance. */
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
                           struct gpu_hit *hit);

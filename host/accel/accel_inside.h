@@ -19,7 +19,7 @@ static inline struct bvh_box accel_triangle_box(const float a[3], const float b[
 
 static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
 {
-    return node->count << BVH_COUNT_SHIFT | node->first;
+    return bvh_count(node) << BVH_COUNT_SHIFT | node->first;
 }
 
 /* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes that enter the

@@ -16,7 +16,6 @@ enum {
     TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
     DEPTH_OF_MEDIANS = 96, /* from here on halves: 28 levels more for 2^28 primitives */
-    DEPTH_MAX = 128,
 };
 
 struct build {
@@ -35,7 +34,6 @@ struct build_task {
     struct build_range range;
     struct build_range halves[2];
     bool split;
-    uint32_t depth; /* deepest leaf below */
 };
 
 /* ---- Records ---- */
@@ -155,7 +153,7 @@ static void build_subtree(void *context, uint32_t index)
 {
     struct build *build = context;
     struct build_task *task = &build->tasks[index];
-    struct build_range stack[DEPTH_MAX], halves[2], range = task->range;
+    struct build_range stack[BVH_DEPTH_MAX], halves[2], range = task->range;
     uint32_t top = 0;
     for (;;) {
         if (range_split(build, &range, 1, halves)) {
@@ -163,8 +161,6 @@ static void build_subtree(void *context, uint32_t index)
             range = halves[0];
             continue;
         }
-        if (range.depth > task->depth)
-            task->depth = range.depth;
         if (top == 0)
             return;
         range = stack[--top];
@@ -207,9 +203,8 @@ static int larger_first(const void *a, const void *b)
     return x->range.first < y->range.first ? -1 : x->range.first > y->range.first;
 }
 
-/* Splits the top of the tree until there are enough subtrees for all threads, then builds these.
-   Returns the depth. */
-static uint32_t build_tree(struct build *build, const struct build_bounds *bounds)
+/* Splits the top of the tree until there are enough subtrees for all threads, then builds these. */
+static void build_tree(struct build *build, const struct build_bounds *bounds)
 {
     uint32_t threads = build->params.thread_count;
     build->tasks[0] = (struct build_task){.range = {.bounds = *bounds, .count = build->count}};
@@ -227,38 +222,14 @@ static uint32_t build_tree(struct build *build, const struct build_bounds *bound
         split_tasks(build, large);
     }
     threads_for(threads, build->task_count, build_subtree, build);
-    uint32_t depth = 0;
-    for (uint32_t i = 0; i < build->task_count; ++i)
-        depth = build->tasks[i].depth > depth ? build->tasks[i].depth : depth;
-    return depth;
 }
 
 /* ---- The finished tree ---- */
 
-static double half_area(const struct gpu_bvh_node *node)
+static void node_link(struct gpu_bvh_node *node, const uint32_t *slots)
 {
-    double x = (double)node->hi[0] - (double)node->lo[0];
-    double y = (double)node->hi[1] - (double)node->lo[1];
-    double z = (double)node->hi[2] - (double)node->lo[2];
-    return x * y + y * z + z * x;
-}
-
-struct tally {
-    double area_inner, area_leaves; /* of leaves: times primitives */
-    uint32_t leaf_count, leaf_largest;
-};
-
-static void node_finish(struct gpu_bvh_node *node, const uint32_t *slots, struct tally *tally)
-{
-    if (node->count == 0) {
+    if (node->count == 0)
         node->first = 2 + 2 * slots[(node->first - 2) / 2];
-        tally->area_inner += half_area(node);
-        return;
-    }
-    tally->area_leaves += half_area(node) * node->count;
-    ++tally->leaf_count;
-    if (node->count > tally->leaf_largest)
-        tally->leaf_largest = node->count;
 }
 
 /* Slots are in depth-first order, and pairs only move down. */
@@ -270,23 +241,17 @@ static void squeeze(struct build *build, struct bvh *out)
         build->slots[i] = used ? pair_count : UINT32_MAX;
         pair_count += used;
     }
-    struct tally tally = {0};
-    node_finish(&build->nodes[0], build->slots, &tally);
+    node_link(&build->nodes[0], build->slots);
     memset(&build->nodes[1], 0, sizeof build->nodes[1]);
     for (uint32_t i = 0; i < slot_count; ++i) {
         if (build->slots[i] == UINT32_MAX)
             continue;
         struct gpu_bvh_node *pair = &build->nodes[2 + 2 * build->slots[i]];
         memmove(pair, &build->nodes[2 + 2 * i], 2 * sizeof *pair);
-        node_finish(&pair[0], build->slots, &tally);
-        node_finish(&pair[1], build->slots, &tally);
+        node_link(&pair[0], build->slots);
+        node_link(&pair[1], build->slots);
     }
-    double root = half_area(&build->nodes[0]);
-    double cost = build->params.traversal_cost;
-    out->sah_cost = root > 0.0 ? (tally.area_inner * cost + tally.area_leaves) / root : 0.0;
     out->node_count = 2 + 2 * pair_count;
-    out->leaf_count = tally.leaf_count;
-    out->leaf_largest = tally.leaf_largest;
 }
 
 static bool params_resolve(const struct bvh_params *in, uint32_t count, struct build_params *out)
@@ -332,7 +297,7 @@ whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32
                       const struct bvh_params *params, struct bvh *out)
 {
     double begin_ms = clock_ms();
-    *out = (struct bvh){.primitive_count = count};
+    *out = (struct bvh){.primitive_count = count, .reference_count = count};
     struct build build = {.boxes = boxes, .count = count};
     whit_result result = WHIT_OK;
     if (!params_resolve(params, count, &build.params)) {
@@ -353,8 +318,9 @@ whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32
         result = build_records(log, &build, &bounds);
     if (result != WHIT_OK)
         goto done;
-    out->depth = build_tree(&build, &bounds);
+    build_tree(&build, &bounds);
     squeeze(&build, out);
+    bvh_complete(out, (double)build.params.traversal_cost);
     for (uint32_t i = 0; i < count; ++i)
         out->order[i] = build.records[i].primitive;
     out->build_ms = clock_ms() - begin_ms;

@@ -83,17 +83,17 @@ static bool check_leaf(const struct view *view, struct walk *walk, struct visit 
 {
     const struct gpu_bvh_node *node = &view->nodes[at.node];
     uint32_t end = view->first_slot + view->slot_count;
-    if (node->count > view->leaf_limit)
+    if (bvh_count(node) > view->leaf_limit)
         REFUSE(view, "a leaf is over the limit, node", at.node);
-    if (node->first < view->first_slot || node->first > end || node->count > end - node->first)
+    if (node->first < view->first_slot || node->first > end || bvh_count(node) > end - node->first)
         REFUSE(view, "a leaf reaches out of range, node", at.node);
-    for (uint32_t i = 0; i < node->count; ++i) {
+    for (uint32_t i = 0; i < bvh_count(node); ++i) {
         if (!check_slot(view, walk, node->first + i, node))
             return false;
     }
     ++walk->leaf_count;
-    if (node->count > walk->leaf_largest)
-        walk->leaf_largest = node->count;
+    if (bvh_count(node) > walk->leaf_largest)
+        walk->leaf_largest = bvh_count(node);
     if (at.depth > walk->depth)
         walk->depth = at.depth;
     return true;
@@ -127,7 +127,7 @@ static bool walk_run(const struct view *view, struct walk *walk)
         const struct gpu_bvh_node *node = &view->nodes[at.node];
         if (!box_is_sane(node))
             REFUSE(view, "a box is not finite, or inside out, node", at.node);
-        if (!(node->count > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)))
+        if (!(bvh_count(node) > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)))
             return false;
     }
     if (2 + 2 * (uint64_t)walk->pairs != view->node_count)
@@ -282,7 +282,7 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
         .first_node = m->first_node,
         .node_count = m->node_count,
         .first_slot = m->first_triangle,
-        .slot_count = m->triangle_count,
+        .slot_count = m->record_count,
         .primitive_count = m->triangle_count,
         .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
         .primitive = mesh_primitive,
@@ -292,8 +292,8 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
     bool placed = m->first_node >= accel->instance_node_capacity &&
                   m->first_node <= accel->node_count &&
                   m->node_count <= accel->node_count - m->first_node &&
-                  m->first_triangle <= accel->triangle_count &&
-                  m->triangle_count <= accel->triangle_count - m->first_triangle &&
+                  m->first_triangle <= accel->record_count &&
+                  m->record_count <= accel->record_count - m->first_triangle &&
                   m->triangle_count == user.mesh->triangle_count;
     if (!placed) {
         refuse(&view, "its nodes or triangles are out of range, mesh", index);

@@ -309,7 +309,7 @@ static void walk_tree(struct search *s, const struct probe *p, uint32_t root, le
         const struct gpu_bvh_node *node = &s->accel->nodes[stack[--top]];
         if (box_entry(s, p, node->lo, node->hi) == INFINITY)
             continue;
-        if (node->count > 0) {
+        if (bvh_count(node) > 0) {
             leaf(s, p, node, instance);
             continue;
         }
@@ -327,7 +327,7 @@ static void walk_tree(struct search *s, const struct probe *p, uint32_t root, le
 static void visit_mesh_leaf(struct search *s, const struct probe *p,
                             const struct gpu_bvh_node *leaf, uint32_t instance)
 {
-    for (uint32_t i = 0; i < leaf->count; ++i)
+    for (uint32_t i = 0; i < bvh_count(leaf); ++i)
         visit_triangle(s, p, leaf->first + i, instance);
 }
 

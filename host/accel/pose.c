@@ -69,6 +69,17 @@ static bool row_store(float out[3], const double *row)
     return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]);
 }
 
+/* Half the longest side; 0 for an empty box. */
+static float box_reach(const struct bvh_box *box)
+{
+    float reach = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        float half = box->hi[i] * 0.5f - box->lo[i] * 0.5f;
+        reach = half > reach ? half : reach;
+    }
+    return reach;
+}
+
 /* False when floats cannot hold it. */
 static bool instance_fill(const struct affine *forward, const struct affine *inverse,
                           const struct accel_mesh *mesh, uint32_t mesh_index,
@@ -81,6 +92,11 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
         .root = mesh->root,
         .shade_base = mesh->shade_base,
         .mesh = mesh_index,
+        .record_count = mesh->record_count,
+        .center_x = mesh->box.lo[0] * 0.5f + mesh->box.hi[0] * 0.5f,
+        .center_y = mesh->box.lo[1] * 0.5f + mesh->box.hi[1] * 0.5f,
+        .center_z = mesh->box.lo[2] * 0.5f + mesh->box.hi[2] * 0.5f,
+        .reach = box_reach(&mesh->box),
     };
     bool good = isfinite(out->origin_x) && isfinite(out->origin_y) && isfinite(out->origin_z);
     good &= row_store(out->inverse0, &inverse->m[0]);
@@ -143,7 +159,7 @@ static void pose_commit(struct accel *accel, const struct scene_pose *pose,
     if (tree->node_count > 0)
         memcpy(accel->nodes, tree->nodes, tree->node_count * sizeof *accel->nodes);
     for (uint32_t i = 0; i < tree->node_count; ++i) {
-        if (accel->nodes[i].count > 0)
+        if (bvh_count(&accel->nodes[i]) > 0)
             accel->nodes[i].first = posing->indices[tree->order[accel->nodes[i].first]];
     }
     accel->instance_node_count = tree->node_count;

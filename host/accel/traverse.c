@@ -1,5 +1,5 @@
 /* shaders/bind/traverse.glsl in C, for the two modes that geometry alone decides. */
-#include "accel/accel.h"
+#include "accel/accel_inside.h"
 
 #include <float.h>
 
@@ -13,12 +13,13 @@ enum { STACK_SIZE = 512 };
 
 struct walk {
     const struct accel *accel;
+    uint32_t order;
     bool any;
     float t_min;
     uint32_t skip_instance, skip_primitive;
     struct gpu_hit *hit; /* t is the largest that still counts */
     uint32_t triangle;   /* record of the hit */
-    struct traverse_counts counts;
+    struct gpu_cost cost;
     uint32_t status;
     uint32_t stack[STACK_SIZE];
 };
@@ -40,8 +41,8 @@ static void push_ref(struct walk *walk, uint32_t ref, uint32_t *top)
         return;
     }
     walk->stack[(*top)++] = ref;
-    if (*top > walk->counts.stack)
-        walk->counts.stack = *top;
+    if (*top > walk->cost.stack)
+        walk->cost.stack = *top;
 }
 
 static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
@@ -62,13 +63,18 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
         a_near = a_near * near_scale;
         b_near = b_near * near_scale;
     }
-    ++walk->counts.pairs;
+    ++walk->cost.pairs;
     float t = walk->hit->t;
     bool hit_a = a_near <= a_far && a_near <= t;
     bool hit_b = b_near <= b_far && b_near <= t;
-    uint32_t ref_a = (a->count << BVH_COUNT_SHIFT) | a->first;
-    uint32_t ref_b = (b->count << BVH_COUNT_SHIFT) | b->first;
-    bool b_first = hit_b && (!hit_a || b_near < a_near);
+    uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
+    bool b_nearer = b_near < a_near;
+    if (walk->order == ORDER_SIGN)
+        b_nearer = ray->negative[a->count >> BVH_AXIS_SHIFT & BVH_AXIS_MASK] !=
+                   ((a->count & BVH_SECOND_LOW) != 0);
+    if (walk->order == ORDER_BASIC)
+        b_nearer = false;
+    bool b_first = hit_b && (!hit_a || b_nearer);
     if (hit_a && hit_b)
         push_ref(walk, b_first ? ref_a : ref_b, top);
     if (!hit_a && !hit_b)
@@ -80,7 +86,7 @@ static bool test_triangle(struct walk *walk, const struct ray_setup *ray, uint32
                           uint32_t instance)
 {
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
-    ++walk->counts.triangles;
+    ++walk->cost.triangles;
     float t, u, v;
     if (!intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
                             vec3_sub(vec3_load(triangle->v1), ray->origin),
@@ -150,7 +156,7 @@ static void traverse_instances(struct walk *walk, const struct gpu_ray *ray, uin
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];
             struct ray_setup local = local_ray(instance, ray);
-            ++walk->counts.instances;
+            ++walk->cost.instances;
             traverse_mesh(walk, &local, instance->root, top, index);
             bool done = walk->any && walk->hit->primitive != HIT_NONE;
             ref = done ? REF_DONE : pop_ref(walk, 0, &top);
@@ -197,19 +203,31 @@ static void end_hit(struct gpu_hit *hit, const struct accel *accel, uint32_t rec
         set_normal(hit, accel, record);
 }
 
-void traverse_float(const struct accel *accel, const struct gpu_ray *ray, bool any,
+static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
+{
+    to->rays += from->rays;
+    to->pairs += from->pairs;
+    to->leaves += from->leaves;
+    to->instances += from->instances;
+    to->triangles += from->triangles;
+    to->stack = from->stack > to->stack ? from->stack : to->stack;
+    to->depth = from->depth > to->depth ? from->depth : to->depth;
+}
+
+void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
                     uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                    struct traverse_counts *counts, uint32_t *status)
+                    struct gpu_cost *cost, uint32_t *status)
 {
     struct walk walk;
     walk.accel = accel;
+    walk.order = order;
     walk.any = any;
     walk.t_min = ray->t_min;
     walk.skip_instance = skip_instance;
     walk.skip_primitive = skip_primitive;
     walk.hit = hit;
     walk.triangle = 0;
-    walk.counts = (struct traverse_counts){0};
+    walk.cost = (struct gpu_cost){.rays = 1};
     walk.status = 0;
     begin_hit(hit, ray->t_max);
     if (ray_is_usable(ray)) {
@@ -221,8 +239,8 @@ void traverse_float(const struct accel *accel, const struct gpu_ray *ray, bool a
         }
     }
     end_hit(hit, accel, walk.triangle);
-    if (counts)
-        *counts = walk.counts;
+    if (cost)
+        add_cost(&walk.cost, cost);
     *status |= walk.status;
 }
 

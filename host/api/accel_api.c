@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "api/handles.h"
+#include "base/clock.h"
 
 #ifdef NDEBUG
 #define ALWAYS_VALIDATE false
@@ -10,8 +11,14 @@
 
 static whit_result check_params(const struct log *log, const whit_accel_params *params)
 {
-    if (params->build != WHIT_BUILD_BINNED && params->build != WHIT_BUILD_MEDIAN) {
+    if ((unsigned)params->build > WHIT_BUILD_NONE) {
         log_error(log, "there is no builder %d", (int)params->build);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->instance_build != WHIT_BUILD_BINNED &&
+        params->instance_build != WHIT_BUILD_MEDIAN) {
+        log_error(log, "instances: binned and median are the builders there are, not %d",
+                  (int)params->instance_build);
         return WHIT_ERROR_USAGE;
     }
     if (params->bins != 0 && (params->bins < 2 || params->bins > 256)) {
@@ -24,6 +31,16 @@ static whit_result check_params(const struct log *log, const whit_accel_params *
         return WHIT_ERROR_USAGE;
     }
     return WHIT_OK;
+}
+
+static enum bvh_builder builder_of(whit_build build)
+{
+    static const enum bvh_builder builders[] = {
+        [WHIT_BUILD_BINNED] = BVH_BINNED, [WHIT_BUILD_MEDIAN] = BVH_MEDIAN,
+        [WHIT_BUILD_SWEEP] = BVH_SWEEP,   [WHIT_BUILD_SPATIAL] = BVH_SPATIAL,
+        [WHIT_BUILD_NONE] = BVH_NONE,     [WHIT_BUILD_SWEEP_NAIVE] = BVH_SWEEP_NAIVE,
+    };
+    return builders[build];
 }
 
 whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
@@ -42,18 +59,25 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
         return WHIT_ERROR_MEMORY;
     }
     accel->log = scene->log;
-    const struct bvh_params tree = {
-        .builder = params->build == WHIT_BUILD_MEDIAN ? BVH_MEDIAN : BVH_BINNED,
-        .bins = params->bins,
-        .leaf_limit = params->leaf_limit,
-        .thread_count = params->threads,
-    };
-    struct accel_params inner = {
-        .mesh = tree,
-        .instances = tree,
+    const struct accel_params inner = {
+        .mesh = {.builder = builder_of(params->build),
+                 .bins = params->bins,
+                 .leaf_limit = params->leaf_limit,
+                 .thread_count = params->threads,
+                 .optimize = params->optimize,
+                 .spatial_alpha = params->spatial_alpha,
+                 .spatial_budget = params->spatial_budget,
+                 .deadline_ms =
+                     params->time_limit_s > 0.0 ? clock_ms() + 1e3 * params->time_limit_s : 0.0,
+                 .cancel = params->cancel},
+        .instances = {.builder = builder_of(params->instance_build),
+                      .leaf_limit = 1,
+                      .thread_count = params->threads},
+        .update = params->instance_refit ? ACCEL_REFIT : ACCEL_REBUILD,
+        .flatten = params->flatten,
+        .tree_file = params->tree_path,
         .validate = params->validate || ALWAYS_VALIDATE,
     };
-    inner.instances.leaf_limit = 1;
     result = accel_create(&scene->log, scene->scene, &inner, &accel->accel);
     if (result != WHIT_OK) {
         whit_accel_destroy(accel);
@@ -77,6 +101,7 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
     *info = (whit_accel_info){
         .node_count = accel->node_count,
         .triangle_count = accel->triangle_count,
+        .reference_count = accel->record_count,
         .depth = accel->mesh_depth,
         .instance_depth = accel->instance_depth,
         .bytes = accel_bytes(accel),
@@ -87,7 +112,7 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         const struct accel_mesh *mesh = &accel->meshes[i];
         for (uint32_t k = 0; k < mesh->node_count; ++k)
-            info->leaf_count += accel->nodes[mesh->first_node + k].count != 0;
+            info->leaf_count += bvh_count(&accel->nodes[mesh->first_node + k]) != 0;
         if (mesh->triangle_count > largest) {
             largest = mesh->triangle_count;
             info->sah_cost = mesh->sah_cost;

@@ -31,6 +31,7 @@ struct whit_renderer {
     struct renderer *renderer; /* NULL: CPU only */
     struct accel *accel;       /* borrowed */
     const volatile bool *cancel;
+    uint32_t order; /* ORDER_* */
     struct log log;
 };
 

@@ -49,6 +49,10 @@ static whit_result render_params_from_public(const struct log *log,
         .progress = params->progress,
         .progress_user = params->progress_user,
         .time_limit_s = params->time_limit_s,
+        .order = params->traversal == WHIT_TRAVERSAL_SIGN    ? ORDER_SIGN
+                 : params->traversal == WHIT_TRAVERSAL_BASIC ? ORDER_BASIC
+                                                             : ORDER_DISTANCE,
+        .count = params->count,
     };
     return load_path_from_name(log, params->load_path, &out->load_path);
 }
@@ -83,6 +87,7 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     renderer->log = log;
     renderer->accel = accel->accel;
     renderer->cancel = params->cancel;
+    renderer->order = inner.order;
     result = device
                  ? renderer_create(&log, device->device, accel->accel, &inner, &renderer->renderer)
                  : pose_on_cpu(accel->accel, params->time_s);
@@ -172,9 +177,26 @@ struct cpu_trace {
     const struct gpu_ray *rays;
     struct gpu_hit *hits;
     uint64_t count;
+    uint32_t order;
     bool any, brute;
-    uint32_t *statuses; /* one a batch: threads share nothing */
+    struct gpu_cost *costs; /* one a batch, or NULL */
+    uint32_t *statuses;     /* one a batch: threads share nothing */
 };
+
+static whit_cost cost_sum(const struct gpu_cost *costs, uint64_t count)
+{
+    whit_cost sum = {0};
+    for (uint64_t i = 0; i < count; ++i) {
+        sum.rays += costs[i].rays;
+        sum.pairs += costs[i].pairs;
+        sum.leaves += costs[i].leaves;
+        sum.instances += costs[i].instances;
+        sum.triangles += costs[i].triangles;
+        sum.stack = costs[i].stack > sum.stack ? costs[i].stack : sum.stack;
+        sum.depth = costs[i].depth > sum.depth ? costs[i].depth : sum.depth;
+    }
+    return sum;
+}
 
 static bool cancelled(const whit_renderer *renderer)
 {
@@ -193,20 +215,26 @@ static void trace_batch(void *context, uint32_t index)
         if (trace->brute)
             traverse_brute_float(accel, &trace->rays[i], &trace->hits[i]);
         else
-            traverse_float(accel, &trace->rays[i], trace->any, HIT_NONE, HIT_NONE, &trace->hits[i],
-                           NULL, &trace->statuses[index]);
+            traverse_float(accel, trace->order, &trace->rays[i], trace->any, HIT_NONE, HIT_NONE,
+                           &trace->hits[i], trace->costs ? &trace->costs[index] : NULL,
+                           &trace->statuses[index]);
     }
 }
 
-static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace *trace)
+static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace *trace,
+                                whit_cost *cost)
 {
     uint64_t batches = (trace->count + CPU_BATCH - 1) / CPU_BATCH;
     if (batches > UINT32_MAX) {
         log_error(&renderer->log, "more rays than one call takes");
         return WHIT_ERROR_USAGE;
     }
-    trace->statuses = calloc(batches ? (size_t)batches : 1, sizeof *trace->statuses);
-    if (!trace->statuses) {
+    size_t at_least_one = batches ? (size_t)batches : 1;
+    trace->statuses = calloc(at_least_one, sizeof *trace->statuses);
+    trace->costs = cost ? calloc(at_least_one, sizeof *trace->costs) : NULL;
+    if (!trace->statuses || (cost && !trace->costs)) {
+        free(trace->statuses);
+        free(trace->costs);
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
@@ -214,6 +242,9 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     uint32_t status = 0;
     for (uint64_t i = 0; i < batches; ++i)
         status |= trace->statuses[i];
+    if (cost)
+        *cost = cost_sum(trace->costs, batches);
+    free(trace->costs);
     free(trace->statuses);
     if (cancelled(renderer))
         return WHIT_ERROR_CANCELLED;
@@ -227,15 +258,37 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     return WHIT_OK;
 }
 
+static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray *rays,
+                                   uint64_t count, bool any, struct gpu_hit *hits, whit_cost *cost)
+{
+    struct gpu_cost *costs = NULL;
+    if (cost) {
+        costs = calloc(count ? (size_t)count : 1, sizeof *costs);
+        if (!costs) {
+            log_error(&renderer->log, "out of memory");
+            return WHIT_ERROR_MEMORY;
+        }
+    }
+    whit_result result = renderer_trace(renderer->renderer, rays, count, any, hits, costs);
+    if (cost && result == WHIT_OK)
+        *cost = cost_sum(costs, count);
+    free(costs);
+    return result;
+}
+
+double whit_trace_device_ms(const whit_renderer *renderer)
+{
+    return renderer->renderer ? renderer_trace_device_ms(renderer->renderer) : -1.0;
+}
+
 whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
-                       uint64_t count, bool any, whit_hit *hits)
+                       uint64_t count, bool any, whit_hit *hits, whit_cost *cost)
 {
     const void *from = rays;
     void *to = hits;
     if (on == WHIT_TRACE_DEVICE) {
         whit_result result = need_device(renderer);
-        return result == WHIT_OK ? renderer_trace(renderer->renderer, from, count, any, to)
-                                 : result;
+        return result == WHIT_OK ? trace_on_device(renderer, from, count, any, to, cost) : result;
     }
     struct cpu_trace trace = {
         .renderer = renderer,
@@ -244,6 +297,7 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
         .count = count,
         .any = any,
         .brute = on == WHIT_TRACE_CPU_BRUTE,
+        .order = renderer->order,
     };
-    return trace_on_cpu(renderer, &trace);
+    return trace_on_cpu(renderer, &trace, cost);
 }

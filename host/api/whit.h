@@ -134,14 +134,30 @@ WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time
 
 /* ---- Trees ---- */
 
-typedef enum whit_build { WHIT_BUILD_BINNED = 0, WHIT_BUILD_MEDIAN } whit_build;
+typedef enum whit_build {
+    WHIT_BUILD_BINNED = 0,  /* surface area heuristic over equal bins */
+    WHIT_BUILD_MEDIAN,      /* halves */
+    WHIT_BUILD_SWEEP,       /* surface area heuristic over every position */
+    WHIT_BUILD_SPATIAL,     /* splits space too, which may put a triangle in several leaves */
+    WHIT_BUILD_SWEEP_NAIVE, /* the tree of SWEEP in quadratic time, for comparison */
+    WHIT_BUILD_NONE,        /* no tree: rays test every triangle */
+} whit_build;
 
 typedef struct whit_accel_params {
     whit_build build;
-    uint32_t bins;       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
-    uint32_t leaf_limit; /* triangles in a leaf, 1..15; 0: 4 */
-    uint32_t threads;    /* 0: one a core; never changes the tree */
-    bool validate;       /* check the tree after the build (always in debug builds) */
+    bool optimize;                       /* improve the finished trees by reinsertion */
+    uint32_t bins;                       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
+    uint32_t leaf_limit;                 /* triangles in a leaf, 1..15; 0: 4 */
+    float spatial_alpha, spatial_budget; /* of WHIT_BUILD_SPATIAL: see docs/cli.md; 0: defaults */
+    uint32_t threads;                    /* 0: one a core; never changes the tree */
+    whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
+    bool instance_refit;       /* moving instances keep their tree, with new boxes */
+    bool flatten;              /* no tree over instances: one tree over all their triangles */
+    bool validate;             /* check the tree after the build (always in debug builds) */
+    const char
+        *tree_path;      /* mesh trees saved by whit_accel_save, instead of building; NULL: build */
+    double time_limit_s; /* for WHIT_BUILD_SWEEP_NAIVE; 0: none */
+    const volatile bool *cancel;
 } whit_accel_params;
 
 WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
@@ -150,10 +166,34 @@ void whit_accel_destroy(whit_accel *accel);
 
 typedef struct whit_accel_info {
     uint32_t node_count, leaf_count, triangle_count, depth, instance_depth;
+    uint32_t
+        reference_count; /* triangles in leaves: more than triangle_count where some are split */
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
 } whit_accel_info;
 void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
+
+/* Checks every tree: each triangle in a leaf, children inside parents, indices in range, no cycle,
+   leaf sizes, depth. WHIT_ERROR_STATUS, with the first violation in the log. */
+WHIT_CHECK whit_result whit_accel_validate(const whit_accel *accel);
+/* Saves the mesh trees with a checksum, for whit_accel_params.tree_path and the same scene. */
+WHIT_CHECK whit_result whit_accel_save(const whit_accel *accel, const char *path);
+
+enum { WHIT_DEPTH_BINS = 130, WHIT_LEAF_BINS = 16 };
+/* What trees are like: of all mesh trees together, a mesh with several instances once. */
+typedef struct whit_accel_report {
+    uint64_t leaves_at_depth[WHIT_DEPTH_BINS]; /* the root is depth 0 */
+    uint64_t leaves_of_size[WHIT_LEAF_BINS];   /* triangles in a leaf */
+    double sah_cost;                           /* mean over meshes, weighted by area */
+    double epo;              /* end-point overlap (Aila, Karras and Laine 2013, section 3) */
+    double overlap;          /* area shared by siblings, relative to the area of their parents */
+    double predicted_visits; /* of a random line that meets the root: pairs, by areas */
+    double predicted_triangles;
+    double measured_visits; /* the same of random rays on the CPU */
+    double measured_triangles;
+    uint64_t measured_rays;
+} whit_accel_report;
+WHIT_CHECK whit_result whit_accel_get_report(const whit_accel *accel, whit_accel_report *report);
 
 /* ---- Devices ---- */
 
@@ -185,6 +225,13 @@ uint32_t whit_device_validation_messages(const whit_device *device);
 
 /* ---- Rendering ---- */
 
+/* Which of two nodes that a ray meets is visited first. Never changes a picture. */
+typedef enum whit_traversal {
+    WHIT_TRAVERSAL_DISTANCE = 0, /* the one entered earlier */
+    WHIT_TRAVERSAL_SIGN,  /* by the ray's sign on the axis where their centres are farthest apart */
+    WHIT_TRAVERSAL_BASIC, /* as they come */
+} whit_traversal;
+
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
     const char *camera;     /* name or index of a camera of the scene, or
@@ -204,6 +251,8 @@ typedef struct whit_renderer_params {
     void *progress_user;
     double time_limit_s;   /* 0: none */
     const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
+    whit_traversal traversal;
+    bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 
 /* `device` may be NULL: then only whit_trace on the CPU works. */
@@ -216,11 +265,44 @@ void whit_renderer_destroy(whit_renderer *renderer);
    (logged in words). May be called again: the same bytes. */
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
+/* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
+   pipelines. The picture is that of a renderer made at that time, byte for byte. */
+WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
+
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
 } whit_aov;
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
+
+typedef enum whit_ray_kind {
+    WHIT_RAY_PRIMARY = 0,
+    WHIT_RAY_SHADOW,
+    WHIT_RAY_REFLECTED,
+    WHIT_RAY_REFRACTED,
+    WHIT_RAY_KINDS,
+} whit_ray_kind;
+
+/* What traversals cost; see struct gpu_cost in shaders/abi/bvh.h. Sums, but for stack and depth,
+   which are the largest. */
+typedef struct whit_cost {
+    uint64_t rays;
+    uint64_t pairs; /* inner nodes opened: box tests are twice that */
+    uint64_t leaves, instances, triangles;
+    uint32_t stack, depth;
+} whit_cost;
+
+typedef enum whit_view {
+    WHIT_VIEW_DEPTH = 0, /* deepest level of the trees that was looked at */
+    WHIT_VIEW_VISITS,    /* nodes opened: pairs + leaves + instances */
+    WHIT_VIEW_BOXES,     /* box tests */
+    WHIT_VIEW_TRIS,      /* triangle tests */
+    WHIT_VIEW_STACK,     /* most refs on the node stack */
+} whit_view;
+/* One number a pixel, as floats of one channel: what the rays of `kind` of its first sample cost
+   (WHIT_RAY_KINDS: of all kinds). With params.count. */
+WHIT_CHECK whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view,
+                                                whit_ray_kind kind, whit_image **out);
 
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
@@ -228,7 +310,8 @@ typedef struct whit_stats {
     double mrays_per_s; /* all rays over render_ms */
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
-    const char *load_path; /* "storage" or "texel" */
+    const char *load_path;           /* "storage" or "texel" */
+    whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
 } whit_stats;
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 
@@ -253,10 +336,14 @@ typedef enum whit_trace_on {
     WHIT_TRACE_CPU_BRUTE, /* the twin without trees */
 } whit_trace_on;
 
-/* Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
+/* `cost`: what all rays together cost, or NULL (on the device it needs params.count).
+   Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
    that are not finite miss. Cut-outs count as solid. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
-                                  uint64_t count, bool any, whit_hit *hits);
+                                  uint64_t count, bool any, whit_hit *hits, whit_cost *cost);
+/* Device time of the traversals of the last whit_trace on the device, without transfers; < 0: not
+   measured. */
+double whit_trace_device_ms(const whit_renderer *renderer);
 
 /* ---- Images ---- */
 
@@ -286,6 +373,15 @@ void whit_image_destroy(whit_image *image);
 
 /* True for a path that whit_image_save can write; `integers` asks for hit identities. */
 bool whit_image_format_known(const char *path, bool integers);
+
+/* A picture of one channel as a heat map with a legend below: colours that the colour-blind can
+   tell apart (viridis), dark is 0, bright is `scale` and above. Linear RGB. */
+typedef struct whit_heat_params {
+    double scale;      /* 0: automatic, the 99.5th percentile */
+    const char *title; /* of the legend */
+} whit_heat_params;
+WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
+                                       whit_image **out);
 
 /* ---- Files ---- */
 

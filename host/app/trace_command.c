@@ -101,7 +101,7 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
         }
         double start_ms = whit_clock_ms();
         result = whit_trace(renderer, (whit_trace_on)trace->on, trace->rays, count, trace->any,
-                            trace->hits);
+                            trace->hits, NULL);
         trace->trace_ms += whit_clock_ms() - start_ms;
         if (result == WHIT_OK)
             result = whit_file_append(trace->file, trace->hits, count * sizeof(whit_hit));

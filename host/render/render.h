@@ -26,6 +26,14 @@ struct render_params {
     void *progress_user;
     double time_limit_s;
     enum render_load_path load_path;
+    uint32_t order; /* ORDER_* */
+    bool count;     /* count what traversals cost */
+};
+
+/* Sums over all rays of a kind; stack and depth: the largest. */
+struct render_cost {
+    uint64_t rays, pairs, leaves, instances, triangles;
+    uint32_t stack, depth;
 };
 
 struct render_stats {
@@ -34,6 +42,7 @@ struct render_stats {
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
     bool texel_loads;
+    struct render_cost costs[RAY_KIND_COUNT]; /* with params.count */
 };
 
 struct renderer;
@@ -51,9 +60,19 @@ WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct ima
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
 
-/* A batch of rays in chunks that fit the device. */
+/* With params.count: the costs of rays of `kind` (RAY_*) of each pixel's first sample, as 8 integer
+   channels in the order of struct gpu_cost. */
+WHIT_CHECK whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind,
+                                           struct image *out);
+
+/* Goes to another time: poses the accel, and uploads what moved: instances with their tree, lights,
+   camera. The picture is then that of a renderer made at that time, byte for byte. */
+WHIT_CHECK whit_result renderer_set_time(struct renderer *renderer, double time_s);
+
+/* A batch of rays in chunks that fit the device. `costs`: one a ray, or NULL. */
 WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays,
-                                      uint64_t count, bool any, struct gpu_hit *hits);
+                                      uint64_t count, bool any, struct gpu_hit *hits,
+                                      struct gpu_cost *costs);
 /* Device time of the traversal of the last renderer_trace, without transfers; < 0: not measured. */
 double renderer_trace_device_ms(const struct renderer *renderer);
 

@@ -66,8 +66,9 @@ static whit_result dispatch(struct renderer *renderer, bool any, uint32_t count)
 }
 
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
-                           bool any, struct gpu_hit *hits)
+                           bool any, struct gpu_hit *hits, struct gpu_cost *costs)
 {
+    (void)costs;
     renderer->trace.device_ms = 0.0;
     whit_result result = prepare(renderer, any);
     uint64_t piece = TRACE_FIRST;

@@ -13,7 +13,7 @@ static bool fits_storage(const struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
     return (uint64_t)accel->node_count * sizeof(struct gpu_bvh_node) <= limit &&
-           (uint64_t)accel->triangle_count * sizeof(struct gpu_triangle) <= limit &&
+           (uint64_t)accel->record_count * sizeof(struct gpu_triangle) <= limit &&
            (uint64_t)accel->instance_count * sizeof(struct gpu_instance) <= limit;
 }
 
@@ -55,7 +55,7 @@ static whit_result upload_trees(struct renderer *renderer)
                      uses, "nodes", &buffers->nodes);
     if (result == WHIT_OK)
         result = upload_words(renderer, accel->triangles,
-                              (uint64_t)accel->triangle_count * sizeof *accel->triangles, uses,
+                              (uint64_t)accel->record_count * sizeof *accel->triangles, uses,
                               "triangles", &buffers->triangles);
     if (result == WHIT_OK && !accel->single_identity)
         result = upload_words(renderer, accel->instances,

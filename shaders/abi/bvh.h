@@ -11,7 +11,8 @@ struct gpu_bvh_node {
     gpu_vec3 lo;
     gpu_uint first; /* inner: left child; leaf: first record of the triangle array */
     gpu_vec3 hi;
-    gpu_uint count; /* 0: inner; else primitives of the leaf, at most BVH_LEAF_MAX */
+    gpu_uint count; /* & BVH_COUNT_MASK: 0: inner; else primitives of the leaf. In the first node of
+                       a pair also the bits of BVH_AXIS_* */
 };
 GPU_ASSERT_SIZE(gpu_bvh_node, 32)
 GPU_ASSERT_AT(gpu_bvh_node, first, 12)
@@ -20,11 +21,23 @@ GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 
 /* A node as the traversal stack holds it: count in the upper 4 bits, first in the lower 28. */
 #define BVH_LEAF_MAX    15u
+#define BVH_COUNT_MASK  15u
 #define BVH_COUNT_SHIFT 28u
 #define BVH_FIRST_MASK  0x0fffffffu
 #define BVH_EMPTY_REF   0xffffffffu /* a tree without primitives */
 
-/* One triangle in leaf order, object space. */
+/* In `count` of the first node of a pair: the axis on which the centres of the two boxes are
+   farthest apart, and whether the second node is the lower one on it. For ORDER_SIGN. */
+#define BVH_AXIS_SHIFT 4u
+#define BVH_AXIS_MASK  3u
+#define BVH_SECOND_LOW 64u
+
+/* Which of two children that are both hit is visited first. */
+#define ORDER_DISTANCE 0u /* the one entered earlier along the ray */
+#define ORDER_SIGN     1u /* the lower one, on the axis of the pair, for rays that go up it */
+#define ORDER_BASIC    2u /* the first of the pair */
+
+/* One triangle in leaf order. In object space; where instances are flattened in world space. */
 struct gpu_triangle {
     gpu_vec3 v0;
     gpu_uint primitive; /* index within its mesh */
@@ -45,6 +58,8 @@ GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 /* Lets shadow rays through, weaker by 2^(-shadow / 64) per channel. Depths are added as integers,
    so that the order in which a ray meets its filters cannot change the sum. */
 #define TRIANGLE_FILTER    4u
+#define TRIANGLE_MIRRORED  8u /* flat: its instance turns it inside out, its normal is reversed */
+#define TRIANGLE_INSTANCE_SHIFT 4u /* flat: its instance is in the bits from here up */
 #define SHADOW_DEPTH_SCALE 64.0
 
 /* An object placed in the world. t is the same in both spaces: directions are not renormalised.
@@ -59,15 +74,19 @@ struct gpu_instance {
     gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
     gpu_uint shade_base; /* of primitive 0: index among the triangles of all meshes */
     gpu_uint mesh;
-    gpu_uint pad;
+    gpu_uint record_count; /* without trees: triangle records, the first of them in `root` */
     gpu_vec3 forward0; /* object to world, rows */
-    gpu_float pad0;
+    gpu_float center_x; /* of the mesh's box, object space */
     gpu_vec3 forward1;
-    gpu_float pad1;
+    gpu_float center_y;
     gpu_vec3 forward2;
+    gpu_float center_z;
+    gpu_float reach; /* half the longest side of that box */
+    gpu_float pad0;
+    gpu_float pad1;
     gpu_float pad2;
 };
-GPU_ASSERT_SIZE(gpu_instance, 112)
+GPU_ASSERT_SIZE(gpu_instance, 128)
 GPU_ASSERT_AT(gpu_instance, root, 48)
 GPU_ASSERT_AT(gpu_instance, forward0, 64)
 
@@ -89,6 +108,28 @@ struct gpu_hit {
 };
 GPU_ASSERT_SIZE(gpu_hit, 32)
 GPU_ASSERT_AT(gpu_hit, instance, 16)
+
+/* What the traversals of one kind of ray cost: for a pixel, a ray of a batch, or summed up. */
+struct gpu_cost {
+    gpu_uint rays;
+    gpu_uint pairs;     /* inner nodes opened: box tests are twice that */
+    gpu_uint leaves;    /* leaves of mesh trees entered */
+    gpu_uint instances; /* instances entered */
+    gpu_uint triangles; /* triangle tests */
+    gpu_uint stack;     /* most refs on the node stack */
+    gpu_uint depth;     /* deepest level whose boxes were tested. The root is level 0, and the root
+                           of a mesh tree has the level of its instance's leaf */
+    gpu_uint pad;
+};
+GPU_ASSERT_SIZE(gpu_cost, 32)
+GPU_ASSERT_AT(gpu_cost, triangles, 16)
+
+/* Kinds of rays that are counted apart. */
+#define RAY_PRIMARY    0u
+#define RAY_SHADOW     1u
+#define RAY_REFLECTED  2u
+#define RAY_REFRACTED  3u
+#define RAY_KIND_COUNT 4u
 
 /* Push constants of the ray batch kernel. */
 struct gpu_batch {

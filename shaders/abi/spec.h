@@ -34,7 +34,12 @@
     X(19, SPEC_LIGHTS, 1)                                                                          \
     X(20, SPEC_ORTHOGRAPHIC, 1)                                                                    \
     X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */                  \
-    X(22, SPEC_SHORT_STACK, 0)        /* top of the node stack in registers: for lavapipe */
+    X(22, SPEC_SHORT_STACK, 0)        /* top of the node stack in registers: for lavapipe */       \
+    X(23, SPEC_ORDER, 0)              /* ORDER_* */                                                \
+    X(24, SPEC_COUNT, 0)              /* count what traversals cost */                             \
+    X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
+    X(26, SPEC_BRUTE, 0)              /* no trees: every triangle of every instance */             \
+    X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -43,7 +43,7 @@ uvec4 fetch_instance_row(uint row)
 }
 
 const uint TRIANGLE_ROWS = 3u; // of 16 bytes, in a gpu_triangle
-const uint INSTANCE_ROWS = 7u; // in a gpu_instance
+const uint INSTANCE_ROWS = 8u; // in a gpu_instance
 
 // World to object: directions, and points relative to the instance's origin.
 struct InstanceFrame {

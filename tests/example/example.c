@@ -37,9 +37,10 @@ static whit_result trace(whit_renderer *renderer, const whit_scene *scene)
     whit_ray rays[RAY_COUNT];
     whit_hit hits[RAY_COUNT], twins[RAY_COUNT];
     make_rays(scene, rays);
-    whit_result result = whit_trace(renderer, WHIT_TRACE_DEVICE, rays, RAY_COUNT, false, hits);
+    whit_result result =
+        whit_trace(renderer, WHIT_TRACE_DEVICE, rays, RAY_COUNT, false, hits, NULL);
     if (result == WHIT_OK)
-        result = whit_trace(renderer, WHIT_TRACE_CPU_FLOAT, rays, RAY_COUNT, false, twins);
+        result = whit_trace(renderer, WHIT_TRACE_CPU_FLOAT, rays, RAY_COUNT, false, twins, NULL);
     for (int i = 0; i < RAY_COUNT && result == WHIT_OK; ++i) {
         if (hits[i].primitive != twins[i].primitive || hits[i].instance != twins[i].instance)
             return WHIT_ERROR_FAILED;

@@ -12,9 +12,9 @@
 
 #ifdef PEERS_CONTRACTED
 /* host/accel/traverse.c under another name and other flags. */
-void traverse_float_contracted(const struct accel *accel, const struct gpu_ray *ray, bool any,
-                               uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                               struct traverse_counts *counts, uint32_t *status);
+void traverse_float_contracted(const struct accel *accel, uint32_t order, const struct gpu_ray *ray,
+                               bool any, uint32_t skip_instance, uint32_t skip_primitive,
+                               struct gpu_hit *hit, struct gpu_cost *cost, uint32_t *status);
 #define TRAVERSE_CONTRACTED traverse_float_contracted
 #else
 #define TRAVERSE_CONTRACTED traverse_float /* never called */
@@ -119,13 +119,13 @@ static void hunt_chunk(void *user, uint32_t index)
     for (uint64_t i = begin; i < end; ++i) {
         struct gpu_ray ray = leaving_ray(hunt, i, &state);
         struct gpu_hit hit;
-        traverse_float(hunt->accel, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
+        traverse_float(hunt->accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
                        &hunt->status[index]);
         hunt->leaks[index] += hit.primitive == HIT_NONE;
         if (!hunt->contracted)
             continue;
-        TRAVERSE_CONTRACTED(hunt->accel, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
-                            &hunt->status[index]);
+        TRAVERSE_CONTRACTED(hunt->accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit,
+                            NULL, &hunt->status[index]);
         hunt->contracted_leaks[index] += hit.primitive == HIT_NONE;
     }
 }

@@ -142,7 +142,7 @@ static void same_bytes_for_any_thread_count(void **state)
         assert_int_equal(other->node_count, one->node_count);
         assert_memory_equal(other->nodes, one->nodes, one->node_count * sizeof *one->nodes);
         assert_memory_equal(other->triangles, one->triangles,
-                            one->triangle_count * sizeof *one->triangles);
+                            one->record_count * sizeof *one->triangles);
         assert_memory_equal(other->instances, one->instances,
                             one->instance_count * sizeof *one->instances);
         accel_destroy(other);
@@ -156,7 +156,7 @@ static const struct gpu_bvh_node *instance_leaf(const struct accel *accel, uint3
 {
     for (uint32_t i = 0; i < accel->instance_node_count; ++i) {
         const struct gpu_bvh_node *node = &accel->nodes[i];
-        if (node->count == 1 && node->first == instance)
+        if (bvh_count(node) == 1 && node->first == instance)
             return node;
     }
     return NULL;

@@ -91,13 +91,13 @@ static void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes, uint3
 {
     const struct gpu_bvh_node *node = &bvh->nodes[index];
     struct bvh_box sum = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-    if (node->count > 0) {
-        for (uint32_t i = 0; i < node->count; ++i) {
+    if (bvh_count(node) > 0) {
+        for (uint32_t i = 0; i < bvh_count(node); ++i) {
             const struct bvh_box *box = &boxes[bvh->order[node->first + i]];
             box_unite(&sum, box->lo, box->hi);
         }
         found->depth = depth > found->depth ? depth : found->depth;
-        found->cost += area(node) * node->count;
+        found->cost += area(node) * bvh_count(node);
         ++found->leaves;
     } else {
         const struct gpu_bvh_node *pair = &bvh->nodes[node->first];
@@ -177,7 +177,7 @@ static void one_box_is_a_leaf_at_the_root(void **state)
     build_and_check(&box, 1, NULL, &bvh);
     assert_int_equal(bvh.node_count, 2);
     assert_int_equal(bvh.depth, 0);
-    assert_int_equal(bvh.nodes[0].count, 1);
+    assert_int_equal(bvh_count(&bvh.nodes[0]), 1);
     bvh_finish(&bvh);
 }
 
@@ -457,7 +457,7 @@ static void keep_message(void *user, whit_log_level level, const char *message)
 static uint32_t find_node(const struct bvh *bvh, bool leaf)
 {
     for (uint32_t i = 2; i < bvh->node_count; ++i) {
-        if ((bvh->nodes[i].count > 0) == leaf)
+        if ((bvh_count(&bvh->nodes[i]) > 0) == leaf)
             return i;
     }
     fail();
@@ -540,7 +540,7 @@ static void break_leaf_overlap(struct bvh *b)
 static void break_leaf_lost(struct bvh *b)
 {
     for (uint32_t i = 0; i < b->node_count; ++i) {
-        if (b->nodes[i].count > 1) {
+        if (bvh_count(&b->nodes[i]) > 1) {
             --b->nodes[i].count;
             return;
         }
@@ -557,9 +557,9 @@ static void break_unreached(struct bvh *b)
     for (uint32_t i = 2; i < b->node_count; ++i) {
         struct gpu_bvh_node *n = &b->nodes[i];
         const struct gpu_bvh_node *pair = &b->nodes[n->first];
-        if (n->count == 0 && pair[0].count > 0 && pair[1].count > 0 &&
-            pair[0].count + pair[1].count <= 4) {
-            n->count = pair[0].count + pair[1].count;
+        if (bvh_count(n) == 0 && bvh_count(&pair[0]) > 0 && bvh_count(&pair[1]) > 0 &&
+            bvh_count(&pair[0]) + bvh_count(&pair[1]) <= 4) {
+            n->count = bvh_count(&pair[0]) + bvh_count(&pair[1]);
             n->first = pair[0].first;
             return;
         }

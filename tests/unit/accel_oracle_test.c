@@ -230,7 +230,8 @@ static void compare_with_twin(const struct world *world, const struct gpu_ray *r
     struct gpu_hit hit, by_tree;
     uint32_t status = 0;
     oracle_trace(world->accel, ray, false, &exact);
-    traverse_float(world->accel, ray, false, HIT_NONE, HIT_NONE, &by_tree, NULL, &status);
+    traverse_float(world->accel, ORDER_DISTANCE, ray, false, HIT_NONE, HIT_NONE, &by_tree, NULL,
+                   &status);
     traverse_brute_float(world->accel, ray, &hit);
     assert_int_equal(status, 0);
     assert_int_equal(by_tree.primitive, hit.primitive);

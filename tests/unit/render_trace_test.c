@@ -64,12 +64,13 @@ static void check_rays(struct fixture *f, const char *label)
     assert_non_null(device);
     assert_non_null(any);
     make_rays(f, rays, 7);
-    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, device), WHIT_OK);
-    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any), WHIT_OK);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, device, NULL), WHIT_OK);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any, NULL), WHIT_OK);
     uint32_t hits = 0, twin_bad = 0, brute_bad = 0, any_bad = 0, status = 0;
     for (uint32_t i = 0; i < RAYS; ++i) {
         struct gpu_hit twin, brute;
-        traverse_float(f->accel, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL, &status);
+        traverse_float(f->accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL,
+                       &status);
         hits += twin.primitive != HIT_NONE;
         twin_bad += memcmp(&twin, &device[i], sizeof twin) != 0;
         any_bad += (any[i].primitive != HIT_NONE) != (twin.primitive != HIT_NONE);
@@ -204,9 +205,10 @@ static void degenerate_rays_miss(void **state)
     rays[count++] = (struct gpu_ray){{0, 0, 0}, NAN, {0, 0, 1}, INFINITY};
     rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 1}, NAN};
     rays[count++] = (struct gpu_ray){{0, 0, 0}, 5, {0, 0, 1}, 2};
-    assert_int_equal(renderer_trace(f.renderer, rays, count, false, hits), WHIT_OK);
+    assert_int_equal(renderer_trace(f.renderer, rays, count, false, hits, NULL), WHIT_OK);
     for (uint32_t i = 0; i < count; ++i) {
-        traverse_float(f.accel, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL, &status);
+        traverse_float(f.accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL,
+                       &status);
         assert_memory_equal(&twin, &hits[i], sizeof twin);
         if (i != 8) /* a t_max that is not a number bounds nothing */
             assert_int_equal(hits[i].primitive, HIT_NONE);
@@ -222,7 +224,7 @@ static void empty_scene_misses(void **state)
     struct fixture f = fixture_open(fixture_scene(mesh), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
-    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit), WHIT_OK);
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
     assert_int_equal(hit.primitive, HIT_NONE);
     fixture_close(&f);
 }
@@ -252,11 +254,12 @@ static void cut_traversals_are_reported(void **state)
     uint32_t status = 0;
     for (int i = 0; i < 8; ++i)
         rays[i] = (struct gpu_ray){{0.8f, 0.2f, -1}, 0, {0, 0, 1}, INFINITY};
-    struct traverse_counts counts;
-    traverse_float(f.accel, &rays[0], false, HIT_NONE, HIT_NONE, &twin, &counts, &status);
+    struct gpu_cost counts = {0};
+    traverse_float(f.accel, ORDER_DISTANCE, &rays[0], false, HIT_NONE, HIT_NONE, &twin, &counts,
+                   &status);
     assert_int_equal(twin.primitive, HIT_NONE);
     assert_int_equal(counts.triangles, count); /* the case is as hard as it should be */
-    whit_result result = renderer_trace(f.renderer, rays, 8, false, hits);
+    whit_result result = renderer_trace(f.renderer, rays, 8, false, hits, NULL);
     print_message("  %u pairs and %u triangles for one ray: %s\n", counts.pairs, counts.triangles,
                   whit_result_name(result));
     if (device_get_info(f.device)->loop_limited) {
