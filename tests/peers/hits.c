@@ -30,14 +30,6 @@ enum agreement {
     AGREEMENTS
 };
 
-static void print_log(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    fprintf(stderr, "%s%s\n", level == WHIT_LOG_ERROR ? "error: " : "", message);
-}
-
-const struct log peers_log = {.fn = print_log, .level = WHIT_LOG_ERROR};
-
 struct options {
     const char *path, *device;
     uint64_t rays, seed, list, leaks;

@@ -1,7 +1,16 @@
 /* Sets of rays, the same on every machine for a seed. */
 #include <math.h>
+#include <stdio.h>
 
 #include "peers.h"
+
+static void print_log(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    fprintf(stderr, "%s%s\n", level == WHIT_LOG_ERROR ? "error: " : "", message);
+}
+
+const struct log peers_log = {.fn = print_log, .level = WHIT_LOG_ERROR};
 
 /* Steele, Lea and Flood 2014. */
 uint64_t random_bits(uint64_t *state)
