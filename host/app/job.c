@@ -9,24 +9,38 @@ void job_init(struct job *job)
     *job = (struct job){.fps = 24.0, .start_ms = whit_clock_ms()};
 }
 
-static void read_build(struct job *job, struct cli_reader *reader)
+static void read_instances(struct job *job, struct cli_reader *reader)
 {
-    static const char binned[] = "binned:";
-    if (strncmp(reader->value, binned, sizeof binned - 1) == 0) {
-        const char *whole = reader->value;
-        reader->value += sizeof binned - 1;
-        if (!cli_unsigned(reader, 2, 256, &job->bins))
-            return;
-        reader->value = whole;
-        job->build = WHIT_BUILD_BINNED;
-        return;
-    }
-    static const char *const choices[] = {"binned", "median", NULL};
+    static const char *const choices[] = {"on", "off", NULL};
     uint32_t choice;
-    if (!cli_choice(reader, choices, &choice))
-        return;
-    job->build = choice == 0 ? WHIT_BUILD_BINNED : WHIT_BUILD_MEDIAN;
-    job->bins = 0;
+    if (cli_choice(reader, choices, &choice))
+        job->flatten = choice == 1;
+}
+
+static void read_instance_build(struct job *job, struct cli_reader *reader)
+{
+    static const char *const choices[] = {"sah", "median", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        job->instance_build = choice ? WHIT_BUILD_MEDIAN : WHIT_BUILD_BINNED;
+}
+
+static void read_instance_update(struct job *job, struct cli_reader *reader)
+{
+    static const char *const choices[] = {"rebuild", "refit", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        job->instance_refit = choice == 1;
+}
+
+static void read_traversal(struct job *job, struct cli_reader *reader)
+{
+    static const char *const choices[] = {"distance", "sign", "basic", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        job->traversal = choice == 0   ? WHIT_TRAVERSAL_DISTANCE
+                         : choice == 1 ? WHIT_TRAVERSAL_SIGN
+                                       : WHIT_TRAVERSAL_BASIC;
 }
 
 static void read_load_path(struct job *job, struct cli_reader *reader)
@@ -45,8 +59,49 @@ static void read_stats(struct job *job, struct cli_reader *reader)
         job->stats = choice ? JOB_STATS_JSON : JOB_STATS_TEXT;
 }
 
+/* Of trees; false when `id` is something else. */
+static bool tree_option(struct job *job, struct cli_reader *reader, int id)
+{
+    switch (id) {
+    case JOB_BUILD:
+        job->has_build = job_read_build(reader, reader->value, &job->build);
+        return true;
+    case JOB_NO_TREES:
+        job->no_trees = true;
+        return true;
+    case JOB_LEAF:
+        cli_unsigned(reader, 1, 15, &job->leaf_limit);
+        return true;
+    case JOB_TREE:
+        job->tree_path = reader->value;
+        return true;
+    case JOB_INSTANCES:
+        read_instances(job, reader);
+        return true;
+    case JOB_INSTANCE_BUILD:
+        read_instance_build(job, reader);
+        return true;
+    case JOB_INSTANCE_UPDATE:
+        read_instance_update(job, reader);
+        return true;
+    case JOB_TRAVERSAL:
+        read_traversal(job, reader);
+        return true;
+    case JOB_LOAD_PATH:
+        read_load_path(job, reader);
+        return true;
+    case JOB_THREADS:
+        cli_unsigned(reader, 0, 1024, &job->threads);
+        return true;
+    default:
+        return false;
+    }
+}
+
 bool job_option(struct job *job, struct cli_reader *reader, int id)
 {
+    if (tree_option(job, reader, id))
+        return true;
     switch (id) {
     case JOB_DEVICE:
         if (!reader->value[0])
@@ -62,17 +117,8 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
     case JOB_FPS:
         cli_number(reader, 1e-3, 1e6, &job->fps);
         return true;
-    case JOB_BUILD:
-        read_build(job, reader);
-        return true;
-    case JOB_THREADS:
-        cli_unsigned(reader, 0, 1024, &job->threads);
-        return true;
     case JOB_TEXTURE_LIMIT:
         cli_unsigned(reader, 1, 16384, &job->texture_limit);
-        return true;
-    case JOB_LOAD_PATH:
-        read_load_path(job, reader);
         return true;
     case JOB_VALIDATION:
         job->validation = true;
@@ -91,6 +137,25 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
     }
 }
 
+static bool check_trees(const struct job *job, struct cli_reader *reader)
+{
+    if (job->no_trees && job->has_build)
+        return cli_misuse(reader, "--no-bvh and --build: either there are trees or there are none");
+    if (job->no_trees && job->leaf_limit)
+        return cli_misuse(reader, "--no-bvh and --leaf: without trees there are no leaves");
+    if (!job->tree_path)
+        return true;
+    if (!cli_no_dash(reader, "--tree", job->tree_path, "trees are read from a file"))
+        return false;
+    if (job->has_build || job->no_trees || job->leaf_limit)
+        return cli_misuse(reader, "--tree and %s: the trees in the file are built already",
+                          job->has_build  ? "--build"
+                          : job->no_trees ? "--no-bvh"
+                                          : "--leaf");
+    return !job->flatten ||
+           cli_misuse(reader, "--tree and --instances off: files hold trees of single meshes");
+}
+
 bool job_options_done(struct job *job, struct cli_reader *reader)
 {
     if (reader->status >= 0)
@@ -99,6 +164,8 @@ bool job_options_done(struct job *job, struct cli_reader *reader)
         return cli_misuse(reader, "a scene is missing");
     if (job->has_time && job->has_frame)
         return cli_misuse(reader, "--time and --frame are two ways to say the same");
+    if (!check_trees(job, reader))
+        return false;
     if (job->has_frame)
         job->time_s = (double)job->frame / job->fps;
     job->scene_path = reader->positional;
@@ -149,13 +216,28 @@ static whit_result still_wanted(void)
     return WHIT_ERROR_TIME_LIMIT;
 }
 
+whit_accel_params job_accel_params(const struct job *job)
+{
+    return (whit_accel_params){
+        .build = job->no_trees ? WHIT_BUILD_NONE : job->build.build,
+        .optimize = job->build.optimize,
+        .bins = job->build.bins,
+        .leaf_limit = job->leaf_limit,
+        .spatial_alpha = job->build.alpha,
+        .spatial_budget = job->build.budget,
+        .threads = job->threads,
+        .instance_build = job->instance_build,
+        .instance_refit = job->instance_refit,
+        .flatten = job->flatten,
+        .tree_path = job->tree_path,
+        .time_limit_s = cli_time_left_s(),
+        .cancel = &cli_cancel,
+    };
+}
+
 whit_result job_build(struct job *job)
 {
-    const whit_accel_params params = {
-        .build = job->build,
-        .bins = job->bins,
-        .threads = job->threads,
-    };
+    const whit_accel_params params = job_accel_params(job);
     whit_result result = still_wanted();
     if (result != WHIT_OK)
         return result;

@@ -6,14 +6,32 @@
 
 enum job_stats { JOB_STATS_NONE, JOB_STATS_TEXT, JOB_STATS_JSON };
 
+/* A builder as --build names it (builder.c); the zeroed one is the default. */
+struct job_build {
+    whit_build build;
+    bool optimize;
+    uint32_t bins;       /* WHIT_BUILD_BINNED; 0: not given */
+    float alpha, budget; /* WHIT_BUILD_SPATIAL, as in whit_accel_params; 0: not given */
+};
+enum { JOB_BUILD_NAME = 96 };
+/* One builder, of the current option; on nonsense misuse, and false. */
+bool job_read_build(struct cli_reader *reader, const char *text, struct job_build *out);
+/* What reads back as `build`; without a tree it is `none`. */
+void job_build_name(const struct job_build *build, char name[JOB_BUILD_NAME]);
+
 struct job {
     const char *scene_path;
     const char *device_name; /* NULL: auto */
     double time_s, fps;
     bool has_time, has_frame;
     uint32_t frame;
-    whit_build build;
-    uint32_t bins, threads, texture_limit;
+    struct job_build build;
+    bool has_build, no_trees, flatten, instance_refit;
+    whit_build instance_build;
+    uint32_t leaf_limit; /* 0: the default */
+    whit_traversal traversal;
+    const char *tree_path; /* of saved trees, or NULL */
+    uint32_t threads, texture_limit;
     const char *load_path; /* NULL: auto */
     bool validation, quiet;
     double time_limit_s;
@@ -31,6 +49,13 @@ enum job_id {
     JOB_FRAME,
     JOB_FPS,
     JOB_BUILD,
+    JOB_NO_TREES,
+    JOB_LEAF,
+    JOB_TREE,
+    JOB_TRAVERSAL,
+    JOB_INSTANCES,
+    JOB_INSTANCE_BUILD,
+    JOB_INSTANCE_UPDATE,
     JOB_THREADS,
     JOB_TEXTURE_LIMIT,
     JOB_LOAD_PATH,
@@ -51,9 +76,34 @@ enum job_id {
     {                                                                                              \
         JOB_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"            \
     }
+/* How trees are built and walked. A command that has its own --build takes JOB_OPTION_BUILDING
+   and JOB_OPTION_WALKING alone. */
+#define JOB_OPTION_BUILDING                                                                        \
+    {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)"},                              \
+        {JOB_INSTANCES, "instances", "on|off",                                                     \
+         "off: one tree over the triangles of all instances (on)"},                                \
+        {JOB_INSTANCE_BUILD, "instance-build", "sah|median",                                       \
+         "how the tree over instances is built (sah)"},                                            \
+    {                                                                                              \
+        JOB_INSTANCE_UPDATE, "instance-update", "rebuild|refit",                                   \
+            "for another time: a new tree over instances, or new\n"                                \
+            "boxes for the old one (rebuild)"                                                      \
+    }
+#define JOB_OPTION_WALKING                                                                         \
+    {JOB_TRAVERSAL, "traversal", "distance|sign|basic",                                            \
+     "which of two nodes comes first: the nearer, by the ray's\n"                                  \
+     "sign, as they come (distance)"},                                                             \
+    {                                                                                              \
+        JOB_LOAD_PATH, "load-path", "auto|storage|texel", "how kernels read the trees (auto)"      \
+    }
 #define JOB_OPTION_TREES                                                                           \
-    {JOB_BUILD, "build", "binned[:K]|median", "how trees are built; K bins, 2 to 256 (binned)"},   \
-        {JOB_LOAD_PATH, "load-path", "auto|storage|texel", "how kernels read the trees (auto)"},   \
+    {JOB_BUILD, "build", "BUILDER[+opt]",                                                          \
+     "how trees are built: binned[:K] with 2 to 256 bins,\n"                                       \
+     "median, sweep, spatial[:ALPHA[,BUDGET]], sweep-naive;\n"                                     \
+     "+opt improves them by reinsertion (binned)"},                                                \
+        {JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle"},                      \
+        {JOB_TREE, "tree", "FILE", "trees that `whit bvh --save` wrote, instead of building"},     \
+        JOB_OPTION_BUILDING, JOB_OPTION_WALKING,                                                   \
     {                                                                                              \
         JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)"                    \
     }
@@ -78,6 +128,8 @@ bool job_options_done(struct job *job, struct cli_reader *reader);
 /* Each step before the next one. Failures were said. */
 whit_result job_load(struct job *job);
 whit_result job_build(struct job *job);
+/* What job_build asks for. */
+whit_accel_params job_accel_params(const struct job *job);
 whit_result job_open_device(struct job *job);
 /* Of the scene: warnings, and with `all` what was added as well. */
 void job_print_notes(const struct job *job, bool all);

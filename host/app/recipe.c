@@ -72,6 +72,8 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --no-shadows", to);
     if (job->texture_limit)
         fprintf(to, " --texture-limit %u", job->texture_limit);
+    if (job->flatten)
+        fputs(" --instances off", to);
     if (fclose(to) != 0) {
         free(text);
         return NULL;
@@ -92,6 +94,8 @@ static char *options_line(const struct job *job, const struct render_request *re
     document_flag(options, "shadows", !request->no_shadows);
     if (job->texture_limit)
         document_count(options, "texture_limit", job->texture_limit);
+    if (job->flatten) /* hits are those of triangles in world space: the last bit may differ */
+        document_text(options, "instances", "off");
     return document_line(options);
 }
 

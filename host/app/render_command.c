@@ -214,6 +214,7 @@ static whit_result create_renderer(struct job *job, const struct render_request 
         .progress_user = progress,
         .time_limit_s = cli_time_left_s(),
         .load_path = job->load_path,
+        .traversal = job->traversal,
     };
     return whit_renderer_create(job->device, job->accel, &params, renderer);
 }

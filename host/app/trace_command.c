@@ -132,6 +132,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
         .time_s = job->time_s,
         .cancel = &cli_cancel,
         .load_path = job->load_path,
+        .traversal = job->traversal,
     };
     whit_result result = open_rays(trace);
     if (result == WHIT_OK)

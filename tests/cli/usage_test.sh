@@ -41,6 +41,20 @@ refuse 2 "--tile 5" "from 16 to 512" render "$CUBE" -o "$P" --tile 5
 refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
 refuse 2 "--build best" "binned, median" render "$CUBE" -o "$P" --build best
 refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
+for build in binned: binned:257 binned:7x median:3 sweep-naive:2 spatial: spatial:2 spatial:1e-5, \
+    spatial:1e-5,-1 spatial:1e-5,1,1 none +opt binned+opt+opt binned+opt:7 ""; do
+    refuse 2 "--build '$build'" "need\|take numbers" render "$CUBE" -o "$P" --build "$build"
+done
+refuse 2 "--no-bvh with --build" "either there are trees" render "$CUBE" -o "$P" --no-bvh --build median
+refuse 2 "--no-bvh with --leaf" "no leaves" render "$CUBE" -o "$P" --no-bvh --leaf 2
+refuse 2 "--leaf 16" "from 1 to 15" render "$CUBE" -o "$P" --leaf 16
+refuse 2 "--leaf 0" "from 1 to 15" render "$CUBE" -o "$P" --leaf 0
+refuse 2 "--traversal near" "distance, sign, basic" render "$CUBE" -o "$P" --traversal near
+refuse 2 "--instances yes" "on, off" render "$CUBE" -o "$P" --instances yes
+refuse 2 "--instance-build sweep" "sah, median" render "$CUBE" -o "$P" --instance-build sweep
+refuse 2 "--instance-update no" "rebuild, refit" render "$CUBE" -o "$P" --instance-update no
+refuse 2 "--tree with --build" "--tree and --build" render "$CUBE" -o "$P" --tree x --build sweep
+refuse 2 "--tree without instances" "single meshes" render "$CUBE" -o "$P" --tree x --instances off
 refuse 2 "--stats xml" "text, json" render "$CUBE" -o "$P" --stats xml
 refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame 2
 

@@ -8,11 +8,15 @@ _whit() {
     else
         case $previous in
         --aa) words="1 4 16 64" ;;
-        --build) words="binned median" ;;
+        --build) words="binned median sweep spatial sweep-naive binned+opt sweep+opt spatial+opt" ;;
         --effects) words="auto all" ;;
+        --instances) words="on off" ;;
+        --instance-build) words="sah median" ;;
+        --instance-update) words="rebuild refit" ;;
         --load-path) words="auto storage texel" ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
+        --traversal) words="distance sign basic" ;;
         esac
     fi
     if [ -n "$words" ]; then
