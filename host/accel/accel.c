@@ -370,6 +370,7 @@ void accel_destroy(struct accel *accel)
     free(accel->triangles);
     free(accel->instances);
     free(accel->meshes);
+    accel_posing_destroy(accel->posing);
     free(accel);
 }
 

@@ -140,6 +140,7 @@ struct accel {
                   if it were single_identity; accel_pose builds it anew */
     bool no_trees; /* BVH_NONE: mesh roots are BVH_EMPTY_REF, rays test every triangle */
     double build_ms, instance_build_ms;
+    struct accel_posing *posing; /* buffers of accel_pose */
 };
 
 /* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out. */

@@ -30,4 +30,7 @@ struct accel_extent {
 
 struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box);
 
+/* pose.c */
+void accel_posing_destroy(struct accel_posing *posing);
+
 #endif

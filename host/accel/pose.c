@@ -6,6 +6,9 @@
 #include "accel/accel_inside.h"
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/threads.h"
+
+enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
 
 /* Traversal takes rays into object space in float. That moves a hit by a few roundings (2^-24 each)
    of the coordinates involved; boxes in world space are wider by 16 of them. */
@@ -108,33 +111,111 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
     return good;
 }
 
-struct posing {
-    struct gpu_instance *instances;
-    struct bvh_box *boxes; /* of instances that are not empty */
-    uint32_t *indices;     /* which these are */
-    uint32_t count;
-    struct bvh tree;
+/* Kept from pose to pose: at ten thousand instances, fresh memory costs as much as filling it. */
+struct accel_posing {
+    struct gpu_instance *instances; /* exchanged with accel->instances */
+    struct bvh_box *boxes;          /* of instances that are not empty, by rank */
+    uint32_t *ranks;                /* of each instance among these; UINT32_MAX: empty */
+    uint32_t *indices;              /* the instance of each rank */
+    uint32_t *bad;                  /* of each chunk: the first without an inverse, or UINT32_MAX */
+    uint32_t count;                 /* ranks */
+    bool has_tree;
 };
 
-static whit_result instances_fill(const struct accel *accel, const struct scene_pose *pose,
-                                  struct posing *posing)
+void accel_posing_destroy(struct accel_posing *posing)
 {
+    if (!posing)
+        return;
+    free(posing->instances);
+    free(posing->boxes);
+    free(posing->ranks);
+    free(posing->indices);
+    free(posing->bad);
+    free(posing);
+}
+
+static uint32_t chunk_count(uint32_t instances)
+{
+    return (instances + CHUNK_INSTANCES - 1) / CHUNK_INSTANCES;
+}
+
+static struct accel_posing *posing_create(uint32_t count)
+{
+    struct accel_posing *posing = array_alloc_zeroed(1, sizeof *posing);
+    if (!posing)
+        return NULL;
+    posing->instances = array_alloc_aligned(count, sizeof *posing->instances);
+    posing->boxes = array_alloc(count, sizeof *posing->boxes);
+    posing->ranks = array_alloc_zeroed(count, sizeof *posing->ranks);
+    posing->indices = array_alloc(count, sizeof *posing->indices);
+    posing->bad = array_alloc(chunk_count(count), sizeof *posing->bad);
+    if (posing->instances && posing->boxes && posing->ranks && posing->indices && posing->bad)
+        return posing;
+    accel_posing_destroy(posing);
+    return NULL;
+}
+
+/* Numbers the instances that are not empty. True: as they were numbered before. */
+static bool rank_instances(const struct accel *accel, struct accel_posing *posing)
+{
+    bool same = true;
+    uint32_t count = 0;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        bool empty = accel->meshes[accel->scene->instances[i].mesh].triangle_count == 0;
+        uint32_t rank = empty ? UINT32_MAX : count;
+        same &= posing->ranks[i] == rank;
+        posing->ranks[i] = rank;
+        if (!empty)
+            posing->indices[count++] = i;
+    }
+    same &= posing->count == count;
+    posing->count = count;
+    return same;
+}
+
+struct filling {
+    const struct accel *accel;
+    const struct scene_pose *pose;
+    struct accel_posing *posing;
+};
+
+static void fill_chunk(void *user, uint32_t chunk)
+{
+    const struct filling *filling = user;
+    const struct accel *accel = filling->accel;
+    struct accel_posing *posing = filling->posing;
+    uint32_t begin = chunk * CHUNK_INSTANCES, left = accel->instance_count - begin;
+    uint32_t end = begin + (left < CHUNK_INSTANCES ? left : CHUNK_INSTANCES);
+    posing->bad[chunk] = UINT32_MAX;
+    for (uint32_t i = begin; i < end; ++i) {
+        const struct affine *forward = &filling->pose->instances[i];
         uint32_t mesh_index = accel->scene->instances[i].mesh;
         const struct accel_mesh *mesh = &accel->meshes[mesh_index];
         struct affine inverse;
-        if (!affine_is_finite(&pose->instances[i]) ||
-            !affine_invert(&pose->instances[i], &inverse) ||
-            !instance_fill(&pose->instances[i], &inverse, mesh, mesh_index,
-                           &posing->instances[i])) {
-            log_error(&accel->log, "%s: instance %s: its matrix has no inverse in range at %g s",
-                      accel->scene->name, accel->scene->instances[i].name, pose->time_s);
-            return WHIT_ERROR_INPUT;
+        if (!affine_is_finite(forward) || !affine_invert(forward, &inverse) ||
+            !instance_fill(forward, &inverse, mesh, mesh_index, &posing->instances[i])) {
+            posing->bad[chunk] = i;
+            return;
         }
-        if (mesh->root == BVH_EMPTY_REF)
+        if (posing->ranks[i] != UINT32_MAX)
+            posing->boxes[posing->ranks[i]] = world_box(forward, &inverse, &mesh->box);
+    }
+}
+
+static whit_result instances_fill(const struct accel *accel, const struct scene_pose *pose,
+                                  struct accel_posing *posing)
+{
+    struct filling filling = {accel, pose, posing};
+    uint32_t chunks = chunk_count(accel->instance_count);
+    threads_for(accel->params.instances.thread_count, chunks, fill_chunk, &filling);
+    for (uint32_t c = 0; c < chunks; ++c) {
+        uint32_t i = posing->bad[c];
+        if (i == UINT32_MAX)
             continue;
-        posing->boxes[posing->count] = world_box(&pose->instances[i], &inverse, &mesh->box);
-        posing->indices[posing->count++] = i;
+        const char *name = accel->scene->instances[i].name;
+        log_error(&accel->log, "%s: instance %u `%s`: its matrix has no inverse in range at %g s",
+                  accel->scene->name, i, name ? name : "", pose->time_s);
+        return WHIT_ERROR_INPUT;
     }
     return WHIT_OK;
 }
@@ -149,24 +230,72 @@ static bool is_identity(const struct affine *a)
     return true;
 }
 
-/* Nothing fails from here on. */
-static void pose_commit(struct accel *accel, const struct scene_pose *pose,
-                        const struct posing *posing)
+/* Leaves name instances, not ranks. */
+static void tree_place(struct accel *accel, const struct bvh *tree, const uint32_t *indices)
 {
-    const struct bvh *tree = &posing->tree;
-    memcpy(accel->instances, posing->instances, accel->instance_count * sizeof *accel->instances);
     memset(accel->nodes, 0, accel->instance_node_capacity * sizeof *accel->nodes);
-    if (tree->node_count > 0)
-        memcpy(accel->nodes, tree->nodes, tree->node_count * sizeof *accel->nodes);
     for (uint32_t i = 0; i < tree->node_count; ++i) {
+        accel->nodes[i] = tree->nodes[i];
         if (bvh_count(&accel->nodes[i]) > 0)
-            accel->nodes[i].first = posing->indices[tree->order[accel->nodes[i].first]];
+            accel->nodes[i].first = indices[tree->order[accel->nodes[i].first]];
     }
     accel->instance_node_count = tree->node_count;
     accel->instance_depth = tree->depth;
     accel->instance_root = tree->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
+}
+
+static whit_result tree_build(struct accel *accel, const struct accel_posing *posing)
+{
+    struct bvh tree;
+    whit_result result =
+        bvh_build(&accel->log, posing->boxes, posing->count, &accel->params.instances, &tree);
+    if (result == WHIT_OK)
+        tree_place(accel, &tree, posing->indices);
+    bvh_finish(&tree);
+    return result;
+}
+
+/* New boxes from the leaves up: exact unions, so that parents hold their children. */
+static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
+                          const struct accel_posing *posing)
+{
+    struct gpu_bvh_node *at = &nodes[node];
+    if (bvh_count(at) > 0) {
+        const struct bvh_box *box = &posing->boxes[posing->ranks[at->first]];
+        memcpy(at->lo, box->lo, sizeof at->lo);
+        memcpy(at->hi, box->hi, sizeof at->hi);
+        return;
+    }
+    struct gpu_bvh_node *a = &nodes[at->first], *b = a + 1;
+    subtree_refit(nodes, at->first, posing);
+    subtree_refit(nodes, at->first + 1, posing);
+    bvh_set_axis(a);
+    for (int i = 0; i < 3; ++i) {
+        at->lo[i] = a->lo[i] < b->lo[i] ? a->lo[i] : b->lo[i];
+        at->hi[i] = a->hi[i] > b->hi[i] ? a->hi[i] : b->hi[i];
+    }
+}
+
+/* Nothing is changed unless all goes well. */
+static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
+{
+    struct accel_posing *posing = accel->posing;
+    bool keep =
+        rank_instances(accel, posing) && posing->has_tree && accel->params.update == ACCEL_REFIT;
+    whit_result result = instances_fill(accel, pose, posing);
+    if (result == WHIT_OK && !keep)
+        result = tree_build(accel, posing);
+    if (result != WHIT_OK)
+        return result;
+    if (keep && posing->count > 0)
+        subtree_refit(accel->nodes, 0, posing);
+    posing->has_tree = true;
+    struct gpu_instance *before = accel->instances;
+    accel->instances = posing->instances;
+    posing->instances = before;
     accel->single_identity =
         accel->instance_count == 1 && posing->count == 1 && is_identity(&pose->instances[0]);
+    return WHIT_OK;
 }
 
 whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
@@ -178,25 +307,13 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
                   pose->instance_count, count);
         return WHIT_ERROR_USAGE;
     }
-    struct posing posing = {
-        .instances = array_alloc(count, sizeof *posing.instances),
-        .boxes = array_alloc(count, sizeof *posing.boxes),
-        .indices = array_alloc(count, sizeof *posing.indices),
-    };
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (posing.instances && posing.boxes && posing.indices)
-        result = instances_fill(accel, pose, &posing);
-    else
+    if (!accel->posing)
+        accel->posing = posing_create(count);
+    if (!accel->posing) {
         log_error(&accel->log, "%s: out of memory for %u instances", accel->scene->name, count);
-    if (result == WHIT_OK)
-        result = bvh_build(&accel->log, posing.boxes, posing.count, &accel->params.instances,
-                           &posing.tree);
-    if (result == WHIT_OK)
-        pose_commit(accel, pose, &posing);
-    bvh_finish(&posing.tree);
-    free(posing.instances);
-    free(posing.boxes);
-    free(posing.indices);
+        return WHIT_ERROR_MEMORY;
+    }
+    whit_result result = pose_instances(accel, pose);
     accel->instance_build_ms = clock_ms() - begin_ms;
     return result;
 }

@@ -316,6 +316,182 @@ static void matrices_without_inverse_are_refused(void **state)
     scene_destroy(scene);
 }
 
+/* ---- Moving instances ---- */
+
+enum { MOVING = 60 };
+
+static const struct accel_params ways[] = {
+    {.instances = {.builder = BVH_BINNED}, .update = ACCEL_REBUILD},
+    {.instances = {.builder = BVH_MEDIAN}, .update = ACCEL_REBUILD},
+    {.instances = {.builder = BVH_BINNED}, .update = ACCEL_REFIT},
+    {.instances = {.builder = BVH_MEDIAN}, .update = ACCEL_REFIT},
+};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+static struct scene *moving_scene(void)
+{
+    struct scene *scene = new_scene();
+    add_material(scene, "grey");
+    add_sphere(scene, 12, 8, 0);
+    add_sphere(scene, 6, 5, 0);
+    uint32_t empty = add_empty_mesh(scene);
+    for (uint32_t i = 0; i < MOVING; ++i)
+        add_instance(scene, i % 16 == 7 ? empty : i % 2, NULL);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+/* Things of all sizes, shapes and hands that fly through each other. */
+static void move_all(struct scene_pose *pose, double t)
+{
+    for (uint32_t i = 0; i < pose->instance_count; ++i) {
+        double a = 0.7 * i + t, size = 1.1 + 0.7 * sin(1.3 * i + 2.0 * t);
+        pose->instances[i] = placed(9.0 * sin(a), 5.0 * cos(1.7 * a), 8.0 * sin(0.6 * a + i), a,
+                                    i % 3 ? size : -size, 0.5 * size, 1.5 * size);
+    }
+}
+
+static double random_unit(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-53;
+}
+
+static struct gpu_ray random_ray(uint64_t *state)
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    for (int i = 0; i < 3; ++i) {
+        double from = 20.0 * random_unit(state) - 10.0, to = 16.0 * random_unit(state) - 8.0;
+        ray.origin[i] = (float)from;
+        ray.dir[i] = (float)(to - from);
+    }
+    return ray;
+}
+
+/* How many rays of `count` met something. */
+static uint32_t same_hits(const struct accel *a, const struct accel *b, uint64_t seed,
+                          uint32_t count)
+{
+    uint32_t status = 0, met = 0;
+    seed *= 0x9e3779b97f4a7c15u;
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_ray ray = random_ray(&seed);
+        struct gpu_hit x, y;
+        traverse_float(a, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &x, NULL, &status);
+        traverse_float(b, ORDER_SIGN, &ray, false, HIT_NONE, HIT_NONE, &y, NULL, &status);
+        assert_memory_equal(&x, &y, sizeof x);
+        met += x.primitive != HIT_NONE;
+    }
+    assert_int_equal(status, 0);
+    return met;
+}
+
+/* A thousand steps, each way against a tree built for that step alone. */
+static void moved_instances_are_hit_alike_whatever_the_tree(void **state)
+{
+    (void)state;
+    struct scene *scene = moving_scene();
+    struct accel *all[WAYS], *fresh = NULL;
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    for (size_t w = 0; w < WAYS; ++w)
+        assert_int_equal(accel_create(&silent, scene, &ways[w], &all[w]), WHIT_OK);
+    size_t mesh_nodes = all[0]->node_count - all[0]->instance_node_capacity;
+    struct gpu_bvh_node *kept = malloc(mesh_nodes * sizeof *kept);
+    assert_non_null(kept);
+    memcpy(kept, all[2]->nodes + all[2]->instance_node_capacity, mesh_nodes * sizeof *kept);
+    assert_int_equal(accel_create(&silent, scene, NULL, &fresh), WHIT_OK);
+    uint32_t met = 0;
+    for (int step = 0; step < 1000; ++step) {
+        move_all(&pose, 0.01 * step);
+        assert_int_equal(accel_pose(fresh, &pose), WHIT_OK);
+        for (size_t w = 0; w < WAYS; ++w) {
+            assert_int_equal(accel_pose(all[w], &pose), WHIT_OK);
+            met += same_hits(fresh, all[w], (uint64_t)step, 40);
+            if (step % 50 == 0)
+                assert_int_equal(accel_validate(all[w]), WHIT_OK);
+        }
+    }
+    assert_true(met > 160 * 1000 / 10);
+    assert_memory_equal(kept, all[2]->nodes + all[2]->instance_node_capacity,
+                        mesh_nodes * sizeof *kept);
+    free(kept);
+    for (size_t w = 0; w < WAYS; ++w)
+        accel_destroy(all[w]);
+    accel_destroy(fresh);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+/* The shape of a refitted tree is that of its first pose; a rebuilt one follows the instances. */
+static void only_a_rebuild_changes_the_tree(void **state)
+{
+    (void)state;
+    struct scene *scene = moving_scene();
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    for (size_t w = 0; w < WAYS; ++w) {
+        struct accel *accel;
+        assert_int_equal(accel_create(&silent, scene, &ways[w], &accel), WHIT_OK);
+        struct gpu_bvh_node before[2 * MOVING];
+        uint32_t count = accel->instance_node_count, links = 0, boxes = 0, axes = 0;
+        assert_true(count <= 2 * MOVING);
+        memcpy(before, accel->nodes, count * sizeof *before);
+        move_all(&pose, 3.0);
+        assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+        assert_int_equal(accel->instance_node_count, count);
+        for (uint32_t i = 0; i < count; ++i) {
+            links += before[i].first != accel->nodes[i].first;
+            boxes += memcmp(before[i].lo, accel->nodes[i].lo, sizeof before[i].lo) != 0;
+            axes += before[i].count != accel->nodes[i].count;
+        }
+        assert_true(boxes > count / 2);
+        assert_true(axes > 0);
+        assert_int_equal(links == 0, ways[w].update == ACCEL_REFIT);
+        accel_destroy(accel);
+    }
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+/* The source report drew the first object alone. */
+static void every_instance_is_hit(void **state)
+{
+    (void)state;
+    enum { SIDE = 12 };
+    struct scene *scene = new_scene();
+    uint32_t mesh = add_sphere(scene, 8, 6, 0);
+    for (int i = 0; i < SIDE * SIDE; ++i)
+        add_instance(scene, mesh, NULL);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    for (size_t w = 0; w < WAYS; ++w) {
+        struct accel *accel;
+        assert_int_equal(accel_create(&silent, scene, &ways[w], &accel), WHIT_OK);
+        for (int turn = 0; turn < 2; ++turn) {
+            for (int i = 0; i < SIDE * SIDE; ++i)
+                pose.instances[i] = placed(3.0 * (turn ? i / SIDE : i % SIDE),
+                                           3.0 * (turn ? i % SIDE : i / SIDE), 0, i, 1, 1, 1);
+            assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+            for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+                const double *m = pose.instances[i].m;
+                struct gpu_ray ray = {.origin = {(float)m[3] + 0.1f, (float)m[7] + 0.2f, -9.0f},
+                                      .dir = {0, 0, 1},
+                                      .t_max = INFINITY};
+                struct gpu_hit hit;
+                uint32_t status = 0;
+                traverse_float(accel, ORDER_BASIC, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
+                               &status);
+                assert_int_equal(hit.instance, i);
+            }
+        }
+        accel_destroy(accel);
+    }
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
 /* ---- What triangles say to shadow rays ---- */
 
 static const struct gpu_triangle *bits_of(struct scene *scene, uint32_t material,
@@ -470,6 +646,9 @@ int main(void)
         cmocka_unit_test(scenes_without_anything),
         cmocka_unit_test(many_instances_in_one_place),
         cmocka_unit_test(matrices_without_inverse_are_refused),
+        cmocka_unit_test(moved_instances_are_hit_alike_whatever_the_tree),
+        cmocka_unit_test(only_a_rebuild_changes_the_tree),
+        cmocka_unit_test(every_instance_is_hit),
         cmocka_unit_test(materials_become_bits),
         cmocka_unit_test(broken_scenes_are_refused),
     };
