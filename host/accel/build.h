@@ -1,4 +1,4 @@
-/* Inside of the builders: what bvh.c hands to split_*.c. */
+/* Inside of the builders: what bvh.c hands to them, and topdown.c to split_*.c. */
 #ifndef ACCEL_BUILD_H
 #define ACCEL_BUILD_H
 
@@ -8,6 +8,14 @@
 
 #include "accel/accel.h"
 #include "accel/f4.h"
+
+/* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
+   default. They fill *out up to bvh_complete; on failure the caller releases what is in it. */
+whit_result topdown_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                          const struct bvh_params *resolved, struct bvh *out);
+/* spatial.c */
+whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                          const struct bvh_params *resolved, struct bvh *out);
 
 /* A box with the primitive it belongs to. Records are moved, not indices to them, so that a subtree
    is one run of memory. */
@@ -32,12 +40,6 @@ struct build_range {
     uint32_t node, pair, first, count, depth;
 };
 
-struct build_params {
-    uint32_t bins, leaf_limit, thread_count;
-    float traversal_cost;
-    enum bvh_builder builder;
-};
-
 enum build_choice {
     BUILD_SPLIT, /* the records are in two runs, the bounds of both are known */
     BUILD_LEAF,  /* a leaf costs less; allowed by the leaf limit */
@@ -47,13 +49,13 @@ enum build_choice {
 /* Chooses the best of `bins` - 1 planes on each axis by surface area, and partitions. With
    thread_count > 1 the binning of this one range is spread over threads. */
 enum build_choice split_binned(struct build_record *records, const struct build_range *range,
-                               const struct build_params *params, uint32_t thread_count,
+                               const struct bvh_params *params, uint32_t thread_count,
                                uint32_t *left_count, struct build_bounds halves[2]);
 
 /* The same over every position instead of bins, for at most BUILD_FEW records. */
 enum { BUILD_FEW = 8 };
 enum build_choice split_few(struct build_record *records, const struct build_range *range,
-                            const struct build_params *params, uint32_t *left_count,
+                            const struct bvh_params *params, uint32_t *left_count,
                             struct build_bounds halves[2]);
 
 /* Halves the records along the axis of the widest centroids; equal centroids by primitive. */

@@ -119,6 +119,34 @@ static bool check_inner(const struct view *view, struct walk *walk, struct visit
     return true;
 }
 
+static bool is_first_of_pair(const struct view *view, uint32_t index)
+{
+    uint32_t local = index - view->first_node;
+    return local >= 2 && local % 2 == 0;
+}
+
+/* Beside the number of primitives, `count` holds the axis of a pair, and that in its first node. */
+static bool check_count(const struct view *view, uint32_t index)
+{
+    uint32_t allowed = BVH_COUNT_MASK;
+    if (is_first_of_pair(view, index))
+        allowed |= BVH_AXIS_MASK << BVH_AXIS_SHIFT | BVH_SECOND_LOW;
+    if (view->nodes[index].count & ~allowed)
+        REFUSE(view, "stray bits in a count, node", index);
+    return true;
+}
+
+static bool check_axis(const struct view *view, uint32_t index)
+{
+    if (!is_first_of_pair(view, index))
+        return true;
+    struct gpu_bvh_node pair[2] = {view->nodes[index], view->nodes[index + 1]};
+    bvh_set_axis(pair);
+    if (view->nodes[index].count != pair[0].count)
+        REFUSE(view, "the axis is not that of the pair, node", index);
+    return true;
+}
+
 static bool walk_run(const struct view *view, struct walk *walk)
 {
     walk->stack[walk->top++] = (struct visit){view->first_node, 0};
@@ -127,7 +155,9 @@ static bool walk_run(const struct view *view, struct walk *walk)
         const struct gpu_bvh_node *node = &view->nodes[at.node];
         if (!box_is_sane(node))
             REFUSE(view, "a box is not finite, or inside out, node", at.node);
-        if (!(bvh_count(node) > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)))
+        if (!check_count(view, at.node) ||
+            !(bvh_count(node) > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)) ||
+            !check_axis(view, at.node))
             return false;
     }
     if (2 + 2 * (uint64_t)walk->pairs != view->node_count)

@@ -192,7 +192,7 @@ static void partition(struct build_record *records, uint32_t count, const struct
 }
 
 enum build_choice split_binned(struct build_record *records, const struct build_range *range,
-                               const struct build_params *params, uint32_t thread_count,
+                               const struct bvh_params *params, uint32_t thread_count,
                                uint32_t *left_count, struct build_bounds halves[2])
 {
     struct build_record *own = records + range->first;

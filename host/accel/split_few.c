@@ -81,7 +81,7 @@ static void few_apply(struct build_record *records, uint32_t count, const struct
 }
 
 enum build_choice split_few(struct build_record *records, const struct build_range *range,
-                            const struct build_params *params, uint32_t *left_count,
+                            const struct bvh_params *params, uint32_t *left_count,
                             struct build_bounds halves[2])
 {
     struct build_record *own = records + range->first;

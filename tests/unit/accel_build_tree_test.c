@@ -524,9 +524,35 @@ static void break_leaf_huge(struct bvh *b)
 {
     b->nodes[find_node(b, true)].first = 0xfffffffeu;
 }
-static void break_leaf_count(struct bvh *b)
+static void break_count_bits(struct bvh *b)
 {
     b->nodes[find_node(b, true)].count = 0xfffffff0u;
+}
+static void break_count_high(struct bvh *b)
+{
+    b->nodes[2].count |= 128u;
+}
+static void break_root_bits(struct bvh *b)
+{
+    b->nodes[0].count |= 1u << BVH_AXIS_SHIFT;
+}
+static void break_second_bits(struct bvh *b)
+{
+    b->nodes[3].count |= BVH_SECOND_LOW;
+}
+static void break_axis(struct bvh *b)
+{
+    uint32_t *count = &b->nodes[2].count;
+    uint32_t axis = *count >> BVH_AXIS_SHIFT & BVH_AXIS_MASK;
+    *count ^= (axis ^ (axis + 1) % 3) << BVH_AXIS_SHIFT;
+}
+static void break_axis_three(struct bvh *b)
+{
+    b->nodes[2].count |= BVH_AXIS_MASK << BVH_AXIS_SHIFT;
+}
+static void break_axis_sign(struct bvh *b)
+{
+    b->nodes[2].count ^= BVH_SECOND_LOW;
 }
 static void break_leaf_over_limit(struct bvh *b)
 {
@@ -559,7 +585,7 @@ static void break_unreached(struct bvh *b)
         const struct gpu_bvh_node *pair = &b->nodes[n->first];
         if (bvh_count(n) == 0 && bvh_count(&pair[0]) > 0 && bvh_count(&pair[1]) > 0 &&
             bvh_count(&pair[0]) + bvh_count(&pair[1]) <= 4) {
-            n->count = bvh_count(&pair[0]) + bvh_count(&pair[1]);
+            n->count += bvh_count(&pair[0]) + bvh_count(&pair[1]);
             n->first = pair[0].first;
             return;
         }
@@ -616,7 +642,13 @@ static void broken_trees_are_refused(void **state)
         ROW(break_child_odd, "do not start at an even"),
         ROW(break_leaf_range, "reaches out of range"),
         ROW(break_leaf_huge, "reaches out of range"),
-        ROW(break_leaf_count, "over the limit"),
+        ROW(break_count_bits, "stray bits"),
+        ROW(break_count_high, "stray bits"),
+        ROW(break_root_bits, "stray bits"),
+        ROW(break_second_bits, "stray bits"),
+        ROW(break_axis, "the axis is not"),
+        ROW(break_axis_three, "the axis is not"),
+        ROW(break_axis_sign, "the axis is not"),
         ROW(break_leaf_over_limit, "over the limit"),
         ROW(break_leaf_overlap, "share a record"),
         ROW(break_leaf_lost, "primitives are missing"),
