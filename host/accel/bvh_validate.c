@@ -14,7 +14,8 @@ struct view {
     const struct gpu_bvh_node *nodes; /* the whole array */
     uint32_t first_node, node_count;  /* those of this tree; the first is the root */
     uint32_t first_slot, slot_count;  /* what its leaves may refer to */
-    uint32_t primitive_count;         /* in the leaves; each once */
+    uint32_t primitive_count;         /* in the leaves; each once, or where `split` at least once */
+    bool split;                       /* every slot is used, several by one primitive */
     uint32_t leaf_limit;
     /* Primitive in a slot, and its box; false: no box to compare with. */
     uint32_t (*primitive)(const void *user, uint32_t slot);
@@ -30,7 +31,8 @@ struct visit {
 struct walk {
     struct visit *stack;
     uint8_t *pair_seen, *slot_seen, *primitive_seen;
-    uint32_t top, pairs, slots;
+    struct bvh_box *parts; /* where split: of each primitive, the union of what its leaves hold */
+    uint32_t top, pairs, slots, primitives;
     uint32_t depth, leaf_count, leaf_largest;
 };
 
@@ -62,6 +64,22 @@ static bool box_is_sane(const struct gpu_bvh_node *node)
     return sane;
 }
 
+/* What leaf `node` holds of a primitive in box `box` is added to what is known of it. */
+static bool check_part(const struct view *view, struct walk *walk, uint32_t primitive,
+                       const struct bvh_box *box, const struct gpu_bvh_node *node)
+{
+    struct bvh_box *parts = &walk->parts[primitive];
+    for (int i = 0; i < 3; ++i) {
+        float lo = node->lo[i] > box->lo[i] ? node->lo[i] : box->lo[i];
+        float hi = node->hi[i] < box->hi[i] ? node->hi[i] : box->hi[i];
+        if (!(lo <= hi))
+            REFUSE(view, "a leaf holds nothing of its primitive", primitive);
+        parts->lo[i] = lo < parts->lo[i] ? lo : parts->lo[i];
+        parts->hi[i] = hi > parts->hi[i] ? hi : parts->hi[i];
+    }
+    return true;
+}
+
 static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot,
                        const struct gpu_bvh_node *node)
 {
@@ -71,11 +89,36 @@ static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot
         REFUSE(view, "a leaf names a primitive out of range, at record", slot);
     if (walk->slot_seen[slot - view->first_slot]++)
         REFUSE(view, "two leaves share a record", slot);
-    if (walk->primitive_seen[primitive]++)
+    if (walk->primitive_seen[primitive] && !view->split)
         REFUSE(view, "a primitive is in the tree twice", primitive);
-    if (view->box(view->user, slot, &box) && !box_holds(node->lo, node->hi, box.lo, box.hi))
-        REFUSE(view, "a leaf does not contain its primitive", primitive);
+    for (uint32_t other = node->first; view->split && other < slot; ++other) {
+        if (view->primitive(view->user, other) == primitive)
+            REFUSE(view, "a primitive is in a leaf twice", primitive);
+    }
+    walk->primitives += !walk->primitive_seen[primitive];
+    walk->primitive_seen[primitive] = 1;
     ++walk->slots;
+    if (!view->box(view->user, slot, &box))
+        return true;
+    if (view->split)
+        return check_part(view, walk, primitive, &box, node);
+    if (!box_holds(node->lo, node->hi, box.lo, box.hi))
+        REFUSE(view, "a leaf does not contain its primitive", primitive);
+    return true;
+}
+
+/* The boxes of all parts of a primitive unite to its own. */
+static bool check_parts(const struct view *view, const struct walk *walk)
+{
+    struct bvh_box box;
+    for (uint32_t i = 0; i < view->slot_count; ++i) {
+        uint32_t slot = view->first_slot + i;
+        if (!view->box(view->user, slot, &box))
+            return true;
+        const struct bvh_box *parts = &walk->parts[view->primitive(view->user, slot)];
+        if (!box_holds(parts->lo, parts->hi, box.lo, box.hi))
+            REFUSE(view, "the leaves of a primitive do not cover it, record", slot);
+    }
     return true;
 }
 
@@ -162,9 +205,13 @@ static bool walk_run(const struct view *view, struct walk *walk)
     }
     if (2 + 2 * (uint64_t)walk->pairs != view->node_count)
         REFUSE(view, "nodes are not reached from the root; reached pairs", walk->pairs);
-    if (walk->slots != view->primitive_count)
-        REFUSE(view, "primitives are missing; found", walk->slots);
-    return true;
+    if (walk->primitives != view->primitive_count)
+        REFUSE(view, "primitives are missing; found", walk->primitives);
+    if (!view->split)
+        return true;
+    if (walk->slots != view->slot_count)
+        REFUSE(view, "records are in no leaf; found", walk->slots);
+    return check_parts(view, walk);
 }
 
 static bool walk_alloc(const struct view *view, struct walk *walk)
@@ -176,7 +223,15 @@ static bool walk_alloc(const struct view *view, struct walk *walk)
         .slot_seen = array_alloc_zeroed(view->slot_count, 1),
         .primitive_seen = array_alloc_zeroed(view->primitive_count, 1),
     };
-    return walk->stack && walk->pair_seen && walk->slot_seen && walk->primitive_seen;
+    if (!walk->stack || !walk->pair_seen || !walk->slot_seen || !walk->primitive_seen)
+        return false;
+    if (!view->split)
+        return true;
+    walk->parts = array_alloc(view->primitive_count, sizeof *walk->parts);
+    for (uint32_t i = 0; walk->parts && i < view->primitive_count; ++i)
+        walk->parts[i] =
+            (struct bvh_box){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+    return walk->parts != NULL;
 }
 
 static void walk_finish(struct walk *walk)
@@ -185,6 +240,7 @@ static void walk_finish(struct walk *walk)
     free(walk->pair_seen);
     free(walk->slot_seen);
     free(walk->primitive_seen);
+    free(walk->parts);
 }
 
 /* *found holds the counts on success. */
@@ -250,8 +306,9 @@ whit_result bvh_validate(const struct log *log, const struct bvh *bvh, const str
         .name = "tree",
         .nodes = bvh->nodes,
         .node_count = bvh->node_count,
-        .slot_count = bvh->primitive_count,
+        .slot_count = bvh->reference_count,
         .primitive_count = bvh->primitive_count,
+        .split = bvh->reference_count > bvh->primitive_count,
         .leaf_limit = leaf_limit < BVH_LEAF_MAX ? leaf_limit : BVH_LEAF_MAX,
         .primitive = bvh_primitive,
         .box = bvh_primitive_box,
@@ -314,6 +371,7 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
         .first_slot = m->first_triangle,
         .slot_count = m->record_count,
         .primitive_count = m->triangle_count,
+        .split = m->record_count > m->triangle_count,
         .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
         .primitive = mesh_primitive,
         .box = mesh_primitive_box,

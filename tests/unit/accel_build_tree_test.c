@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <float.h>
 #include <math.h>
+#include <stdalign.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -681,6 +682,68 @@ static void broken_trees_are_refused(void **state)
     free(boxes);
 }
 
+/* ---- Split primitives ---- */
+
+/* Box 0 along x is split at 2 between two leaves, which boxes 1 and 2 share with it. */
+struct split_tree {
+    alignas(64) struct gpu_bvh_node nodes[4];
+    struct bvh_box boxes[3];
+    uint32_t order[4];
+    struct bvh bvh;
+};
+
+static void split_tree_init(struct split_tree *tree)
+{
+    *tree = (struct split_tree){
+        .nodes = {{{0, 0, 0}, 2, {4, 1, 1}, 0},
+                  {{0}, 0, {0}, 0},
+                  {{0, 0, 0}, 0, {2, 1, 1}, 2},
+                  {{2, 0, 0}, 2, {4, 1, 1}, 2}},
+        .boxes = {{{0, 0, 0}, {4, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}},
+        .order = {0, 1, 0, 2},
+        .bvh = {.node_count = 4, .primitive_count = 3, .reference_count = 4, .clipped = true},
+    };
+    tree->bvh.nodes = tree->nodes;
+    tree->bvh.order = tree->order;
+    bvh_complete(&tree->bvh, 1.0);
+}
+
+static void split_tree_said(const struct split_tree *tree, const char *reason)
+{
+    char said[201] = "";
+    struct log log = {keep_message, said, WHIT_LOG_ERROR};
+    whit_result result = bvh_validate(&log, &tree->bvh, tree->boxes, 4);
+    assert_int_equal(result, reason ? WHIT_ERROR_FAILED : WHIT_OK);
+    if (reason && !strstr(said, reason))
+        fail_msg("expected `%s`, said `%s`", reason, said);
+}
+
+static void split_primitives_must_be_covered(void **state)
+{
+    (void)state;
+    struct split_tree tree;
+    split_tree_init(&tree);
+    split_tree_said(&tree, NULL);
+    tree.order[1] = 0;
+    split_tree_said(&tree, "in a leaf twice");
+    tree.order[1] = 2;
+    split_tree_said(&tree, "holds nothing of its primitive");
+    split_tree_init(&tree);
+    tree.boxes[0].hi[1] = 2.0f;
+    split_tree_said(&tree, "do not cover it");
+    split_tree_init(&tree);
+    tree.nodes[3].count = 1;
+    split_tree_said(&tree, "primitives are missing");
+    tree.order[2] = 2;
+    split_tree_said(&tree, "records are in no leaf");
+    split_tree_init(&tree);
+    tree.bvh.reference_count = 3;
+    split_tree_said(&tree, "reaches out of range");
+    split_tree_init(&tree);
+    tree.bvh.primitive_count = 4; /* as if none were split */
+    split_tree_said(&tree, "does not contain its primitive");
+}
+
 /* Whatever bytes stand in the arrays, the validator ends and reads nothing outside. */
 static void validator_survives_any_bytes(void **state)
 {
@@ -725,6 +788,7 @@ int main(void)
         cmocka_unit_test(sah_is_better_than_medians),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(broken_trees_are_refused),
+        cmocka_unit_test(split_primitives_must_be_covered),
         cmocka_unit_test(validator_survives_any_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
