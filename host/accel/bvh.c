@@ -99,6 +99,8 @@ whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32
     }
     result = build(log, boxes, count, &resolved, out);
     out->build_ms = clock_ms() - begin_ms;
+    if (result == WHIT_OK && resolved.optimize)
+        result = bvh_optimize(log, resolved.thread_count, (double)resolved.traversal_cost, out);
     if (result != WHIT_OK)
         bvh_finish(out);
     return result;
