@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "image/heat.h"
 
 void whit_image_get_info(const whit_image *image, whit_image_info *info)
 {
@@ -87,4 +88,33 @@ void whit_image_destroy(whit_image *image)
 bool whit_image_format_known(const char *path, bool integers)
 {
     return image_format_known(path, integers);
+}
+
+double whit_image_heat_scale(const whit_image *values)
+{
+    return image_heat_scale(&values->image);
+}
+
+whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
+                            whit_image **out)
+{
+    const whit_heat_params defaults = {0};
+    if (!params)
+        params = &defaults;
+    *out = NULL;
+    whit_image *image = calloc(1, sizeof *image);
+    if (!image)
+        return WHIT_ERROR_MEMORY;
+    const struct heat_params inner = {
+        .scale = params->scale,
+        .title = params->title,
+        .unit = params->unit,
+    };
+    whit_result result = image_heat(&values->image, &inner, &image->image);
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    *out = image;
+    return WHIT_OK;
 }

@@ -249,7 +249,7 @@ typedef struct whit_renderer_params {
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
     void *progress_user;
-    double time_limit_s;   /* 0: none */
+    double time_limit_s;   /* from whit_renderer_create on; 0: none */
     const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
     whit_traversal traversal;
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
@@ -375,11 +375,16 @@ void whit_image_destroy(whit_image *image);
 bool whit_image_format_known(const char *path, bool integers);
 
 /* A picture of one channel as a heat map with a legend below: colours that the colour-blind can
-   tell apart (viridis), dark is 0, bright is `scale` and above. Linear RGB. */
+   tell apart (viridis), dark is 0, bright is `scale` and above. Linear RGB, at least as wide as a
+   legend that can be read: narrower pictures are centred. */
 typedef struct whit_heat_params {
-    double scale;      /* 0: automatic, the 99.5th percentile */
-    const char *title; /* of the legend */
+    double scale;      /* 0: whit_image_heat_scale */
+    const char *title; /* of the legend, or NULL; ASCII, shortened when it does not fit */
+    const char *unit;  /* of the numbers, at the legend's right end, or NULL */
 } whit_heat_params;
+/* The 99.5th percentile, rounded up to a number that reads well; of the largest value where that
+   is 0; 1 where all are. */
+double whit_image_heat_scale(const whit_image *values);
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
 

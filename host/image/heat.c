@@ -1,0 +1,162 @@
+#include "image/heat.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "image/legend.h"
+
+/* Every 15th of the 256 colours of viridis (S. van der Walt and N. Smith, 2015; released into the
+   public domain with matplotlib 1.5 as CC0). What lies between by straight lines is at most 5 codes
+   off. */
+static const uint32_t viridis[18] = {
+    0x440154, 0x481769, 0x472a7a, 0x433d84, 0x3d4e8a, 0x355e8d, 0x2e6d8e, 0x297b8e, 0x23898e,
+    0x1f978b, 0x21a585, 0x2eb37c, 0x46c06f, 0x65cb5e, 0x89d548, 0xb0dd2f, 0xd8e219, 0xfde725,
+};
+enum { LAST = 17 };
+
+void heat_color(double share, uint8_t codes[3])
+{
+    double at = (share > 0.0 ? fmin(share, 1.0) : 0.0) * LAST;
+    int below = at < LAST ? (int)at : LAST - 1;
+    double part = at - below;
+    for (int c = 0; c < 3; ++c) {
+        int shift = 16 - 8 * c;
+        double low = (double)(viridis[below] >> shift & 255);
+        double high = (double)(viridis[below + 1] >> shift & 255);
+        codes[c] = (uint8_t)(low + (high - low) * part + 0.5);
+    }
+}
+
+/* Up to the next of a few leading digits. */
+static double round_up(double value)
+{
+    static const double nice[] = {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0};
+    double power = pow(10.0, floor(log10(value)));
+    for (size_t i = 0; i < sizeof nice / sizeof nice[0]; ++i) {
+        if (value <= nice[i] * power * (1.0 + 1e-12))
+            return nice[i] * power;
+    }
+    return 10.0 * power;
+}
+
+/* The order of floats from 0 up is that of their bits; what is negative counts as 0. */
+static uint32_t order_of(float value)
+{
+    uint32_t bits = 0;
+    if (value > 0.0f)
+        memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+enum { HALF_COUNT = 1 << 16 };
+
+/* Finds the half word that holds rank *rank, and makes *rank the one within it. */
+static uint32_t find_half(const uint64_t counts[HALF_COUNT], uint64_t *rank)
+{
+    uint32_t half = 0;
+    while (half + 1 < HALF_COUNT && *rank > counts[half])
+        *rank -= counts[half++];
+    return half;
+}
+
+/* The value of rank `rank` (from 1) among the finite ones: first the upper, then the lower half of
+   its bits. */
+static float value_of_rank(const struct image *values, uint64_t rank, uint64_t counts[HALF_COUNT])
+{
+    size_t count = (size_t)values->width * values->height;
+    memset(counts, 0, HALF_COUNT * sizeof *counts);
+    for (size_t i = 0; i < count; ++i)
+        counts[order_of(values->pixels[i]) >> 16] += isfinite(values->pixels[i]) ? 1 : 0;
+    uint32_t upper = find_half(counts, &rank);
+    memset(counts, 0, HALF_COUNT * sizeof *counts);
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t bits = order_of(values->pixels[i]);
+        if (isfinite(values->pixels[i]) && bits >> 16 == upper)
+            ++counts[bits & (HALF_COUNT - 1)];
+    }
+    uint32_t bits = upper << 16 | find_half(counts, &rank);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static double largest_of(const struct image *values, uint64_t *finite_count)
+{
+    double largest = 0.0;
+    size_t count = (size_t)values->width * values->height;
+    *finite_count = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (!isfinite(values->pixels[i]))
+            continue;
+        ++*finite_count;
+        largest = fmax(largest, (double)values->pixels[i]);
+    }
+    return largest;
+}
+
+double image_heat_scale(const struct image *values)
+{
+    uint64_t finite_count;
+    if (!values->pixels || values->channels != 1)
+        return 1.0;
+    double scale = largest_of(values, &finite_count);
+    uint64_t *counts = array_alloc(HALF_COUNT, sizeof *counts);
+    if (counts && finite_count) {
+        uint64_t rank = finite_count - finite_count / 200;
+        double value = (double)value_of_rank(values, rank, counts);
+        scale = value > 0.0 ? value : scale;
+    }
+    free(counts); /* without memory the largest is the scale */
+    return scale > 0.0 ? round_up(scale) : 1.0;
+}
+
+struct ramp {
+    float linear[256]; /* of sRGB codes */
+};
+
+static void ramp_init(struct ramp *ramp)
+{
+    for (int code = 0; code < 256; ++code)
+        ramp->linear[code] = image_linear_from_srgb((float)code / 255.0f);
+}
+
+static void put_heat(const struct ramp *ramp, float value, double scale, float *to)
+{
+    uint8_t codes[3];
+    if (!isfinite(value)) {
+        to[0] = to[1] = to[2] = NAN;
+        return;
+    }
+    heat_color((double)value / scale, codes);
+    for (int c = 0; c < 3; ++c)
+        to[c] = ramp->linear[codes[c]];
+}
+
+whit_result image_heat(const struct image *values, const struct heat_params *params,
+                       struct image *out)
+{
+    *out = (struct image){0};
+    if (!values->pixels || values->channels != 1 || !(params->scale >= 0.0) ||
+        !isfinite(params->scale))
+        return WHIT_ERROR_USAGE;
+    struct ramp ramp;
+    struct legend legend;
+    double scale = params->scale > 0.0 ? params->scale : image_heat_scale(values);
+    legend_init(&legend, values->width, params->title, params->unit, scale);
+    if (values->height > UINT32_MAX - legend.height)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = image_init(out, legend.width, values->height + legend.height, 3, false);
+    if (result != WHIT_OK)
+        return result;
+    ramp_init(&ramp);
+    legend_draw(&legend, ramp.linear, values->height, out);
+    uint32_t left = (legend.width - values->width) / 2;
+    for (uint32_t y = 0; y < values->height; ++y) {
+        for (uint32_t x = 0; x < values->width; ++x)
+            put_heat(&ramp, values->pixels[(size_t)y * values->width + x], scale,
+                     out->pixels + 3 * ((size_t)y * out->width + left + x));
+    }
+    return WHIT_OK;
+}

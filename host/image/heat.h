@@ -1,0 +1,26 @@
+/* Numbers as colours. */
+#ifndef IMAGE_HEAT_H
+#define IMAGE_HEAT_H
+
+#include "image/image.h"
+
+struct heat_params {
+    double scale;      /* of the brightest colour; 0: image_heat_scale */
+    const char *title; /* of the legend, or NULL; shortened when it does not fit */
+    const char *unit;  /* of the numbers, at the legend's right end, or NULL */
+};
+
+/* Viridis: sRGB codes of `share`, 0 (dark) to 1 (bright), which is clamped. */
+void heat_color(double share, uint8_t codes[3]);
+
+/* The 99.5th percentile of the finite values, rounded up to a number that reads well; when it is 0,
+   the same of the largest one; 1 when that is 0 too. */
+double image_heat_scale(const struct image *values);
+
+/* `values` of one channel as linear RGB whose sRGB codes are exactly those of heat_color, with a
+   legend below; at least as wide as a short legend. Not finite stays so. WHIT_ERROR_USAGE for other
+   pictures and scales below 0. */
+WHIT_CHECK whit_result image_heat(const struct image *values, const struct heat_params *params,
+                                  struct image *out);
+
+#endif

@@ -1,0 +1,199 @@
+#include "image/legend.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "image/heat.h"
+
+/* Functions that are not used are reported at the end of the file: no pop helps there. */
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wcast-align"
+#include <stb/stb_easy_font.h>
+#pragma GCC diagnostic pop
+
+/* In pixels of the font, from the top of the strip. */
+enum {
+    MARGIN = 4,
+    UNIT_GAP = 8, /* at least, behind the title */
+    TITLE_TOP = 5,
+    BAR_TOP = 17,
+    BAR_ROWS = 8,
+    TICK_ROWS = 3,
+    NUMBER_TOP = BAR_TOP + BAR_ROWS + TICK_ROWS + 2,
+    STRIP_ROWS = NUMBER_TOP + 11,
+    WIDTH_LEAST = 120, /* narrower pictures get a wider strip, */
+    WIDTH_WANTED = 320 /* as wide as this where the title needs it */
+};
+enum { BACKGROUND = 20, INK = 225 };
+
+static uint32_t letter_width(char letter)
+{
+    char text[2] = {letter, 0};
+    return (uint32_t)stb_easy_font_width(text);
+}
+
+static uint32_t text_width(const char *text)
+{
+    uint32_t width = 0;
+    for (; *text; ++text)
+        width += letter_width(*text);
+    return width;
+}
+
+/* The font knows ASCII only. */
+static void copy_text(char to[LEGEND_TEXT_MAX], const char *text)
+{
+    snprintf(to, LEGEND_TEXT_MAX, "%s", text ? text : "");
+    for (char *c = to; *c; ++c) {
+        if (*c < ' ' || *c > '~')
+            *c = '?';
+    }
+}
+
+static void shorten(char text[LEGEND_TEXT_MAX], uint32_t room)
+{
+    size_t length = strlen(text);
+    while (length > 3 && text_width(text) > room)
+        memcpy(text + --length - 3, "...", 4);
+}
+
+static uint32_t zoom_for(uint32_t picture_width)
+{
+    return picture_width < 512 ? 1 : 1 + (picture_width / 2 + 256) / 512;
+}
+
+void legend_init(struct legend *legend, uint32_t picture_width, const char *title, const char *unit,
+                 double scale)
+{
+    *legend = (struct legend){.scale = scale, .zoom = zoom_for(picture_width)};
+    copy_text(legend->title, title);
+    copy_text(legend->unit, unit);
+    shorten(legend->unit, WIDTH_LEAST / 2);
+    uint32_t others = 2 * MARGIN + text_width(legend->unit) + (legend->unit[0] ? UNIT_GAP : 0);
+    uint32_t wanted = text_width(legend->title) + others;
+    wanted = wanted > WIDTH_WANTED ? WIDTH_WANTED : wanted < WIDTH_LEAST ? WIDTH_LEAST : wanted;
+    wanted *= legend->zoom;
+    legend->width = picture_width > wanted ? picture_width : wanted;
+    legend->height = STRIP_ROWS * legend->zoom;
+    shorten(legend->title, legend->width / legend->zoom - others);
+}
+
+struct canvas {
+    struct image *image;
+    uint32_t top, zoom;
+    const float *linear;
+};
+
+static void fill(const struct canvas *canvas, uint32_t x, uint32_t y, uint32_t width,
+                 uint32_t height, const uint8_t codes[3])
+{
+    struct image *image = canvas->image;
+    uint32_t right = x + width < image->width ? x + width : image->width;
+    uint32_t bottom = y + height < image->height ? y + height : image->height;
+    for (uint32_t row = y; row < bottom; ++row) {
+        for (uint32_t column = x; column < right; ++column) {
+            float *pixel = image->pixels + 3 * ((size_t)row * image->width + column);
+            for (int c = 0; c < 3; ++c)
+                pixel[c] = canvas->linear[codes[c]];
+        }
+    }
+}
+
+struct corner {
+    float x, y, z;
+    uint8_t color[4];
+};
+enum { QUADS_MOST = 16 }; /* of a letter */
+
+/* From pixel `x` of the picture and row `y` of the font. */
+static void draw_text(const struct canvas *canvas, uint32_t x, uint32_t y, const char *text)
+{
+    static const uint8_t ink[3] = {INK, INK, INK};
+    struct corner corners[4 * QUADS_MOST];
+    for (; *text; ++text) {
+        char letter[2] = {*text, 0};
+        int quads = stb_easy_font_print(0.0f, 0.0f, letter, NULL, corners, (int)sizeof corners);
+        for (int i = 0; i < quads; ++i) {
+            const struct corner *from = &corners[4 * i], *to = &corners[4 * i + 2];
+            fill(canvas, x + canvas->zoom * (uint32_t)from->x,
+                 canvas->top + canvas->zoom * (y + (uint32_t)from->y),
+                 canvas->zoom * (uint32_t)(to->x - from->x),
+                 canvas->zoom * (uint32_t)(to->y - from->y), ink);
+        }
+        x += canvas->zoom * letter_width(*text);
+    }
+}
+
+struct bar {
+    uint32_t left, width; /* pixels of the picture */
+};
+
+static void draw_bar(const struct canvas *canvas, const struct bar *bar)
+{
+    for (uint32_t x = 0; x < bar->width; ++x) {
+        uint8_t codes[3];
+        heat_color(bar->width > 1 ? (double)x / (bar->width - 1) : 0.0, codes);
+        fill(canvas, bar->left + x, canvas->top + BAR_TOP * canvas->zoom, 1,
+             BAR_ROWS * canvas->zoom, codes);
+    }
+}
+
+/* A number under its tick, kept within the bar. */
+static void draw_number(const struct legend *legend, const struct canvas *canvas,
+                        const struct bar *bar, double value, const char *text)
+{
+    static const uint8_t ink[3] = {INK, INK, INK};
+    uint32_t width = text_width(text) * canvas->zoom, last = bar->width - canvas->zoom;
+    uint32_t at = (uint32_t)((double)last * fmin(value / legend->scale, 1.0) + 0.5);
+    fill(canvas, bar->left + at, canvas->top + (BAR_TOP + BAR_ROWS) * canvas->zoom, canvas->zoom,
+         TICK_ROWS * canvas->zoom, ink);
+    uint32_t left = at > width / 2 ? at - width / 2 : 0;
+    if (left + width > bar->width)
+        left = bar->width > width ? bar->width - width : 0;
+    draw_text(canvas, bar->left + left, NUMBER_TOP, text);
+}
+
+/* 1, 2 or 5 times a power of ten, at least `least`. */
+static double tick_step(double least)
+{
+    double power = pow(10.0, floor(log10(least)));
+    double digit = least / power;
+    return power * (digit <= 1.0 ? 1.0 : digit <= 2.0 ? 2.0 : digit <= 5.0 ? 5.0 : 10.0);
+}
+
+/* Ticks at multiples of a step, and one at the end. */
+static void draw_ticks(const struct legend *legend, const struct canvas *canvas,
+                       const struct bar *bar)
+{
+    char last[32], text[32];
+    snprintf(last, sizeof last, "%g", legend->scale);
+    uint32_t number_width = (text_width(last) + 14) * canvas->zoom;
+    uint32_t most = bar->width / number_width < 10 ? bar->width / number_width : 10;
+    double step = tick_step(legend->scale / (most ? most : 1) * (1.0 - 1e-9));
+    double end = legend->scale * (1.0 - 1.5 * number_width / (double)bar->width);
+    draw_number(legend, canvas, bar, 0.0, "0");
+    for (uint32_t i = 1; i < 16 && i * step < end; ++i) {
+        snprintf(text, sizeof text, "%g", i * step);
+        draw_number(legend, canvas, bar, i * step, text);
+    }
+    draw_number(legend, canvas, bar, legend->scale, last);
+}
+
+void legend_draw(const struct legend *legend, const float linear[256], uint32_t top,
+                 struct image *to)
+{
+    static const uint8_t background[3] = {BACKGROUND, BACKGROUND, BACKGROUND};
+    const struct canvas canvas = {.image = to, .top = top, .zoom = legend->zoom, .linear = linear};
+    const struct bar bar = {.left = MARGIN * legend->zoom,
+                            .width = legend->width - 2 * MARGIN * legend->zoom};
+    fill(&canvas, 0, 0, to->width, to->height, background);
+    draw_text(&canvas, bar.left, TITLE_TOP, legend->title);
+    draw_text(&canvas, bar.left + bar.width - text_width(legend->unit) * canvas.zoom, TITLE_TOP,
+              legend->unit);
+    draw_bar(&canvas, &bar);
+    draw_ticks(legend, &canvas, &bar);
+}

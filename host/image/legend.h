@@ -1,0 +1,23 @@
+/* The strip below a heat map: title, bar of colours, ticks. */
+#ifndef IMAGE_LEGEND_H
+#define IMAGE_LEGEND_H
+
+#include "image/image.h"
+
+enum { LEGEND_TEXT_MAX = 128 };
+struct legend {
+    uint32_t width, height; /* pixels of the strip; at least as wide as the picture */
+    uint32_t zoom;          /* pixels of the picture for one of the font */
+    double scale;
+    char title[LEGEND_TEXT_MAX], unit[LEGEND_TEXT_MAX];
+};
+
+/* For a picture of `picture_width`. A title that is too long is cut. */
+void legend_init(struct legend *legend, uint32_t picture_width, const char *title, const char *unit,
+                 double scale);
+/* Fills `to` (legend->width wide, RGB) with the background and draws the strip from row `top`.
+   `linear`: of the 256 sRGB codes. */
+void legend_draw(const struct legend *legend, const float linear[256], uint32_t top,
+                 struct image *to);
+
+#endif

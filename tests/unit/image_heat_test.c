@@ -1,0 +1,229 @@
+/* Heat maps: the colours, the automatic scale, and a legend that fits any picture. */
+#include "image_fixture.h"
+
+#include <math.h>
+
+#include "image/heat.h"
+
+static struct image values_of(uint32_t width, uint32_t height, float value)
+{
+    struct image image;
+    assert_int_equal(image_init(&image, width, height, 1, false), WHIT_OK);
+    for (size_t i = 0; i < (size_t)width * height; ++i)
+        image.pixels[i] = value;
+    return image;
+}
+
+static struct image heat_of(const struct image *values, double scale, const char *title)
+{
+    struct image out;
+    const struct heat_params params = {.scale = scale, .title = title, .unit = "tests"};
+    assert_int_equal(image_heat(values, &params, &out), WHIT_OK);
+    return out;
+}
+
+static void assert_color(double share, uint8_t red, uint8_t green, uint8_t blue)
+{
+    uint8_t codes[3];
+    heat_color(share, codes);
+    assert_int_equal(codes[0], red);
+    assert_int_equal(codes[1], green);
+    assert_int_equal(codes[2], blue);
+}
+
+static void colors_are_those_of_viridis(void **state)
+{
+    (void)state;
+    assert_color(0.0, 0x44, 0x01, 0x54);
+    assert_color(15.0 / 255.0, 0x48, 0x17, 0x69);
+    assert_color(120.0 / 255.0, 0x23, 0x89, 0x8e);
+    assert_color(1.0, 0xfd, 0xe7, 0x25);
+    assert_color(-1.0, 0x44, 0x01, 0x54);
+    assert_color((double)NAN, 0x44, 0x01, 0x54);
+    assert_color(1e30, 0xfd, 0xe7, 0x25);
+}
+
+/* Colours of the map that lie between those of the table. */
+static void colors_between_are_near(void **state)
+{
+    (void)state;
+    static const struct {
+        int index;
+        uint8_t codes[3];
+    } known[] = {{51, {0x41, 0x44, 0x87}}, {127, {0x21, 0x91, 0x8c}}, {187, {0x58, 0xc7, 0x65}}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i) {
+        uint8_t codes[3];
+        heat_color(known[i].index / 255.0, codes);
+        for (int c = 0; c < 3; ++c)
+            assert_true(abs(codes[c] - known[i].codes[c]) <= 5);
+    }
+}
+
+/* Brighter is more, also for who sees no colours. */
+static void brightness_rises(void **state)
+{
+    (void)state;
+    double before = -1.0;
+    for (int i = 0; i <= 100; ++i) {
+        uint8_t codes[3];
+        heat_color(i / 100.0, codes);
+        double light = 0.0;
+        const double weights[3] = {0.2126, 0.7152, 0.0722};
+        for (int c = 0; c < 3; ++c)
+            light += weights[c] * (double)image_linear_from_srgb((float)codes[c] / 255.0f);
+        assert_true(light > before);
+        before = light;
+    }
+}
+
+static void the_scale_ignores_the_brightest_200th(void **state)
+{
+    (void)state;
+    struct image values = values_of(100, 10, 0.0f);
+    for (int i = 0; i < 1000; ++i)
+        values.pixels[(i * 7) % 1000] = (float)(i + 1); /* 1 to 1000 */
+    assert_true(image_heat_scale(&values) == 1000.0);   /* 995, rounded up */
+    for (int i = 0; i < 1000; ++i)
+        values.pixels[i] = values.pixels[i] > 995.0f ? 1e9f : 37.0f;
+    assert_true(image_heat_scale(&values) == 40.0);
+    values.pixels[0] = values.pixels[0] > 1e8f ? values.pixels[0] : 1e9f; /* one more than 5 */
+    assert_true(image_heat_scale(&values) == 1e9);
+    image_finish(&values);
+}
+
+static void the_scale_of_few_or_no_values(void **state)
+{
+    (void)state;
+    struct image values = values_of(100, 100, 0.0f);
+    assert_true(image_heat_scale(&values) == 1.0);
+    values.pixels[77] = 13.0f; /* far below a 200th of the picture */
+    assert_true(image_heat_scale(&values) == 15.0);
+    for (int i = 0; i < 10000; ++i)
+        values.pixels[i] = i % 2 ? NAN : INFINITY;
+    assert_true(image_heat_scale(&values) == 1.0);
+    values.pixels[3] = 2.0f;
+    assert_true(image_heat_scale(&values) == 2.0);
+    values.pixels[3] = -2.0f;
+    assert_true(image_heat_scale(&values) == 1.0);
+    image_finish(&values);
+}
+
+/* Through a PNG and back: its codes are those of heat_color. */
+static void the_file_has_the_codes_of_the_table(void **state)
+{
+    struct fixture *fixture = *state;
+    char *path = string_format("%s/heat.png", fixture->folder);
+    struct image values = values_of(500, 3, 0.0f), back;
+    for (uint32_t i = 0; i < 1500; ++i)
+        values.pixels[i] = (float)i;
+    struct image heat = heat_of(&values, 1499.0, "all of them");
+    assert_int_equal(heat.width, 500);
+    assert_int_equal(image_save(&fixture->log, &heat, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_load(&fixture->log, path, &back), WHIT_OK);
+    assert_true(back.width == heat.width && back.height == heat.height);
+    for (uint32_t i = 0; i < 1500; ++i) {
+        uint8_t codes[3];
+        heat_color((double)i / 1499.0, codes);
+        for (uint32_t c = 0; c < back.channels && c < 3; ++c) {
+            float code = 255.0f * image_srgb_from_linear(back.pixels[i * back.channels + c]);
+            assert_int_equal((int)(code + 0.5f), codes[c]);
+        }
+    }
+    image_finish(&values);
+    image_finish(&heat);
+    image_finish(&back);
+    free(path);
+}
+
+static uint32_t count_ink(const struct image *image, uint32_t first_row)
+{
+    uint32_t count = 0;
+    for (size_t i = (size_t)first_row * image->width; i < (size_t)image->width * image->height; ++i)
+        count += image->pixels[3 * i] > 0.7f && image->pixels[3 * i + 2] > 0.7f;
+    return count;
+}
+
+static void the_legend_fits_any_picture(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[][2] = {{1, 1},    {1, 300},   {300, 1},   {7, 5},
+                                        {119, 40}, {640, 480}, {2048, 16}, {5000, 2}};
+    static const char *const titles[] = {
+        NULL, "", "box tests", "gr\xc3\xbc\xc3\x9f dich",
+        "a title that goes on and on, from one end of the legend to the other, over it, and then "
+        "still on to the edge of the screen, which it does not heed"};
+    static const double scales[] = {1.0, 13.0, 37.25, 1e-30, 1e30, 123456789.0};
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; ++s) {
+        struct image values = values_of(sizes[s][0], sizes[s][1], 1.0f);
+        for (size_t t = 0; t < sizeof titles / sizeof titles[0]; ++t) {
+            struct image heat = heat_of(&values, scales[(s + t) % 6], titles[t]);
+            assert_true(heat.width >= values.width && heat.width >= 120);
+            assert_true(heat.height > values.height);
+            assert_true(count_ink(&heat, values.height) > 50);
+            for (size_t i = 0; i < 3 * (size_t)heat.width * heat.height; ++i)
+                assert_true(heat.pixels[i] >= 0.0f && heat.pixels[i] <= 1.0f);
+            image_finish(&heat);
+        }
+        image_finish(&values);
+    }
+}
+
+static void the_title_is_drawn(void **state)
+{
+    (void)state;
+    struct image values = values_of(400, 4, 0.0f);
+    struct image with = heat_of(&values, 1.0, "title"), without = heat_of(&values, 1.0, "");
+    assert_int_equal(with.height, without.height);
+    assert_true(count_ink(&with, 4) > count_ink(&without, 4) + 20);
+    image_finish(&values);
+    image_finish(&with);
+    image_finish(&without);
+}
+
+static void what_is_not_finite_stays_so(void **state)
+{
+    (void)state;
+    struct image values = values_of(200, 1, 3.0f);
+    values.pixels[5] = NAN;
+    values.pixels[6] = INFINITY;
+    struct image heat = heat_of(&values, 0.0, NULL);
+    assert_true(isnan(heat.pixels[15]) && isnan(heat.pixels[18]) && heat.pixels[12] >= 0.0f);
+    image_finish(&values);
+    image_finish(&heat);
+}
+
+static void other_pictures_are_refused(void **state)
+{
+    (void)state;
+    struct image out, colors = fixture_floats(4, 4, 3), words;
+    struct heat_params params = {0};
+    assert_int_equal(image_init(&words, 4, 4, 1, true), WHIT_OK);
+    assert_int_equal(image_heat(&colors, &params, &out), WHIT_ERROR_USAGE);
+    assert_int_equal(image_heat(&words, &params, &out), WHIT_ERROR_USAGE);
+    struct image values = values_of(4, 4, 1.0f);
+    params.scale = -1.0;
+    assert_int_equal(image_heat(&values, &params, &out), WHIT_ERROR_USAGE);
+    params.scale = (double)NAN;
+    assert_int_equal(image_heat(&values, &params, &out), WHIT_ERROR_USAGE);
+    image_finish(&colors);
+    image_finish(&words);
+    image_finish(&values);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(colors_are_those_of_viridis),
+        cmocka_unit_test(colors_between_are_near),
+        cmocka_unit_test(brightness_rises),
+        cmocka_unit_test(the_scale_ignores_the_brightest_200th),
+        cmocka_unit_test(the_scale_of_few_or_no_values),
+        cmocka_unit_test_setup_teardown(the_file_has_the_codes_of_the_table, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test(the_legend_fits_any_picture),
+        cmocka_unit_test(the_title_is_drawn),
+        cmocka_unit_test(what_is_not_finite_stays_so),
+        cmocka_unit_test(other_pictures_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
