@@ -1,5 +1,7 @@
 #include <stdlib.h>
+#include <string.h>
 
+#include "accel/report.h"
 #include "api/handles.h"
 #include "base/clock.h"
 
@@ -118,4 +120,36 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
             info->sah_cost = mesh->sah_cost;
         }
     }
+}
+
+whit_result whit_accel_validate(const whit_accel *handle)
+{
+    whit_result result = accel_validate(handle->accel);
+    return result == WHIT_ERROR_FAILED ? WHIT_ERROR_STATUS : result;
+}
+
+enum { REPORT_RAYS = 1 << 15 };
+_Static_assert((int)WHIT_DEPTH_BINS == (int)REPORT_DEPTH_BINS, "bins are copied");
+_Static_assert((int)WHIT_LEAF_BINS == (int)REPORT_LEAF_BINS, "bins are copied");
+
+whit_result whit_accel_get_report(const whit_accel *handle, whit_accel_report *report)
+{
+    struct accel_report inner;
+    *report = (whit_accel_report){0};
+    whit_result result = accel_report(handle->accel, REPORT_RAYS, &inner);
+    if (result != WHIT_OK)
+        return result;
+    *report = (whit_accel_report){
+        .sah_cost = inner.sah_cost,
+        .epo = inner.epo,
+        .overlap = inner.overlap,
+        .predicted_visits = inner.predicted_pairs,
+        .predicted_triangles = inner.predicted_triangles,
+        .measured_visits = inner.measured_pairs,
+        .measured_triangles = inner.measured_triangles,
+        .measured_rays = inner.measured_rays,
+    };
+    memcpy(report->leaves_at_depth, inner.leaves_at_depth, sizeof report->leaves_at_depth);
+    memcpy(report->leaves_of_size, inner.leaves_of_size, sizeof report->leaves_of_size);
+    return WHIT_OK;
 }

@@ -1,0 +1,407 @@
+/* Reports on trees against other ways to the same numbers: by hand, by brute force, by rays. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/report.h"
+#include "scene/shapes.h"
+
+#define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
+
+static const struct log silent;
+
+static struct scene *scene_of(struct scene_mesh mesh)
+{
+    struct scene *scene = scene_create(&silent, "test");
+    assert_non_null(scene);
+    uint32_t index = scene_add_mesh(scene, mesh);
+    assert_int_not_equal(index, SCENE_NONE);
+    struct scene_instance instance = {.mesh = index, .node = SCENE_NONE};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+/* Nine floats a triangle. */
+static struct scene *soup_scene(const float *vertices, uint32_t count)
+{
+    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
+    mesh.positions = malloc(9 * sizeof(float) * count);
+    mesh.indices = malloc(3 * sizeof(uint32_t) * count);
+    mesh.materials = calloc(count, sizeof(uint32_t));
+    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    memcpy(mesh.positions, vertices, 9 * sizeof(float) * count);
+    for (uint32_t i = 0; i < 3 * count; ++i)
+        mesh.indices[i] = i;
+    return scene_of(mesh);
+}
+
+static struct accel *build(struct scene *scene, const struct bvh_params *mesh)
+{
+    struct accel_params params = {.mesh = *mesh, .validate = true};
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    return accel;
+}
+
+static double random_unit(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (double)(*state >> 8) * 0x1p-24;
+}
+
+/* ---- Clipping ---- */
+
+static void a_triangle_is_cut_to_a_box(void **state)
+{
+    (void)state;
+    static const float a[3] = {0, 0, 0}, b[3] = {4, 0, 0}, c[3] = {0, 4, 0};
+    static const struct {
+        struct bvh_box box;
+        double area;
+    } cases[] = {
+        {{{-9, -9, -9}, {9, 9, 9}}, 8.0}, {{{0, 0, 0}, {4, 4, 0}}, 8.0},
+        {{{0, 0, 0}, {1, 1, 1}}, 1.0},    {{{1, 1, -1}, {9, 9, 1}}, 2.0},
+        {{{0, 0, 0.5f}, {4, 4, 1}}, 0.0}, {{{3, 3, -1}, {9, 9, 1}}, 0.0},
+        {{{1, 1, -1}, {2, 2, 1}}, 1.0},   {{{1, 1, -1}, {2.5f, 2.5f, 1}}, 1.75},
+        {{{-1, -1, -1}, {0, 9, 1}}, 0.0}, {{{2, 2, -1}, {2, 2, 1}}, 0.0},
+        {{{1, -5, -1}, {2, 5, 1}}, 2.5},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        assert_near(epo_clipped_area(a, b, c, &cases[i].box), cases[i].area, 1e-12);
+        assert_near(epo_clipped_area(c, b, a, &cases[i].box), cases[i].area, 1e-12);
+    }
+}
+
+/* What is clipped away and what is kept are the whole. */
+static void pieces_add_up(void **state)
+{
+    (void)state;
+    uint32_t seed = 1;
+    for (int round = 0; round < 2000; ++round) {
+        float v[3][3], cut[3];
+        for (int i = 0; i < 9; ++i)
+            v[i / 3][i % 3] = (float)random_unit(&seed);
+        for (int i = 0; i < 3; ++i)
+            cut[i] = (float)random_unit(&seed);
+        double sum = 0.0;
+        for (int part = 0; part < 8; ++part) {
+            struct bvh_box box;
+            for (int i = 0; i < 3; ++i) {
+                box.lo[i] = part >> i & 1 ? cut[i] : 0.0f;
+                box.hi[i] = part >> i & 1 ? 1.0f : cut[i];
+            }
+            sum += epo_clipped_area(v[0], v[1], v[2], &box);
+        }
+        static const struct bvh_box all = {{0, 0, 0}, {1, 1, 1}};
+        assert_near(sum, epo_clipped_area(v[0], v[1], v[2], &all), 1e-12);
+    }
+}
+
+/* ---- End-point overlap ---- */
+
+/* Of a node: which primitives its subtree holds. */
+static void mark(const struct accel *accel, uint32_t node, uint8_t *inside)
+{
+    const struct gpu_bvh_node *at = &accel->nodes[node];
+    for (uint32_t i = 0; i < bvh_count(at); ++i)
+        inside[accel->triangles[at->first + i].primitive] = 1;
+    if (bvh_count(at) > 0)
+        return;
+    mark(accel, at->first, inside);
+    mark(accel, at->first + 1, inside);
+}
+
+/* Every node against every triangle. */
+static double brute_overlap(const struct accel *accel, const struct scene_mesh *mesh)
+{
+    const struct accel_mesh *m = &accel->meshes[0];
+    uint8_t *inside = malloc(mesh->triangle_count);
+    double sum = 0.0;
+    assert_non_null(inside);
+    for (uint32_t i = 0; i < m->node_count; ++i) {
+        const struct gpu_bvh_node *node = &accel->nodes[m->first_node + i];
+        if (i == 1)
+            continue;
+        memset(inside, 0, mesh->triangle_count);
+        mark(accel, m->first_node + i, inside);
+        struct bvh_box box;
+        memcpy(box.lo, node->lo, sizeof box.lo);
+        memcpy(box.hi, node->hi, sizeof box.hi);
+        uint32_t count = bvh_count(node);
+        for (uint32_t k = 0; k < mesh->triangle_count; ++k) {
+            const uint32_t *corner = &mesh->indices[3 * k];
+            if (!inside[k])
+                sum +=
+                    (count ? count : 1) * epo_clipped_area(&mesh->positions[3 * corner[0]],
+                                                           &mesh->positions[3 * corner[1]],
+                                                           &mesh->positions[3 * corner[2]], &box);
+        }
+    }
+    free(inside);
+    return sum;
+}
+
+/* Long triangles that cross each other, some on planes of the axes. */
+static struct scene *crossing_scene(uint32_t count, uint32_t seed)
+{
+    float *v = malloc(9 * sizeof(float) * count);
+    assert_non_null(v);
+    for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t k = 0; k < 9; ++k)
+            v[9 * i + k] = (float)(random_unit(&seed) * (k % 3 == i % 3 ? 0.2 : 1.0));
+        for (uint32_t k = 0; i % 5 == 0 && k < 3; ++k)
+            v[9 * i + 3 * k] = 0.5f;
+    }
+    struct scene *scene = soup_scene(v, count);
+    free(v);
+    return scene;
+}
+
+static const struct bvh_params builds[] = {
+    {.builder = BVH_BINNED},
+    {.builder = BVH_MEDIAN},
+    {.builder = BVH_BINNED, .leaf_limit = 1, .bins = 4},
+    {.builder = BVH_MEDIAN, .leaf_limit = 15},
+    {.builder = BVH_BINNED, .traversal_cost = 1.0f, .thread_count = 1},
+};
+enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
+
+static void overlap_is_that_of_brute_force(void **state)
+{
+    (void)state;
+    static const uint32_t counts[] = {1, 2, 3, 40, 300};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
+        struct scene *scene = crossing_scene(counts[i], 7 + (uint32_t)i);
+        for (size_t k = 0; k < BUILD_COUNT; ++k) {
+            struct accel *accel = build(scene, &builds[k]);
+            struct bvh_epo epo;
+            assert_int_equal(accel_mesh_epo(accel, 0, &epo), WHIT_OK);
+            double brute = brute_overlap(accel, &scene->meshes[0]);
+            assert_true(counts[i] < 40 || brute > 0.0);
+            assert_near(epo.overlap, brute, 1e-10 * (1.0 + brute));
+            accel_destroy(accel);
+        }
+        scene_destroy(scene);
+    }
+}
+
+/* Two leaves of one triangle each. The box of the second, [1, 3] x [0, 2], holds of the first,
+   (0, 0) (2, 0) (0, 2), what is right of x = 1: area 1/2; that of the first, [0, 2] x [0, 2], of
+   the second, (1, 2) (3, 0) (3, 2), what is left of x = 2: area 1/2. Both surfaces are 2. */
+static void overlap_by_hand(void **state)
+{
+    (void)state;
+    static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
+    struct scene *scene = soup_scene(v, 2);
+    const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
+    struct accel *accel = build(scene, &params);
+    struct bvh_epo epo;
+    struct accel_report report;
+    assert_int_equal(accel->meshes[0].node_count, 4);
+    assert_int_equal(accel_mesh_epo(accel, 0, &epo), WHIT_OK);
+    assert_near(epo.surface, 4.0, 1e-12);
+    assert_near(epo.overlap, 1.0, 1e-12);
+    assert_int_equal(accel_report(accel, 0, &report), WHIT_OK);
+    assert_near(report.epo, 0.25, 1e-12);
+    /* Half areas: of the root 3 x 2, of the children 2 x 2 each, of what they share 1 x 2. */
+    assert_near(report.overlap, 2.0 / 6.0, 1e-12);
+    assert_near(report.predicted_pairs, 1.0, 1e-12);
+    assert_near(report.predicted_triangles, 8.0 / 6.0, 1e-12);
+    assert_near(report.sah_cost, 1.0 + 8.0 / 6.0, 1e-12);
+    assert_int_equal(report.measured_rays, 0);
+    assert_int_equal(report.leaves_at_depth[1], 2);
+    assert_int_equal(report.leaves_of_size[1], 2);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+/* ---- Shape ---- */
+
+static void report_agrees_with_the_tree(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    assert_int_equal(shape_sphere(1.0, 60, 60, &mesh), WHIT_OK);
+    struct scene *scene = scene_of(mesh);
+    for (size_t i = 0; i < BUILD_COUNT; ++i) {
+        struct accel *accel = build(scene, &builds[i]);
+        struct accel_report report;
+        assert_int_equal(accel_report(accel, 0, &report), WHIT_OK);
+        uint64_t leaves = 0, triangles = 0, deepest = 0, at_depth = 0;
+        for (uint32_t k = 0; k < REPORT_LEAF_BINS; ++k) {
+            leaves += report.leaves_of_size[k];
+            triangles += k * report.leaves_of_size[k];
+        }
+        for (uint32_t k = 0; k < REPORT_DEPTH_BINS; ++k) {
+            at_depth += report.leaves_at_depth[k];
+            deepest = report.leaves_at_depth[k] ? k : deepest;
+        }
+        assert_int_equal(triangles, accel->record_count);
+        assert_int_equal(leaves, at_depth);
+        assert_int_equal(2 * leaves, accel->meshes[0].node_count); /* pairs, and the unused node */
+        assert_int_equal(deepest, accel->mesh_depth);
+        assert_near(report.sah_cost, accel->meshes[0].sah_cost, 1e-5 * accel->meshes[0].sah_cost);
+        accel_destroy(accel);
+    }
+    scene_destroy(scene);
+}
+
+static void threads_change_nothing(void **state)
+{
+    (void)state;
+    struct scene *scene = crossing_scene(3000, 3);
+    struct accel_report reports[2];
+    for (uint32_t i = 0; i < 2; ++i) {
+        const struct bvh_params params = {.builder = BVH_BINNED, .thread_count = i ? 5 : 1};
+        struct accel *accel = build(scene, &params);
+        memset(&reports[i], 0, sizeof reports[i]);
+        assert_int_equal(accel_report(accel, 5000, &reports[i]), WHIT_OK);
+        accel_destroy(accel);
+    }
+    assert_memory_equal(&reports[0], &reports[1], sizeof reports[0]);
+    scene_destroy(scene);
+}
+
+/* ---- Visits ---- */
+
+/* Triangles of hardly any area along the diagonals of their boxes: nothing ends a ray. */
+static struct scene *hair_scene(uint32_t side, double size)
+{
+    uint32_t count = side * side * side, seed = 11;
+    float *v = malloc(9 * sizeof(float) * count);
+    assert_non_null(v);
+    for (uint32_t i = 0; i < count; ++i) {
+        float *p = &v[9 * i];
+        const uint32_t cell[3] = {i % side, i / side % side, i / side / side};
+        for (int k = 0; k < 3; ++k) {
+            p[k] = (float)(cell[k] + 0.5 * (1.0 - size) * random_unit(&seed));
+            p[3 + k] = p[k] + (float)(size * (0.3 + 0.7 * random_unit(&seed)));
+            p[6 + k] = p[3 + k];
+        }
+        p[6] = nextafterf(p[6], -1.0f);
+    }
+    struct scene *scene = soup_scene(v, count);
+    free(v);
+    return scene;
+}
+
+static void nothing_hit_is_visited_as_predicted(void **state)
+{
+    (void)state;
+    struct scene *scene = hair_scene(12, 0.6);
+    assert_int_equal(scene->meshes[0].triangle_count, 12 * 12 * 12);
+    for (size_t i = 0; i < BUILD_COUNT; ++i) {
+        struct accel *accel = build(scene, &builds[i]);
+        struct accel_report report;
+        assert_int_equal(accel_report(accel, 40000, &report), WHIT_OK);
+        assert_int_equal(report.measured_rays, 40000);
+        assert_near(report.measured_pairs / report.predicted_pairs, 1.0, 0.02);
+        assert_near(report.measured_triangles / report.predicted_triangles, 1.0, 0.02);
+        accel_destroy(accel);
+    }
+    scene_destroy(scene);
+}
+
+/* Behind a hit nothing is opened: a closed sphere costs less than the areas say. */
+static void hits_save_visits(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    assert_int_equal(shape_sphere(1.0, 80, 80, &mesh), WHIT_OK);
+    struct scene *scene = scene_of(mesh);
+    struct accel *accel = build(scene, &builds[0]);
+    struct accel_report report;
+    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
+    assert_true(report.measured_pairs < 0.9 * report.predicted_pairs);
+    assert_true(report.measured_pairs > 0.3 * report.predicted_pairs);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+/* A mesh counts once however often it is placed, and by the area of its box. */
+static void meshes_are_weighed_by_area(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_create(&silent, "test");
+    struct scene_mesh mesh;
+    assert_non_null(scene);
+    static const uint32_t sides[] = {4, 60, 0, 12};
+    static const double sizes[] = {100.0, 1.0, 0.0, 5.0};
+    for (uint32_t i = 0; i < 4; ++i) {
+        mesh = (struct scene_mesh){0};
+        if (sides[i])
+            assert_int_equal(shape_sphere(sizes[i], sides[i], sides[i], &mesh), WHIT_OK);
+        assert_int_equal(scene_add_mesh(scene, mesh), i);
+        struct scene_instance instance = {.mesh = i, .node = SCENE_NONE, .has_local = true};
+        for (uint32_t k = 0; k <= i; ++k) {
+            const double at[3] = {300.0 * k, 200.0 * i, 0}, turn[4] = {0, 0, 0, 1};
+            const double scale[3] = {1, 2, 3};
+            instance.local = affine_from_trs(at, turn, scale);
+            assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+        }
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct accel *accel = build(scene, &builds[0]);
+    struct accel_report report;
+    assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */
+    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
+    uint64_t leaves = 0;
+    double area = 0.0, cost = 0.0;
+    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
+        const struct accel_mesh *m = &accel->meshes[i];
+        leaves += m->node_count / 2;
+        double x = (double)m->box.hi[0] - (double)m->box.lo[0];
+        double y = (double)m->box.hi[1] - (double)m->box.lo[1];
+        double z = (double)m->box.hi[2] - (double)m->box.lo[2];
+        double weight = m->node_count ? x * y + y * z + z * x : 0.0;
+        area += weight;
+        cost += weight * m->sah_cost;
+    }
+    for (uint32_t i = 0; i < REPORT_DEPTH_BINS; ++i)
+        leaves -= report.leaves_at_depth[i];
+    assert_int_equal(leaves, 0);
+    assert_near(report.sah_cost, cost / area, 1e-5 * cost / area);
+    assert_true(report.measured_pairs > 0.3 * report.predicted_pairs);
+    assert_true(report.measured_pairs < report.predicted_pairs);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+static void nothing_has_a_report(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    struct scene *scene = scene_of(mesh);
+    struct accel *accel = build(scene, &builds[0]);
+    struct accel_report report, zero = {0};
+    memset(&report, 1, sizeof report);
+    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
+    assert_near(report.sah_cost, zero.sah_cost, 0.0);
+    assert_int_equal(report.measured_rays, 0);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_triangle_is_cut_to_a_box),
+        cmocka_unit_test(pieces_add_up),
+        cmocka_unit_test(overlap_is_that_of_brute_force),
+        cmocka_unit_test(overlap_by_hand),
+        cmocka_unit_test(report_agrees_with_the_tree),
+        cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(nothing_hit_is_visited_as_predicted),
+        cmocka_unit_test(hits_save_visits),
+        cmocka_unit_test(meshes_are_weighed_by_area),
+        cmocka_unit_test(nothing_has_a_report),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
