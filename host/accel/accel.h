@@ -152,6 +152,8 @@ WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *
 /* bvh_validate over everything. */
 WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
+/* Refs that a traversal may have to keep: at least 1. */
+uint32_t accel_stack_size(const struct accel *accel);
 
 /* ---- Traversal on the CPU ---- */
 

@@ -317,3 +317,9 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
     accel->instance_build_ms = clock_ms() - begin_ms;
     return result;
 }
+
+uint32_t accel_stack_size(const struct accel *accel)
+{
+    uint32_t depth = accel->mesh_depth + (accel->single_identity ? 0 : accel->instance_depth);
+    return depth > 0 ? depth : 1;
+}

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,6 +120,16 @@ whit_result whit_renderer_render(whit_renderer *renderer)
 {
     whit_result result = need_device(renderer);
     return result == WHIT_OK ? renderer_render(renderer->renderer) : result;
+}
+
+whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
+{
+    if (!isfinite(time_s)) {
+        log_error(&renderer->log, "a time of %g s: it must be finite", time_s);
+        return WHIT_ERROR_USAGE;
+    }
+    return renderer->renderer ? renderer_set_time(renderer->renderer, time_s)
+                              : pose_on_cpu(renderer->accel, time_s);
 }
 
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)

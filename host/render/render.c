@@ -83,7 +83,7 @@ static whit_result check_params(const struct log *log, struct render_params *par
     return WHIT_OK;
 }
 
-static whit_result create_frame(struct renderer *renderer)
+whit_result frame_fill(struct renderer *renderer)
 {
     struct gpu_frame *frame = &renderer->frame;
     const struct accel *accel = renderer->accel;
@@ -104,7 +104,10 @@ static whit_result create_frame(struct renderer *renderer)
     frame->light_count = renderer->pose.light_count;
     frame->environment_size = renderer->scene_buffers.environment_size;
     frame->root = accel->instance_root;
-    if (accel->single_identity) {
+    frame->shade_base = 0;
+    if (accel->flat) {
+        frame->root = accel->meshes[0].root;
+    } else if (accel->single_identity) {
         const struct accel_mesh *mesh = &accel->meshes[renderer->scene->instances[0].mesh];
         frame->root = mesh->root;
         frame->shade_base = mesh->shade_base;
@@ -115,8 +118,7 @@ static whit_result create_frame(struct renderer *renderer)
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
     frame->stack_size = renderer->pixel_buffers.stack_size;
-    return upload_words(renderer, frame, sizeof *frame, BUFFER_STORAGE, "frame",
-                        &renderer->scene_buffers.frame);
+    return WHIT_OK;
 }
 
 /* Rays that wait when one ray leaves up to `children` others, depth first. */
@@ -213,11 +215,16 @@ static whit_result create_parts(struct renderer *renderer)
 {
     double start_ms = clock_ms();
     renderer->has_secondary = calls_for_secondary(renderer);
+    renderer->node_stack_size = accel_stack_size(renderer->accel);
+    renderer->single_identity = renderer->accel->single_identity;
     whit_result result = create_pixel_buffers(renderer);
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)
-        result = create_frame(renderer);
+        result = frame_fill(renderer);
+    if (result == WHIT_OK)
+        result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
+                              "frame", &renderer->scene_buffers.frame);
     double uploaded_ms = clock_ms();
     renderer->stats.upload_ms = uploaded_ms - start_ms;
     if (result == WHIT_OK)
@@ -238,6 +245,7 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
     if (!renderer)
         return WHIT_ERROR_MEMORY;
     renderer->log = *log;
+    renderer->create_ms = clock_ms();
     renderer->device = device;
     renderer->accel = accel;
     renderer->scene = accel->scene;
@@ -269,7 +277,7 @@ void renderer_destroy(struct renderer *renderer)
     if (!renderer)
         return;
     commands_destroy(renderer->commands);
-    pass_finish(&renderer->whitted);
+    passes_finish(renderer);
     trace_finish(&renderer->trace);
     pixel_buffers_finish(&renderer->pixel_buffers);
     upload_finish(&renderer->scene_buffers);
@@ -303,7 +311,7 @@ static whit_result stop_asked(const struct renderer *renderer, const struct prog
     if (params->cancel && *params->cancel)
         return WHIT_ERROR_CANCELLED;
     if (params->time_limit_s > 0.0 &&
-        clock_ms() - progress->start_ms > params->time_limit_s * 1e3) {
+        clock_ms() - renderer->create_ms > params->time_limit_s * 1e3) {
         log_error(&renderer->log, "time limit of %g s passed with %.0f %% of the picture done",
                   params->time_limit_s,
                   100.0 * (double)progress->work_done / (double)progress->work_total);
@@ -543,6 +551,10 @@ whit_result renderer_render(struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
     renderer->rendered = false;
+    if (!renderer->whitted.pipeline) {
+        log_error(&renderer->log, "its time could not be set, so there is nothing to render");
+        return WHIT_ERROR_USAGE;
+    }
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     whit_result result = WHIT_OK;

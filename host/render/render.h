@@ -24,7 +24,7 @@ struct render_params {
     const volatile bool *cancel;
     void (*progress)(void *user, double done);
     void *progress_user;
-    double time_limit_s;
+    double time_limit_s; /* counted from renderer_create on */
     enum render_load_path load_path;
     uint32_t order; /* ORDER_* */
     bool count;     /* count what traversals cost */

@@ -58,6 +58,10 @@ struct renderer {
     struct gpu_frame frame;
     struct image color, ids; /* of the last picture, where it has more than one band */
     struct render_stats stats;
+    double create_ms;
+    /* What the pipelines were made for. */
+    uint32_t node_stack_size;
+    bool single_identity;
     bool has_secondary; /* the scene calls for more than camera rays */
     bool rendered;
 };
@@ -75,6 +79,9 @@ void upload_finish(struct scene_buffers *buffers);
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
                                     uint64_t size_bytes, uint32_t uses, const char *name,
                                     struct buffer **out);
+/* What another pose changes: instances with their tree, lights. Passes bound to buffers that had to
+   grow are gone afterwards. */
+WHIT_CHECK whit_result upload_pose(struct renderer *renderer);
 /* textures.c: uploads all texels and makes the records that use them. */
 struct material_records {
     struct gpu_material *materials; /* one for each of the scene's */
@@ -92,9 +99,13 @@ struct gpu_spec variant_spec(const struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 void pass_finish(struct pass *pass);
+void passes_finish(struct renderer *renderer);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);
+
+/* render.c: all of renderer->frame but the rows. */
+WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct renderer *renderer);

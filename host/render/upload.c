@@ -45,23 +45,56 @@ whit_result upload_words(struct renderer *renderer, const void *data, uint64_t s
     return result;
 }
 
+/* Into a buffer that may be there already. One that is too small is made anew, with room to grow;
+   passes bound to it are gone then. */
+static whit_result store_words(struct renderer *renderer, const void *data, uint64_t size_bytes,
+                               const char *name, struct buffer **buffer)
+{
+    uint32_t uses = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
+    uint64_t held_bytes = *buffer ? buffer_size(*buffer) : 0;
+    if (size_bytes == 0)
+        return WHIT_OK;
+    if (held_bytes < size_bytes) {
+        passes_finish(renderer);
+        buffer_destroy(*buffer);
+        *buffer = NULL;
+        uint64_t spare_bytes = held_bytes ? size_bytes / 8 : 0;
+        whit_result result =
+            buffer_create(renderer->device, size_bytes + spare_bytes, uses, name, buffer);
+        if (result != WHIT_OK)
+            return result;
+        renderer->scene_buffers.bytes += buffer_size(*buffer) - held_bytes;
+    }
+    return buffer_write(*buffer, 0, data, size_bytes);
+}
+
+static bool reads_instances(const struct accel *accel)
+{
+    return accel->flat || accel->clipped || !accel->single_identity;
+}
+
+static whit_result upload_instances(struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    if (!reads_instances(accel))
+        return WHIT_OK;
+    return store_words(renderer, accel->instances,
+                       (uint64_t)accel->instance_count * sizeof *accel->instances, "instances",
+                       &renderer->scene_buffers.instances);
+}
+
 static whit_result upload_trees(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
     struct scene_buffers *buffers = &renderer->scene_buffers;
-    uint32_t uses = buffers->texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     whit_result result =
-        upload_words(renderer, accel->nodes, (uint64_t)accel->node_count * sizeof *accel->nodes,
-                     uses, "nodes", &buffers->nodes);
+        store_words(renderer, accel->nodes, (uint64_t)accel->node_count * sizeof *accel->nodes,
+                    "nodes", &buffers->nodes);
     if (result == WHIT_OK)
-        result = upload_words(renderer, accel->triangles,
-                              (uint64_t)accel->record_count * sizeof *accel->triangles, uses,
-                              "triangles", &buffers->triangles);
-    if (result == WHIT_OK && !accel->single_identity)
-        result = upload_words(renderer, accel->instances,
-                              (uint64_t)accel->instance_count * sizeof *accel->instances, uses,
-                              "instances", &buffers->instances);
-    return result;
+        result = store_words(renderer, accel->triangles,
+                             (uint64_t)accel->record_count * sizeof *accel->triangles, "triangles",
+                             &buffers->triangles);
+    return result == WHIT_OK ? upload_instances(renderer) : result;
 }
 
 /* Writes one record of `words` words for a triangle. */
@@ -307,6 +340,23 @@ whit_result upload_scene(struct renderer *renderer)
     if (result == WHIT_ERROR_MEMORY)
         log_error(&renderer->log, "out of memory for the scene's arrays");
     return result;
+}
+
+/* Where instances have a tree of their own, only the nodes in front move. */
+whit_result upload_pose(struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    whit_result result = WHIT_OK;
+    if (accel->flat) {
+        result = upload_trees(renderer);
+    } else {
+        uint64_t bytes = (uint64_t)accel->instance_node_count * sizeof *accel->nodes;
+        if (bytes > 0)
+            result = buffer_write(renderer->scene_buffers.nodes, 0, accel->nodes, bytes);
+        if (result == WHIT_OK)
+            result = upload_instances(renderer);
+    }
+    return result == WHIT_OK ? write_lights(renderer) : result;
 }
 
 void upload_finish(struct scene_buffers *buffers)

@@ -8,10 +8,9 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     const struct scene_effects *effects = &renderer->effects;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
-    uint32_t depth = accel->mesh_depth + (accel->single_identity ? 0 : accel->instance_depth);
     spec.SPEC_GROUP_SIZE = RENDER_GROUP_SIZE;
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
-    spec.SPEC_STACK_SIZE = depth > 0 ? depth : 1;
+    spec.SPEC_STACK_SIZE = renderer->node_stack_size;
     spec.SPEC_INSTANCED = !accel->single_identity;
     spec.SPEC_SECONDARY = renderer->has_secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
@@ -142,4 +141,11 @@ void pass_finish(struct pass *pass)
     binding_set_destroy(pass->sets[1]);
     pipeline_destroy(pass->pipeline);
     *pass = (struct pass){0};
+}
+
+void passes_finish(struct renderer *renderer)
+{
+    pass_finish(&renderer->whitted);
+    pass_finish(&renderer->trace.closest);
+    pass_finish(&renderer->trace.any);
 }

@@ -1,0 +1,67 @@
+/* Another time of the animation on a renderer that is there already. */
+#include "base/clock.h"
+#include "render/renderer.h"
+
+/* Rebuilt trees are not equally deep at all times: a stack that has to grow grows by more than it
+   has to, for a pipeline takes longer to compile than many a picture takes to render. */
+enum { STACK_SPARE = 4 };
+
+static whit_result take_pose(struct renderer *renderer, double time_s)
+{
+    struct scene_pose pose;
+    whit_result result = scene_pose_init(renderer->scene, time_s, &pose);
+    if (result != WHIT_OK)
+        return result;
+    result = accel_pose(renderer->accel, &pose);
+    if (result != WHIT_OK) {
+        scene_pose_finish(&pose);
+        return result;
+    }
+    scene_pose_finish(&renderer->pose);
+    renderer->pose = pose;
+    renderer->params.time_s = time_s;
+    return WHIT_OK;
+}
+
+static whit_result upload_all(struct renderer *renderer)
+{
+    whit_result result = upload_pose(renderer);
+    if (result == WHIT_OK)
+        result = frame_fill(renderer);
+    if (result == WHIT_OK)
+        result = buffer_write(renderer->scene_buffers.frame, 0, &renderer->frame,
+                              sizeof renderer->frame);
+    return result;
+}
+
+/* Drops the passes whose compiled constants no longer fit. */
+static void passes_check(struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    uint32_t needed = accel_stack_size(accel);
+    bool outgrown = needed > renderer->node_stack_size;
+    if (outgrown)
+        renderer->node_stack_size = needed + STACK_SPARE;
+    if (outgrown || accel->single_identity != renderer->single_identity)
+        passes_finish(renderer);
+    renderer->single_identity = accel->single_identity;
+}
+
+whit_result renderer_set_time(struct renderer *renderer, double time_s)
+{
+    renderer->rendered = false;
+    whit_result result = take_pose(renderer, time_s);
+    double posed_ms = clock_ms();
+    if (result == WHIT_OK)
+        result = upload_all(renderer);
+    double uploaded_ms = clock_ms();
+    if (result == WHIT_OK)
+        passes_check(renderer);
+    /* Those that trace batches are made when they are called for. */
+    if (result == WHIT_OK && !renderer->whitted.pipeline)
+        result = variant_create_whitted(renderer, &renderer->whitted);
+    renderer->stats.upload_ms = uploaded_ms - posed_ms;
+    renderer->stats.compile_ms = clock_ms() - uploaded_ms;
+    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    return result;
+}
