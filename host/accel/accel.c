@@ -105,23 +105,42 @@ static void make_boxes(void *user, uint32_t index)
     }
 }
 
+/* Filters add to a shadow ray's depth each time they are met: they are met once. */
+static void make_whole(const struct creation *creation, const struct scene_mesh *mesh,
+                       uint8_t *whole)
+{
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        uint32_t material = mesh->materials ? mesh->materials[i] : 0;
+        bool known = material < creation->accel->scene->material_count;
+        whole[i] = known && (creation->materials[material].flags & TRIANGLE_FILTER) != 0;
+    }
+}
+
 static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_t thread_count)
 {
     struct accel *accel = creation->accel;
     const struct scene_mesh *mesh = &accel->scene->meshes[index];
+    struct bvh_params params = accel->params.mesh;
+    params.thread_count = thread_count;
+    whit_result result = WHIT_ERROR_MEMORY;
     struct bvh_box *boxes = array_alloc(mesh->triangle_count, sizeof *boxes);
-    if (!boxes) {
+    bool split = params.builder == BVH_SPATIAL;
+    uint8_t *whole = split ? array_alloc(mesh->triangle_count, 1) : NULL;
+    if (!boxes || (split && !whole)) {
         log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
                   mesh->name);
-        return WHIT_ERROR_MEMORY;
+        goto done;
     }
     struct box_context context = {mesh, boxes};
     threads_for(thread_count, (mesh->triangle_count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes,
                 &context);
-    struct bvh_params params = accel->params.mesh;
-    params.thread_count = thread_count;
-    whit_result result =
-        bvh_build(&accel->log, boxes, mesh->triangle_count, &params, &creation->trees[index]);
+    if (split)
+        make_whole(creation, mesh, whole);
+    const struct bvh_triangles triangles = {mesh->positions, mesh->indices, whole};
+    params.triangles = &triangles;
+    result = bvh_build(&accel->log, boxes, mesh->triangle_count, &params, &creation->trees[index]);
+done:
+    free(whole);
     free(boxes);
     return result;
 }

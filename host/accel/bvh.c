@@ -74,6 +74,7 @@ static whit_result build(const struct log *log, const struct bvh_box *boxes, uin
     case BVH_MEDIAN:
         return topdown_build(log, boxes, count, params, out);
     case BVH_SPATIAL:
+        return spatial_build(log, boxes, count, params, out);
     case BVH_SWEEP:
     case BVH_SWEEP_NAIVE:
         break;
