@@ -9,7 +9,7 @@
 #include "base/vec.h"
 
 struct ray_setup {
-    struct vec3 origin, inv_dir;
+    struct vec3 origin, above, below, inv_dir;
     bool negative[3];
     bool dominant_x, dominant_y;
     struct vec3 shear;
@@ -28,7 +28,7 @@ static inline struct vec3 turn_dominant(const struct ray_setup *ray, struct vec3
 
 static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 dir)
 {
-    struct ray_setup ray = {.origin = origin};
+    struct ray_setup ray = {.origin = origin, .above = origin, .below = origin};
     ray.inv_dir = vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);
     ray.negative[0] = ray.inv_dir.x < 0.0f;
     ray.negative[1] = ray.inv_dir.y < 0.0f;
@@ -40,6 +40,19 @@ static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 di
     struct vec3 turned = turn_dominant(&ray, dir);
     ray.shear = vec3_make(turned.x / turned.z, turned.y / turned.z, 1.0f / turned.z);
     return ray;
+}
+
+#define CLIP_MARGIN (1.0f / 524288.0f)
+
+static inline void widen_ray_setup(struct ray_setup *ray, struct vec3 center, float reach)
+{
+    struct vec3 away = vec3_sub(ray->origin, center);
+    float x = fabsf(away.x), y = fabsf(away.y), z = fabsf(away.z);
+    float farthest = x > y ? x : y;
+    farthest = z > farthest ? z : farthest;
+    float margin = (farthest + reach) * CLIP_MARGIN;
+    ray->above = vec3_add(ray->origin, vec3_make(margin, margin, margin));
+    ray->below = vec3_sub(ray->origin, vec3_make(margin, margin, margin));
 }
 
 static inline void slab_axis(float lo, float hi, float inv_dir, bool negative, float *start,

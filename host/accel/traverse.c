@@ -21,7 +21,8 @@ struct walk {
     uint32_t triangle;   /* record of the hit */
     struct gpu_cost cost;
     uint32_t status;
-    uint32_t stack[STACK_SIZE];
+    uint32_t level; /* of the ref in hand */
+    uint32_t stack[STACK_SIZE], levels[STACK_SIZE];
 };
 
 static bool is_inner(uint32_t ref)
@@ -40,14 +41,18 @@ static void push_ref(struct walk *walk, uint32_t ref, uint32_t *top)
         walk->status |= STATUS_NODE_STACK_OVERFLOW;
         return;
     }
-    walk->stack[(*top)++] = ref;
+    walk->stack[*top] = ref;
+    walk->levels[(*top)++] = walk->level;
     if (*top > walk->cost.stack)
         walk->cost.stack = *top;
 }
 
 static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
 {
-    return *top == base ? REF_DONE : walk->stack[--*top];
+    if (*top == base)
+        return REF_DONE;
+    walk->level = walk->levels[--*top];
+    return walk->stack[*top];
 }
 
 static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float near_scale,
@@ -55,15 +60,18 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
     float a_near, a_far, b_near, b_far;
-    slab_interval(ray, vec3_sub(vec3_load(a->lo), ray->origin),
-                  vec3_sub(vec3_load(a->hi), ray->origin), walk->t_min, &a_near, &a_far);
-    slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->origin),
-                  vec3_sub(vec3_load(b->hi), ray->origin), walk->t_min, &b_near, &b_far);
+    slab_interval(ray, vec3_sub(vec3_load(a->lo), ray->above),
+                  vec3_sub(vec3_load(a->hi), ray->below), walk->t_min, &a_near, &a_far);
+    slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->above),
+                  vec3_sub(vec3_load(b->hi), ray->below), walk->t_min, &b_near, &b_far);
     if (near_scale != 1.0f) {
         a_near = a_near * near_scale;
         b_near = b_near * near_scale;
     }
+    ++walk->level;
     ++walk->cost.pairs;
+    if (walk->level > walk->cost.depth)
+        walk->cost.depth = walk->level;
     float t = walk->hit->t;
     bool hit_a = a_near <= a_far && a_near <= t;
     bool hit_b = b_near <= b_far && b_near <= t;
@@ -87,6 +95,8 @@ static bool test_triangle(struct walk *walk, const struct ray_setup *ray, uint32
 {
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     ++walk->cost.triangles;
+    if (walk->accel->flat)
+        instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
     float t, u, v;
     if (!intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
                             vec3_sub(vec3_load(triangle->v1), ray->origin),
@@ -120,6 +130,8 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
         while (is_leaf(ref)) {
             bool done = test_triangle(walk, ray, ref & BVH_FIRST_MASK, instance);
             ref += 1u - REF_ONE_PRIMITIVE;
+            if (is_inner(ref) || done)
+                ++walk->cost.leaves;
             if (is_inner(ref))
                 ref = pop_ref(walk, base, &top);
             if (done)
@@ -133,6 +145,12 @@ static struct vec3 rotate_rows(const float *r0, const float *r1, const float *r2
     return vec3_make((r0[0] * p.x + r0[1] * p.y) + r0[2] * p.z,
                      (r1[0] * p.x + r1[1] * p.y) + r1[2] * p.z,
                      (r2[0] * p.x + r2[1] * p.y) + r2[2] * p.z);
+}
+
+static void widen(const struct accel *accel, const struct gpu_instance *i, struct ray_setup *ray)
+{
+    if (accel->clipped)
+        widen_ray_setup(ray, vec3_make(i->center_x, i->center_y, i->center_z), i->reach);
 }
 
 static struct ray_setup local_ray(const struct gpu_instance *instance, const struct gpu_ray *ray)
@@ -156,8 +174,11 @@ static void traverse_instances(struct walk *walk, const struct gpu_ray *ray, uin
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];
             struct ray_setup local = local_ray(instance, ray);
+            widen(walk->accel, instance, &local);
             ++walk->cost.instances;
+            uint32_t level = walk->level;
             traverse_mesh(walk, &local, instance->root, top, index);
+            walk->level = level;
             bool done = walk->any && walk->hit->primitive != HIT_NONE;
             ref = done ? REF_DONE : pop_ref(walk, 0, &top);
         }
@@ -171,7 +192,9 @@ static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t 
     struct vec3 v0 = vec3_load(triangle->v0);
     struct vec3 n =
         vec3_cross(vec3_sub(vec3_load(triangle->v1), v0), vec3_sub(vec3_load(triangle->v2), v0));
-    if (!accel->single_identity) {
+    if (triangle->flags & TRIANGLE_MIRRORED && accel->flat)
+        n = vec3_make(-n.x, -n.y, -n.z);
+    if (!accel->single_identity && !accel->flat) {
         const struct gpu_instance *i = &accel->instances[hit->instance];
         const float *r0 = i->inverse0, *r1 = i->inverse1, *r2 = i->inverse2;
         n = rotate_rows((float[]){r0[0], r1[0], r2[0]}, (float[]){r0[1], r1[1], r2[1]},
@@ -214,29 +237,75 @@ static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
     to->depth = from->depth > to->depth ? from->depth : to->depth;
 }
 
+/* No instances to choose among: rays meet the only mesh tree as they are. */
+static bool one_tree(const struct accel *accel)
+{
+    return accel->single_identity || accel->flat;
+}
+
+static void traverse_trees(struct walk *walk, const struct gpu_ray *ray)
+{
+    const struct accel *accel = walk->accel;
+    if (!one_tree(accel)) {
+        traverse_instances(walk, ray, accel->instance_root);
+        return;
+    }
+    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    uint32_t root = accel->flat ? accel->meshes[0].root : accel->instances[0].root;
+    if (root == BVH_EMPTY_REF)
+        return;
+    widen(accel, &accel->instances[0], &setup);
+    traverse_mesh(walk, &setup, root, 0, 0);
+}
+
+/* Every record of every instance, in this order. */
+static void traverse_records(struct walk *walk, const struct gpu_ray *ray)
+{
+    const struct accel *accel = walk->accel;
+    bool done = false;
+    for (uint32_t i = 0; !done && i < (accel->flat ? 1 : accel->instance_count); ++i) {
+        const struct accel_mesh *mesh = &accel->meshes[accel->flat ? 0 : accel->instances[i].mesh];
+        struct ray_setup setup = one_tree(accel)
+                                     ? make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir))
+                                     : local_ray(&accel->instances[i], ray);
+        walk->cost.instances += !one_tree(accel) && mesh->record_count > 0;
+        for (uint32_t k = 0; !done && k < mesh->record_count; ++k)
+            done = test_triangle(walk, &setup, mesh->first_triangle + k, i);
+    }
+}
+
+static void begin_walk(struct walk *walk, const struct accel *accel, const struct gpu_ray *ray,
+                       struct gpu_hit *hit)
+{
+    walk->accel = accel;
+    walk->order = ORDER_DISTANCE;
+    walk->any = false;
+    walk->t_min = ray->t_min;
+    walk->skip_instance = HIT_NONE;
+    walk->skip_primitive = HIT_NONE;
+    walk->hit = hit;
+    walk->triangle = 0;
+    walk->level = 0;
+    walk->cost = (struct gpu_cost){.rays = 1};
+    walk->status = 0;
+    begin_hit(hit, ray->t_max);
+}
+
 void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
                     uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
                     struct gpu_cost *cost, uint32_t *status)
 {
     struct walk walk;
-    walk.accel = accel;
+    begin_walk(&walk, accel, ray, hit);
     walk.order = order;
     walk.any = any;
-    walk.t_min = ray->t_min;
     walk.skip_instance = skip_instance;
     walk.skip_primitive = skip_primitive;
-    walk.hit = hit;
-    walk.triangle = 0;
-    walk.cost = (struct gpu_cost){.rays = 1};
-    walk.status = 0;
-    begin_hit(hit, ray->t_max);
     if (ray_is_usable(ray)) {
-        if (accel->single_identity) {
-            struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
-            traverse_mesh(&walk, &setup, accel->instances[0].root, 0, 0);
-        } else {
-            traverse_instances(&walk, ray, accel->instance_root);
-        }
+        if (accel->no_trees)
+            traverse_records(&walk, ray);
+        else
+            traverse_trees(&walk, ray);
     }
     end_hit(hit, accel, walk.triangle);
     if (cost)
@@ -246,20 +315,9 @@ void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_
 
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, struct gpu_hit *hit)
 {
-    struct walk walk = {.accel = accel,
-                        .t_min = ray->t_min,
-                        .skip_instance = HIT_NONE,
-                        .skip_primitive = HIT_NONE,
-                        .hit = hit};
-    begin_hit(hit, ray->t_max);
-    for (uint32_t i = 0; ray_is_usable(ray) && i < accel->instance_count; ++i) {
-        const struct gpu_instance *instance = &accel->instances[i];
-        const struct accel_mesh *mesh = &accel->meshes[instance->mesh];
-        struct ray_setup setup = accel->single_identity
-                                     ? make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir))
-                                     : local_ray(instance, ray);
-        for (uint32_t k = 0; k < mesh->triangle_count; ++k)
-            test_triangle(&walk, &setup, mesh->first_triangle + k, i);
-    }
+    struct walk walk;
+    begin_walk(&walk, accel, ray, hit);
+    if (ray_is_usable(ray))
+        traverse_records(&walk, ray);
     end_hit(hit, accel, walk.triangle);
 }

@@ -14,7 +14,7 @@ whit_result image_init(struct image *image, uint32_t width, uint32_t height, uin
                        bool integers)
 {
     *image = (struct image){0};
-    if (width == 0 || height == 0 || channels == 0 || channels > 4)
+    if (width == 0 || height == 0 || channels == 0 || channels > (integers ? 8 : 4))
         return WHIT_ERROR_USAGE;
     uint64_t pixel_count = (uint64_t)width * height;
     if (pixel_count > SIZE_MAX / 2 / (sizeof(float) * channels))

@@ -9,7 +9,7 @@
 #include "base/log.h"
 
 /* Row 0 is the top. `channels` is 1, 3 or 4 floats, linear; or, for hit identities, 1 to 4 uint32
-   (1: `id`, 2: `instance`, `primitive`). */
+   (1: `id`, 2: `instance`, `primitive`); up to 8 of them in memory. */
 struct image {
     uint32_t width, height, channels;
     float *pixels;   /* width * height * channels, or NULL */

@@ -149,3 +149,21 @@ whit_result camera_frame(const struct log *log, const struct scene_pose *pose, c
     frame->height = height;
     return WHIT_OK;
 }
+
+void camera_ray(const struct gpu_frame *frame, bool orthographic, float x, float y,
+                struct gpu_ray *ray)
+{
+    float at_x = x / (float)frame->width * 2.0f - 1.0f;
+    float at_y = y / (float)frame->height * 2.0f - 1.0f;
+    float dir[3];
+    for (int i = 0; i < 3; ++i) {
+        float in_plane = frame->right[i] * at_x - frame->up[i] * at_y;
+        ray->origin[i] = orthographic ? frame->eye[i] + in_plane : frame->eye[i];
+        dir[i] = orthographic ? frame->forward[i] : frame->forward[i] + in_plane;
+    }
+    float size = sqrtf((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
+    for (int i = 0; i < 3; ++i)
+        ray->dir[i] = dir[i] / size;
+    ray->t_min = 0.0f;
+    ray->t_max = INFINITY;
+}

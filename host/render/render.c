@@ -187,6 +187,8 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
         if (result == WHIT_OK)
             renderer->scene_buffers.bytes += all[i].bytes;
     }
+    if (result == WHIT_OK)
+        result = costs_create(renderer);
     const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
     if (result == WHIT_OK)
         result = buffer_write(p->work_head, 0, &head, sizeof head);
@@ -195,8 +197,8 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
 
 static void pixel_buffers_finish(struct pixel_buffers *p)
 {
-    struct buffer *all[] = {p->pixels,  p->ids,     p->counts,    p->status,
-                            p->work[0], p->work[1], p->work_head, p->ray_stacks};
+    struct buffer *all[] = {p->pixels,  p->ids,       p->counts,     p->status, p->work[0],
+                            p->work[1], p->work_head, p->ray_stacks, p->costs};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *p = (struct pixel_buffers){0};
@@ -280,6 +282,7 @@ void renderer_destroy(struct renderer *renderer)
     passes_finish(renderer);
     trace_finish(&renderer->trace);
     pixel_buffers_finish(&renderer->pixel_buffers);
+    costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);
     scene_pose_finish(&renderer->pose);
     image_finish(&renderer->color);
@@ -449,6 +452,8 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         chunk->sample_weight = 1.0f / (float)samples;
         sample_position(s, samples, chunk->sample_xy);
         result = render_sample(renderer, chunk, progress, &longest_ms);
+        if (result == WHIT_OK)
+            result = costs_add(renderer, chunk);
         if (result != WHIT_OK)
             return result;
         progress->work_done += chunk->block_count;
@@ -557,6 +562,7 @@ whit_result renderer_render(struct renderer *renderer)
     }
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
+    costs_clear(renderer);
     whit_result result = WHIT_OK;
     if (!one_band(renderer))
         result = image_init(&renderer->color, params->width, params->height, 4, false);

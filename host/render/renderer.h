@@ -23,6 +23,7 @@ struct scene_buffers {
 struct pixel_buffers {
     struct buffer *pixels, *ids, *counts;
     struct buffer *ray_stacks, *work[2], *work_head;
+    struct buffer *costs; /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *status;
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
@@ -36,7 +37,7 @@ struct pass {
 };
 
 struct trace_state {
-    struct buffer *rays, *hits;
+    struct buffer *rays, *hits, *costs;
     struct pass closest, any;
     uint32_t capacity; /* rays */
     double device_ms;
@@ -56,7 +57,8 @@ struct renderer {
     struct trace_state trace;
     struct commands *commands;
     struct gpu_frame frame;
-    struct image color, ids; /* of the last picture, where it has more than one band */
+    struct image color, ids;            /* of the last picture, where it has more than one band */
+    struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     struct render_stats stats;
     double create_ms;
     /* What the pipelines were made for. */
@@ -72,6 +74,16 @@ enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
                                     const char *selector, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, bool *orthographic);
+
+/* whitted.comp's camera_ray in C, bit for bit: `x` and `y` in pixels, from the upper left. */
+void camera_ray(const struct gpu_frame *frame, bool orthographic, float x, float y,
+                struct gpu_ray *ray);
+
+/* costs.c: all of it does nothing without params.count. */
+WHIT_CHECK whit_result costs_create(struct renderer *renderer);
+void costs_clear(struct renderer *renderer);
+/* Takes over what the kernel counted for one sample of a chunk. */
+WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
 
 /* upload.c */
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);

@@ -16,6 +16,7 @@ void trace_finish(struct trace_state *trace)
     pass_finish(&trace->any);
     buffer_destroy(trace->rays);
     buffer_destroy(trace->hits);
+    buffer_destroy(trace->costs);
     *trace = (struct trace_state){0};
 }
 
@@ -31,6 +32,10 @@ static whit_result prepare(struct renderer *renderer, bool any)
     if (result == WHIT_OK && !trace->hits)
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_hit),
                                BUFFER_STORAGE | BUFFER_HOST, "hits", &trace->hits);
+    if (result == WHIT_OK && renderer->params.count && !trace->costs)
+        result =
+            buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
+                          BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
     struct pass *pass = any ? &trace->any : &trace->closest;
     if (result == WHIT_OK && !pass->pipeline)
         result = variant_create_trace(renderer, any, pass);
@@ -68,7 +73,10 @@ static whit_result dispatch(struct renderer *renderer, bool any, uint32_t count)
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
                            bool any, struct gpu_hit *hits, struct gpu_cost *costs)
 {
-    (void)costs;
+    if (costs && !renderer->params.count) {
+        log_error(&renderer->log, "costs of rays: not asked for when the renderer was made");
+        return WHIT_ERROR_USAGE;
+    }
     renderer->trace.device_ms = 0.0;
     whit_result result = prepare(renderer, any);
     uint64_t piece = TRACE_FIRST;
@@ -82,6 +90,8 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
             result = dispatch(renderer, any, (uint32_t)size);
         if (result == WHIT_OK)
             result = buffer_read(renderer->trace.hits, 0, hits + done, size * sizeof *hits);
+        if (result == WHIT_OK && costs)
+            result = buffer_read(renderer->trace.costs, 0, costs + done, size * sizeof *costs);
         if (clock_ms() - start_ms < TRACE_TARGET_MS / 4 && piece < renderer->trace.capacity)
             piece *= 4;
         done += size;

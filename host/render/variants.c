@@ -11,10 +11,16 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_GROUP_SIZE = RENDER_GROUP_SIZE;
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
     spec.SPEC_STACK_SIZE = renderer->node_stack_size;
-    spec.SPEC_INSTANCED = !accel->single_identity;
+    spec.SPEC_INSTANCED = !accel->single_identity && !accel->flat;
+    spec.SPEC_FLAT = accel->flat;
+    spec.SPEC_CLIPPED = accel->clipped;
+    spec.SPEC_ORDER = renderer->params.order;
+    spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_SECONDARY = renderer->has_secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
-    spec.SPEC_SHORT_STACK = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    /* Counting wants all refs in memory. */
+    spec.SPEC_SHORT_STACK =
+        device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     /* Shadows and camera kind are asked for by the user, not found in the scene. */
     spec.SPEC_SHADOWS = !renderer->params.no_shadows;
     spec.SPEC_ORTHOGRAPHIC = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC];
@@ -105,6 +111,7 @@ whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
     bind(&bindings, BIND_RAY_STACKS, BINDING_STORAGE, pixels->ray_stacks);
     bind(&bindings, BIND_WORK_IN, BINDING_STORAGE, pixels->work[0]);
     bind(&bindings, BIND_WORK_OUT, BINDING_STORAGE, pixels->work[1]);
+    bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
     struct gpu_spec spec = variant_spec(renderer);
     whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, bindings.kinds,
                                      BIND_WHITTED_COUNT, sizeof(struct gpu_chunk), "whitted", pass);
@@ -122,6 +129,7 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     struct bindings bindings = bind_trees(renderer);
     bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
+    bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
     struct gpu_spec spec = variant_spec(renderer);
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;

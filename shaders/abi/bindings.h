@@ -14,7 +14,8 @@
 /* The ray batch kernel. */
 #define BIND_RAYS        7
 #define BIND_HITS        8
-#define BIND_TRACE_COUNT 9 /* bindings of that kernel */
+#define BIND_TRACE_COSTS 9
+#define BIND_TRACE_COUNT 10 /* bindings of that kernel */
 
 /* The Whitted kernel. */
 #define BIND_SHADING        7
@@ -29,6 +30,7 @@
 #define BIND_RAY_STACKS     16
 #define BIND_WORK_IN        17
 #define BIND_WORK_OUT       18
-#define BIND_WHITTED_COUNT  19
+#define BIND_COSTS          19
+#define BIND_WHITTED_COUNT  20
 
 #endif

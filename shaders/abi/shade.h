@@ -139,9 +139,13 @@ GPU_ASSERT_SIZE(gpu_frame, 160)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* A ray waiting on the ray stack of its pixel. */
+#define STATE_MEDIUM_SHIFT 8u
+#define STATE_MEDIUM_MASK  0x3fffffu
+#define STATE_KIND_SHIFT   30u
 struct gpu_stacked_ray {
     gpu_vec3 origin;
-    gpu_uint state; /* bounces so far | medium << 8: material + 1 it travels in, 0: air */
+    gpu_uint state; /* bounces so far | medium << 8: material + 1 it travels in, 0: air
+                       | RAY_* << 30 */
     gpu_vec3 dir;   /* unit */
     gpu_uint skip_primitive;
     gpu_vec3 weight;

@@ -1,6 +1,7 @@
-// Stackful traversal, nearest child first: the one traversal source. Two loops side by side, one
-// over nodes and one over triangles, both do-while: on lavapipe an `if` costs both its sides and
-// only the end of a loop branches (docs/benchmarks.md). accel/traverse.c is this file in C.
+// Stackful traversal: the one traversal source for every order of children (SPEC_ORDER). Two loops
+// side by side, one over nodes and one over triangles, both do-while: on lavapipe an `if` costs both
+// its sides and only the end of a loop branches (docs/benchmarks.md). accel/traverse.c is this file
+// in C.
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
 
@@ -49,19 +50,25 @@ Hit make_hit(float t_max)
 // where nothing is stored, while registers cost a few selects.
 uint node_stack[SPEC_STACK_SIZE];
 
+// What the last traverse() cost; with SPEC_COUNT only, and then without a short stack, so that all
+// refs are in node_stack. node_levels goes with it: how deep in the tree each entry is.
+gpu_cost traversal_cost;
+uint node_levels[SPEC_STACK_SIZE];
+
 const uint STACK_REGISTERS = 6u;
 
 struct NodeStack {
     uint base, in_memory, in_registers;
+    uint level; // of the ref in hand; with SPEC_COUNT
     uint r0, r1, r2, r3, r4, r5; // r0: top
 };
 
 // What pop_ref gives when the registers are empty and memory is not: refill_stack answers it.
 const uint REF_PENDING = 0xfffffffeu;
 
-NodeStack make_stack(uint base)
+NodeStack make_stack(uint base, uint level)
 {
-    return NodeStack(base, base, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    return NodeStack(base, base, 0u, level, 0u, 0u, 0u, 0u, 0u, 0u);
 }
 
 bool is_inner(uint ref)
@@ -78,7 +85,11 @@ void push_memory(uint ref, inout NodeStack stack, inout uint status)
 {
     if (stack.in_memory < SPEC_STACK_SIZE) {
         node_stack[stack.in_memory] = ref;
+        if (SPEC_COUNT != 0u)
+            node_levels[stack.in_memory] = stack.level;
         stack.in_memory++;
+        if (SPEC_COUNT != 0u)
+            traversal_cost.stack = max(traversal_cost.stack, stack.in_memory);
     } else {
         status |= STATUS_NODE_STACK_OVERFLOW;
     }
@@ -89,6 +100,8 @@ uint pop_memory(inout NodeStack stack)
     if (stack.in_memory == stack.base)
         return REF_DONE;
     stack.in_memory--;
+    if (SPEC_COUNT != 0u)
+        stack.level = node_levels[stack.in_memory];
     return node_stack[stack.in_memory];
 }
 
@@ -152,7 +165,16 @@ uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
 // t. 1.0 in mesh trees, whose boxes and triangles are tested with one and the same ray.
 const float SLAB_NEAR_SCALE_INSTANCES = 1.0 - 1.0 / 524288.0;
 
-// One step down: both children of `pair` are tested, the nearer is returned, the farther pushed.
+// Whether the ray comes to the second node of a pair first, by `bits` of the first node's count.
+bool second_first(RaySetup ray, uint bits)
+{
+    uint axis = (bits >> BVH_AXIS_SHIFT) & BVH_AXIS_MASK;
+    bool down = axis == 0u ? ray.negative.x : axis == 1u ? ray.negative.y : ray.negative.z;
+    return down != ((bits & BVH_SECOND_LOW) != 0u);
+}
+
+// One step down: both children of `pair` are tested, the first to visit is returned, the other
+// pushed. With SPEC_CLIPPED boxes of mesh trees are wider by the ray's margin.
 uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
                inout Hit hit)
 {
@@ -160,10 +182,10 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     uvec4 a1 = fetch_node_row(pair * 2u + 1u);
     uvec4 b0 = fetch_node_row(pair * 2u + 2u);
     uvec4 b1 = fetch_node_row(pair * 2u + 3u);
-    precise vec3 a_lo = row_vec3(a0) - ray.origin;
-    precise vec3 a_hi = row_vec3(a1) - ray.origin;
-    precise vec3 b_lo = row_vec3(b0) - ray.origin;
-    precise vec3 b_hi = row_vec3(b1) - ray.origin;
+    precise vec3 a_lo = row_vec3(a0) - ray.above;
+    precise vec3 a_hi = row_vec3(a1) - ray.below;
+    precise vec3 b_lo = row_vec3(b0) - ray.above;
+    precise vec3 b_hi = row_vec3(b1) - ray.below;
     float a_near, a_far, b_near, b_far;
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
@@ -177,12 +199,22 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     bool hit_b = b_near <= b_far && b_near <= hit.t;
     uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
     uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
-    bool b_first = hit_b && (!hit_a || b_near < a_near);
+    bool b_wanted = false;
+    if (SPEC_ORDER == ORDER_DISTANCE)
+        b_wanted = b_near < a_near;
+    if (SPEC_ORDER == ORDER_SIGN)
+        b_wanted = second_first(ray, a1.w);
+    if (SPEC_COUNT != 0u) {
+        stack.level++;
+        traversal_cost.pairs++;
+        traversal_cost.depth = max(traversal_cost.depth, stack.level);
+    }
+    bool b_first = hit_b && (!hit_a || b_wanted);
     push_ref(hit_a && hit_b, b_first ? ref_a : ref_b, stack, hit.status);
     return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
-// Tests one triangle record and keeps it when it is nearer, or as near with smaller ids.
+// With SPEC_FLAT the record names its instance. Tests one triangle record and keeps it when it is nearer, or as near with smaller ids.
 // True: the traversal may end.
 bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
                    uint skip_instance, uint skip_primitive, inout Hit hit)
@@ -192,6 +224,10 @@ bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint
     uvec4 r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
     uint primitive = r0.w;
     uint flags = r1.w;
+    if (SPEC_FLAT != 0u)
+        instance = flags >> TRIANGLE_INSTANCE_SHIFT;
+    if (SPEC_COUNT != 0u)
+        traversal_cost.triangles++;
     precise vec3 a = row_vec3(r0) - ray.origin;
     precise vec3 b = row_vec3(r1) - ray.origin;
     precise vec3 c = row_vec3(r2) - ray.origin;
@@ -222,11 +258,11 @@ bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint
     return mode != TRAVERSE_CLOSEST && accepted;
 }
 
-// A mesh tree, with its stack in memory from `base` up.
-void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint base, uint instance,
-                   uint skip_instance, uint skip_primitive, inout Hit hit)
+// A mesh tree, whose root is at `level`, with its stack in memory from `base` up.
+void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint base, uint level,
+                   uint instance, uint skip_instance, uint skip_primitive, inout Hit hit)
 {
-    NodeStack stack = make_stack(base);
+    NodeStack stack = make_stack(base, level);
     uint ref = root;
     do {
         do {
@@ -238,6 +274,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint b
                 bool done = test_triangle(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
                                           skip_instance, skip_primitive, hit);
                 ref += 1u - REF_ONE_PRIMITIVE;
+                if (SPEC_COUNT != 0u && (is_inner(ref) || done))
+                    traversal_cost.leaves++;
                 ref = pop_ref(is_inner(ref), ref, stack);
                 if (done)
                     ref = REF_DONE;
@@ -250,12 +288,22 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint b
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
+// The ray of an instance, ready for its mesh tree.
+RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
+{
+    InstanceFrame frame = fetch_instance_frame(instance);
+    RaySetup local = make_ray_setup(to_object_point(frame, origin), to_object_dir(frame, dir));
+    if (SPEC_CLIPPED != 0u)
+        widen_ray_setup(local, fetch_mesh_center(instance), fetch_mesh_reach(instance));
+    return local;
+}
+
 // The tree over instances; each leaf is one.
 void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uint root,
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {
     RaySetup ray = make_ray_setup(origin, dir);
-    NodeStack stack = make_stack(0u);
+    NodeStack stack = make_stack(0u, 0u);
     uint ref = root;
     do {
         do {
@@ -264,12 +312,12 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
         } while (is_inner(ref) && has_room(stack));
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;
-            InstanceFrame frame = fetch_instance_frame(instance);
             uint mesh_root = fetch_instance_row(instance * INSTANCE_ROWS + 3u).x;
-            RaySetup local =
-                make_ray_setup(to_object_point(frame, origin), to_object_dir(frame, dir));
-            traverse_mesh(mode, local, t_min, mesh_root, stack.in_memory, instance, skip_instance,
-                          skip_primitive, hit);
+            if (SPEC_COUNT != 0u)
+                traversal_cost.instances++;
+            traverse_mesh(mode, make_local_setup(instance, origin, dir), t_min, mesh_root,
+                          stack.in_memory, stack.level, instance, skip_instance, skip_primitive,
+                          hit);
             bool done = mode != TRAVERSE_CLOSEST && hit.primitive != HIT_NONE;
             ref = done ? REF_DONE : pop_ref(true, ref, stack);
         }
@@ -281,19 +329,24 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
 
 // Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`.
 // Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or
-// without SPEC_INSTANCED of the only mesh tree. Not finite rays hit nothing.
+// without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene). Not finite rays hit nothing.
 Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, uint root,
              uint skip_instance, uint skip_primitive)
 {
     Hit hit = make_hit(t_max);
+    if (SPEC_COUNT != 0u)
+        traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     precise vec3 bounded = (origin - origin) + (dir - dir); // 0, or NaN
     if (!(bounded.x + bounded.y + bounded.z == 0.0) || dir == vec3(0.0))
         root = REF_DONE;
-    if (SPEC_INSTANCED != 0u)
+    if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);
-    else
-        traverse_mesh(mode, make_ray_setup(origin, dir), t_min, root, 0u, 0u, skip_instance,
-                      skip_primitive, hit);
+    } else {
+        RaySetup ray = make_ray_setup(origin, dir);
+        if (SPEC_CLIPPED != 0u)
+            widen_ray_setup(ray, fetch_mesh_center(0u), fetch_mesh_reach(0u));
+        traverse_mesh(mode, ray, t_min, root, 0u, 0u, 0u, skip_instance, skip_primitive, hit);
+    }
     return hit;
 }
 

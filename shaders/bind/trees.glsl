@@ -63,6 +63,20 @@ InstanceFrame fetch_instance_frame(uint instance)
     return frame;
 }
 
+// Of the mesh's box, in object space; without SPEC_INSTANCED all instances name that of the only
+// tree.
+vec3 fetch_mesh_center(uint instance)
+{
+    uint row = instance * INSTANCE_ROWS + 4u;
+    return uintBitsToFloat(uvec3(fetch_instance_row(row).w, fetch_instance_row(row + 1u).w,
+                                 fetch_instance_row(row + 2u).w));
+}
+
+float fetch_mesh_reach(uint instance)
+{
+    return uintBitsToFloat(fetch_instance_row(instance * INSTANCE_ROWS + 7u).x);
+}
+
 // Rows times vector, written out: lavapipe's mat3 * vec3 sums from the right.
 vec3 rotate_rows(vec3 r0, vec3 r1, vec3 r2, vec3 p)
 {

@@ -8,6 +8,10 @@ layout(local_size_x_id = 0) in;
 layout(push_constant) uniform Batch { gpu_batch batch; };
 layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray rays[]; };
 layout(set = 0, binding = BIND_HITS, std430) writeonly buffer HitBuffer { gpu_hit hits[]; };
+layout(set = 0, binding = BIND_TRACE_COSTS, std430) writeonly buffer CostBuffer
+{
+    gpu_cost costs[]; // with SPEC_COUNT
+};
 
 bool cutout_is_solid(uint instance, uint primitive, float u, float v)
 {
@@ -25,6 +29,8 @@ vec3 geometric_normal(Hit hit)
     n.x = e1.y * e2.z - e1.z * e2.y;
     n.y = e1.z * e2.x - e1.x * e2.z;
     n.z = e1.x * e2.y - e1.y * e2.x;
+    if (SPEC_FLAT != 0u && (fetch_triangle_row(row + 1u).w & TRIANGLE_MIRRORED) != 0u)
+        n = -n;
     if (SPEC_INSTANCED == 0u)
         return n;
     InstanceFrame frame = fetch_instance_frame(hit.instance);
@@ -56,5 +62,7 @@ void main()
     answer.ng_y = ng.y;
     answer.ng_z = ng.z;
     hits[index] = answer;
+    if (SPEC_COUNT != 0u)
+        costs[index] = traversal_cost;
     report_status(hit.status);
 }

@@ -28,11 +28,15 @@ layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
     uint slots_out[];
 };
 
+// RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
+layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
+
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 
 struct Ray {
     vec3 origin, dir, weight;
     uint bounces, medium, skip_primitive, skip_instance;
+    uint kind; // RAY_*; with SPEC_COUNT
 };
 
 // Which item of the work this invocation takes; the last ones may be past its end.
@@ -57,23 +61,30 @@ uvec2 slot_pixel(uint slot)
     return uvec2(block % blocks_x, block / blocks_x) * 8u + uvec2(x, y);
 }
 
+// camera_ray of render/camera.c is this in C, bit for bit: so no normalize(), whose bits are the
+// driver's choice.
 Ray camera_ray(uvec2 pixel)
 {
-    vec2 at = (vec2(pixel) + chunk.sample_xy) / vec2(frame.width, frame.height) * 2.0 - 1.0;
-    vec3 in_plane = frame.right * at.x - frame.up * at.y;
+    precise vec2 at =
+        (vec2(pixel) + chunk.sample_xy) / vec2(frame.width, frame.height) * 2.0 - 1.0;
+    precise vec3 in_plane = frame.right * at.x - frame.up * at.y;
+    precise vec3 origin = frame.eye + in_plane;
+    precise vec3 dir = frame.forward + in_plane;
+    if (SPEC_ORTHOGRAPHIC != 0u)
+        dir = frame.forward;
+    else
+        origin = frame.eye;
+    precise float size = sqrt((dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z);
+    precise vec3 unit = dir / size;
     Ray ray;
-    ray.origin = frame.eye;
-    ray.dir = frame.forward + in_plane;
-    if (SPEC_ORTHOGRAPHIC != 0u) {
-        ray.origin = frame.eye + in_plane;
-        ray.dir = frame.forward;
-    }
-    ray.dir = normalize(ray.dir);
+    ray.origin = origin;
+    ray.dir = unit;
     ray.weight = vec3(1.0);
     ray.bounces = 0u;
     ray.medium = 0u;
     ray.skip_primitive = HIT_NONE;
     ray.skip_instance = HIT_NONE;
+    ray.kind = RAY_PRIMARY;
     return ray;
 }
 
@@ -85,7 +96,8 @@ Ray stacked_ray(uint index)
     ray.dir = stacked.dir;
     ray.weight = stacked.weight;
     ray.bounces = stacked.state & 255u;
-    ray.medium = stacked.state >> 8;
+    ray.medium = (stacked.state >> STATE_MEDIUM_SHIFT) & STATE_MEDIUM_MASK;
+    ray.kind = stacked.state >> STATE_KIND_SHIFT;
     ray.skip_primitive = stacked.skip_primitive;
     ray.skip_instance = stacked.skip_instance;
     return ray;
@@ -192,8 +204,33 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
     return o;
 }
 
+// Adds what the last traverse() cost to the pixel's rays of `kind`.
+void add_cost(uint slot, uint kind)
+{
+    if (SPEC_COUNT == 0u)
+        return;
+    uint at = slot * RAY_KIND_COUNT + kind;
+    gpu_cost sum = costs[at];
+    sum.rays += traversal_cost.rays;
+    sum.pairs += traversal_cost.pairs;
+    sum.leaves += traversal_cost.leaves;
+    sum.instances += traversal_cost.instances;
+    sum.triangles += traversal_cost.triangles;
+    sum.stack = max(sum.stack, traversal_cost.stack);
+    sum.depth = max(sum.depth, traversal_cost.depth);
+    costs[at] = sum;
+}
+
+void clear_costs(uint slot)
+{
+    if (SPEC_COUNT == 0u)
+        return;
+    for (uint kind = 0u; kind < RAY_KIND_COUNT; kind++)
+        costs[slot * RAY_KIND_COUNT + kind] = gpu_cost(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
+
 // How much of a light passes to `p`: 1 less opaque things in between, times the filters.
-vec3 light_share(vec3 p, vec3 error, vec3 side, vec3 to_light, float distance, Hit from,
+vec3 light_share(uint slot, vec3 p, vec3 error, vec3 side, vec3 to_light, float distance, Hit from,
                  inout uint status)
 {
     if (SPEC_SHADOWS == 0u)
@@ -201,6 +238,7 @@ vec3 light_share(vec3 p, vec3 error, vec3 side, vec3 to_light, float distance, H
     vec3 origin = offset_origin(p, error, side);
     Hit blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
                            from.instance, from.primitive);
+    add_cost(slot, RAY_SHADOW);
     status |= blocker.status;
     if (blocker.primitive != HIT_NONE)
         return vec3(0.0);
@@ -210,7 +248,8 @@ vec3 light_share(vec3 p, vec3 error, vec3 side, vec3 to_light, float distance, H
 }
 
 // Light from all lights, towards the eye.
-vec3 local_light(Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays, inout uint status)
+vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays,
+                 inout uint status)
 {
     vec3 sum = o.emission + o.ambient * frame.ambient;
     if (SPEC_LIGHTS == 0u)
@@ -235,7 +274,7 @@ vec3 local_light(Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays
         lit = lit && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
         if (lit) {
             vec3 share =
-                light_share(s.p, s.error, s.ng, to_light, distance, hit, status);
+                light_share(slot, s.p, s.error, s.ng, to_light, distance, hit, status);
             sum += reflected * arriving * share;
             if (SPEC_SHADOWS != 0u)
                 shadow_rays++;
@@ -248,7 +287,7 @@ vec3 local_light(Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays
 }
 
 void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uint bounces,
-              uint medium, Hit hit, inout uint status)
+              uint medium, uint kind, Hit hit, inout uint status)
 {
     if (top >= frame.stack_size) {
         status |= STATUS_RAY_STACK_OVERFLOW;
@@ -258,7 +297,9 @@ void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uin
     stacked.origin = origin;
     stacked.dir = dir;
     stacked.weight = weight;
-    stacked.state = bounces | (medium << 8);
+    stacked.state = bounces | (medium << STATE_MEDIUM_SHIFT);
+    if (SPEC_COUNT != 0u)
+        stacked.state |= kind << STATE_KIND_SHIFT;
     stacked.skip_primitive = hit.primitive;
     stacked.skip_instance = hit.instance;
     ray_stacks[slot * frame.stack_size + top] = stacked;
@@ -288,7 +329,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit
         if (passes && worth(weight)) {
             uint medium = o.thin ? ray.medium : inside ? 0u : s.material + 1u;
             push_ray(slot, count.stack, offset_origin(s.p, s.error, -s.ng), dir, weight, bounces,
-                     medium, hit, status);
+                     medium, RAY_REFRACTED, hit, status);
             count.refracted++;
         }
     }
@@ -296,7 +337,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit
         vec3 weight = ray.weight * o.straight;
         if (worth(weight))
             push_ray(slot, count.stack, offset_origin(s.p, s.error, -s.ng), ray.dir, weight,
-                     bounces, ray.medium, hit, status);
+                     bounces, ray.medium, ray.kind, hit, status);
     }
     if (SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u) {
         vec3 weight = ray.weight * o.reflected * solid;
@@ -305,7 +346,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit
             dir = reflect(ray.dir, s.ng);
         if (worth(weight)) {
             push_ray(slot, count.stack, offset_origin(s.p, s.error, s.ng), normalize(dir), weight,
-                     bounces, ray.medium, hit, status);
+                     bounces, ray.medium, RAY_REFLECTED, hit, status);
             count.reflected++;
         }
     }
@@ -338,7 +379,7 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
         s.ns = s.ng;
     push_children(slot, ray, s, o, inside, hit, count, status);
     vec3 light = o.unlit ? o.diffuse + o.emission
-                         : local_light(s, o, -ray.dir, hit, count.shadow, status);
+                         : local_light(slot, s, o, -ray.dir, hit, count.shadow, status);
     return light * ray.weight * (1.0 - o.straight);
 }
 
@@ -371,9 +412,11 @@ void main()
         ray = stacked_ray(slot * frame.stack_size + count.stack);
     } else {
         count.stack = 0u;
+        clear_costs(slot);
     }
     Hit hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
                        ray.skip_instance, ray.skip_primitive);
+    add_cost(slot, ray.kind);
     uint status = hit.status;
     bool met = hit.primitive != HIT_NONE;
     vec3 radiance = environment_radiance(ray.dir) * ray.weight;

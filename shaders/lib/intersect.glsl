@@ -7,6 +7,7 @@
 // What a ray needs at every box and triangle.
 struct RaySetup {
     vec3 origin;
+    vec3 above, below; // origin plus and less the margin of node boxes: see widen_ray_setup
     vec3 inv_dir;  // infinite where the direction is 0
     bvec3 negative; // inv_dir < 0, so that -0 counts as negative
     bvec2 dominant; // |dir| is largest along x; along y
@@ -24,6 +25,8 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
 {
     RaySetup ray;
     ray.origin = origin;
+    ray.above = origin;
+    ray.below = origin;
     precise vec3 inv_dir = vec3(1.0) / dir;
     ray.inv_dir = inv_dir;
     ray.negative = lessThan(inv_dir, vec3(0.0));
@@ -39,6 +42,23 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     shear.y = turned.y / turned.z;
     ray.shear = shear;
     return ray;
+}
+
+// For trees whose leaves hold clipped triangles. There a hit may lie outside the boxes above it, by
+// the roundings of the clip and of the triangle test; both are relative to distances from the ray's
+// origin, none of which exceeds that to the centre of the mesh's box plus its `reach`.
+const float CLIP_MARGIN = 1.0 / 524288.0;
+
+void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
+{
+    precise vec3 away = abs(ray.origin - center);
+    float farthest = away.x > away.y ? away.x : away.y;
+    farthest = away.z > farthest ? away.z : farthest;
+    precise float margin = (farthest + reach) * CLIP_MARGIN;
+    precise vec3 above = ray.origin + margin;
+    precise vec3 below = ray.origin - margin;
+    ray.above = above;
+    ray.below = below;
 }
 
 // Widens the far end of a slab interval: more than the error of (b - o) * (1 / d) on both ends

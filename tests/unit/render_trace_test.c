@@ -55,6 +55,42 @@ static void make_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t se
     scene_pose_finish(&pose);
 }
 
+/* A ray is blocked up to t_max just when its closest hit is that near; a third of the rays end
+   exactly there, or one float before. */
+static void check_any_against_closest(struct fixture *f, const char *label)
+{
+    enum { MANY = 180000 };
+    struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
+    struct gpu_hit *closest = array_alloc(MANY, sizeof *closest);
+    struct gpu_hit *any = array_alloc(MANY, sizeof *any);
+    assert_true(rays && closest && any);
+    for (uint32_t i = 0; i < MANY / RAYS; ++i)
+        make_rays(f, rays + (size_t)i * RAYS, 1000 + i);
+    for (uint32_t i = 0; i < MANY; ++i)
+        rays[i].t_max = INFINITY;
+    assert_int_equal(renderer_trace(f->renderer, rays, MANY, false, closest, NULL), WHIT_OK);
+    uint32_t state = 11, blocked = 0, bad = 0;
+    for (uint32_t i = 0; i < MANY; ++i) {
+        rays[i].t_max = 2.0f * fabsf(fixture_signed(&state));
+        if (closest[i].primitive != HIT_NONE && i % 3 == 0)
+            rays[i].t_max = i & 1 ? closest[i].t : nextafterf(closest[i].t, -INFINITY);
+    }
+    assert_int_equal(renderer_trace(f->renderer, rays, MANY, true, any, NULL), WHIT_OK);
+    for (uint32_t i = 0; i < MANY; ++i) {
+        bool wanted = closest[i].primitive != HIT_NONE && closest[i].t <= rays[i].t_max;
+        blocked += wanted;
+        bad += wanted != (any[i].primitive != HIT_NONE);
+    }
+    print_message("  %s: %u rays, %u blocked; any-hit unlike closest %u\n", label, MANY, blocked,
+                  bad);
+    assert_true(blocked > MANY / 100);
+    assert_true(blocked < MANY);
+    assert_int_equal(bad, 0);
+    free(rays);
+    free(closest);
+    free(any);
+}
+
 static void check_rays(struct fixture *f, const char *label)
 {
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
@@ -91,6 +127,7 @@ static void check_rays(struct fixture *f, const char *label)
     free(rays);
     free(device);
     free(any);
+    check_any_against_closest(f, label);
 }
 
 static void check_mesh(struct scene_mesh mesh, const char *label)

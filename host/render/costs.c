@@ -1,0 +1,90 @@
+/* What traversals cost: the kernel's records of a chunk, summed up, and kept where they are of a
+   pixel's first sample. */
+#include <string.h>
+
+#include "render/renderer.h"
+
+enum { COST_WORDS = sizeof(struct gpu_cost) / sizeof(uint32_t) };
+
+whit_result costs_create(struct renderer *renderer)
+{
+    struct pixel_buffers *p = &renderer->pixel_buffers;
+    if (!renderer->params.count)
+        return WHIT_OK;
+    uint64_t bytes = (uint64_t)p->chunk_slots * RAY_KIND_COUNT * sizeof(struct gpu_cost);
+    renderer->scene_buffers.bytes += bytes;
+    return buffer_create(renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST, "costs", &p->costs);
+}
+
+void costs_clear(struct renderer *renderer)
+{
+    for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
+        image_finish(&renderer->costs[kind]);
+}
+
+static void sum_up(struct render_cost *sum, const struct gpu_cost *cost)
+{
+    sum->rays += cost->rays;
+    sum->pairs += cost->pairs;
+    sum->leaves += cost->leaves;
+    sum->instances += cost->instances;
+    sum->triangles += cost->triangles;
+    sum->stack = cost->stack > sum->stack ? cost->stack : sum->stack;
+    sum->depth = cost->depth > sum->depth ? cost->depth : sum->depth;
+}
+
+/* Kinds of rays that a picture does without get no memory. */
+static whit_result keep(struct renderer *renderer, uint32_t kind, uint32_t x, uint32_t y,
+                        const struct gpu_cost *cost)
+{
+    struct image *image = &renderer->costs[kind];
+    if (!image->words) {
+        whit_result result =
+            image_init(image, renderer->params.width, renderer->params.height, COST_WORDS, true);
+        if (result != WHIT_OK)
+            return result;
+    }
+    memcpy(&image->words[((size_t)y * image->width + x) * COST_WORDS], cost, sizeof *cost);
+    return WHIT_OK;
+}
+
+whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk)
+{
+    struct gpu_cost costs[RENDER_BLOCK_PIXELS][RAY_KIND_COUNT];
+    const struct render_params *params = &renderer->params;
+    uint32_t across = (params->width + 7) / 8;
+    whit_result result = WHIT_OK;
+    for (uint32_t b = 0; params->count && result == WHIT_OK && b < chunk->block_count; ++b) {
+        uint32_t block = chunk->first_block + b;
+        result = buffer_read(renderer->pixel_buffers.costs, b * sizeof costs, costs, sizeof costs);
+        for (uint32_t i = 0; result == WHIT_OK && i < RENDER_BLOCK_PIXELS; ++i) {
+            /* slot_pixel() of the kernel */
+            uint32_t x = block % across * 8 + ((i & 3) | (i >> 1 & 4));
+            uint32_t y = block / across * 8 + ((i >> 2 & 1) | (i >> 3 & 6));
+            for (uint32_t k = 0; x < params->width && y < params->height && k < RAY_KIND_COUNT;
+                 ++k) {
+                sum_up(&renderer->stats.costs[k], &costs[i][k]);
+                if (result == WHIT_OK && chunk->sample_index == 0 && costs[i][k].rays > 0)
+                    result = keep(renderer, k, x, y, &costs[i][k]);
+            }
+        }
+    }
+    return result;
+}
+
+whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind, struct image *out)
+{
+    const struct render_params *params = &renderer->params;
+    if (!renderer->rendered || !params->count || kind >= RAY_KIND_COUNT) {
+        log_error(&renderer->log, "%s",
+                  !params->count        ? "costs were not asked for when the renderer was made"
+                  : !renderer->rendered ? "no picture was rendered yet"
+                                        : "there is no such kind of rays");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result = image_init(out, params->width, params->height, COST_WORDS, true);
+    size_t words = (size_t)params->width * params->height * COST_WORDS;
+    if (result == WHIT_OK && renderer->costs[kind].words)
+        memcpy(out->words, renderer->costs[kind].words, words * sizeof *out->words);
+    return result;
+}

@@ -1,0 +1,220 @@
+/* The C traversal on trees written by hand: deep ones, and what it counts. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "accel/accel.h"
+#include "tree_fixture.h"
+
+enum { ORDERS = 3, STACK_SIZE = 512 /* of the traversal */ };
+
+static struct accel *caterpillar(uint32_t depth)
+{
+    struct accel *accel = array_alloc_zeroed(1, sizeof *accel);
+    assert_non_null(accel);
+    accel->nodes = caterpillar_nodes(depth, 0);
+    accel->triangles = array_alloc_aligned(depth + 1, sizeof *accel->triangles);
+    accel->instances = array_alloc_aligned(1, sizeof *accel->instances);
+    accel->meshes = array_alloc_zeroed(1, sizeof *accel->meshes);
+    assert_true(accel->nodes && accel->triangles && accel->instances && accel->meshes);
+    for (uint32_t i = 0; i <= depth; ++i) {
+        struct gpu_triangle *triangle = &accel->triangles[i];
+        float corners[9];
+        caterpillar_corners(i, corners);
+        *triangle = (struct gpu_triangle){.primitive = i};
+        memcpy(triangle->v0, corners, sizeof triangle->v0);
+        memcpy(triangle->v1, corners + 3, sizeof triangle->v1);
+        memcpy(triangle->v2, corners + 6, sizeof triangle->v2);
+    }
+    accel->instances[0] = (struct gpu_instance){.root = accel->nodes[0].first};
+    accel->meshes[0] =
+        (struct accel_mesh){.record_count = depth + 1, .triangle_count = depth + 1, .depth = depth};
+    accel->node_count = 2 * depth + 2;
+    accel->record_count = accel->triangle_count = depth + 1;
+    accel->instance_count = accel->mesh_count = 1;
+    accel->mesh_depth = depth;
+    accel->single_identity = true;
+    return accel;
+}
+
+static void deep_trees_are_walked(void **state)
+{
+    (void)state;
+    const uint32_t depths[] = {1, 31, 32, 33, 63, 64, 65, 128, 200, 511, 512};
+    for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
+        uint32_t depth = depths[d];
+        struct accel *accel = caterpillar(depth);
+        for (uint32_t way = 0; way < 2 * ORDERS; ++way) {
+            uint32_t order = way / 2, status = 0, nearest = way % 2 ? depth : 0;
+            struct gpu_ray ray = caterpillar_ray(depth, way % 2);
+            struct gpu_hit hit, any;
+            struct gpu_cost cost = {0};
+            traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+            assert_int_equal(hit.primitive, nearest);
+            assert_true(hit.t == 1.0f);
+            assert_int_equal(status, 0);
+            /* Order BASIC keeps as much from below: the rest of the chain is first in each pair. */
+            bool deep = way % 2 || order == ORDER_BASIC;
+            assert_int_equal(cost.stack, deep ? depth : 1);
+            /* What was pushed is opened once it is popped, even behind the hit. */
+            assert_int_equal(cost.depth, deep || depth == 1 ? depth : 2);
+            traverse_float(accel, order, &ray, true, HIT_NONE, HIT_NONE, &any, NULL, &status);
+            assert_int_not_equal(any.primitive, HIT_NONE);
+            assert_int_equal(status, 0);
+        }
+        accel_destroy(accel);
+    }
+}
+
+static void too_deep_trees_are_reported(void **state)
+{
+    (void)state;
+    struct accel *accel = caterpillar(STACK_SIZE + 1);
+    for (uint32_t order = 0; order < ORDERS; ++order) {
+        uint32_t status = 0;
+        struct gpu_ray ray = caterpillar_ray(STACK_SIZE + 1, true);
+        struct gpu_hit hit;
+        traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+        assert_int_equal(status, STATUS_NODE_STACK_OVERFLOW);
+    }
+    accel_destroy(accel);
+}
+
+/* What the traversal of a chain must count, worked out by hand. */
+static void costs_are_those_of_the_chain(void **state)
+{
+    (void)state;
+    enum { DEPTH = 10 };
+    struct accel *accel = caterpillar(DEPTH);
+    struct gpu_ray ray = caterpillar_ray(DEPTH, true);
+    struct gpu_hit hit;
+    uint32_t status = 0;
+    struct gpu_cost cost = {0};
+    /* Down to triangle DEPTH; then every leaf on the stack is popped and tested: its box was met
+       when it was pushed. */
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    assert_int_equal(cost.rays, 1);
+    assert_int_equal(cost.pairs, DEPTH);
+    assert_int_equal(cost.leaves, DEPTH + 1);
+    assert_int_equal(cost.triangles, DEPTH + 1);
+    assert_int_equal(cost.instances, 0);
+    /* Added on top; stack and depth are the largest. */
+    traverse_float(accel, ORDER_DISTANCE, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    assert_int_equal(cost.rays, 2);
+    assert_int_equal(cost.pairs, 2 * DEPTH);
+    assert_int_equal(cost.leaves, DEPTH + 2);
+    assert_int_equal(cost.triangles, DEPTH + 2);
+    assert_int_equal(cost.stack, DEPTH);
+    assert_int_equal(cost.depth, DEPTH);
+    /* From below: one pair and one leaf, the rest lies behind the hit. */
+    ray = caterpillar_ray(DEPTH, false);
+    cost = (struct gpu_cost){0};
+    traverse_float(accel, ORDER_SIGN, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    assert_int_equal(cost.pairs, 1);
+    assert_int_equal(cost.leaves, 1);
+    assert_int_equal(cost.triangles, 1);
+    assert_int_equal(cost.stack, 1);
+    assert_int_equal(cost.depth, 1);
+    assert_int_equal(status, 0);
+    accel_destroy(accel);
+}
+
+/* A box that a clip left short of its triangle by less than the margin. */
+static void clipped_boxes_get_a_margin(void **state)
+{
+    (void)state;
+    struct accel *accel = caterpillar(1);
+    struct gpu_ray ray = {.origin = {1.9999f, -0.99999f, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
+    struct gpu_hit hit;
+    uint32_t status = 0;
+    accel->instances[0].reach = 2.0f;
+    for (uint32_t i = 2; i < 4; ++i)
+        accel->nodes[i].lo[1] = -0.99999f + 0x1p-20f; /* 1 + 2^-20 short of what the ray needs */
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+    assert_int_equal(hit.primitive, HIT_NONE);
+    accel->clipped = true;
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+    assert_int_equal(hit.primitive, 0);
+    /* The margin is (2 + 2) * 2^-19 = 2^-17: nothing beyond that is forgiven. */
+    for (uint32_t i = 2; i < 4; ++i)
+        accel->nodes[i].lo[1] = -0.99999f + 0x1.1p-17f;
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+    assert_int_equal(hit.primitive, HIT_NONE);
+    accel_destroy(accel);
+}
+
+/* Without instances to go through, records say whose they are. */
+static void flat_records_name_their_instance(void **state)
+{
+    (void)state;
+    struct accel *accel = caterpillar(1);
+    struct gpu_ray ray = {.origin = {0, 0, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
+    struct gpu_hit hit, brute, plain;
+    uint32_t status = 0;
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &plain, NULL, &status);
+    accel->single_identity = false;
+    accel->flat = true;
+    accel->meshes[0].root = accel->nodes[0].first;
+    /* Both in one place, as primitive 0 of two instances: the smaller instance is the second. */
+    accel->triangles[1] = accel->triangles[0];
+    caterpillar_box(0, 0, &accel->nodes[2]);
+    accel->triangles[0].flags = 7u << TRIANGLE_INSTANCE_SHIFT;
+    accel->triangles[1].flags = 5u << TRIANGLE_INSTANCE_SHIFT | TRIANGLE_MIRRORED;
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+    traverse_brute_float(accel, &ray, &brute);
+    assert_int_equal(hit.instance, 5);
+    assert_true(hit.ng_z == -plain.ng_z && plain.ng_z != 0.0f);
+    assert_memory_equal(&hit, &brute, sizeof hit);
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, 5, 0, &hit, NULL, &status);
+    assert_int_equal(hit.instance, 7);
+    assert_true(hit.ng_z == plain.ng_z);
+    accel_destroy(accel);
+}
+
+/* Identical triangles: the smallest primitive is hit, wherever its leaf is. */
+static void duplicates_give_the_first(void **state)
+{
+    (void)state;
+    const uint32_t counts[] = {2, 3, 10, 100, 513};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+        uint32_t count = counts[i];
+        struct accel *accel = caterpillar(count - 1);
+        for (uint32_t k = 0; k < count; ++k) {
+            struct gpu_triangle *triangle = &accel->triangles[k];
+            *triangle = accel->triangles[0];
+            triangle->primitive = count - 1 - k;
+        }
+        for (uint32_t k = 2; k < 2 * count; ++k) {
+            accel->nodes[k].lo[2] = 0.0f;
+            accel->nodes[k].hi[2] = 0.0f;
+        }
+        for (uint32_t way = 0; way < 2 * ORDERS; ++way) {
+            struct gpu_ray ray = caterpillar_ray(0, way % 2);
+            struct gpu_hit hit, brute;
+            uint32_t status = 0;
+            traverse_float(accel, way / 2, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+            traverse_brute_float(accel, &ray, &brute);
+            assert_int_equal(hit.primitive, 0);
+            assert_memory_equal(&hit, &brute, sizeof hit);
+            assert_int_equal(status, 0);
+        }
+        accel_destroy(accel);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(deep_trees_are_walked),
+        cmocka_unit_test(too_deep_trees_are_reported),
+        cmocka_unit_test(costs_are_those_of_the_chain),
+        cmocka_unit_test(clipped_boxes_get_a_margin),
+        cmocka_unit_test(flat_records_name_their_instance),
+        cmocka_unit_test(duplicates_give_the_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
