@@ -27,6 +27,9 @@ static const char *const cylinder_keys[] = {"shape",  "radius",   "radius_top",
                                             "height", "segments", NULL};
 static const char *const cone_keys[] = {"shape", "radius", "height", "segments", NULL};
 static const char *const terrain_keys[] = {"shape", "size", "height", "steps", "seed", NULL};
+static const char *const strands_keys[] = {"shape", "size", "length", "width",
+                                           "count", "seed", NULL};
+static const char *const atrium_keys[] = {"shape", "bays", "level", NULL};
 static const char *const flake_keys[] = {"shape", "radius", "level", "segments", "rings", NULL};
 
 enum shape {
@@ -38,16 +41,18 @@ enum shape {
     SHAPE_CYLINDER,
     SHAPE_CONE,
     SHAPE_TERRAIN,
+    SHAPE_STRANDS,
+    SHAPE_ATRIUM,
     SHAPE_SPHEREFLAKE,
     SHAPE_COUNT
 };
 
 static const char *const shape_names[SHAPE_COUNT + 1] = {
-    "box",      "plane", "sphere",  "icosphere",   "torus",
-    "cylinder", "cone",  "terrain", "sphereflake", NULL};
+    "box",  "plane",   "sphere",  "icosphere", "torus",       "cylinder",
+    "cone", "terrain", "strands", "atrium",    "sphereflake", NULL};
 static const char *const *const shape_keys[SHAPE_COUNT] = {
-    box_keys,      plane_keys, sphere_keys,  icosphere_keys, torus_keys,
-    cylinder_keys, cone_keys,  terrain_keys, flake_keys};
+    box_keys,  plane_keys,   sphere_keys,  icosphere_keys, torus_keys, cylinder_keys,
+    cone_keys, terrain_keys, strands_keys, atrium_keys,    flake_keys};
 
 /* "size" as one number for all sides, or as one a side. */
 static bool read_size(struct reader *reader, const struct place *place, const json_t *object,
@@ -75,8 +80,8 @@ static bool read_size(struct reader *reader, const struct place *place, const js
 }
 
 struct shape_sizes {
-    double size[3], radius, radius_top, tube, height, uv_scale;
-    uint32_t segments, rings, sides, steps, level, seed;
+    double size[3], radius, radius_top, tube, height, length, width, uv_scale;
+    uint32_t segments, rings, sides, steps, level, seed, count, bays;
 };
 
 static bool read_sizes(struct reader *reader, const struct place *place, const json_t *object,
@@ -84,20 +89,30 @@ static bool read_sizes(struct reader *reader, const struct place *place, const j
 {
     bool ball = shape == SHAPE_SPHERE || shape == SHAPE_SPHEREFLAKE;
     *out = (struct shape_sizes){
-        .size = {shape == SHAPE_TERRAIN ? 10.0 : 1.0, 1.0, 1.0},
+        .size = {shape == SHAPE_TERRAIN   ? 10.0
+                 : shape == SHAPE_STRANDS ? 2.0
+                                          : 1.0,
+                 1.0, 1.0},
         .radius = shape == SHAPE_TORUS || ball || shape == SHAPE_ICOSPHERE ? 1.0 : 0.5,
         .tube = 0.25,
         .height = 1.0,
+        .length = 2.0,
+        .width = 0.02,
         .uv_scale = 1.0,
         .segments = shape == SHAPE_SPHEREFLAKE ? 24 : 64,
         .rings = shape == SHAPE_SPHEREFLAKE ? 12 : 32,
         .sides = 32,
         .steps = shape == SHAPE_TERRAIN ? 64 : 1,
-        .level = shape == SHAPE_SPHEREFLAKE ? 3 : 4,
+        .level = shape == SHAPE_SPHEREFLAKE ? 3
+                 : shape == SHAPE_ATRIUM    ? 2
+                                            : 4,
         .seed = 1,
+        .count = 5000,
+        .bays = 9,
     };
     size_t size_count = shape == SHAPE_BOX ? 3 : shape == SHAPE_PLANE ? 2 : 1;
     uint32_t steps_most = shape == SHAPE_TERRAIN ? 4096 : 2048;
+    uint32_t level_least = shape == SHAPE_ATRIUM ? 1 : 0;
     uint32_t level_most = shape == SHAPE_SPHEREFLAKE ? 6 : 8;
     if (!read_size(reader, place, object, size_count, out->size) ||
         !reader_number(reader, place, object, "radius", 1e-15, SIZE_MOST, &out->radius))
@@ -106,12 +121,16 @@ static bool read_sizes(struct reader *reader, const struct place *place, const j
     return reader_number(reader, place, object, "radius_top", 0.0, SIZE_MOST, &out->radius_top) &&
            reader_number(reader, place, object, "tube", 1e-15, SIZE_MOST, &out->tube) &&
            reader_number(reader, place, object, "height", 1e-15, SIZE_MOST, &out->height) &&
+           reader_number(reader, place, object, "length", 1e-15, SIZE_MOST, &out->length) &&
+           reader_number(reader, place, object, "width", 1e-15, SIZE_MOST, &out->width) &&
            reader_number(reader, place, object, "uv_scale", -1e6, 1e6, &out->uv_scale) &&
            reader_count(reader, place, object, "segments", 3, 4096, &out->segments) &&
            reader_count(reader, place, object, "rings", 2, 4096, &out->rings) &&
            reader_count(reader, place, object, "sides", 3, 4096, &out->sides) &&
            reader_count(reader, place, object, "steps", 1, steps_most, &out->steps) &&
-           reader_count(reader, place, object, "level", 0, level_most, &out->level) &&
+           reader_count(reader, place, object, "level", level_least, level_most, &out->level) &&
+           reader_count(reader, place, object, "count", 1, 1000000, &out->count) &&
+           reader_count(reader, place, object, "bays", 1, 64, &out->bays) &&
            reader_count(reader, place, object, "seed", 0, 1000000000, &out->seed);
 }
 
@@ -136,6 +155,10 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
         return shape_cylinder(s->radius, 0.0, s->height, s->segments, out);
     case SHAPE_TERRAIN:
         return shape_terrain(s->size[0], s->height, s->steps, s->seed, out);
+    case SHAPE_STRANDS:
+        return shape_strands(s->size[0], s->length, s->width, s->count, s->seed, out);
+    case SHAPE_ATRIUM:
+        return shape_atrium(s->bays, s->level, out);
     case SHAPE_COUNT:
         break;
     }
@@ -145,10 +168,12 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
 /* Everything that makes two meshes the same one. */
 static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t material)
 {
-    return string_format("%d %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %u %u %u %u %u %u",
+    return string_format("%d %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g "
+                         "%u %u %u %u %u %u %u %u",
                          (int)shape, material, s->size[0], s->size[1], s->size[2], s->radius,
-                         s->radius_top, s->tube, s->height, s->uv_scale, s->segments, s->rings,
-                         s->sides, s->steps, s->level, s->seed);
+                         s->radius_top, s->tube, s->height, s->length, s->width, s->uv_scale,
+                         s->segments, s->rings, s->sides, s->steps, s->level, s->seed, s->count,
+                         s->bays);
 }
 
 static bool add_mesh(struct reader *reader, const struct place *place, enum shape shape,

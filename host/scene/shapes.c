@@ -5,81 +5,15 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "scene/shaper.h"
 
 #define PI         3.14159265358979323846
 #define STEPS_MOST 8192u
 
-static bool positive(double value)
-{
-    return value > 0.0 && value <= 1e17;
-}
-
-/* A mesh under construction: arrays at their final size, filled front to back. */
-struct shaper {
-    struct scene_mesh mesh;
-    uint32_t vertex, corner;
-};
-
-static whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t triangles)
-{
-    *shaper = (struct shaper){0};
-    if (vertices > UINT32_MAX / 4 || triangles > UINT32_MAX / 4)
-        return WHIT_ERROR_USAGE;
-    struct scene_mesh *mesh = &shaper->mesh;
-    mesh->vertex_count = (uint32_t)vertices;
-    mesh->triangle_count = (uint32_t)triangles;
-    mesh->positions = array_alloc_zeroed((size_t)vertices, 3 * sizeof(float));
-    mesh->normals = array_alloc_zeroed((size_t)vertices, 3 * sizeof(float));
-    mesh->uvs[0] = array_alloc_zeroed((size_t)vertices, 2 * sizeof(float));
-    mesh->indices = array_alloc_zeroed((size_t)triangles, 3 * sizeof(uint32_t));
-    mesh->materials = array_alloc_zeroed((size_t)triangles, sizeof(uint32_t));
-    if (mesh->positions && mesh->normals && mesh->uvs[0] && mesh->indices && mesh->materials)
-        return WHIT_OK;
-    scene_mesh_finish(mesh);
-    return WHIT_ERROR_MEMORY;
-}
-
-static uint32_t add_vertex(struct shaper *shaper, const double position[3], const double normal[3],
-                           double u, double v)
-{
-    struct scene_mesh *mesh = &shaper->mesh;
-    uint32_t vertex = shaper->vertex++;
-    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    for (size_t i = 0; i < 3; ++i) {
-        mesh->positions[3 * (size_t)vertex + i] = (float)position[i] + 0.0f; /* no -0 */
-        mesh->normals[3 * (size_t)vertex + i] = (float)(normal[i] / length);
-    }
-    mesh->uvs[0][2 * (size_t)vertex] = (float)u;
-    mesh->uvs[0][2 * (size_t)vertex + 1] = (float)v;
-    return vertex;
-}
-
-static void add_triangle(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c)
-{
-    uint32_t *index = shaper->mesh.indices + shaper->corner;
-    index[0] = a, index[1] = b, index[2] = c;
-    shaper->corner += 3;
-}
-
-/* Corners in counter-clockwise order. */
-static void add_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
-{
-    add_triangle(shaper, a, b, c);
-    add_triangle(shaper, a, c, d);
-}
-
-/* Exactly periodic: the last step of a circle lands on the bits of the first. */
-static void circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine)
-{
-    double angle = 2.0 * PI * (step % steps) / steps;
-    *cosine = cos(angle);
-    *sine = sin(angle);
-}
-
 whit_result shape_box(const double size[3], struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!positive(size[0]) || !positive(size[1]) || !positive(size[2]))
+    if (!shape_positive(size[0]) || !shape_positive(size[1]) || !shape_positive(size[2]))
         return WHIT_ERROR_USAGE;
     whit_result result = shaper_init(&shaper, 24, 12);
     if (result != WHIT_OK)
@@ -99,9 +33,9 @@ whit_result shape_box(const double size[3], struct scene_mesh *out)
             /* Right and up of the face for an upright picture on it. */
             double along = axis == 0 ? -sign * b : axis == 1 ? b : a;
             double up = axis == 0 ? sign * a : axis == 1 ? -a : b;
-            corner[i] = add_vertex(&shaper, position, normal, 0.5 + 0.5 * along, 0.5 - 0.5 * up);
+            corner[i] = shaper_vertex(&shaper, position, normal, 0.5 + 0.5 * along, 0.5 - 0.5 * up);
         }
-        add_quad(&shaper, corner[0], corner[1], corner[2], corner[3]);
+        shaper_quad(&shaper, corner[0], corner[1], corner[2], corner[3]);
     }
     *out = shaper.mesh;
     return WHIT_OK;
@@ -111,7 +45,7 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
                         struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!positive(width) || !positive(depth) || !steps || steps > STEPS_MOST ||
+    if (!shape_positive(width) || !shape_positive(depth) || !steps || steps > STEPS_MOST ||
         !isfinite(uv_scale) || fabs(uv_scale) > 1e6)
         return WHIT_ERROR_USAGE;
     uint64_t row = (uint64_t)steps + 1;
@@ -121,14 +55,14 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
     for (uint32_t j = 0; j <= steps; ++j) {
         for (uint32_t i = 0; i <= steps; ++i) {
             double u = (double)i / steps, v = (double)j / steps;
-            add_vertex(&shaper, (double[]){(u - 0.5) * width, 0.0, (v - 0.5) * depth},
-                       (double[]){0, 1, 0}, u * uv_scale, v * uv_scale);
+            shaper_vertex(&shaper, (double[]){(u - 0.5) * width, 0.0, (v - 0.5) * depth},
+                          (double[]){0, 1, 0}, u * uv_scale, v * uv_scale);
         }
     }
     for (uint32_t j = 0; j < steps; ++j) {
         for (uint32_t i = 0; i < steps; ++i) {
             uint32_t a = j * (steps + 1) + i, b = a + steps + 1;
-            add_quad(&shaper, a, b, b + 1, a + 1);
+            shaper_quad(&shaper, a, b, b + 1, a + 1);
         }
     }
     *out = shaper.mesh;
@@ -139,7 +73,7 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
 whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!positive(radius) || segments < 3 || rings < 2 || segments > STEPS_MOST ||
+    if (!shape_positive(radius) || segments < 3 || rings < 2 || segments > STEPS_MOST ||
         rings > STEPS_MOST)
         return WHIT_ERROR_USAGE;
     uint32_t row = segments + 1;
@@ -152,20 +86,20 @@ whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struc
                height = cos(PI * j / rings);
         for (uint32_t i = 0; i <= segments; ++i) {
             double c, s;
-            circle_point(i, segments, &c, &s);
+            shape_circle_point(i, segments, &c, &s);
             double n[3] = {sine * c, height, -sine * s};
             bool pole = j == 0 || j == rings;
-            add_vertex(&shaper, (double[]){radius * n[0], radius * n[1], radius * n[2]}, n,
-                       (i + (pole ? 0.5 : 0.0)) / segments, (double)j / rings);
+            shaper_vertex(&shaper, (double[]){radius * n[0], radius * n[1], radius * n[2]}, n,
+                          (i + (pole ? 0.5 : 0.0)) / segments, (double)j / rings);
         }
     }
     for (uint32_t j = 0; j < rings; ++j) {
         for (uint32_t i = 0; i < segments; ++i) {
             uint32_t a = j * row + i, b = a + row;
             if (j + 1 < rings)
-                add_triangle(&shaper, a, b, b + 1);
+                shaper_triangle(&shaper, a, b, b + 1);
             if (j > 0)
-                add_triangle(&shaper, a, b + 1, a + 1);
+                shaper_triangle(&shaper, a, b + 1, a + 1);
         }
     }
     *out = shaper.mesh;
@@ -268,7 +202,7 @@ whit_result shape_icosphere(double radius, uint32_t level, struct scene_mesh *ou
 {
     struct icosphere ico;
     struct shaper shaper;
-    if (!positive(radius) || level > 8)
+    if (!shape_positive(radius) || level > 8)
         return WHIT_ERROR_USAGE;
     whit_result result = icosphere_init(&ico, level);
     if (result != WHIT_OK)
@@ -280,11 +214,12 @@ whit_result shape_icosphere(double radius, uint32_t level, struct scene_mesh *ou
         goto fail;
     for (uint32_t i = 0; i < ico.point_count; ++i) {
         const double *n = ico.points[i];
-        add_vertex(&shaper, (double[]){radius * n[0], radius * n[1], radius * n[2]}, n,
-                   0.5 + atan2(-n[2], n[0]) / (2.0 * PI), acos(fmax(-1.0, fmin(1.0, n[1]))) / PI);
+        shaper_vertex(&shaper, (double[]){radius * n[0], radius * n[1], radius * n[2]}, n,
+                      0.5 + atan2(-n[2], n[0]) / (2.0 * PI),
+                      acos(fmax(-1.0, fmin(1.0, n[1]))) / PI);
     }
     for (uint32_t i = 0; i < ico.face_count; ++i)
-        add_triangle(&shaper, ico.faces[i][0], ico.faces[i][1], ico.faces[i][2]);
+        shaper_triangle(&shaper, ico.faces[i][0], ico.faces[i][1], ico.faces[i][2]);
     *out = shaper.mesh;
 fail:
     icosphere_finish(&ico);
@@ -296,7 +231,7 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
                         struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!positive(radius) || !positive(tube) || segments < 3 || sides < 3 ||
+    if (!shape_positive(radius) || !shape_positive(tube) || segments < 3 || sides < 3 ||
         segments > STEPS_MOST || sides > STEPS_MOST)
         return WHIT_ERROR_USAGE;
     uint32_t row = sides + 1;
@@ -306,18 +241,18 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
         return result;
     for (uint32_t i = 0; i <= segments; ++i) {
         double c, s, ct, st;
-        circle_point(i, segments, &c, &s);
+        shape_circle_point(i, segments, &c, &s);
         for (uint32_t j = 0; j <= sides; ++j) {
-            circle_point(j, sides, &ct, &st);
+            shape_circle_point(j, sides, &ct, &st);
             double n[3] = {ct * c, st, -ct * s}, reach = radius + tube * ct;
-            add_vertex(&shaper, (double[]){reach * c, tube * st, -reach * s}, n,
-                       (double)i / segments, (double)j / sides);
+            shaper_vertex(&shaper, (double[]){reach * c, tube * st, -reach * s}, n,
+                          (double)i / segments, (double)j / sides);
         }
     }
     for (uint32_t i = 0; i < segments; ++i) {
         for (uint32_t j = 0; j < sides; ++j) {
             uint32_t a = i * row + j, b = a + row;
-            add_quad(&shaper, a, b, b + 1, a + 1);
+            shaper_quad(&shaper, a, b, b + 1, a + 1);
         }
     }
     *out = shaper.mesh;
@@ -328,19 +263,19 @@ static void add_cap(struct shaper *shaper, double radius, double height, double 
                     uint32_t segments)
 {
     const double normal[3] = {0, up, 0};
-    uint32_t centre = add_vertex(shaper, (double[]){0, height, 0}, normal, 0.5, 0.5);
+    uint32_t centre = shaper_vertex(shaper, (double[]){0, height, 0}, normal, 0.5, 0.5);
     for (uint32_t i = 0; i <= segments; ++i) {
         double c, s;
-        circle_point(i, segments, &c, &s);
-        add_vertex(shaper, (double[]){radius * c, height, -radius * s}, normal, 0.5 + 0.5 * c,
-                   0.5 - 0.5 * up * s);
+        shape_circle_point(i, segments, &c, &s);
+        shaper_vertex(shaper, (double[]){radius * c, height, -radius * s}, normal, 0.5 + 0.5 * c,
+                      0.5 - 0.5 * up * s);
     }
     for (uint32_t i = 0; i < segments; ++i) {
         uint32_t a = centre + 1 + i;
         if (up > 0.0)
-            add_triangle(shaper, centre, a, a + 1);
+            shaper_triangle(shaper, centre, a, a + 1);
         else
-            add_triangle(shaper, centre, a + 1, a);
+            shaper_triangle(shaper, centre, a + 1, a);
     }
 }
 
@@ -349,8 +284,8 @@ whit_result shape_cylinder(double radius, double radius_top, double height, uint
 {
     struct shaper shaper;
     bool cone = radius_top == 0.0;
-    if (!positive(radius) || (!cone && !positive(radius_top)) || !positive(height) ||
-        segments < 3 || segments > STEPS_MOST)
+    if (!shape_positive(radius) || (!cone && !shape_positive(radius_top)) ||
+        !shape_positive(height) || segments < 3 || segments > STEPS_MOST)
         return WHIT_ERROR_USAGE;
     uint64_t caps = cone ? 1 : 2, row = (uint64_t)segments + 1;
     whit_result result =
@@ -359,16 +294,17 @@ whit_result shape_cylinder(double radius, double radius_top, double height, uint
         return result;
     for (uint32_t i = 0; i <= segments; ++i) {
         double c, s;
-        circle_point(i, segments, &c, &s);
+        shape_circle_point(i, segments, &c, &s);
         double n[3] = {height * c, radius - radius_top, -height * s}, u = (double)i / segments;
-        add_vertex(&shaper, (double[]){radius * c, -0.5 * height, -radius * s}, n, u, 1.0);
-        add_vertex(&shaper, (double[]){radius_top * c, 0.5 * height, -radius_top * s}, n, u, 0.0);
+        shaper_vertex(&shaper, (double[]){radius * c, -0.5 * height, -radius * s}, n, u, 1.0);
+        shaper_vertex(&shaper, (double[]){radius_top * c, 0.5 * height, -radius_top * s}, n, u,
+                      0.0);
     }
     for (uint32_t i = 0; i < segments; ++i) {
         uint32_t a = 2 * i;
         if (!cone)
-            add_triangle(&shaper, a, a + 3, a + 1);
-        add_triangle(&shaper, a, a + 2, a + 3);
+            shaper_triangle(&shaper, a, a + 3, a + 1);
+        shaper_triangle(&shaper, a, a + 2, a + 3);
     }
     add_cap(&shaper, radius, -0.5 * height, -1.0, segments);
     if (!cone)
@@ -415,7 +351,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
                           struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!positive(size) || !positive(height) || !steps || steps > 4096)
+    if (!shape_positive(size) || !shape_positive(height) || !steps || steps > 4096)
         return WHIT_ERROR_USAGE;
     uint64_t row = (uint64_t)steps + 1;
     whit_result result = shaper_init(&shaper, row * row, 2 * (uint64_t)steps * steps);
@@ -428,7 +364,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
             double dx = terrain_height(u + h, v, seed) - terrain_height(u - h, v, seed);
             double dz = terrain_height(u, v + h, seed) - terrain_height(u, v - h, seed);
             double slope = height / (2.0 * h * size);
-            add_vertex(
+            shaper_vertex(
                 &shaper,
                 (double[]){(u - 0.5) * size, height * terrain_height(u, v, seed), (v - 0.5) * size},
                 (double[]){-slope * dx, 1.0, -slope * dz}, u, v);
@@ -437,7 +373,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
     for (uint32_t j = 0; j < steps; ++j) {
         for (uint32_t i = 0; i < steps; ++i) {
             uint32_t a = j * (steps + 1) + i, b = a + steps + 1;
-            add_quad(&shaper, a, b, b + 1, a + 1);
+            shaper_quad(&shaper, a, b, b + 1, a + 1);
         }
     }
     *out = shaper.mesh;
@@ -479,7 +415,7 @@ whit_result shape_sphereflake(double radius, uint32_t level, double **spheres, u
 {
     *spheres = NULL;
     *count = 0;
-    if (!positive(radius) || level > 6)
+    if (!shape_positive(radius) || level > 6)
         return WHIT_ERROR_USAGE;
     uint32_t total = 1;
     for (uint32_t i = 0, width = 1; i < level; ++i)

@@ -24,6 +24,14 @@ WHIT_CHECK whit_result shape_cylinder(double radius, double radius_top, double h
 /* Height field over [-size/2, size/2]^2 from seeded value noise: 2 * steps^2 triangles. */
 WHIT_CHECK whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t seed,
                                      struct scene_mesh *out);
+/* Needles in every direction, their middles in a cube of side `size`: 4 * count triangles, three of
+   four long and thin. `width` is that of a needle's base. */
+WHIT_CHECK whit_result shape_strands(double size, double length, double width, uint32_t count,
+                                     uint32_t seed, struct scene_mesh *out);
+/* A hall of two storeys, open above, around the z axis with its floor at y = 0: 18 wide, 4 * bays
+   long, 15.5 high. A few large walls beside fine ornaments, which `level` (1 to 8) refines. With
+   vertex colours; not closed. */
+WHIT_CHECK whit_result shape_atrium(uint32_t bays, uint32_t level, struct scene_mesh *out);
 /* Centre and radius of every sphere of a sphereflake (Haines' SPD): level 0 is one sphere, each has
    nine children at a third of its size. *spheres holds count * 4 doubles; free() it. */
 WHIT_CHECK whit_result shape_sphereflake(double radius, uint32_t level, double **spheres,

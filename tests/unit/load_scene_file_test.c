@@ -488,6 +488,8 @@ static void shipped_scenes_have_their_sizes(void **state)
         {"spotlight", 4356, 5},
         {"room", 3992, 8},
         {"layers", 11914, 8},
+        {"strands", 20002, 2},
+        {"atrium", 64616, 1},
     };
     struct heard *heard = *state;
     const struct log log = {hear, heard, WHIT_LOG_DEBUG};

@@ -198,6 +198,49 @@ static void terrain_follows_its_seed(void **state)
     scene_mesh_finish(&c);
 }
 
+static void strands_are_closed_needles(void **state)
+{
+    (void)state;
+    struct scene_mesh a, b, c;
+    double one = sqrt(3.0) / 12.0 * 0.1 * 0.1 * 2.0;
+    assert_int_equal(shape_strands(3.0, 2.0, 0.1, 200, 1, &a), WHIT_OK);
+    assert_int_equal(shape_strands(3.0, 2.0, 0.1, 200, 1, &b), WHIT_OK);
+    assert_int_equal(shape_strands(3.0, 2.0, 0.1, 200, 2, &c), WHIT_OK);
+    size_t bytes = 3 * sizeof(float) * a.vertex_count;
+    assert_memory_equal(a.positions, b.positions, bytes);
+    assert_int_not_equal(memcmp(a.positions, c.positions, bytes), 0);
+    check_closed(&a, 800, 199.99 * one, 200.01 * one);
+    check_closed(&b, 800, 199.99 * one, 200.01 * one);
+    check_closed(&c, 800, 199.99 * one, 200.01 * one);
+}
+
+/* The sum over bays and ends is linear: a hall of 5 bays has what 3 have, and twice two of them. */
+static void atrium(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    uint32_t counts[3];
+    for (uint32_t i = 0; i < 3; ++i) {
+        assert_int_equal(shape_atrium(1 + 2 * i, 1 + i, &mesh), WHIT_OK);
+        check_open(&mesh, mesh.triangle_count);
+    }
+    for (uint32_t i = 0; i < 3; ++i) {
+        assert_int_equal(shape_atrium(1 + 2 * i, 1, &mesh), WHIT_OK);
+        counts[i] = mesh.triangle_count;
+        for (uint32_t k = 0; k < mesh.vertex_count; ++k) {
+            const float *p = mesh.positions + 3 * (size_t)k;
+            assert_true(fabsf(p[0]) < 10.0f && p[1] > -1.0f && p[1] < 16.0f);
+            assert_true(fabs((double)p[2]) <= 2.0 * (1 + 2 * i) + 0.7);
+            assert_true(mesh.colors[4 * (size_t)k + 3] == 1.0f);
+        }
+        scene_mesh_finish(&mesh);
+    }
+    assert_int_equal(counts[2] - counts[1], counts[1] - counts[0]);
+    assert_true(counts[0] > 0 && counts[1] > counts[0]);
+    assert_int_equal(shape_atrium(9, 2, &mesh), WHIT_OK); /* that of scenes/atrium.json */
+    check_open(&mesh, 64616);
+}
+
 static double distance(const double *a, const double *b)
 {
     double sum = 0.0;
@@ -244,16 +287,27 @@ static void senseless_parameters_are_refused(void **state)
     assert_int_equal(shape_cylinder(1.0, -1.0, 1.0, 8, &mesh), WHIT_ERROR_USAGE);
     assert_int_equal(shape_plane(1.0, 1.0, 0, 1.0, &mesh), WHIT_ERROR_USAGE);
     assert_int_equal(shape_terrain(1.0, 1.0, 5000, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_strands(1.0, 1.0, 2.0, 9, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_strands(1.0, 1.0, 0.1, 0, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_strands(0.0, 1.0, 0.1, 9, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_atrium(0, 1, &mesh), WHIT_ERROR_USAGE);
+    assert_int_equal(shape_atrium(1, 9, &mesh), WHIT_ERROR_USAGE);
     assert_int_equal(shape_sphereflake(1.0, 7, &spheres, &count), WHIT_ERROR_USAGE);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(box),         cmocka_unit_test(box_pictures_stand_upright),
-        cmocka_unit_test(spheres),     cmocka_unit_test(rings_and_rods),
-        cmocka_unit_test(open_shapes), cmocka_unit_test(terrain_follows_its_seed),
-        cmocka_unit_test(sphereflake), cmocka_unit_test(senseless_parameters_are_refused),
+        cmocka_unit_test(box),
+        cmocka_unit_test(box_pictures_stand_upright),
+        cmocka_unit_test(spheres),
+        cmocka_unit_test(rings_and_rods),
+        cmocka_unit_test(open_shapes),
+        cmocka_unit_test(terrain_follows_its_seed),
+        cmocka_unit_test(strands_are_closed_needles),
+        cmocka_unit_test(atrium),
+        cmocka_unit_test(sphereflake),
+        cmocka_unit_test(senseless_parameters_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,82 @@
+#include "scene/shaper.h"
+
+#include <math.h>
+
+#include "base/array.h"
+
+#define PI 3.14159265358979323846
+
+bool shape_positive(double value)
+{
+    return value > 0.0 && value <= 1e17;
+}
+
+whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t triangles)
+{
+    *shaper = (struct shaper){0};
+    if (vertices > UINT32_MAX / 4 || triangles > UINT32_MAX / 4)
+        return WHIT_ERROR_USAGE;
+    struct scene_mesh *mesh = &shaper->mesh;
+    mesh->vertex_count = (uint32_t)vertices;
+    mesh->triangle_count = (uint32_t)triangles;
+    mesh->positions = array_alloc_zeroed((size_t)vertices, 3 * sizeof(float));
+    mesh->normals = array_alloc_zeroed((size_t)vertices, 3 * sizeof(float));
+    mesh->uvs[0] = array_alloc_zeroed((size_t)vertices, 2 * sizeof(float));
+    mesh->indices = array_alloc_zeroed((size_t)triangles, 3 * sizeof(uint32_t));
+    mesh->materials = array_alloc_zeroed((size_t)triangles, sizeof(uint32_t));
+    if (mesh->positions && mesh->normals && mesh->uvs[0] && mesh->indices && mesh->materials)
+        return WHIT_OK;
+    scene_mesh_finish(mesh);
+    return WHIT_ERROR_MEMORY;
+}
+
+whit_result shaper_add_colors(struct shaper *shaper)
+{
+    struct scene_mesh *mesh = &shaper->mesh;
+    mesh->colors = array_alloc_zeroed(mesh->vertex_count, 4 * sizeof(float));
+    if (mesh->colors)
+        return WHIT_OK;
+    scene_mesh_finish(mesh);
+    return WHIT_ERROR_MEMORY;
+}
+
+uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const double normal[3],
+                       double u, double v)
+{
+    struct scene_mesh *mesh = &shaper->mesh;
+    uint32_t vertex = shaper->vertex++;
+    if (shaper->measuring)
+        return vertex;
+    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (size_t i = 0; i < 3; ++i) {
+        mesh->positions[3 * (size_t)vertex + i] = (float)position[i] + 0.0f; /* no -0 */
+        mesh->normals[3 * (size_t)vertex + i] = (float)(normal[i] / length);
+    }
+    mesh->uvs[0][2 * (size_t)vertex] = (float)u;
+    mesh->uvs[0][2 * (size_t)vertex + 1] = (float)v;
+    for (size_t i = 0; mesh->colors && i < 4; ++i)
+        mesh->colors[4 * (size_t)vertex + i] = i < 3 ? shaper->color[i] : 1.0f;
+    return vertex;
+}
+
+void shaper_triangle(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c)
+{
+    if (!shaper->measuring) {
+        uint32_t *index = shaper->mesh.indices + shaper->corner;
+        index[0] = a, index[1] = b, index[2] = c;
+    }
+    shaper->corner += 3;
+}
+
+void shaper_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+    shaper_triangle(shaper, a, b, c);
+    shaper_triangle(shaper, a, c, d);
+}
+
+void shape_circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine)
+{
+    double angle = 2.0 * PI * (step % steps) / steps;
+    *cosine = cos(angle);
+    *sine = sin(angle);
+}
