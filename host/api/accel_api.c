@@ -1,6 +1,8 @@
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/bvh_file.h"
 #include "accel/report.h"
 #include "api/handles.h"
 #include "base/clock.h"
@@ -30,6 +32,11 @@ static whit_result check_params(const struct log *log, const whit_accel_params *
     if (params->leaf_limit > BVH_LEAF_MAX) {
         log_error(log, "%u triangles in a leaf: 1 to %u are possible", params->leaf_limit,
                   BVH_LEAF_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->tree_path && params->flatten) {
+        log_error(log, "%s: saved trees are of single meshes, not of a flattened scene",
+                  params->tree_path);
         return WHIT_ERROR_USAGE;
     }
     return WHIT_OK;
@@ -97,6 +104,25 @@ void whit_accel_destroy(whit_accel *accel)
     free(accel);
 }
 
+static void builder_name(const struct bvh_params *params, char *out, size_t out_bytes)
+{
+    static const char *const names[] = {
+        [BVH_BINNED] = "binned",   [BVH_MEDIAN] = "median",           [BVH_SWEEP] = "sweep",
+        [BVH_SPATIAL] = "spatial", [BVH_SWEEP_NAIVE] = "sweep-naive", [BVH_NONE] = "none",
+    };
+    char numbers[40] = "";
+    if (params->builder == BVH_BINNED && params->bins)
+        snprintf(numbers, sizeof numbers, ":%u", params->bins);
+    else if (params->builder == BVH_SPATIAL && params->spatial_budget != 0.0f)
+        snprintf(numbers, sizeof numbers, ":%g,%g",
+                 params->spatial_alpha != 0.0f ? (double)params->spatial_alpha : 1e-5,
+                 params->spatial_budget < 0.0f ? 0.0 : (double)params->spatial_budget);
+    else if (params->builder == BVH_SPATIAL && params->spatial_alpha != 0.0f)
+        snprintf(numbers, sizeof numbers, ":%g", (double)params->spatial_alpha);
+    snprintf(out, out_bytes, "%s%s%s", names[params->builder], numbers,
+             params->optimize ? "+opt" : "");
+}
+
 void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
 {
     const struct accel *accel = handle->accel;
@@ -110,6 +136,7 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
         .build_ms = accel->build_ms,
         .instance_build_ms = accel->instance_build_ms,
     };
+    builder_name(&accel->params.mesh, info->builder, sizeof info->builder);
     uint32_t largest = 0;
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         const struct accel_mesh *mesh = &accel->meshes[i];
@@ -126,6 +153,11 @@ whit_result whit_accel_validate(const whit_accel *handle)
 {
     whit_result result = accel_validate(handle->accel);
     return result == WHIT_ERROR_FAILED ? WHIT_ERROR_STATUS : result;
+}
+
+whit_result whit_accel_save(const whit_accel *handle, const char *path)
+{
+    return bvh_file_write(handle->accel, path);
 }
 
 enum { REPORT_RAYS = 1 << 15 };

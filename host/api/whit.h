@@ -170,6 +170,7 @@ typedef struct whit_accel_info {
         reference_count; /* triangles in leaves: more than triangle_count where some are split */
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
+    char builder[48]; /* of the mesh trees, also of saved ones: "binned:7", "spatial+opt" */
 } whit_accel_info;
 void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
 
@@ -290,6 +291,10 @@ typedef struct whit_cost {
     uint64_t pairs; /* inner nodes opened: box tests are twice that */
     uint64_t leaves, instances, triangles;
     uint32_t stack, depth;
+    /* A record is a ray of a batch, or a sample of a pixel that has rays of the kind. */
+    uint64_t records;
+    uint64_t stack_sum, depth_sum; /* over records: means are these over `records` */
+    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one record */
 } whit_cost;
 
 typedef enum whit_view {

@@ -1,32 +1,19 @@
 /* The scene's hash: everything that a picture depends on, names and notes left out. */
-#include <string.h>
-
+#include "base/hash.h"
 #include "scene/freeze.h"
 
 struct hash {
     uint64_t value;
 };
 
-/* FNV-1a over 8-byte words with a fold, since byte by byte it is slower than loading. */
-static void hash_bytes(struct hash *hash, const void *data, size_t size_bytes)
+static void hash_add(struct hash *hash, const void *data, size_t size_bytes)
 {
-    const uint8_t *bytes = data;
-    uint64_t value = (hash->value ^ size_bytes) * UINT64_C(0x100000001b3);
-    for (; size_bytes;) {
-        uint64_t word = 0;
-        size_t step = size_bytes < sizeof word ? size_bytes : sizeof word;
-        memcpy(&word, bytes, step);
-        value = (value ^ word) * UINT64_C(0x100000001b3);
-        value ^= value >> 29;
-        bytes += step;
-        size_bytes -= step;
-    }
-    hash->value = value;
+    hash->value = hash_bytes(hash->value, data, size_bytes);
 }
 
-#define HASH_FIELD(hash, field) hash_bytes((hash), &(field), sizeof(field))
+#define HASH_FIELD(hash, field) hash_add((hash), &(field), sizeof(field))
 #define HASH_ARRAY(hash, array, count)                                                             \
-    hash_bytes((hash), (array), (array) ? (size_t)(count) * sizeof *(array) : 0)
+    hash_add((hash), (array), (array) ? (size_t)(count) * sizeof *(array) : 0)
 
 static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
 {
@@ -129,7 +116,7 @@ static void hash_environment(struct hash *hash, const struct scene_environment *
 
 uint64_t freeze_hash(const struct scene *scene)
 {
-    struct hash hash = {UINT64_C(0xcbf29ce484222325)};
+    struct hash hash = {HASH_START};
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         hash_mesh(&hash, &scene->meshes[i]);
     for (uint32_t i = 0; i < scene->node_count; ++i)
