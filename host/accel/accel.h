@@ -33,11 +33,11 @@ struct bvh_triangles {
 
 struct bvh_params {
     enum bvh_builder builder;
-    uint32_t bins;                         /* BVH_BINNED: 2..256; 0: 16 */
-    uint32_t leaf_limit;                   /* 1..BVH_LEAF_MAX; 0: 4 */
-    uint32_t thread_count;                 /* 0: one a core; the tree is the same for any count */
-    float traversal_cost;                  /* of one node pair relative to one primitive; 0: 1 */
-    bool optimize;                         /* improve the finished tree by reinsertion */
+    uint32_t bins;         /* BVH_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
+    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
+    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
+    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
+    bool optimize;         /* improve the finished tree by reinsertion */
     const struct bvh_triangles *triangles; /* BVH_SPATIAL */
     float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
                              tried (Stich et al. 2009, 4.5); 0: 1e-5 */

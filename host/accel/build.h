@@ -5,15 +5,18 @@
 #include <float.h>
 #include <math.h>
 #include <stdalign.h>
+#include <string.h>
 
 #include "accel/accel.h"
 #include "accel/f4.h"
 
 /* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
-   default. They fill *out up to bvh_complete; on failure the caller releases what is in it. */
-whit_result topdown_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+   default, but for `bins` of BVH_BINNED: 0 lets the number follow the size of the node. They fill
+   *out up to bvh_complete; on failure the caller releases what is in it. */
+whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
-/* spatial.c */
+whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                        const struct bvh_params *resolved, struct bvh *out);
 whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 
@@ -44,23 +47,84 @@ enum build_choice {
     BUILD_SPLIT, /* the records are in two runs, the bounds of both are known */
     BUILD_LEAF,  /* a leaf costs less; allowed by the leaf limit */
     BUILD_NONE,  /* no plane separates anything */
+    BUILD_STOP,  /* the caller does not want the tree any more */
 };
 
-/* Chooses the best of `bins` - 1 planes on each axis by surface area, and partitions. With
-   thread_count > 1 the binning of this one range is spread over threads. */
+/* From here on nodes are halved: 28 levels more for 2^28 primitives. */
+enum { BUILD_DEPTH_OF_MEDIANS = 96 };
+
+/* ---- Top-down building (topdown.c) ---- */
+
+/* The nodes while a tree grows. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */
+struct build_output {
+    struct gpu_bvh_node *nodes;
+    uint32_t *slots; /* 1: in use; later its place when squeezed */
+};
+
+/* What differs between builders. Ranges that do not overlap are given to several threads at once.
+   `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
+struct build_methods {
+    void *context;
+    /* With thread_count > 1 the work on this one range is to be spread over threads. */
+    enum build_choice (*split)(void *context, const struct build_range *range,
+                               uint32_t thread_count, void *scratch, uint32_t *left_count,
+                               struct build_bounds halves[2]);
+    /* The same without a choice, and without fail: for BUILD_NONE above the leaf limit. */
+    void (*halve)(void *context, const struct build_range *range, void *scratch,
+                  uint32_t *left_count, struct build_bounds halves[2]);
+    /* Builds the whole subtree of a range of at most small_count records. */
+    void (*small)(void *context, const struct build_output *output,
+                  const struct build_range *range);
+    uint32_t small_count;
+};
+
+/* Grows the tree over `count` items within `bounds`; fills all of *out but `order`, which it
+   allocates. WHIT_ERROR_CANCELLED, without a message, after BUILD_STOP. */
+whit_result topdown_grow(const struct log *log, const struct build_methods *methods,
+                         const struct bvh_params *params, const struct build_bounds *bounds,
+                         uint32_t count, struct bvh *out);
+
+/* ---- Records (records.c) ---- */
+
+/* In the order of the input, zeros without sign. free() */
+whit_result records_make(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                         uint32_t thread_count, struct build_record **records,
+                         struct build_bounds *bounds);
+
+/* Chooses the best of equally spaced planes on each axis by surface area, and partitions. */
 enum build_choice split_binned(struct build_record *records, const struct build_range *range,
                                const struct bvh_params *params, uint32_t thread_count,
-                               uint32_t *left_count, struct build_bounds halves[2]);
-
-/* The same over every position instead of bins, for at most BUILD_FEW records. */
-enum { BUILD_FEW = 8 };
-enum build_choice split_few(struct build_record *records, const struct build_range *range,
-                            const struct bvh_params *params, uint32_t *left_count,
-                            struct build_bounds halves[2]);
+                               struct build_record *scratch, uint32_t *left_count,
+                               struct build_bounds halves[2]);
 
 /* Halves the records along the axis of the widest centroids; equal centroids by primitive. */
 void split_median(struct build_record *records, const struct build_range *range,
                   uint32_t *left_count, struct build_bounds halves[2]);
+
+/* The search of BVH_SWEEP_NAIVE, and what ends it early. */
+struct naive;
+whit_result naive_build(const struct log *log, struct build_record *records,
+                        const struct build_bounds *bounds, uint32_t count,
+                        const struct bvh_params *params, struct bvh *out);
+
+/* ---- Small subtrees (small.c) ---- */
+
+/* At most BUILD_SMALL boxes, and their order along each axis. */
+enum { BUILD_SMALL = 24 };
+struct small {
+    f4 lo[BUILD_SMALL], hi[BUILD_SMALL];
+    alignas(16) float centroid[BUILD_SMALL][4];
+    uint8_t order[3][BUILD_SMALL];
+};
+
+/* Fills `order`: by centroid, equal ones by position. */
+void small_sort(struct small *small, uint32_t count);
+/* Grows the subtree over the boxes of `range` by sweeping over every position. Leaves are in the
+   order of `order[0]`, which changes. */
+void small_grow(struct small *small, const struct build_output *output,
+                const struct bvh_params *params, const struct build_range *range);
+
+/* ---- */
 
 static inline f4 build_record_lo(const struct build_record *r)
 {
@@ -77,22 +141,27 @@ static inline f4 build_centroid(f4 lo, f4 hi)
     return f4_add(f4_mul(lo, quarter), f4_mul(hi, quarter));
 }
 
-/* A power of two that brings the node's largest extent into [0.5, 1): areas neither overflow nor
-   vanish, whatever the scene's unit. */
+/* A power of two that brings the largest extent into [0.5, 1], or near it at the ends of the range
+   of floats: areas neither overflow nor vanish, whatever the scene's unit. */
+static inline f4 build_scale_of(f4 lo, f4 hi)
+{
+    alignas(16) float e[4];
+    f4_store(e, f4_sub(hi, lo));
+    float extent = e[0] > e[1] ? e[0] : e[1];
+    extent = extent > e[2] ? extent : e[2];
+    uint32_t bits;
+    memcpy(&bits, &extent, sizeof bits);
+    int exponent = (int)(bits >> 23) - 126;
+    exponent = exponent > 126 ? 126 : exponent;
+    bits = (uint32_t)(127 - exponent) << 23;
+    float scale;
+    memcpy(&scale, &bits, sizeof scale);
+    return f4_splat(scale);
+}
+
 static inline f4 build_area_scale(const struct build_bounds *bounds)
 {
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, bounds->lo);
-    f4_store(hi, bounds->hi);
-    double extent = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        double along = (double)hi[i] - (double)lo[i];
-        extent = along > extent ? along : extent;
-    }
-    int exponent;
-    (void)frexp(extent, &exponent);
-    exponent = exponent < -126 ? -126 : exponent > 126 ? 126 : exponent;
-    return f4_splat(ldexpf(1.0f, -exponent));
+    return build_scale_of(bounds->lo, bounds->hi);
 }
 
 static inline float build_scaled_area(f4 lo, f4 hi, f4 scale)
@@ -122,6 +191,18 @@ static inline void build_bounds_merge(struct build_bounds *a, const struct build
     a->hi = f4_max(a->hi, b->hi);
     a->centroid_lo = f4_min(a->centroid_lo, b->centroid_lo);
     a->centroid_hi = f4_max(a->centroid_hi, b->centroid_hi);
+}
+
+static inline void build_node_write(struct gpu_bvh_node *node, f4 lo, f4 hi, uint32_t first,
+                                    uint32_t count)
+{
+    alignas(16) float low[4], high[4];
+    f4_store(low, lo);
+    f4_store(high, hi);
+    memcpy(node->lo, low, sizeof node->lo);
+    memcpy(node->hi, high, sizeof node->hi);
+    node->first = first;
+    node->count = count;
 }
 
 #endif

@@ -25,7 +25,8 @@ static bool builder_known(enum bvh_builder builder)
 static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
 {
     *out = in ? *in : (struct bvh_params){0};
-    out->bins = out->bins ? out->bins : 16;
+    if (out->bins == 0 && out->builder != BVH_BINNED)
+        out->bins = 16;
     out->leaf_limit = out->leaf_limit ? out->leaf_limit : 4;
     out->thread_count = out->thread_count ? out->thread_count : threads_available();
     out->traversal_cost = out->traversal_cost != 0.0f ? out->traversal_cost : 1.0f;
@@ -40,7 +41,7 @@ static whit_result params_check(const struct log *log, const struct bvh_params *
     whit_result result = WHIT_ERROR_USAGE;
     if (!builder_known(params->builder))
         log_error(log, "tree: no builder has the number %d", (int)params->builder);
-    else if (params->bins < 2 || params->bins > 256 || params->leaf_limit > BVH_LEAF_MAX)
+    else if (params->bins == 1 || params->bins > 256 || params->leaf_limit > BVH_LEAF_MAX)
         log_error(log, "tree: bins must be 2 to 256, leaves at most %u", BVH_LEAF_MAX);
     else if (!(params->traversal_cost > 0.0f && params->traversal_cost <= FLT_MAX))
         log_error(log, "tree: the cost of a node must be above 0");
@@ -72,15 +73,14 @@ static whit_result build(const struct log *log, const struct bvh_box *boxes, uin
         return none_build(log, count, out);
     case BVH_BINNED:
     case BVH_MEDIAN:
-        return topdown_build(log, boxes, count, params, out);
+    case BVH_SWEEP_NAIVE:
+        return records_build(log, boxes, count, params, out);
+    case BVH_SWEEP:
+        return sweep_build(log, boxes, count, params, out);
     case BVH_SPATIAL:
         return spatial_build(log, boxes, count, params, out);
-    case BVH_SWEEP:
-    case BVH_SWEEP_NAIVE:
-        break;
     }
-    log_error(log, "tree: builder %d is not there", (int)params->builder);
-    return WHIT_ERROR_USAGE;
+    return WHIT_ERROR_USAGE; /* params_check knows better */
 }
 
 whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
@@ -99,9 +99,9 @@ whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32
         return WHIT_ERROR_INPUT;
     }
     result = build(log, boxes, count, &resolved, out);
-    out->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK && resolved.optimize)
         result = bvh_optimize(log, resolved.thread_count, (double)resolved.traversal_cost, out);
+    out->build_ms = clock_ms() - begin_ms;
     if (result != WHIT_OK)
         bvh_finish(out);
     return result;

@@ -1,7 +1,7 @@
 /* Top-down building, whatever chooses the splits. While it grows, a subtree over n records owns n -
    1 pair slots in depth-first order; what it does not use is squeezed out at the end. So subtrees
    can be built by any thread at any time, and the nodes are the same for any number of threads. */
-#include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,22 +10,18 @@
 #include "base/threads.h"
 
 enum {
-    RECORD_CHUNK = 16384,  /* records made by one call */
     TASK_LEAST = 2048,     /* smaller subtrees are not worth a task of their own */
     TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
-    DEPTH_OF_MEDIANS = 96, /* from here on halves: 28 levels more for 2^28 primitives */
 };
 
 struct build {
-    struct bvh_params params;
-    const struct bvh_box *boxes;
-    struct build_record *records;
-    struct gpu_bvh_node *nodes;
-    uint32_t *slots; /* 1: pair slot in use; later its place when squeezed */
-    uint32_t count;
+    struct build_output output;
+    const struct build_methods *methods;
+    uint32_t count, leaf_limit, thread_count;
     struct build_task *tasks;
     uint32_t task_count;
+    _Atomic bool stopped;
 };
 
 /* A subtree still to be built. */
@@ -35,112 +31,39 @@ struct build_task {
     bool split;
 };
 
-/* ---- Records ---- */
-
-struct record_chunk {
-    struct build_bounds bounds;
-    bool bad;
-};
-
-struct record_context {
-    struct build *build;
-    struct record_chunk *chunks;
-};
-
-static bool box_is_good(const struct bvh_box *box)
-{
-    bool good = true;
-    for (int i = 0; i < 3; ++i)
-        good &= box->lo[i] >= -FLT_MAX && box->lo[i] <= box->hi[i] && box->hi[i] <= FLT_MAX;
-    return good;
-}
-
-static void make_records(void *user, uint32_t index)
-{
-    const struct record_context *context = user;
-    const struct build *build = context->build;
-    uint32_t begin = index * RECORD_CHUNK;
-    uint32_t end = build->count - begin > RECORD_CHUNK ? begin + RECORD_CHUNK : build->count;
-    struct record_chunk chunk = {build_bounds_empty(), false};
-    for (uint32_t i = begin; i < end; ++i) {
-        const struct bvh_box *box = &build->boxes[i];
-        struct build_record *record = &build->records[i];
-        chunk.bad |= !box_is_good(box);
-        for (int a = 0; a < 3; ++a) {
-            /* + 0: one zero, so that bounds do not depend on the order of their parts. */
-            record->lo[a] = box->lo[a] + 0.0f;
-            record->hi[a] = box->hi[a] + 0.0f;
-        }
-        record->primitive = i;
-        record->pad = 0;
-        build_bounds_add(&chunk.bounds, build_record_lo(record), build_record_hi(record));
-    }
-    context->chunks[index] = chunk;
-}
-
-static whit_result build_records(const struct log *log, struct build *build,
-                                 struct build_bounds *bounds)
-{
-    uint32_t chunk_count = (build->count - 1) / RECORD_CHUNK + 1;
-    struct record_chunk *chunks = array_alloc_aligned(chunk_count, sizeof *chunks);
-    if (!chunks) {
-        log_error(log, "tree over %u boxes: out of memory", build->count);
-        return WHIT_ERROR_MEMORY;
-    }
-    struct record_context context = {build, chunks};
-    threads_for(build->params.thread_count, chunk_count, make_records, &context);
-    *bounds = build_bounds_empty();
-    bool bad = false;
-    for (uint32_t i = 0; i < chunk_count; ++i) {
-        build_bounds_merge(bounds, &chunks[i].bounds);
-        bad |= chunks[i].bad;
-    }
-    free(chunks);
-    if (!bad)
-        return WHIT_OK;
-    log_error(log, "tree over %u boxes: a box is not finite, or inside out", build->count);
-    return WHIT_ERROR_INPUT;
-}
-
 /* ---- Subtrees ---- */
 
 static void node_write(struct gpu_bvh_node *node, const struct build_bounds *bounds, uint32_t first,
                        uint32_t count)
 {
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, bounds->lo);
-    f4_store(hi, bounds->hi);
-    memcpy(node->lo, lo, sizeof node->lo);
-    memcpy(node->hi, hi, sizeof node->hi);
-    node->first = first;
-    node->count = count;
+    build_node_write(node, bounds->lo, bounds->hi, first, count);
 }
 
 /* True: *range became an inner node with the two halves below it. False: it is a leaf now. */
 static bool range_split(struct build *build, const struct build_range *range, uint32_t thread_count,
                         struct build_range halves[2])
 {
+    struct gpu_bvh_node *nodes = build->output.nodes;
+    const struct build_methods *methods = build->methods;
     struct build_bounds bounds[2];
-    uint32_t left = 0;
+    uint32_t left = 0, child = 2 + 2 * range->pair;
     enum build_choice choice = range->count <= 1 ? BUILD_LEAF : BUILD_NONE;
-    bool heuristic = build->params.builder == BVH_BINNED && range->depth < DEPTH_OF_MEDIANS;
-    if (choice == BUILD_NONE && heuristic)
+    if (choice == BUILD_NONE && methods->split && range->depth < BUILD_DEPTH_OF_MEDIANS)
         choice =
-            range->count <= BUILD_FEW
-                ? split_few(build->records, range, &build->params, &left, bounds)
-                : split_binned(build->records, range, &build->params, thread_count, &left, bounds);
-    if (choice == BUILD_NONE && range->count <= build->params.leaf_limit)
+            methods->split(methods->context, range, thread_count, &nodes[child], &left, bounds);
+    if (choice == BUILD_NONE && range->count <= build->leaf_limit)
         choice = BUILD_LEAF;
-    if (choice == BUILD_LEAF) {
-        node_write(&build->nodes[range->node], &range->bounds, range->first, range->count);
+    if (choice == BUILD_STOP)
+        atomic_store(&build->stopped, true);
+    if (choice == BUILD_LEAF || choice == BUILD_STOP) {
+        node_write(&nodes[range->node], &range->bounds, range->first, range->count);
         return false;
     }
     if (choice == BUILD_NONE)
-        split_median(build->records, range, &left, bounds);
+        methods->halve(methods->context, range, &nodes[child], &left, bounds);
 
-    uint32_t child = 2 + 2 * range->pair;
-    node_write(&build->nodes[range->node], &range->bounds, child, 0);
-    build->slots[range->pair] = 1;
+    node_write(&nodes[range->node], &range->bounds, child, 0);
+    build->output.slots[range->pair] = 1;
     halves[0] = (struct build_range){bounds[0],    child, range->pair + 1,
                                      range->first, left,  range->depth + 1};
     halves[1] = (struct build_range){bounds[1],           child + 1,           range->pair + left,
@@ -151,15 +74,18 @@ static bool range_split(struct build *build, const struct build_range *range, ui
 static void build_subtree(void *context, uint32_t index)
 {
     struct build *build = context;
-    struct build_task *task = &build->tasks[index];
-    struct build_range stack[BVH_DEPTH_MAX], halves[2], range = task->range;
+    const struct build_methods *methods = build->methods;
+    struct build_range stack[BVH_DEPTH_MAX], halves[2], range = build->tasks[index].range;
     uint32_t top = 0;
     for (;;) {
-        if (range_split(build, &range, 1, halves)) {
+        bool small = range.count <= methods->small_count;
+        if (!small && range_split(build, &range, 1, halves)) {
             stack[top++] = halves[1];
             range = halves[0];
             continue;
         }
+        if (small)
+            methods->small(methods->context, &build->output, &range);
         if (top == 0)
             return;
         range = stack[--top];
@@ -176,7 +102,7 @@ static void split_task(void *context, uint32_t index)
 /* Splits the first `large` tasks, each into itself and one at the end. */
 static void split_tasks(struct build *build, uint32_t large)
 {
-    uint32_t threads = build->params.thread_count;
+    uint32_t threads = build->thread_count;
     if (large >= threads) {
         threads_for(threads, large, split_task, build);
     } else {
@@ -205,13 +131,13 @@ static int larger_first(const void *a, const void *b)
 /* Splits the top of the tree until there are enough subtrees for all threads, then builds these. */
 static void build_tree(struct build *build, const struct build_bounds *bounds)
 {
-    uint32_t threads = build->params.thread_count;
+    uint32_t threads = build->thread_count;
     build->tasks[0] = (struct build_task){.range = {.bounds = *bounds, .count = build->count}};
     build->task_count = 1;
     uint32_t limit = build->count / (threads * TASKS_PER_THREAD);
     if (limit < TASK_LEAST)
         limit = TASK_LEAST;
-    while (threads > 1) {
+    while (threads > 1 && !atomic_load(&build->stopped)) {
         qsort(build->tasks, build->task_count, sizeof *build->tasks, larger_first);
         uint32_t large = 0;
         while (large < build->task_count && build->tasks[large].range.count > limit)
@@ -231,26 +157,27 @@ static void node_link(struct gpu_bvh_node *node, const uint32_t *slots)
         node->first = 2 + 2 * slots[(node->first - 2) / 2];
 }
 
-/* Slots are in depth-first order, and pairs only move down. */
-static void squeeze(struct build *build, struct bvh *out)
+/* Slots are in depth-first order, and pairs only move down. Returns the number of nodes. */
+static uint32_t squeeze(const struct build_output *output, uint32_t slot_count)
 {
-    uint32_t pair_count = 0, slot_count = build->count - 1;
+    struct gpu_bvh_node *nodes = output->nodes;
+    uint32_t pair_count = 0, *slots = output->slots;
     for (uint32_t i = 0; i < slot_count; ++i) {
-        uint32_t used = build->slots[i];
-        build->slots[i] = used ? pair_count : UINT32_MAX;
+        uint32_t used = slots[i];
+        slots[i] = used ? pair_count : UINT32_MAX;
         pair_count += used;
     }
-    node_link(&build->nodes[0], build->slots);
-    memset(&build->nodes[1], 0, sizeof build->nodes[1]);
+    node_link(&nodes[0], slots);
+    memset(&nodes[1], 0, sizeof nodes[1]);
     for (uint32_t i = 0; i < slot_count; ++i) {
-        if (build->slots[i] == UINT32_MAX)
+        if (slots[i] == UINT32_MAX)
             continue;
-        struct gpu_bvh_node *pair = &build->nodes[2 + 2 * build->slots[i]];
-        memmove(pair, &build->nodes[2 + 2 * i], 2 * sizeof *pair);
-        node_link(&pair[0], build->slots);
-        node_link(&pair[1], build->slots);
+        struct gpu_bvh_node *pair = &nodes[2 + 2 * slots[i]];
+        memmove(pair, &nodes[2 + 2 * i], 2 * sizeof *pair);
+        node_link(&pair[0], slots);
+        node_link(&pair[1], slots);
     }
-    out->node_count = 2 + 2 * pair_count;
+    return 2 + 2 * pair_count;
 }
 
 /* Not zeroed: slots that stay empty should cost no memory. */
@@ -259,40 +186,39 @@ static void *alloc_lines(size_t count, size_t element_bytes)
     return aligned_alloc(64, (count * element_bytes + 63) & ~(size_t)63);
 }
 
-static whit_result build_alloc(const struct log *log, struct build *build, struct bvh *out)
+static whit_result grow_alloc(const struct log *log, struct build *build, struct bvh *out)
 {
-    build->records = alloc_lines(build->count, sizeof *build->records);
-    build->slots = array_alloc_zeroed(build->count, sizeof *build->slots);
-    build->tasks =
-        alloc_lines(build->params.thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
-    build->nodes = out->nodes = alloc_lines(2 * (size_t)build->count, sizeof *out->nodes);
+    build->output.slots = array_alloc_zeroed(build->count, sizeof *build->output.slots);
+    build->tasks = alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
+    build->output.nodes = out->nodes = alloc_lines(2 * (size_t)build->count, sizeof *out->nodes);
     out->order = array_alloc(build->count, sizeof *out->order);
-    if (build->records && build->slots && build->tasks && out->nodes && out->order)
+    if (build->output.slots && build->tasks && out->nodes && out->order)
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", build->count);
     return WHIT_ERROR_MEMORY;
 }
 
-whit_result topdown_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_params *resolved, struct bvh *out)
+whit_result topdown_grow(const struct log *log, const struct build_methods *methods,
+                         const struct bvh_params *params, const struct build_bounds *bounds,
+                         uint32_t count, struct bvh *out)
 {
-    struct build build = {.params = *resolved, .boxes = boxes, .count = count};
-    if (count <= TASK_LEAST)
-        build.params.thread_count = 1;
-    struct build_bounds bounds;
-    whit_result result = build_alloc(log, &build, out);
-    if (result == WHIT_OK)
-        result = build_records(log, &build, &bounds);
+    struct build build = {.methods = methods,
+                          .count = count,
+                          .leaf_limit = params->leaf_limit,
+                          .thread_count = count <= TASK_LEAST ? 1 : params->thread_count};
+    atomic_init(&build.stopped, false);
+    whit_result result = grow_alloc(log, &build, out);
     if (result != WHIT_OK)
         goto done;
-    build_tree(&build, &bounds);
-    squeeze(&build, out);
-    bvh_complete(out, (double)build.params.traversal_cost);
-    for (uint32_t i = 0; i < count; ++i)
-        out->order[i] = build.records[i].primitive;
+    build_tree(&build, bounds);
+    if (atomic_load(&build.stopped)) {
+        result = WHIT_ERROR_CANCELLED;
+        goto done;
+    }
+    out->node_count = squeeze(&build.output, count - 1);
+    bvh_complete(out, (double)params->traversal_cost);
 done:
-    free(build.records);
-    free(build.slots);
+    free(build.output.slots);
     free(build.tasks);
     return result;
 }
