@@ -123,6 +123,24 @@ static void costs_are_those_of_the_chain(void **state)
     accel_destroy(accel);
 }
 
+/* A node that was pushed keeps its level, however deep the way went meanwhile. */
+static void levels_come_back_with_their_nodes(void **state)
+{
+    (void)state;
+    struct accel *accel = caterpillar(4);
+    struct gpu_ray ray = caterpillar_ray(4, true);
+    struct gpu_hit hit;
+    uint32_t status = 0;
+    struct gpu_cost cost = {0};
+    /* In place of the topmost leaf, which is popped last: the deepest pair once more. */
+    accel->nodes[3].first = 8;
+    accel->nodes[3].count = 0;
+    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    assert_int_equal(cost.pairs, 5);
+    assert_int_equal(cost.depth, 4);
+    accel_destroy(accel);
+}
+
 /* A box that a clip left short of its triangle by less than the margin. */
 static void clipped_boxes_get_a_margin(void **state)
 {
@@ -133,7 +151,7 @@ static void clipped_boxes_get_a_margin(void **state)
     uint32_t status = 0;
     accel->instances[0].reach = 2.0f;
     for (uint32_t i = 2; i < 4; ++i)
-        accel->nodes[i].lo[1] = -0.99999f + 0x1p-20f; /* 1 + 2^-20 short of what the ray needs */
+        accel->nodes[i].lo[1] = -0.99999f + 0x1.8p-18f; /* short of what the ray needs */
     traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
     assert_int_equal(hit.primitive, HIT_NONE);
     accel->clipped = true;
@@ -212,6 +230,7 @@ int main(void)
         cmocka_unit_test(deep_trees_are_walked),
         cmocka_unit_test(too_deep_trees_are_reported),
         cmocka_unit_test(costs_are_those_of_the_chain),
+        cmocka_unit_test(levels_come_back_with_their_nodes),
         cmocka_unit_test(clipped_boxes_get_a_margin),
         cmocka_unit_test(flat_records_name_their_instance),
         cmocka_unit_test(duplicates_give_the_first),

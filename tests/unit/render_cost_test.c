@@ -475,6 +475,32 @@ static void pictures_cost_the_same(void **state)
     }
 }
 
+/* From so far away that the last bit of a camera ray is a tenth of a triangle. */
+static void camera_rays_are_those_of_c(void **state)
+{
+    (void)state;
+    for (int orthographic = 0; orthographic < 2; ++orthographic) {
+        struct scene *scene = terrain_scene();
+        struct scene_camera camera = {.name = string_copy("far"),
+                                      .kind = orthographic ? SCENE_CAMERA_ORTHOGRAPHIC
+                                                           : SCENE_CAMERA_PERSPECTIVE,
+                                      .node = SCENE_NONE,
+                                      .eye = {30011, 70003, 50021},
+                                      .up = {0, 1, 0},
+                                      .fov_y = 1.1e-4f,
+                                      .height = 10.0f};
+        assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+        const struct render_params params = {.width = 90, .height = 70, .count = true};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct picture picture;
+        render_picture(f.renderer, true, &picture);
+        check_primary(&f, ORDER_DISTANCE, &picture, orthographic);
+        assert_true(picture.stats.costs[RAY_PRIMARY].leaves > 90 * 70 / 2);
+        picture_finish(&picture);
+        fixture_close(&f);
+    }
+}
+
 /* Sums are of all samples; pixels hold the first one, whatever came after it. */
 static void samples_add_up(void **state)
 {
@@ -511,6 +537,7 @@ int main(void)
         cmocka_unit_test(duplicates_give_the_first),
         cmocka_unit_test(a_leaf_alone_has_no_boxes),
         cmocka_unit_test(pictures_cost_the_same),
+        cmocka_unit_test(camera_rays_are_those_of_c),
         cmocka_unit_test(samples_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
