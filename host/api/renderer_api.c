@@ -10,6 +10,10 @@ _Static_assert(sizeof(whit_hit) == sizeof(struct gpu_hit), "hits are handed on a
 _Static_assert(offsetof(whit_ray, t_max) == offsetof(struct gpu_ray, t_max), "ray layout");
 _Static_assert(offsetof(whit_hit, instance) == offsetof(struct gpu_hit, instance), "hit layout");
 
+_Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
+                   (uint32_t)WHIT_RAY_REFRACTED == RAY_REFRACTED,
+               "kinds of rays");
+
 enum { DEPTH_DEFAULT = 8, CPU_BATCH = 4096 };
 
 static whit_result load_path_from_name(const struct log *log, const char *name,
@@ -153,6 +157,93 @@ whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_imag
     return WHIT_OK;
 }
 
+/* ---- Costs ---- */
+
+static double cost_value(whit_view view, const struct gpu_cost *cost)
+{
+    switch (view) {
+    case WHIT_VIEW_DEPTH:
+        return cost->depth;
+    case WHIT_VIEW_VISITS:
+        return (double)cost->pairs + cost->leaves + cost->instances;
+    case WHIT_VIEW_BOXES:
+        return 2.0 * cost->pairs;
+    case WHIT_VIEW_TRIS:
+        return cost->triangles;
+    case WHIT_VIEW_STACK:
+        return cost->stack;
+    }
+    return 0.0;
+}
+
+/* Puts the values of one kind of rays to those that are there; the first one makes *values. */
+static whit_result add_costs(const whit_renderer *renderer, whit_view view, uint32_t kind,
+                             struct image *values)
+{
+    struct image costs = {0};
+    bool largest = view == WHIT_VIEW_DEPTH || view == WHIT_VIEW_STACK;
+    whit_result result = renderer_read_costs(renderer->renderer, kind, &costs);
+    if (result == WHIT_OK && !values->pixels)
+        result = image_init(values, costs.width, costs.height, 1, false);
+    size_t pixel_count = (size_t)costs.width * costs.height;
+    for (size_t i = 0; result == WHIT_OK && i < pixel_count; ++i) {
+        struct gpu_cost cost;
+        memcpy(&cost, costs.words + i * costs.channels, sizeof cost);
+        float value = (float)cost_value(view, &cost);
+        values->pixels[i] = largest ? fmaxf(values->pixels[i], value) : values->pixels[i] + value;
+    }
+    image_finish(&costs);
+    return result;
+}
+
+whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, whit_ray_kind kind,
+                                     whit_image **out)
+{
+    *out = NULL;
+    whit_result result = need_device(renderer);
+    if (result != WHIT_OK)
+        return result;
+    if ((uint32_t)view > WHIT_VIEW_STACK || (uint32_t)kind > WHIT_RAY_KINDS) {
+        log_error(&renderer->log, "there is no such view of costs");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_image *image = calloc(1, sizeof *image);
+    if (!image) {
+        log_error(&renderer->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t k = 0; result == WHIT_OK && k < RAY_KIND_COUNT; ++k) {
+        if (kind == WHIT_RAY_KINDS || (uint32_t)kind == k)
+            result = add_costs(renderer, view, k, &image->image);
+    }
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    *out = image;
+    return WHIT_OK;
+}
+
+static whit_cost cost_from_render(const struct render_cost *cost)
+{
+    return (whit_cost){
+        .rays = cost->rays,
+        .pairs = cost->pairs,
+        .leaves = cost->leaves,
+        .instances = cost->instances,
+        .triangles = cost->triangles,
+        .stack = cost->stack,
+        .depth = cost->depth,
+        .records = cost->samples,
+        .stack_sum = cost->stack_sum,
+        .depth_sum = cost->depth_sum,
+        .most_pairs = cost->most_pairs,
+        .most_leaves = cost->most_leaves,
+        .most_instances = cost->most_instances,
+        .most_triangles = cost->most_triangles,
+    };
+}
+
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
 {
     *stats = (whit_stats){.render_device_ms = -1.0, .load_path = "storage"};
@@ -175,6 +266,8 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .tile_size = inner.tile_size,
         .load_path = inner.texel_loads ? "texel" : "storage",
     };
+    for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
+        stats->costs[kind] = cost_from_render(&inner.costs[kind]);
     uint64_t rays =
         inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
     if (inner.render_ms > 0.0)
@@ -190,23 +283,50 @@ struct cpu_trace {
     uint64_t count;
     uint32_t order;
     bool any, brute;
-    struct gpu_cost *costs; /* one a batch, or NULL */
-    uint32_t *statuses;     /* one a batch: threads share nothing */
+    whit_cost *costs;   /* one a batch, or NULL */
+    uint32_t *statuses; /* one a batch: threads share nothing */
 };
 
-static whit_cost cost_sum(const struct gpu_cost *costs, uint64_t count)
+static uint32_t larger(uint32_t a, uint32_t b)
 {
-    whit_cost sum = {0};
-    for (uint64_t i = 0; i < count; ++i) {
-        sum.rays += costs[i].rays;
-        sum.pairs += costs[i].pairs;
-        sum.leaves += costs[i].leaves;
-        sum.instances += costs[i].instances;
-        sum.triangles += costs[i].triangles;
-        sum.stack = costs[i].stack > sum.stack ? costs[i].stack : sum.stack;
-        sum.depth = costs[i].depth > sum.depth ? costs[i].depth : sum.depth;
-    }
-    return sum;
+    return a > b ? a : b;
+}
+
+/* Of one ray. */
+static void cost_add(whit_cost *sum, const struct gpu_cost *cost)
+{
+    ++sum->records;
+    sum->rays += cost->rays;
+    sum->pairs += cost->pairs;
+    sum->leaves += cost->leaves;
+    sum->instances += cost->instances;
+    sum->triangles += cost->triangles;
+    sum->stack_sum += cost->stack;
+    sum->depth_sum += cost->depth;
+    sum->stack = larger(sum->stack, cost->stack);
+    sum->depth = larger(sum->depth, cost->depth);
+    sum->most_pairs = larger(sum->most_pairs, cost->pairs);
+    sum->most_leaves = larger(sum->most_leaves, cost->leaves);
+    sum->most_instances = larger(sum->most_instances, cost->instances);
+    sum->most_triangles = larger(sum->most_triangles, cost->triangles);
+}
+
+static void cost_merge(whit_cost *sum, const whit_cost *part)
+{
+    sum->records += part->records;
+    sum->rays += part->rays;
+    sum->pairs += part->pairs;
+    sum->leaves += part->leaves;
+    sum->instances += part->instances;
+    sum->triangles += part->triangles;
+    sum->stack_sum += part->stack_sum;
+    sum->depth_sum += part->depth_sum;
+    sum->stack = larger(sum->stack, part->stack);
+    sum->depth = larger(sum->depth, part->depth);
+    sum->most_pairs = larger(sum->most_pairs, part->most_pairs);
+    sum->most_leaves = larger(sum->most_leaves, part->most_leaves);
+    sum->most_instances = larger(sum->most_instances, part->most_instances);
+    sum->most_triangles = larger(sum->most_triangles, part->most_triangles);
 }
 
 static bool cancelled(const whit_renderer *renderer)
@@ -223,12 +343,14 @@ static void trace_batch(void *context, uint32_t index)
     for (uint64_t i = first; i < end; ++i) {
         if ((i & 63) == 0 && cancelled(trace->renderer))
             return;
+        struct gpu_cost cost = {0};
         if (trace->brute)
             traverse_brute_float(accel, &trace->rays[i], &trace->hits[i]);
         else
             traverse_float(accel, trace->order, &trace->rays[i], trace->any, HIT_NONE, HIT_NONE,
-                           &trace->hits[i], trace->costs ? &trace->costs[index] : NULL,
-                           &trace->statuses[index]);
+                           &trace->hits[i], trace->costs ? &cost : NULL, &trace->statuses[index]);
+        if (trace->costs)
+            cost_add(&trace->costs[index], &cost);
     }
 }
 
@@ -251,10 +373,13 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     }
     threads_for(renderer->accel->params.mesh.thread_count, (uint32_t)batches, trace_batch, trace);
     uint32_t status = 0;
-    for (uint64_t i = 0; i < batches; ++i)
-        status |= trace->statuses[i];
     if (cost)
-        *cost = cost_sum(trace->costs, batches);
+        *cost = (whit_cost){0};
+    for (uint64_t i = 0; i < batches; ++i) {
+        status |= trace->statuses[i];
+        if (cost)
+            cost_merge(cost, &trace->costs[i]);
+    }
     free(trace->costs);
     free(trace->statuses);
     if (cancelled(renderer))
@@ -281,8 +406,10 @@ static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray
         }
     }
     whit_result result = renderer_trace(renderer->renderer, rays, count, any, hits, costs);
-    if (cost && result == WHIT_OK)
-        *cost = cost_sum(costs, count);
+    if (cost)
+        *cost = (whit_cost){0};
+    for (uint64_t i = 0; cost && result == WHIT_OK && i < count; ++i)
+        cost_add(cost, &costs[i]);
     free(costs);
     return result;
 }

@@ -22,6 +22,11 @@ void costs_clear(struct renderer *renderer)
         image_finish(&renderer->costs[kind]);
 }
 
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
 static void sum_up(struct render_cost *sum, const struct gpu_cost *cost)
 {
     sum->rays += cost->rays;
@@ -29,8 +34,15 @@ static void sum_up(struct render_cost *sum, const struct gpu_cost *cost)
     sum->leaves += cost->leaves;
     sum->instances += cost->instances;
     sum->triangles += cost->triangles;
-    sum->stack = cost->stack > sum->stack ? cost->stack : sum->stack;
-    sum->depth = cost->depth > sum->depth ? cost->depth : sum->depth;
+    sum->samples += cost->rays > 0;
+    sum->stack_sum += cost->stack;
+    sum->depth_sum += cost->depth;
+    sum->stack = larger(sum->stack, cost->stack);
+    sum->depth = larger(sum->depth, cost->depth);
+    sum->most_pairs = larger(sum->most_pairs, cost->pairs);
+    sum->most_leaves = larger(sum->most_leaves, cost->leaves);
+    sum->most_instances = larger(sum->most_instances, cost->instances);
+    sum->most_triangles = larger(sum->most_triangles, cost->triangles);
 }
 
 /* Kinds of rays that a picture does without get no memory. */

@@ -34,6 +34,9 @@ struct render_params {
 struct render_cost {
     uint64_t rays, pairs, leaves, instances, triangles;
     uint32_t stack, depth;
+    uint64_t samples;              /* of pixels, with rays of this kind */
+    uint64_t stack_sum, depth_sum; /* over samples */
+    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one sample */
 };
 
 struct render_stats {
