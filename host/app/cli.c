@@ -20,6 +20,9 @@ static timer_t grace_timer;
 static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
 static bool error_said;
+/* Read in signal handlers: the one of two that is not being written. */
+static char written_texts[2][64] = {"nothing was written", ""};
+static const char *volatile written_text = written_texts[0];
 static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
@@ -104,7 +107,7 @@ int cli_exit_of(whit_result result)
     if (result == WHIT_OK)
         return EXIT_FINE;
     if (cli_cancel) {
-        fprintf(stderr, "whit: interrupted, nothing was written\n");
+        fprintf(stderr, "whit: interrupted, %s\n", written_text);
         return interrupt_signal ? 128 + (int)interrupt_signal : EXIT_INTERRUPTED;
     }
     if (!error_said)
@@ -121,6 +124,7 @@ static void put(const char *text)
     static const char line_end[] = "\n";
     if (progress_drawn && write(STDERR_FILENO, line_end, 1) < 0)
         return;
+    progress_drawn = 0;
     ssize_t written = write(STDERR_FILENO, text, strlen(text));
     (void)written;
 }
@@ -131,10 +135,14 @@ static void on_alarm(int number)
     (void)number;
     whit_file_abandon_all();
     if (interrupt_signal) {
-        put("whit: interrupted, nothing was written\n");
+        put("whit: interrupted, ");
+        put(written_text);
+        put("\n");
         _exit(128 + (int)interrupt_signal);
     }
-    put("whit: error: the time limit has passed\n");
+    put("whit: error: the time limit has passed, ");
+    put(written_text);
+    put("\n");
     _exit(EXIT_TIME);
 }
 
@@ -153,6 +161,13 @@ static void on_interrupt(int number)
         _exit(128 + number);
     }
     errno = reason;
+}
+
+void cli_set_written(uint32_t written, uint32_t count)
+{
+    char *text = written_texts[written_text == written_texts[0]];
+    snprintf(text, sizeof written_texts[0], "%u of %u frames were written", written, count);
+    written_text = text;
 }
 
 void cli_catch_interrupts(void)

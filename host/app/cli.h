@@ -90,6 +90,9 @@ int cli_exit_of(whit_result result);
    process, with all unfinished files removed. */
 extern volatile bool cli_cancel;
 void cli_catch_interrupts(void);
+/* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
+   was written. */
+void cli_set_written(uint32_t written, uint32_t count);
 /* Ends the process with EXIT_TIME some time after `seconds`, for what does not watch the time by
    itself. */
 void cli_limit_time(double seconds);

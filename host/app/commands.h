@@ -2,6 +2,7 @@
 #ifndef APP_COMMANDS_H
 #define APP_COMMANDS_H
 
+#include "app/frames.h"
 #include "app/job.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_devices;
@@ -15,7 +16,12 @@ struct render_request {
     uint32_t width, height, samples, depth, tile_size;
     double bailout; /* 0: every ray is traced */
     bool no_shadows, all_effects;
+    struct frames frames; /* with them `output` and `ids` are patterns */
 };
+
+/* Saves what `request` names of the picture just rendered (render_command.c). */
+whit_result render_save(const struct job *job, const struct render_request *request,
+                        whit_renderer *renderer, const whit_stats *stats);
 
 /* What a picture says about itself: only what decides its pixels, so that the same inputs give the
    same bytes. */
@@ -33,8 +39,8 @@ bool recipe_init(struct recipe *recipe, const struct job *job, const struct rend
                  const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);
 
-/* --stats of `whit render`: on standard output. */
+/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL. */
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, double save_ms);
+                const whit_stats *stats, double save_ms, const struct sequence *sequence);
 
 #endif

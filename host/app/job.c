@@ -206,7 +206,7 @@ void job_print_notes(const struct job *job, bool all)
         cli_note("and %u more; `whit scene` lists them", wanted - NOTES_SHOWN);
 }
 
-static whit_result still_wanted(void)
+whit_result job_still_wanted(void)
 {
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
@@ -238,13 +238,13 @@ whit_accel_params job_accel_params(const struct job *job)
 whit_result job_build(struct job *job)
 {
     const whit_accel_params params = job_accel_params(job);
-    whit_result result = still_wanted();
+    whit_result result = job_still_wanted();
     if (result != WHIT_OK)
         return result;
     double start_ms = whit_clock_ms();
     result = whit_accel_create(job->scene, &params, &job->accel);
     job->accel_ms = whit_clock_ms() - start_ms;
-    return result == WHIT_OK ? still_wanted() : result;
+    return result == WHIT_OK ? job_still_wanted() : result;
 }
 
 whit_result job_open_device(struct job *job)
@@ -256,7 +256,7 @@ whit_result job_open_device(struct job *job)
     double start_ms = whit_clock_ms();
     whit_result result = whit_device_create(&params, &cli_log, &job->device);
     job->device_ms = whit_clock_ms() - start_ms;
-    return result == WHIT_OK ? still_wanted() : result;
+    return result == WHIT_OK ? job_still_wanted() : result;
 }
 
 int job_check_validation(const struct job *job)

@@ -131,6 +131,8 @@ whit_result job_build(struct job *job);
 /* What job_build asks for. */
 whit_accel_params job_accel_params(const struct job *job);
 whit_result job_open_device(struct job *job);
+/* Whether nobody has stopped the program, and its time limit has not passed. */
+whit_result job_still_wanted(void);
 /* Of the scene: warnings, and with `all` what was added as well. */
 void job_print_notes(const struct job *job, bool all);
 /* EXIT_DIFFERS when the validation layers had anything to say. */

@@ -15,6 +15,7 @@ enum render_id {
     ID_NO_SHADOWS,
     ID_EFFECTS,
     ID_TILE,
+    ID_FRAMES,
 };
 
 enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
@@ -28,6 +29,9 @@ static const struct cli_option options[] = {
      "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"
      "vertical angle in degrees (the scene's first)"},
     JOB_OPTION_TIME,
+    {ID_FRAMES, "frames", "A-B",
+     "frames A to B of the animation, into files with the\n"
+     "number in place of ####: -o name.####.png"},
     {ID_AA, "aa", "1|4|16|64", "samples a pixel (1)"},
     {ID_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},
     {ID_BAILOUT, "bailout", "X",
@@ -92,9 +96,20 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
         break;
+    case ID_FRAMES:
+        frames_read(reader, &request->frames);
+        break;
     default:
         break;
     }
+}
+
+static bool can_write(const struct render_request *request, const char *name)
+{
+    char *first = request->frames.given ? frames_path(name, request->frames.first) : NULL;
+    bool can = cli_can_write(first ? first : name);
+    free(first);
+    return can;
 }
 
 static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
@@ -111,7 +126,7 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
     if (request->ids && strcmp(request->ids, request->output) == 0)
         return cli_misuse(reader, "%s: -o and --ids name the same file", request->ids);
-    if (cli_can_write(request->output) && (!request->ids || cli_can_write(request->ids)))
+    if (can_write(request, request->output) && (!request->ids || can_write(request, request->ids)))
         return true;
     reader->status = EXIT_USAGE;
     return false;
@@ -195,7 +210,7 @@ static whit_result check_camera(const struct job *job, const char *wanted)
 }
 
 static whit_result create_renderer(struct job *job, const struct render_request *request,
-                                   struct cli_progress *progress, whit_renderer **renderer)
+                                   struct frames_progress *progress, whit_renderer **renderer)
 {
     const whit_renderer_params params = {
         .width = request->width,
@@ -210,7 +225,7 @@ static whit_result create_renderer(struct job *job, const struct render_request 
         .all_effects = request->all_effects,
         .tile_size = request->tile_size,
         .cancel = &cli_cancel,
-        .progress = cli_progress_update,
+        .progress = frames_progress_update,
         .progress_user = progress,
         .time_limit_s = cli_time_left_s(),
         .load_path = job->load_path,
@@ -233,8 +248,8 @@ static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
     return result;
 }
 
-static whit_result save_all(const struct job *job, const struct render_request *request,
-                            whit_renderer *renderer, const whit_stats *stats)
+whit_result render_save(const struct job *job, const struct render_request *request,
+                        whit_renderer *renderer, const whit_stats *stats)
 {
     struct recipe recipe;
     if (!recipe_init(&recipe, job, request, stats))
@@ -249,7 +264,7 @@ static whit_result save_all(const struct job *job, const struct render_request *
 }
 
 static whit_result prepare(struct job *job, const struct render_request *request,
-                           struct cli_progress *progress, whit_renderer **renderer)
+                           struct frames_progress *progress, whit_renderer **renderer)
 {
     whit_result result = job_load(job);
     if (result == WHIT_OK)
@@ -270,39 +285,67 @@ static whit_result prepare(struct job *job, const struct render_request *request
 static void say_done(const struct job *job, const struct render_request *request,
                      const whit_stats *stats)
 {
+    const struct frames *frames = &request->frames;
+    char about[64] = "";
     whit_device_info device;
     whit_device_get_info(job->device, &device);
+    if (frames->given)
+        snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
     if (!job->quiet && job->stats == JOB_STATS_NONE)
-        fprintf(stderr, "whit: %s: %u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
-                request->output, request->width, request->height, stats->render_ms * 1e-3,
+        fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
+                request->output, about, request->width, request->height, stats->render_ms * 1e-3,
                 stats->mrays_per_s, device.name);
+}
+
+static whit_result render_one(struct job *job, const struct render_request *request,
+                              whit_renderer *renderer, struct frames_progress *progress,
+                              struct sequence *sequence)
+{
+    whit_result result = whit_renderer_render(renderer);
+    cli_progress_finish(&progress->bar);
+    if (result != WHIT_OK)
+        return result;
+    double start_ms = whit_clock_ms();
+    whit_renderer_get_stats(renderer, &sequence->stats);
+    result = render_save(job, request, renderer, &sequence->stats);
+    sequence->save_ms = whit_clock_ms() - start_ms;
+    return result;
+}
+
+/* Of a sequence that ends too early; interrupts say it themselves. */
+static void say_written(const struct job *job, const struct frames_progress *progress,
+                        const struct sequence *sequence)
+{
+    if (!cli_cancel && !job->quiet)
+        cli_note("%u of %u frames were written", sequence->written, progress->count);
 }
 
 static int work(struct job *job, const struct render_request *request)
 {
-    struct cli_progress progress;
+    const struct frames *frames = &request->frames;
+    struct frames_progress progress = {.count = frames->last - frames->first + 1};
     whit_renderer *renderer = NULL;
-    whit_stats stats = {0};
+    struct sequence sequence = {0};
     int status = EXIT_FINE;
-    cli_progress_init(&progress, job->quiet);
+    cli_progress_init(&progress.bar, job->quiet);
     whit_result result = prepare(job, request, &progress, &renderer);
-    progress.start_ms = whit_clock_ms();
+    progress.bar.start_ms = whit_clock_ms();
     if (result == WHIT_OK)
-        result = whit_renderer_render(renderer);
-    cli_progress_finish(&progress);
+        result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)
+                               : render_one(job, request, renderer, &progress, &sequence);
+    cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
-        double start_ms = whit_clock_ms();
-        whit_renderer_get_stats(renderer, &stats);
-        result = save_all(job, request, renderer, &stats);
-        if (result == WHIT_OK) {
-            say_done(job, request, &stats);
-            status = stats_print(job, request, &stats, whit_clock_ms() - start_ms);
-        }
-    }
-    if (result != WHIT_OK)
+        say_done(job, request, &sequence.stats);
+        status = stats_print(job, request, &sequence.stats, sequence.save_ms,
+                             frames->given ? &sequence : NULL);
+    } else {
         status = cli_exit_of(result);
-    else if (status == EXIT_FINE)
+        if (frames->given && renderer)
+            say_written(job, &progress, &sequence);
+    }
+    if (status == EXIT_FINE)
         status = job_check_validation(job);
+    sequence_finish(&sequence);
     whit_renderer_destroy(renderer);
     return status;
 }
@@ -320,8 +363,11 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &job, &request);
-    if (!job_options_done(&job, &reader) || !check_outputs(&reader, &request))
+    if (!job_options_done(&job, &reader) || !frames_check(&reader, &job, &request) ||
+        !check_outputs(&reader, &request))
         return reader.status;
+    if (request.frames.given)
+        job.time_s = (double)request.frames.first / job.fps;
     int status = work(&job, &request);
     job_finish(&job);
     return status;

@@ -8,14 +8,15 @@ struct figures {
     whit_accel_info tree;
     whit_device_info device;
     const whit_stats *render;
+    const struct sequence *sequence; /* or NULL */
     double save_ms, total_ms;
     uint64_t rays;
 };
 
 static void collect(const struct job *job, const whit_stats *stats, double save_ms,
-                    struct figures *out)
+                    const struct sequence *sequence, struct figures *out)
 {
-    *out = (struct figures){.render = stats, .save_ms = save_ms};
+    *out = (struct figures){.render = stats, .save_ms = save_ms, .sequence = sequence};
     whit_scene_get_info(job->scene, &out->scene);
     whit_accel_get_info(job->accel, &out->tree);
     whit_device_get_info(job->device, &out->device);
@@ -93,6 +94,32 @@ static json_t *tree_document(const whit_accel_info *info)
     return tree;
 }
 
+static void put_frame_times(json_t *object, const struct frame_times *times)
+{
+    document_ms(object, "build_instances_ms", times->instances_ms);
+    document_ms(object, "upload_ms", times->upload_ms);
+    document_ms(object, "render_ms", times->render_ms);
+    document_ms(object, "save_ms", times->save_ms);
+}
+
+static json_t *frames_document(const struct job *job, const struct sequence *sequence)
+{
+    json_t *frames = document_object(), *median = document_object(), *each = document_array();
+    document_count(frames, "count", sequence->count);
+    document_number(frames, "fps", job->fps);
+    put_frame_times(median, &sequence->median);
+    document_put(frames, "median", median);
+    for (uint32_t i = 0; i < sequence->count; ++i) {
+        json_t *frame = document_object();
+        document_count(frame, "frame", sequence->each[i].frame);
+        document_number(frame, "time_s", sequence->each[i].time_s);
+        put_frame_times(frame, &sequence->each[i]);
+        document_append(each, frame);
+    }
+    document_put(frames, "each", each);
+    return frames;
+}
+
 static int print_json(const struct job *job, const struct render_request *request,
                       const struct figures *figures)
 {
@@ -108,6 +135,8 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
     document_put(root, "tree", tree_document(&figures->tree));
+    if (figures->sequence)
+        document_put(root, "frames", frames_document(job, figures->sequence));
     json_t *work = document_object();
     document_count(work, "dispatches", figures->render->dispatches);
     document_count(work, "tiles", figures->render->tiles);
@@ -153,6 +182,23 @@ static void print_rays(const struct figures *figures)
            figures->render->mrays_per_s);
 }
 
+static void print_frame(const char *name, const struct frame_times *times)
+{
+    printf("  %-10s %15.3f %10.3f %10.1f %10.1f\n", name, times->instances_ms, times->upload_ms,
+           times->render_ms, times->save_ms);
+}
+
+static void print_frames(const struct sequence *sequence)
+{
+    puts("frames            instances ms  upload ms  render ms    save ms");
+    for (uint32_t i = 0; i < sequence->count; ++i) {
+        char name[16];
+        snprintf(name, sizeof name, "%u", sequence->each[i].frame);
+        print_frame(name, &sequence->each[i]);
+    }
+    print_frame("median", &sequence->median);
+}
+
 /* Some drivers begin with the device's name: "llvmpipe (LLVM 15)", "llvmpipe Mesa 22.3". */
 static const char *driver_alone(const whit_device_info *device)
 {
@@ -176,6 +222,8 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
            tree->node_count, tree->leaf_count, tree->triangle_count, tree->instance_depth,
            tree->depth, tree->sah_cost);
+    if (figures->sequence)
+        print_frames(figures->sequence);
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
            figures->render->load_path);
@@ -186,10 +234,10 @@ static int print_text(const struct job *job, const struct render_request *reques
 }
 
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, double save_ms)
+                const whit_stats *stats, double save_ms, const struct sequence *sequence)
 {
     struct figures figures;
-    collect(job, stats, save_ms, &figures);
+    collect(job, stats, save_ms, sequence, &figures);
     if (job->stats == JOB_STATS_JSON)
         return print_json(job, request, &figures);
     if (job->stats == JOB_STATS_TEXT)

@@ -1,0 +1,95 @@
+#!/bin/sh
+# Sequences: every frame is the picture that it is alone, and what is finished stays.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/frames"
+cd "$OUT/frames" || exit 1
+SWARM=$SCENES/swarm.json
+
+count() {
+    ls -A "$1" | wc -l
+}
+
+expect 0 "a sequence" render "$SWARM" --frames 8-11 -o a.####.png --ids i.#.exr --size 64x48
+check "one picture a frame, and no other file" \
+    test "$(ls -A | tr '\n' ' ')" = "a.0008.png a.0009.png a.0010.png a.0011.png i.10.exr i.11.exr i.8.exr i.9.exr "
+check "it says what it did" grep -q "^whit: a.####.png: frames 8 to 11, 64 x 48, rendered in" "$OUT/stderr"
+for frame in 08 11; do
+    expect 0 "frame $frame alone" render "$SWARM" --frame $frame -o one.png --ids one.exr --size 64x48 -q
+    check "is that of the sequence, recipe and all" cmp one.png a.00$frame.png
+    check "so are the identities" cmp one.exr i.${frame#0}.exr
+done
+check "things have moved" sh -c '! cmp -s a.0008.png a.0011.png'
+for option in "--instance-update refit" "--instance-build median" "--instance-build median --instance-update refit" \
+    "--threads 1" "--load-path storage"; do
+    # shellcheck disable=SC2086
+    expect 0 "$option" render "$SWARM" --frames 8-11 -o b.####.png --size 64x48 $option --quiet
+    check "$option is quiet" test ! -s "$OUT/stderr"
+    for frame in 08 09 10 11; do
+        check "$option gives the same frame $frame" cmp a.00$frame.png b.00$frame.png
+    done
+done
+expect 0 "another rate" render "$SWARM" --frames 4-4 --fps 12 -o c.#.pfm --size 64x48 -q
+expect 0 "the same time" render "$SWARM" --frames 8-8 -o d.###.pfm --size 64x48 -q
+check "frame 4 of 12 a second is frame 8 of 24" cmp c.4.pfm d.008.pfm
+mkdir "run#1"
+expect 0 "marks in the folder's name" render "$SWARM" --frames 0-0 -o "run#1/x#y##.pfm" --size 8x8 -q
+check "only the last marks are replaced" test -f "run#1/x#y00.pfm"
+expect 0 "without --frames" render "$SWARM" -o "x#.pfm" --size 8x8 -q
+check "a mark is a mark" test -f "x#.pfm"
+
+expect 0 "--stats json" render "$SWARM" --frames 0-2 -o s.#.png --size 16x16 --stats json
+check "stats have every frame" test "$(grep -c '"frame": ' "$OUT/stdout")" -eq 3
+check "stats have times of frames and their median" test "$(grep -c '"build_instances_ms": ' "$OUT/stdout")" -eq 5
+check "rays are summed up" grep -q '"primary": 768,' "$OUT/stdout"
+expect 0 "--stats text" render "$SWARM" --frames 0-2 -o s.#.png --size 16x16 --stats text
+check "a row a frame" test "$(grep -Ec '^  [0-2] ( +[0-9.]+){4}$' "$OUT/stdout")" -eq 3
+check "and one for the median" grep -Eq '^  median ( +[0-9.]+){4}$' "$OUT/stdout"
+
+for frames in 3 3- -3 a-b 1-2x 0-9999999999 1..2; do
+    refuse 2 "--frames $frames" "A-B is needed" render "$SWARM" --frames=$frames -o r.#.png
+done
+refuse 2 "--frames 5-3" "before the first" render "$SWARM" --frames 5-3 -o r.#.png
+refuse 2 "no marks" "r.png: .*needs #" render "$SWARM" --frames 0-3 -o r.png
+refuse 2 "marks in the folder alone" "needs #" render "$SWARM" --frames 0-3 -o "run#1/r.png"
+refuse 2 "no marks for identities" "r.exr: .*needs #" render "$SWARM" --frames 0-3 -o r.#.png --ids r.exr
+refuse 2 "--frames and --time" "all of these frames or one" render "$SWARM" --frames 0-3 --time 1 -o r.#.png
+refuse 2 "--frames and --frame" "all of these frames or one" render "$SWARM" --frames 0-3 --frame 1 -o r.#.png
+refuse 2 "no such folder" "nowhere/r.0.png" render "$SWARM" --frames 0-3 -o nowhere/r.#.png
+check "nothing came of these" sh -c '! ls -A | grep -q "^\.\|^r\."'
+
+# Out of range from frame 1 on.
+cat >far.json <<'JSON'
+{ "camera": { "eye": [0, 0, 5], "target": [0, 0, 0] },
+  "objects": [ { "name": "large", "scale": 1e15, "children": [ { "name": "larger", "scale": 1e15, "children": [
+    { "name": "rocket", "scale": 1e-15,
+      "animation": { "translation": { "times": [0, 1], "values": [[0, 0, 0], [0, 1e18, 0]] } },
+      "children": [ { "name": "nose", "shape": "cone", "scale": 1e-15 } ] } ] } ] } ] }
+JSON
+mkdir far
+expect 2 "a frame that fails" render far.json --frames 0-3 -o far/f.#.png --size 8x8
+check "is named" grep -q "far.json: instance 0 .nose.*at 0.0416667 s" "$OUT/stderr"
+check "how many are there is said" grep -q "1 of 4 frames were written" "$OUT/stderr"
+check "these stay" test "$(ls -A far)" = f.0.png
+
+mkdir late
+expect 5 "--time-limit" render "$SWARM" --frames 0-9999 -o late/f.####.png --size 64x48 --time-limit 2
+check "holds over the sequence, with frames finished: $(count late)" test "$(count late)" -ge 2
+check "says how many" grep -q "$(count late) of 10000 frames were written" "$OUT/stderr"
+
+mkdir stop
+"$WHIT" render "$SWARM" --frames 0-9999 -o stop/f.####.png --size 64x48 2>"$OUT/stderr" &
+pid=$!
+tries=0
+while [ ! -f stop/f.0002.png ] && [ $tries -lt 300 ]; do
+    sleep 0.1
+    tries=$((tries + 1))
+done
+kill -INT $pid
+wait $pid
+status=$?
+check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
+check "Ctrl+C: finished frames stay, and no other file" test "$(ls -A stop | grep -c '^f\.[0-9]*\.png$')" -eq "$(count stop)"
+check "Ctrl+C: says how many" grep -q "interrupted, $(count stop) of 10000 frames were written" "$OUT/stderr"
+expect 0 "a frame before the stop" render "$SWARM" --frame 2 -o one.png --size 64x48 -q
+check "is whole" cmp one.png stop/f.0002.png
+finish
