@@ -89,7 +89,7 @@ struct bvh_box clip_widen(const struct bvh_box *part, const struct bvh_box *own)
     double extent = 0.0;
     for (int k = 0; k < 3; ++k)
         extent = fmax(extent, (double)own->hi[k] - (double)own->lo[k]);
-    double margin = extent * CLIP_MARGIN;
+    double margin = extent * CLIP_PART_MARGIN;
     struct bvh_box box;
     for (int k = 0; k < 3; ++k) {
         box.lo[k] = fmaxf(clip_float_below((double)part->lo[k] - margin), own->lo[k]) + 0.0f;

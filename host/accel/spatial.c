@@ -19,7 +19,6 @@ enum {
     TASK_LEAST = 1024,     /* smaller subtrees are not worth a task of their own */
     TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
-    DEPTH_OF_MEDIANS = 96, /* from here on halves: 28 levels more for 2^28 references */
 };
 
 /* References [first, first + count), room for `spare` more behind them, and count + spare - 1 pair
@@ -62,18 +61,6 @@ static double extent_area(f4 lo_in, f4 hi_in)
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-static void node_write(struct gpu_bvh_node *node, f4 lo_in, f4 hi_in, uint32_t first,
-                       uint32_t count)
-{
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, lo_in);
-    f4_store(hi, hi_in);
-    memcpy(node->lo, lo, sizeof node->lo);
-    memcpy(node->hi, hi, sizeof node->hi);
-    node->first = first;
-    node->count = count;
-}
-
 /* Parts get their margin here: until now costs were those of the parts alone. */
 static void leaf_write(struct build *build, const struct build_range *range)
 {
@@ -90,7 +77,7 @@ static void leaf_write(struct build *build, const struct build_range *range)
         }
         build_bounds_add(&bounds, build_record_lo(&record), build_record_hi(&record));
     }
-    node_write(&build->nodes[range->node], bounds.lo, bounds.hi, range->first, range->count);
+    build_node_write(&build->nodes[range->node], bounds.lo, bounds.hi, range->first, range->count);
 }
 
 /* ---- Splits ---- */
@@ -99,18 +86,6 @@ struct split {
     uint32_t left_count, right_count;
     struct build_bounds halves[2];
 };
-
-/* A power of two that brings the largest extent near 1: areas neither overflow nor vanish. */
-static f4 area_scale(const struct build_bounds *bounds)
-{
-    alignas(16) float extent[4];
-    f4_store(extent,
-             f4_sub(f4_mul(bounds->hi, f4_splat(0.5f)), f4_mul(bounds->lo, f4_splat(0.5f))));
-    int exponent;
-    (void)frexpf(fmaxf(fmaxf(extent[0], extent[1]), extent[2]), &exponent);
-    exponent = exponent < -125 ? -125 : exponent > 125 ? 125 : exponent;
-    return f4_splat(ldexpf(1.0f, -1 - exponent));
-}
 
 /* Whether a spatial split may pay: there is room, and the halves of the best object split overlap.
    Where there is no object split all lie on each other. */
@@ -131,7 +106,7 @@ static bool best_split(struct build *build, const struct subtree *subtree, struc
     const struct build_range *range = &subtree->range;
     const struct bvh_triangles *triangles = build->params.triangles;
     struct build_record *own = build->records + range->first;
-    f4 scale = area_scale(&range->bounds);
+    f4 scale = build_area_scale(&range->bounds);
     struct object_plane object;
     struct spatial_plane plane;
     bool has_object = object_find(own, &range->bounds, range->count, scale, &object);
@@ -167,8 +142,8 @@ static bool subtree_split(struct build *build, const struct subtree *subtree,
 {
     const struct build_range *range = &subtree->range;
     struct split split;
-    bool found =
-        range->count > 1 && range->depth < DEPTH_OF_MEDIANS && best_split(build, subtree, &split);
+    bool found = range->count > 1 && range->depth < BUILD_DEPTH_OF_MEDIANS &&
+                 best_split(build, subtree, &split);
     if (!found && range->count <= build->params.leaf_limit) {
         leaf_write(build, range);
         return false;
@@ -184,7 +159,7 @@ static bool subtree_split(struct build *build, const struct subtree *subtree,
     right_half_move(build->records + range->first + split.left_count, split.right_count,
                     left_spare);
     uint32_t child = 2 + 2 * range->pair;
-    node_write(&build->nodes[range->node], range->bounds.lo, range->bounds.hi, child, 0);
+    build_node_write(&build->nodes[range->node], range->bounds.lo, range->bounds.hi, child, 0);
     build->slots[range->pair] = 1;
     halves[0].spare = left_spare;
     halves[0].range = (struct build_range){
@@ -316,42 +291,18 @@ static void refit(struct bvh *bvh)
         if (node->count > 0 || i == 1)
             continue;
         const struct gpu_bvh_node *a = &bvh->nodes[node->first], *b = a + 1;
-        node_write(node, f4_min(f4_load(a->lo), f4_load(b->lo)),
-                   f4_max(f4_load(a->hi), f4_load(b->hi)), node->first, 0);
+        build_node_write(node, f4_min(f4_load(a->lo), f4_load(b->lo)),
+                         f4_max(f4_load(a->hi), f4_load(b->hi)), node->first, 0);
     }
 }
 
 /* ---- The whole build ---- */
 
-static bool box_is_good(const struct bvh_box *box)
-{
-    bool good = true;
-    for (int i = 0; i < 3; ++i)
-        good &= box->lo[i] >= -FLT_MAX && box->lo[i] <= box->hi[i] && box->hi[i] <= FLT_MAX;
-    return good;
-}
-
-static whit_result make_records(const struct log *log, struct build *build,
-                                struct build_bounds *bounds)
+static void flag_whole(struct build *build)
 {
     const uint8_t *whole = build->params.triangles->whole;
-    bool good = true;
-    *bounds = build_bounds_empty();
-    for (uint32_t i = 0; i < build->count; ++i) {
-        struct build_record *record = &build->records[i];
-        good &= box_is_good(&build->boxes[i]);
-        for (int a = 0; a < 3; ++a) {
-            record->lo[a] = build->boxes[i].lo[a] + 0.0f; /* one zero, as in topdown.c */
-            record->hi[a] = build->boxes[i].hi[a] + 0.0f;
-        }
-        record->primitive = i;
-        record->pad = whole && whole[i] ? SPATIAL_WHOLE : 0;
-        build_bounds_add(bounds, build_record_lo(record), build_record_hi(record));
-    }
-    if (good)
-        return WHIT_OK;
-    log_error(log, "tree over %u boxes: a box is not finite, or inside out", build->count);
-    return WHIT_ERROR_INPUT;
+    for (uint32_t i = 0; whole && i < build->count; ++i)
+        build->records[i].pad = whole[i] ? SPATIAL_WHOLE : 0;
 }
 
 /* Not zeroed: room that stays empty should cost no memory. */
@@ -363,13 +314,12 @@ static void *alloc_lines(size_t count, size_t element_bytes)
 static whit_result build_alloc(const struct log *log, struct build *build, struct bvh *out)
 {
     size_t room = (size_t)build->count + build->spare;
-    build->records = alloc_lines(room, sizeof *build->records);
     build->slots = array_alloc_zeroed(room, sizeof *build->slots);
     build->tasks =
         alloc_lines(build->params.thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
     build->nodes = out->nodes = alloc_lines(2 * room, sizeof *out->nodes);
     out->order = array_alloc(room, sizeof *out->order);
-    if (build->records && build->slots && build->tasks && out->nodes && out->order)
+    if (build->slots && build->tasks && out->nodes && out->order)
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", build->count);
     return WHIT_ERROR_MEMORY;
@@ -395,11 +345,13 @@ whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, ui
     if (count <= TASK_LEAST)
         build.params.thread_count = 1;
     struct build_bounds bounds;
-    whit_result result = build_alloc(log, &build, out);
+    whit_result result = records_make(log, boxes, count, build.spare, build.params.thread_count,
+                                      &build.records, &bounds);
     if (result == WHIT_OK)
-        result = make_records(log, &build, &bounds);
+        result = build_alloc(log, &build, out);
     if (result != WHIT_OK)
         goto done;
+    flag_whole(&build);
     build_tree(&build, &bounds);
     squeeze(&build, out);
     if (out->clipped)

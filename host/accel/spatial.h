@@ -37,7 +37,7 @@ struct spatial_plane {
     uint32_t left_count, right_count;
     f4 left_lo, left_hi, right_lo, right_hi;
     /* Bin of a coordinate. */
-    f4 origin, bins_per_half, scale;
+    f4 origin, bins_per_half, last_bin, scale;
 };
 
 /* The best plane among bins that lets at most `spare` references be in both halves; false: none.

@@ -18,6 +18,7 @@ struct bins {
 struct grid {
     f4 origin, bins_per_half;
     float start[3], width[3]; /* of bins; 0: the axis has one */
+    int bins;
 };
 
 struct span {
@@ -32,40 +33,47 @@ static inline void bin_add(struct bin *bin, f4 lo, f4 hi)
 
 /* ---- Bins of a reference ---- */
 
-static struct grid grid_over(const struct build_bounds *bounds)
+/* Few references are cut into fewer bins: more would cost more than they find. */
+static int bins_for(uint32_t count)
+{
+    return count < 12 ? 4 : count < 48 ? 8 : SPATIAL_BINS;
+}
+
+static struct grid grid_over(const struct build_bounds *bounds, uint32_t count)
 {
     alignas(16) float lo[4], hi[4], scale[4] = {0};
     f4_store(lo, bounds->lo);
     f4_store(hi, bounds->hi);
-    struct grid grid = {.origin = f4_mul(bounds->lo, f4_splat(0.5f))};
+    struct grid grid = {.origin = f4_mul(bounds->lo, f4_splat(0.5f)), .bins = bins_for(count)};
     for (int a = 0; a < 3; ++a) {
         float half = 0.5f * hi[a] - 0.5f * lo[a];
         bool some = half > 1e-35f;
-        scale[a] = some ? (float)SPATIAL_BINS / half : 0.0f;
+        scale[a] = some ? (float)grid.bins / half : 0.0f;
         grid.start[a] = lo[a];
-        grid.width[a] = some ? 2.0f * (half / (float)SPATIAL_BINS) : 0.0f;
+        grid.width[a] = some ? 2.0f * (half / (float)grid.bins) : 0.0f;
     }
     grid.bins_per_half = f4_load(scale);
     return grid;
 }
 
-static inline f4 grid_position(f4 origin, f4 bins_per_half, f4 x)
+static inline f4 grid_position(f4 origin, f4 bins_per_half, f4 last, f4 x)
 {
     f4 position = f4_mul(f4_sub(f4_mul(x, f4_splat(0.5f)), origin), bins_per_half);
-    return f4_min(position, f4_splat((float)(SPATIAL_BINS - 1)));
+    return f4_min(position, last);
 }
 
 /* What ends on the border of two bins is in the lower one. References that must stay whole are
    where their centre is. */
-static inline struct span span_of(f4 origin, f4 bins_per_half, f4 lo, f4 hi, uint32_t flags)
+static inline struct span span_of(f4 origin, f4 bins_per_half, f4 last_bin, f4 lo, f4 hi,
+                                  uint32_t flags)
 {
     if (flags & SPATIAL_WHOLE) {
         lo = hi = f4_add(f4_mul(lo, f4_splat(0.5f)), f4_mul(hi, f4_splat(0.5f)));
     }
     alignas(16) int first[4], last[4];
     alignas(16) float end[4];
-    f4 at = grid_position(origin, bins_per_half, hi);
-    f4_truncate(grid_position(origin, bins_per_half, lo), first);
+    f4 at = grid_position(origin, bins_per_half, last_bin, hi);
+    f4_truncate(grid_position(origin, bins_per_half, last_bin, lo), first);
     f4_truncate(at, last);
     f4_store(end, at);
     struct span span;
@@ -153,14 +161,15 @@ static void bins_fill(struct bins *bins, const struct grid *grid,
 {
     const struct build_bounds empty = build_bounds_empty();
     for (int a = 0; a < 3; ++a) {
-        for (int i = 0; i < SPATIAL_BINS; ++i)
+        for (int i = 0; i < grid->bins; ++i)
             bins->axis[a][i] = (struct bin){empty.lo, empty.hi};
     }
     memset(bins->starts, 0, sizeof bins->starts);
     memset(bins->ends, 0, sizeof bins->ends);
+    f4 last = f4_splat((float)(grid->bins - 1));
     for (uint32_t i = 0; i < count; ++i) {
         f4 lo = build_record_lo(&records[i]), hi = build_record_hi(&records[i]);
-        struct span span = span_of(grid->origin, grid->bins_per_half, lo, hi, records[i].pad);
+        struct span span = span_of(grid->origin, grid->bins_per_half, last, lo, hi, records[i].pad);
         for (uint32_t a = 0; a < 3; ++a) {
             ++bins->starts[a][span.first[a]];
             ++bins->ends[a][span.last[a]];
@@ -174,18 +183,18 @@ static void bins_fill(struct bins *bins, const struct grid *grid,
     }
 }
 
-static void sweep_axis(const struct bins *bins, uint32_t axis, uint32_t count, uint32_t spare,
-                       f4 scale, struct spatial_plane *best)
+static void sweep_axis(const struct bins *bins, int bin_count, uint32_t axis, uint32_t count,
+                       uint32_t spare, f4 scale, struct spatial_plane *best)
 {
     const struct bin *bin = bins->axis[axis];
     struct bin right[SPATIAL_BINS], left = bin[0];
-    right[SPATIAL_BINS - 1] = bin[SPATIAL_BINS - 1];
-    for (int i = SPATIAL_BINS - 2; i > 0; --i) {
+    right[bin_count - 1] = bin[bin_count - 1];
+    for (int i = bin_count - 2; i > 0; --i) {
         right[i] = bin[i];
         bin_add(&right[i], right[i + 1].lo, right[i + 1].hi);
     }
     uint32_t started = 0, ended = 0;
-    for (int i = 1; i < SPATIAL_BINS; ++i) {
+    for (int i = 1; i < bin_count; ++i) {
         started += bins->starts[axis][i - 1];
         ended += bins->ends[axis][i - 1];
         uint32_t rest = count - ended;
@@ -210,16 +219,17 @@ bool spatial_find(const struct build_record *records, const struct build_bounds 
                   uint32_t count, uint32_t spare, const struct bvh_triangles *triangles, f4 scale,
                   struct spatial_plane *plane)
 {
-    struct grid grid = grid_over(bounds);
+    struct grid grid = grid_over(bounds, count);
     struct bins bins;
     bins_fill(&bins, &grid, records, count, triangles);
     plane->cost = INFINITY;
     plane->scale = scale;
     plane->origin = grid.origin;
     plane->bins_per_half = grid.bins_per_half;
+    plane->last_bin = f4_splat((float)(grid.bins - 1));
     for (uint32_t axis = 0; axis < 3; ++axis) {
         if (grid.width[axis] > 0.0f)
-            sweep_axis(&bins, axis, count, spare, plane->scale, plane);
+            sweep_axis(&bins, grid.bins, axis, count, spare, plane->scale, plane);
     }
     if (!(plane->cost < INFINITY))
         return false;
@@ -236,7 +246,8 @@ enum side { SIDE_LEFT = 1, SIDE_RIGHT = 2, SIDE_BOTH = 3 };
 static enum side side_of(const struct spatial_plane *plane, const struct build_record *record)
 {
     f4 lo = build_record_lo(record), hi = build_record_hi(record);
-    struct span span = span_of(plane->origin, plane->bins_per_half, lo, hi, record->pad);
+    struct span span =
+        span_of(plane->origin, plane->bins_per_half, plane->last_bin, lo, hi, record->pad);
     if (span.last[plane->axis] < (int)plane->bin)
         return SIDE_LEFT;
     if (span.first[plane->axis] >= (int)plane->bin)
