@@ -1,6 +1,5 @@
 /* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
 #include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,12 +13,6 @@
 enum {
     MESH_LARGE = 8192,   /* triangles from which a mesh is built by all threads */
     SPAN_RECORDS = 8192, /* triangles or nodes handled by one call */
-};
-
-/* What a material means to traversal. */
-struct material_bits {
-    uint32_t flags, shadow;
-    bool masked; /* SCENE_ALPHA_MASK: colours of vertices may cut it out */
 };
 
 /* Records [begin, end) of one mesh. */
@@ -37,51 +30,6 @@ struct creation {
     uint32_t small_count;
     whit_result *results; /* one a mesh */
 };
-
-/* ---- Materials ---- */
-
-static uint32_t optical_depth(double transmittance)
-{
-    double depth = transmittance > 0.0 ? -log2(transmittance) * SHADOW_DEPTH_SCALE : 1023.0;
-    return depth >= 1023.0 ? 1023u : depth > 0.0 ? (uint32_t)(depth + 0.5) : 0u;
-}
-
-/* What a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest through it. */
-static struct material_bits material_bits(const struct scene_material *m, bool area_lights)
-{
-    struct material_bits bits = {.masked = m->alpha == SCENE_ALPHA_MASK};
-    if (bits.masked &&
-        (m->opacity < m->alpha_cutoff || m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE ||
-         m->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE))
-        bits.flags |= TRIANGLE_CUTOUT;
-    /* Surfaces that scene_freeze puts light samples on; others that glow are ordinary ones. */
-    bool glows = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
-    if (area_lights && glows && m->model != SCENE_MODEL_UNLIT &&
-        m->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE)
-        bits.flags |= TRIANGLE_NO_SHADOW;
-    double cover = m->alpha == SCENE_ALPHA_BLEND ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
-    bool filters = false;
-    for (int c = 0; c < 3; ++c) {
-        double kept = 1.0 - cover + cover * (double)m->transmission[c];
-        filters |= kept > 0.0;
-        bits.shadow |= optical_depth(kept) << (10 * c);
-    }
-    if (filters)
-        bits.flags |= TRIANGLE_FILTER;
-    else
-        bits.shadow = 0;
-    return bits;
-}
-
-static void materials_scan(struct creation *creation)
-{
-    const struct scene *scene = creation->accel->scene;
-    bool area_lights = false;
-    for (uint32_t i = 0; i < scene->light_count; ++i)
-        area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE;
-    for (uint32_t i = 0; i < scene->material_count; ++i)
-        creation->materials[i] = material_bits(&scene->materials[i], area_lights);
-}
 
 /* ---- Mesh trees ---- */
 
@@ -106,17 +54,6 @@ static void make_boxes(void *user, uint32_t index)
     }
 }
 
-/* Filters add to a shadow ray's depth each time they are met: they are met once. */
-static void make_whole(const struct creation *creation, const struct scene_mesh *mesh,
-                       uint8_t *whole)
-{
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
-        uint32_t material = mesh->materials ? mesh->materials[i] : 0;
-        bool known = material < creation->accel->scene->material_count;
-        whole[i] = known && (creation->materials[material].flags & TRIANGLE_FILTER) != 0;
-    }
-}
-
 static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_t thread_count)
 {
     struct accel *accel = creation->accel;
@@ -136,7 +73,7 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     threads_for(thread_count, (mesh->triangle_count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes,
                 &context);
     if (split)
-        make_whole(creation, mesh, whole);
+        material_bits_whole(accel->scene, creation->materials, mesh, whole);
     const struct bvh_triangles triangles = {mesh->positions, mesh->indices, whole};
     params.triangles = &triangles;
     result = bvh_build(&accel->log, boxes, mesh->triangle_count, &params, &creation->trees[index]);
@@ -165,7 +102,7 @@ static whit_result check_whole(const struct creation *creation, uint32_t index)
     uint8_t *whole = array_alloc(mesh->triangle_count, 1);
     if (!whole)
         return WHIT_ERROR_MEMORY;
-    make_whole(creation, mesh, whole);
+    material_bits_whole(accel->scene, creation->materials, mesh, whole);
     for (uint32_t i = 0; result == WHIT_OK && i < tree->reference_count; ++i) {
         uint8_t *once = &whole[tree->order[i]];
         if (*once == 2) {
@@ -233,6 +170,20 @@ static struct bvh_box node_box(const struct gpu_bvh_node *node)
     return box;
 }
 
+/* What the root of its tree would be. */
+static struct bvh_box mesh_box(const struct scene_mesh *mesh)
+{
+    struct bvh_box box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; ++i) {
+        const float *p = &mesh->positions[3 * (size_t)mesh->indices[i]];
+        for (int k = 0; k < 3; ++k) {
+            box.lo[k] = p[k] < box.lo[k] ? p[k] : box.lo[k];
+            box.hi[k] = p[k] > box.hi[k] ? p[k] : box.hi[k];
+        }
+    }
+    return box;
+}
+
 /* Gives every mesh its place; the totals must fit the bits of a ref. */
 static whit_result meshes_place(struct creation *creation)
 {
@@ -252,7 +203,6 @@ static whit_result meshes_place(struct creation *creation)
             .depth = tree->depth,
             .sah_cost = tree->sah_cost,
             .build_ms = tree->build_ms,
-            .box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}},
         };
         nodes += tree->node_count;
         records += tree->reference_count;
@@ -263,8 +213,8 @@ static whit_result meshes_place(struct creation *creation)
                       accel->scene->name, BVH_FIRST_MASK);
             return WHIT_ERROR_INPUT;
         }
-        if (tree->node_count > 0)
-            mesh->box = node_box(&tree->nodes[0]);
+        mesh->box =
+            tree->node_count > 0 ? node_box(&tree->nodes[0]) : mesh_box(&accel->scene->meshes[i]);
         if (tree->depth > accel->mesh_depth)
             accel->mesh_depth = tree->depth;
         uint32_t larger =
@@ -276,23 +226,6 @@ static whit_result meshes_place(struct creation *creation)
     accel->record_count = (uint32_t)records;
     accel->triangle_count = (uint32_t)triangles;
     return WHIT_OK;
-}
-
-static struct gpu_triangle triangle_record(const struct creation *creation,
-                                           const struct scene_mesh *mesh, uint32_t primitive)
-{
-    struct gpu_triangle out = {.primitive = primitive};
-    const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
-    memcpy(out.v0, &mesh->positions[3 * (size_t)corner[0]], sizeof out.v0);
-    memcpy(out.v1, &mesh->positions[3 * (size_t)corner[1]], sizeof out.v1);
-    memcpy(out.v2, &mesh->positions[3 * (size_t)corner[2]], sizeof out.v2);
-    uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
-    if (material < creation->accel->scene->material_count) {
-        const struct material_bits *bits = &creation->materials[material];
-        out.flags = bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
-        out.shadow = bits->shadow;
-    }
-    return out;
 }
 
 static void write_span(void *context, uint32_t index)
@@ -308,7 +241,8 @@ static void write_span(void *context, uint32_t index)
     }
     for (uint32_t i = span.begin; i < span.end && i < tree->reference_count; ++i)
         creation->accel->triangles[mesh->first_triangle + i] =
-            triangle_record(creation, &creation->accel->scene->meshes[span.mesh], tree->order[i]);
+            material_bits_record(creation->accel->scene, creation->materials,
+                                 &creation->accel->scene->meshes[span.mesh], tree->order[i]);
 }
 
 static whit_result meshes_write(struct creation *creation)
@@ -357,7 +291,7 @@ static whit_result creation_run(struct creation *creation)
     whit_result result = creation_alloc(creation);
     if (result != WHIT_OK)
         return result;
-    materials_scan(creation);
+    material_bits_scan(creation->accel->scene, creation->materials);
     result = meshes_build(creation);
     if (result == WHIT_OK)
         result = meshes_place(creation);
@@ -402,6 +336,7 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
     accel->log = log ? *log : (struct log){0};
     accel->params = params ? *params : (struct accel_params){0};
     accel->params.instances.leaf_limit = 1;
+    accel->no_trees = accel->params.mesh.builder == BVH_NONE && !accel->params.tree_file;
     struct creation creation = {.accel = accel};
     whit_result result = creation_run(&creation);
     if (result == WHIT_ERROR_MEMORY)

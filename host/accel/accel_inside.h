@@ -30,6 +30,23 @@ struct accel_extent {
 
 struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box);
 
+/* ---- material_bits.c ---- */
+
+/* What a material means to traversal. */
+struct material_bits {
+    uint32_t flags, shadow;
+    bool masked; /* SCENE_ALPHA_MASK: colours of vertices may cut it out */
+};
+
+/* One for each material of the scene. */
+void material_bits_scan(const struct scene *scene, struct material_bits *out);
+/* Filters add to a shadow ray's depth each time they are met: they are met once. 1 a triangle. */
+void material_bits_whole(const struct scene *scene, const struct material_bits *materials,
+                         const struct scene_mesh *mesh, uint8_t *whole);
+struct gpu_triangle material_bits_record(const struct scene *scene,
+                                         const struct material_bits *materials,
+                                         const struct scene_mesh *mesh, uint32_t primitive);
+
 /* pose.c */
 void accel_posing_destroy(struct accel_posing *posing);
 
