@@ -86,9 +86,9 @@ whit_result topdown_grow(const struct log *log, const struct build_methods *meth
 
 /* ---- Records (records.c) ---- */
 
-/* In the order of the input, zeros without sign. free() */
+/* In the order of the input, zeros without sign, and room for `spare` more behind them. free() */
 whit_result records_make(const struct log *log, const struct bvh_box *boxes, uint32_t count,
-                         uint32_t thread_count, struct build_record **records,
+                         uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds);
 
 /* Chooses the best of equally spaced planes on each axis by surface area, and partitions. */

@@ -64,13 +64,14 @@ static bool chunks_unite(const struct record_chunk *chunks, uint32_t count,
 }
 
 whit_result records_make(const struct log *log, const struct bvh_box *boxes, uint32_t count,
-                         uint32_t thread_count, struct build_record **records,
+                         uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds)
 {
     uint32_t chunk_count = (count - 1) / RECORD_CHUNK + 1;
     struct record_context context = {
         .boxes = boxes,
-        .records = aligned_alloc(64, ((size_t)count * sizeof **records + 63) & ~(size_t)63),
+        .records =
+            aligned_alloc(64, (((size_t)count + spare) * sizeof **records + 63) & ~(size_t)63),
         .count = count,
         .chunks = aligned_alloc(64, chunk_count * ((sizeof *context.chunks + 63) & ~(size_t)63)),
     };
@@ -139,7 +140,7 @@ whit_result records_build(const struct log *log, const struct bvh_box *boxes, ui
     struct context context = {.params = resolved};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, resolved->thread_count, &context.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->thread_count, &context.records, &bounds);
     if (result != WHIT_OK)
         return result;
     struct build_methods methods = {.context = &context, .halve = halve};

@@ -301,7 +301,7 @@ whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint
                                     .small_count = BUILD_SMALL};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, resolved->thread_count, &sweep.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->thread_count, &sweep.records, &bounds);
     if (result == WHIT_OK)
         result = sweep_prepare(log, &sweep, count);
     if (result == WHIT_OK)
