@@ -5,7 +5,8 @@
 #include "app/frames.h"
 #include "app/job.h"
 
-extern const struct cli_command command_render, command_scene, command_trace, command_devices;
+extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
+    command_devices;
 
 /* A quarter of what 8 bits can show. */
 #define BAILOUT_DEFAULT (1.0 / 1024.0)
@@ -38,6 +39,9 @@ struct recipe {
 bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
                  const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);
+
+/* The device's driver without the name of the device in front. */
+const char *stats_driver(const whit_device_info *device);
 
 /* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL. */
 int stats_print(const struct job *job, const struct render_request *request,

@@ -1,7 +1,8 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
   app/main.c app/cli.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c app/frames.c
-  app/render_command.c app/scene_command.c app/trace_command.c app/devices_command.c)
+  app/render_command.c app/scene_command.c app/trace_command.c app/bvh_command.c app/study.c
+  app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 target_include_directories(whit_program PRIVATE

@@ -200,7 +200,7 @@ static void print_frames(const struct sequence *sequence)
 }
 
 /* Some drivers begin with the device's name: "llvmpipe (LLVM 15)", "llvmpipe Mesa 22.3". */
-static const char *driver_alone(const whit_device_info *device)
+const char *stats_driver(const whit_device_info *device)
 {
     size_t word = strcspn(device->name, " ");
     bool same = word && strncmp(device->name, device->driver, word) == 0;
@@ -216,7 +216,7 @@ static int print_text(const struct job *job, const struct render_request *reques
            figures->scene.instance_count == 1 ? "" : "s");
     printf("picture    %s: %u x %u, %u samples a pixel, depth %u\n", request->output,
            request->width, request->height, request->samples, request->depth);
-    printf("device     %s (%s)\n", figures->device.name, driver_alone(&figures->device));
+    printf("device     %s (%s)\n", figures->device.name, stats_driver(&figures->device));
     print_times(job, figures);
     print_rays(figures);
     printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",

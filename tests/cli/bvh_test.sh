@@ -1,0 +1,146 @@
+# `whit bvh`: builders side by side, trees in files, and what it refuses.
+. "$(dirname "$0")/common.sh"
+cd "$OUT" || exit 1
+SMALL="--runs 1 --rays 2000"
+BALL=$OUT/ball.json
+printf '{ "objects": [ { "shape": "sphere", "segments": 40, "rings": 20 } ] }\n' >"$BALL"
+
+# has PATTERN: standard output of the last run holds it.
+has() {
+    grep -q -- "$1" "$OUT/stdout"
+}
+
+expect 0 "help" bvh --help
+check "help names the builders" has "sweep-naive"
+check "whit names the command" sh -c "'$WHIT' --help | grep -q '^  bvh  '"
+
+# ---- Comparisons ----
+
+# shellcheck disable=SC2086
+expect 0 "the default builders" bvh "$BALL" $SMALL --threads 1,2 --validate
+check "nothing but the report" test ! -s stderr
+check "the scene" has "^scene      $BALL: [0-9]* triangles in 1 instance of 1 mesh$"
+check "the device" has "^device     .*"
+check "a column a number of threads" has "^builder .* 1t  *2t "
+for builder in median binned sweep spatial binned+opt; do
+    check "a row for $builder" test "$(grep -c "^$builder  .*[0-9] %" stdout)" -eq 1
+    check "details of $builder" test "$(grep -cx "$builder" stdout)" -eq 1
+done
+check "no hit differs" has "^hits: 0 of [1-9][0-9]* differ$"
+check "every tree is valid" test "$(grep -c '^  valid    yes$' stdout)" -eq 5
+check "visits are predicted and measured" \
+    test "$(grep -c 'pairs and .* by areas, .* by 32768 lines' stdout)" -eq 5
+for kind in primary shadow diffuse; do
+    check "rates of $kind rays" test "$(grep -c "^  $kind  *[0-9.]* Mray/s (" stdout)" -eq 5
+done
+
+# A device takes half a second to compile for each row.
+for option in "--traversal sign --instance-build median" "--load-path texel --instances off"; do
+    # shellcheck disable=SC2086
+    expect 0 "$option" bvh "$SCENES/many.json" $SMALL --build median,binned:4+opt --threads 2 $option
+    check "$option: no hit differs" has "^hits: 0 of [1-9][0-9]* differ$"
+done
+
+expect 0 "a list with commas inside" bvh "$BALL" --no-trace --runs 2 \
+    --build spatial:1e-6,0.25+opt,spatial:0.5,binned:7
+for builder in spatial:1e-06,0.25+opt spatial:0.5 binned:7; do
+    check "a row for $builder" has "^$builder  "
+done
+check "without rays there are no rates" sh -c '! grep -q Mray stdout'
+
+expect 0 "leaves of one triangle" bvh "$CUBE" --no-trace --build sweep --leaf 1
+check "twelve of them" has "^  of size  1: 12$"
+
+# ---- JSON ----
+
+# shellcheck disable=SC2086
+expect 0 "--json" bvh "$BALL" $SMALL --json --build sweep --threads 1,3
+for key in whit scene device runs rays builders builder file build_ms threads median least most \
+    nodes leaves triangles references bytes depth instance_depth leaves_at_depth leaves_of_size \
+    sah_cost epo overlap predicted measured measured_lines pairs mrays_per_s primary shadow \
+    diffuse valid hits compared; do
+    check "--json has $key" has "\"$key\": "
+done
+check "three threads" has '"threads": 3,'
+check "nothing to compare" has '"compared": 0'
+expect 0 "--json without rays" bvh "$BALL" --json --no-trace --build median --runs 1
+check "no device" has '"device": null'
+check "no hits" has '"hits": null'
+check "no rates" has '"diffuse": null'
+
+# ---- Files ----
+
+figures() {
+    "$WHIT" bvh "$BALL" --json --no-trace --runs 1 "$@" |
+        grep -v '"median"\|"least"\|"most"\|"file"'
+}
+expect 0 "--save" bvh "$BALL" --no-trace --build sweep+opt --save a.bvh --runs 2
+expect 0 "--load" bvh "$BALL" --load a.bvh --build median $SMALL
+check "both are shown" test "$(grep -c '^sweep+opt, saved  \|^median  ' stdout)" -eq 2
+check "they give the same hits" has "^hits: 0 of [1-9][0-9]* differ$"
+figures --build sweep+opt >built
+figures --load a.bvh >loaded
+check "a loaded tree is the one that was built" cmp built loaded
+expect 0 "a loaded tree saved again" bvh "$BALL" --no-trace --load a.bvh --save b.bvh
+check "is the same file" cmp a.bvh b.bvh
+
+expect 0 "a picture" render "$BALL" -o a.png --size 64x48 --quiet
+expect 0 "the same with saved trees" render "$BALL" -o b.png --size 64x48 --quiet --tree a.bvh
+check "is the same picture" cmp a.png b.png
+printf 'a ray is just 32 bytes of floats' >rays
+for on in device cpu; do
+    expect 0 "trace --on $on" trace "$BALL" --rays rays -o hits.$on --on $on --tree a.bvh
+done
+check "gives the same hits" cmp hits.device hits.cpu
+
+# Byte 2000, inverted.
+byte=$(od -An -tu1 -j 2000 -N 1 a.bvh)
+{
+    head -c 2000 a.bvh
+    # shellcheck disable=SC2059
+    printf "\\$(printf %o $((255 - byte)))"
+    tail -c +2002 a.bvh
+} >damaged.bvh
+check "the damaged file is as long" test "$(wc -c <a.bvh)" -eq "$(wc -c <damaged.bvh)"
+head -c 3000 a.bvh >short.bvh
+: >empty.bvh
+rm -f b.png
+for how in "bvh $BALL --no-trace --load" "render $BALL -o b.png --quiet --tree"; do
+    refuse 2 "a damaged file" "damaged.bvh: damaged: " $how damaged.bvh
+    refuse 2 "a file cut short" "short.bvh: .*cut short" $how short.bvh
+    refuse 2 "an empty file" "empty.bvh: " $how empty.bvh
+    refuse 2 "a file of something else" "ball.json: this is no file of trees" $how "$BALL"
+    refuse 2 "no file" "none.bvh: " $how none.bvh
+done
+refuse 2 "another scene" "a.bvh: trees of another scene" bvh "$CUBE" --no-trace --load a.bvh
+check "no picture of bad trees" test ! -e b.png
+
+# ---- Refusals ----
+
+for list in best "" binned, ,binned binned,,sweep binned:7,300; do
+    refuse 2 "--build '$list'" "need" bvh "$CUBE" --build "$list"
+done
+for list in "" 1, x 1,65 -1; do
+    refuse 2 "--threads '$list'" "whole number from 0 to 64" bvh "$CUBE" --threads "$list"
+done
+refuse 2 "no runs" "from 1 to" bvh "$CUBE" --runs 0
+refuse 2 "no rays" "from 1 to" bvh "$CUBE" --rays 0
+refuse 2 "no scene" "a scene is missing" bvh
+refuse 2 "--save of several" "needs one builder" bvh "$CUBE" --save x.bvh
+refuse 2 "--save -" "--save -: " bvh "$CUBE" --build sweep --save -
+refuse 2 "--load -" "--load -: " bvh "$CUBE" --load -
+refuse 2 "--save nowhere" "nowhere/x.bvh" bvh "$CUBE" --build sweep --save nowhere/x.bvh
+refuse 2 "--save of a flattened scene" "single meshes" \
+    bvh "$CUBE" --build sweep --save x.bvh --instances off
+refuse 2 "--load with --leaf" "built already" bvh "$CUBE" --load a.bvh --leaf 2
+check "nothing was saved" test ! -e x.bvh
+refuse 5 "a time limit" "time" bvh "$SCENES/54k.json" --build sweep-naive --time-limit 0.5
+
+export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
+# shellcheck disable=SC2086
+expect 0 "no device" bvh "$CUBE" $SMALL --build sweep
+check "one note says so" test "$(grep -c "^whit: note: .*no rays are traced" stderr)" -eq 1
+check "and nothing else" test "$(grep -c . stderr)" -eq 1
+check "the trees are shown" has "^sweep  "
+refuse 3 "a device that is not there" "" bvh "$CUBE" --build sweep --device nothing
+finish
