@@ -338,13 +338,15 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
     accel->params.instances.leaf_limit = 1;
     accel->no_trees = accel->params.mesh.builder == BVH_NONE && !accel->params.tree_file;
     struct creation creation = {.accel = accel};
-    whit_result result = creation_run(&creation);
+    whit_result result = accel->params.flatten ? accel_flat_create(accel) : creation_run(&creation);
     if (result == WHIT_ERROR_MEMORY)
         log_error(log, "%s: out of memory for its trees", scene->name);
     creation_finish(&creation);
     accel->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK)
         result = pose_at_start(accel);
+    if (accel->flat)
+        accel->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK && accel->params.validate)
         result = accel_validate(accel);
     if (result != WHIT_OK) {
@@ -364,6 +366,7 @@ void accel_destroy(struct accel *accel)
     free(accel->instances);
     free(accel->meshes);
     accel_posing_destroy(accel->posing);
+    accel_flat_destroy(accel->world);
     free(accel);
 }
 

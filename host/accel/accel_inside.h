@@ -47,6 +47,18 @@ struct gpu_triangle material_bits_record(const struct scene *scene,
                                          const struct material_bits *materials,
                                          const struct scene_mesh *mesh, uint32_t primitive);
 
+/* ---- flat.c: accel->world ---- */
+
+/* Instead of mesh trees; the tree over all triangles comes with the first pose. */
+WHIT_CHECK whit_result accel_flat_create(struct accel *accel);
+/* That tree, as accel->meshes[0]. Changes nothing unless all goes well. */
+WHIT_CHECK whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose);
+void accel_flat_destroy(struct accel_flat *flat);
+/* Of the scene: only triangle_count and shade_base are set. */
+const struct accel_mesh *accel_flat_meshes(const struct accel_flat *flat);
+/* Number of an instance's primitive 0 among all triangles. */
+uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance);
+
 /* pose.c */
 void accel_posing_destroy(struct accel_posing *posing);
 

@@ -1,6 +1,7 @@
 /* Is this a tree, and is it the tree of these primitives? Nothing read here is trusted: every index
    is checked before it is followed, and no node is entered twice. */
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -387,6 +388,11 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
         refuse(&view, "its nodes or triangles are out of range, mesh", index);
         return WHIT_ERROR_FAILED;
     }
+    if (accel->no_trees) {
+        bool bare = stated(&view, "number of nodes", m->node_count, 0) &&
+                    stated(&view, "root", m->root, BVH_EMPTY_REF) && triangles_match(&view, &user);
+        return bare ? WHIT_OK : WHIT_ERROR_FAILED;
+    }
     struct walk found;
     whit_result result = view_check(&view, &found);
     if (result != WHIT_OK)
@@ -396,6 +402,93 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
                 stated(&view, "root", m->root, root) && triangles_match(&view, &user);
     return same ? WHIT_OK : WHIT_ERROR_FAILED;
 }
+
+/* ---- One tree for all ---- */
+
+/* Among all triangles; out of range: names none. */
+static uint32_t flat_primitive(const void *user, uint32_t slot)
+{
+    const struct accel *accel = ((const struct mesh_user *)user)->accel;
+    const struct gpu_triangle *t = &accel->triangles[slot];
+    uint32_t instance = t->flags >> TRIANGLE_INSTANCE_SHIFT;
+    if (instance >= accel->instance_count)
+        return UINT32_MAX;
+    uint32_t mesh = accel->scene->instances[instance].mesh;
+    if (t->primitive >= accel->scene->meshes[mesh].triangle_count)
+        return UINT32_MAX;
+    return accel_flat_first(accel->world, instance) + t->primitive;
+}
+
+/* Records are placed in double, and instances know their matrix in float: 8 roundings apart. */
+static bool is_placed(const struct gpu_instance *in, const float *p, const float v[3])
+{
+    const float *rows[3] = {in->forward0, in->forward1, in->forward2};
+    const float origin[3] = {in->origin_x, in->origin_y, in->origin_z};
+    bool placed = true;
+    for (int r = 0; r < 3; ++r) {
+        double sum = (double)origin[r], size = fabs(sum);
+        for (int c = 0; c < 3; ++c) {
+            double part = (double)rows[r][c] * (double)p[c];
+            sum += part;
+            size += fabs(part);
+        }
+        placed &= fabs(sum - (double)v[r]) <= size * 0x1p-21;
+    }
+    return placed;
+}
+
+static bool flat_records_match(const struct view *view, const struct accel *accel)
+{
+    for (uint32_t i = 0; i < accel->record_count; ++i) {
+        const struct gpu_triangle *t = &accel->triangles[i];
+        uint32_t instance = t->flags >> TRIANGLE_INSTANCE_SHIFT;
+        const struct gpu_instance *in = &accel->instances[instance];
+        const struct scene_mesh *mesh = &accel->scene->meshes[in->mesh];
+        const uint32_t *corner = &mesh->indices[3 * (size_t)t->primitive];
+        if (!is_placed(in, &mesh->positions[3 * (size_t)corner[0]], t->v0) ||
+            !is_placed(in, &mesh->positions[3 * (size_t)corner[1]], t->v1) ||
+            !is_placed(in, &mesh->positions[3 * (size_t)corner[2]], t->v2))
+            REFUSE(view, "a record is not its triangle", i);
+    }
+    return true;
+}
+
+static whit_result validate_flat(const struct accel *accel)
+{
+    const struct accel_mesh *m = &accel->meshes[0];
+    struct mesh_user user = {accel, NULL};
+    struct view view = {
+        .log = &accel->log,
+        .name = "the tree over all triangles",
+        .nodes = accel->nodes,
+        .node_count = m->node_count,
+        .slot_count = m->record_count,
+        .primitive_count = m->triangle_count,
+        .split = m->record_count > m->triangle_count,
+        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
+        .primitive = flat_primitive,
+        .box = mesh_primitive_box,
+        .user = &user,
+    };
+    struct walk found = {0};
+    whit_result result = accel->no_trees ? WHIT_OK : view_check(&view, &found);
+    if (result != WHIT_OK)
+        return result;
+    uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
+    for (uint32_t i = 0; i < m->record_count; ++i) {
+        if (flat_primitive(&user, i) == UINT32_MAX) {
+            refuse(&view, "a record names no triangle", i);
+            return WHIT_ERROR_FAILED;
+        }
+    }
+    bool same = m->first_node == 0 && m->first_triangle == 0 &&
+                stated(&view, "depth", m->depth, found.depth) &&
+                stated(&view, "depth of all meshes", accel->mesh_depth, found.depth) &&
+                stated(&view, "root", m->root, root) && flat_records_match(&view, accel);
+    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+}
+
+/* ---- The tree over instances ---- */
 
 struct instance_user {
     const struct accel *accel;
@@ -427,13 +520,20 @@ static bool instance_box(const void *user, uint32_t slot, struct bvh_box *box)
     return true;
 }
 
+/* Of a mesh, in its instances. */
+static uint32_t expected_root(const struct accel *accel, const struct accel_mesh *mesh)
+{
+    return accel->no_trees && mesh->record_count > 0 ? mesh->first_triangle : mesh->root;
+}
+
 /* Numbers the instances that are not empty; false when one does not refer to its mesh. */
 static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_t *count)
 {
     *count = 0;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
         const struct gpu_instance *in = &accel->instances[i];
-        if (in->mesh >= accel->mesh_count || in->root != accel->meshes[in->mesh].root ||
+        if (in->mesh >= accel->mesh_count ||
+            in->root != expected_root(accel, &accel->meshes[in->mesh]) ||
             in->shade_base != accel->meshes[in->mesh].shade_base) {
             log_error(&accel->log, "instances: %u does not refer to its mesh", i);
             return false;
@@ -482,6 +582,8 @@ static whit_result validate_instances(const struct accel *accel)
 whit_result accel_validate(const struct accel *accel)
 {
     uint32_t deepest = 0;
+    if (accel->flat)
+        return validate_flat(accel);
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         whit_result result = validate_mesh(accel, i);
         if (result != WHIT_OK)

@@ -286,6 +286,8 @@ static void visit_triangle(struct search *s, const struct probe *p, uint32_t rec
                            uint32_t instance)
 {
     const struct gpu_triangle *triangle = &s->accel->triangles[record];
+    if (s->accel->flat)
+        instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
     /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
     struct bvh_box box = accel_triangle_box(triangle->v0, triangle->v1, triangle->v2);
     if (s->judging && box_entry(s, p, box.lo, box.hi) == INFINITY)
@@ -353,8 +355,21 @@ static void visit_instance_leaf(struct search *s, const struct probe *p,
     visit_instance(s, p, leaf->first);
 }
 
+static void visit_world(struct search *s, const struct probe *world)
+{
+    const struct accel_mesh *mesh = &s->accel->meshes[0];
+    if (!s->brute && mesh->node_count > 0)
+        walk_tree(s, world, mesh->first_node, visit_mesh_leaf, 0);
+    for (uint32_t i = 0; s->brute && i < mesh->record_count; ++i)
+        visit_triangle(s, world, mesh->first_triangle + i, 0);
+}
+
 static void visit_all(struct search *s, const struct probe *world)
 {
+    if (s->accel->flat) {
+        visit_world(s, world);
+        return;
+    }
     if (!s->brute) {
         if (s->accel->instance_root != BVH_EMPTY_REF)
             walk_tree(s, world, 0, visit_instance_leaf, 0);
@@ -375,7 +390,7 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
     if (!ray_is_usable(ray))
         return;
     struct probe world =
-        probe_world(ray, accel->single_identity ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
+        probe_world(ray, accel->single_identity || accel->flat ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
     if (!(world.t_min <= world.t_max))
         return;
     bool deep = accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;

@@ -92,7 +92,8 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
         .origin_x = (float)forward->m[3],
         .origin_y = (float)forward->m[7],
         .origin_z = (float)forward->m[11],
-        .root = mesh->root,
+        /* Without a tree: the first record. */
+        .root = mesh->node_count == 0 && mesh->record_count > 0 ? mesh->first_triangle : mesh->root,
         .shade_base = mesh->shade_base,
         .mesh = mesh_index,
         .record_count = mesh->record_count,
@@ -161,7 +162,8 @@ static bool rank_instances(const struct accel *accel, struct accel_posing *posin
     bool same = true;
     uint32_t count = 0;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
-        bool empty = accel->meshes[accel->scene->instances[i].mesh].triangle_count == 0;
+        bool empty =
+            accel->no_trees || accel->meshes[accel->scene->instances[i].mesh].triangle_count == 0;
         uint32_t rank = empty ? UINT32_MAX : count;
         same &= posing->ranks[i] == rank;
         posing->ranks[i] = rank;
@@ -177,6 +179,7 @@ struct filling {
     const struct accel *accel;
     const struct scene_pose *pose;
     struct accel_posing *posing;
+    const struct accel_mesh *meshes; /* of the scene */
 };
 
 static void fill_chunk(void *user, uint32_t chunk)
@@ -190,7 +193,7 @@ static void fill_chunk(void *user, uint32_t chunk)
     for (uint32_t i = begin; i < end; ++i) {
         const struct affine *forward = &filling->pose->instances[i];
         uint32_t mesh_index = accel->scene->instances[i].mesh;
-        const struct accel_mesh *mesh = &accel->meshes[mesh_index];
+        const struct accel_mesh *mesh = &filling->meshes[mesh_index];
         struct affine inverse;
         if (!affine_is_finite(forward) || !affine_invert(forward, &inverse) ||
             !instance_fill(forward, &inverse, mesh, mesh_index, &posing->instances[i])) {
@@ -205,7 +208,8 @@ static void fill_chunk(void *user, uint32_t chunk)
 static whit_result instances_fill(const struct accel *accel, const struct scene_pose *pose,
                                   struct accel_posing *posing)
 {
-    struct filling filling = {accel, pose, posing};
+    struct filling filling = {accel, pose, posing,
+                              accel->flat ? accel_flat_meshes(accel->world) : accel->meshes};
     uint32_t chunks = chunk_count(accel->instance_count);
     threads_for(accel->params.instances.thread_count, chunks, fill_chunk, &filling);
     for (uint32_t c = 0; c < chunks; ++c) {
@@ -276,6 +280,44 @@ static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
     }
 }
 
+/* All of them are in one tree then; what follows from it is the same for each. */
+static void instances_join(const struct accel_mesh *world, uint32_t count,
+                           struct gpu_instance *instances)
+{
+    uint32_t root =
+        world->node_count == 0 && world->record_count > 0 ? world->first_triangle : world->root;
+    for (uint32_t i = 0; i < count; ++i) {
+        instances[i].root = root;
+        instances[i].record_count = world->record_count;
+        instances[i].center_x = world->box.lo[0] * 0.5f + world->box.hi[0] * 0.5f;
+        instances[i].center_y = world->box.lo[1] * 0.5f + world->box.hi[1] * 0.5f;
+        instances[i].center_z = world->box.lo[2] * 0.5f + world->box.hi[2] * 0.5f;
+        instances[i].reach = box_reach(&world->box);
+    }
+}
+
+static void instances_exchange(struct accel *accel)
+{
+    struct gpu_instance *before = accel->instances;
+    accel->instances = accel->posing->instances;
+    accel->posing->instances = before;
+}
+
+static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
+{
+    struct accel_posing *posing = accel->posing;
+    for (uint32_t i = 0; i < accel->instance_count; ++i)
+        posing->ranks[i] = UINT32_MAX;
+    whit_result result = instances_fill(accel, pose, posing);
+    if (result == WHIT_OK)
+        result = accel_flat_build(accel, pose);
+    if (result != WHIT_OK)
+        return result;
+    instances_join(&accel->meshes[0], accel->instance_count, posing->instances);
+    instances_exchange(accel);
+    return WHIT_OK;
+}
+
 /* Nothing is changed unless all goes well. */
 static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
 {
@@ -290,11 +332,10 @@ static whit_result pose_instances(struct accel *accel, const struct scene_pose *
     if (keep && posing->count > 0)
         subtree_refit(accel->nodes, 0, posing);
     posing->has_tree = true;
-    struct gpu_instance *before = accel->instances;
-    accel->instances = posing->instances;
-    posing->instances = before;
-    accel->single_identity =
-        accel->instance_count == 1 && posing->count == 1 && is_identity(&pose->instances[0]);
+    instances_exchange(accel);
+    accel->single_identity = accel->instance_count == 1 &&
+                             accel->meshes[accel->scene->instances[0].mesh].triangle_count > 0 &&
+                             is_identity(&pose->instances[0]);
     return WHIT_OK;
 }
 
@@ -313,7 +354,7 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
         log_error(&accel->log, "%s: out of memory for %u instances", accel->scene->name, count);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = pose_instances(accel, pose);
+    whit_result result = accel->flat ? pose_flat(accel, pose) : pose_instances(accel, pose);
     accel->instance_build_ms = clock_ms() - begin_ms;
     return result;
 }

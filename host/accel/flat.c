@@ -1,0 +1,329 @@
+/* One tree over the triangles of all instances, in world space: the scene without instancing. Each
+   vertex is placed in double and rounded once. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "accel/accel_inside.h"
+#include "base/array.h"
+#include "base/clock.h"
+#include "base/threads.h"
+
+enum {
+    SPAN = 4096,            /* triangles or vertices handled by one call */
+    BYTES_A_TRIANGLE = 300, /* at the peak of a build: corners, boxes, builder, nodes, records */
+};
+static const double COORDINATE_MOST = 1e18; /* as scene_freeze has it in object space */
+
+/* What stays from pose to pose. */
+struct accel_flat {
+    struct accel_mesh *meshes; /* of the scene: what instances say of theirs */
+    struct material_bits *materials;
+    uint32_t *first_triangle, *first_vertex; /* of each instance, and the total */
+    struct flat_span *spans;
+    uint32_t span_count, span_capacity;
+};
+
+/* Vertices and triangles [begin, end) of one instance. */
+struct flat_span {
+    uint32_t instance, begin, end;
+    bool bad;
+};
+
+/* One build. */
+struct flattening {
+    struct accel *accel;
+    const struct scene_pose *pose;
+    float *positions;
+    uint32_t *indices, *owners; /* of each triangle: 3 vertices; its instance */
+    struct bvh_box *boxes;
+    uint8_t *whole;
+    struct bvh tree;
+    struct gpu_triangle *triangles;
+};
+
+void accel_flat_destroy(struct accel_flat *flat)
+{
+    if (!flat)
+        return;
+    free(flat->meshes);
+    free(flat->materials);
+    free(flat->first_triangle);
+    free(flat->first_vertex);
+    free(flat->spans);
+    free(flat);
+}
+
+const struct accel_mesh *accel_flat_meshes(const struct accel_flat *flat)
+{
+    return flat->meshes;
+}
+
+uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance)
+{
+    return flat->first_triangle[instance];
+}
+
+static whit_result refuse_size(const struct accel *accel, uint64_t triangles)
+{
+    log_error(&accel->log,
+              "%s: without instances it is %llu triangles: more than memory or %u can hold",
+              accel->scene->name, (unsigned long long)triangles, BVH_FIRST_MASK / 2);
+    return WHIT_ERROR_INPUT;
+}
+
+static bool fits_memory(uint64_t triangles)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+    if (pages <= 0 || page_bytes <= 0)
+        return true;
+    return triangles <= (uint64_t)pages * (uint64_t)page_bytes / BYTES_A_TRIANGLE;
+}
+
+static whit_result place_instances(const struct accel *accel, struct accel_flat *flat)
+{
+    const struct scene *scene = accel->scene;
+    uint64_t triangles = 0, vertices = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        flat->first_triangle[i] = (uint32_t)triangles;
+        flat->first_vertex[i] = (uint32_t)vertices;
+        triangles += mesh->triangle_count;
+        vertices += mesh->vertex_count;
+    }
+    flat->first_triangle[scene->instance_count] = (uint32_t)triangles;
+    flat->first_vertex[scene->instance_count] = (uint32_t)vertices;
+    if (triangles > BVH_FIRST_MASK / 2 || vertices > UINT32_MAX / 4 || !fits_memory(triangles))
+        return refuse_size(accel, triangles);
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        uint32_t larger =
+            mesh->triangle_count > mesh->vertex_count ? mesh->triangle_count : mesh->vertex_count;
+        for (uint32_t begin = 0; begin < larger; begin += SPAN) {
+            uint32_t end = larger - begin < SPAN ? larger : begin + SPAN;
+            if (!ARRAY_PUSH(flat->spans, flat->span_count, flat->span_capacity,
+                            (struct flat_span){i, begin, end, false}))
+                return WHIT_ERROR_MEMORY;
+        }
+    }
+    return WHIT_OK;
+}
+
+static void describe_meshes(const struct scene *scene, struct accel_flat *flat)
+{
+    uint32_t shade_base = 0;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        flat->meshes[i] = (struct accel_mesh){
+            .root = BVH_EMPTY_REF,
+            .triangle_count = scene->meshes[i].triangle_count,
+            .shade_base = shade_base,
+        };
+        shade_base += scene->meshes[i].triangle_count;
+    }
+}
+
+whit_result accel_flat_create(struct accel *accel)
+{
+    const struct scene *scene = accel->scene;
+    struct accel_flat *flat = array_alloc_zeroed(1, sizeof *flat);
+    accel->world = flat;
+    accel->flat = true;
+    accel->mesh_count = 1;
+    accel->instance_count = scene->instance_count;
+    accel->instance_root = BVH_EMPTY_REF;
+    accel->meshes = array_alloc_zeroed(1, sizeof *accel->meshes);
+    accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
+    if (!flat || !accel->meshes || !accel->instances)
+        return WHIT_ERROR_MEMORY;
+    if (scene->instance_count >= UINT32_MAX >> TRIANGLE_INSTANCE_SHIFT) {
+        log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
+        return WHIT_ERROR_INPUT;
+    }
+    size_t ends = (size_t)scene->instance_count + 1;
+    flat->meshes = array_alloc(scene->mesh_count, sizeof *flat->meshes);
+    flat->materials = array_alloc_zeroed(scene->material_count, sizeof *flat->materials);
+    flat->first_triangle = array_alloc(ends, sizeof *flat->first_triangle);
+    flat->first_vertex = array_alloc(ends, sizeof *flat->first_vertex);
+    if (!flat->meshes || !flat->materials || !flat->first_triangle || !flat->first_vertex)
+        return WHIT_ERROR_MEMORY;
+    describe_meshes(scene, flat);
+    material_bits_scan(scene, flat->materials);
+    return place_instances(accel, flat);
+}
+
+/* ---- One build ---- */
+
+static const struct scene_mesh *mesh_of(const struct flattening *f, uint32_t instance)
+{
+    const struct scene *scene = f->accel->scene;
+    return &scene->meshes[scene->instances[instance].mesh];
+}
+
+static void place_vertices(void *user, uint32_t index)
+{
+    struct flattening *f = user;
+    struct flat_span *span = &f->accel->world->spans[index];
+    const struct scene_mesh *mesh = mesh_of(f, span->instance);
+    const struct affine *forward = &f->pose->instances[span->instance];
+    uint32_t end = span->end < mesh->vertex_count ? span->end : mesh->vertex_count;
+    float *out = f->positions + 3 * (size_t)f->accel->world->first_vertex[span->instance];
+    span->bad = false;
+    for (uint32_t v = span->begin; v < end; ++v) {
+        const float *p = mesh->positions + 3 * (size_t)v;
+        double world[3];
+        affine_point(forward, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, world);
+        for (int i = 0; i < 3; ++i) {
+            span->bad |= !(fabs(world[i]) <= COORDINATE_MOST);
+            out[3 * (size_t)v + (size_t)i] = (float)world[i];
+        }
+    }
+}
+
+static void place_triangles(void *user, uint32_t index)
+{
+    struct flattening *f = user;
+    const struct accel_flat *flat = f->accel->world;
+    const struct flat_span *span = &flat->spans[index];
+    const struct scene_mesh *mesh = mesh_of(f, span->instance);
+    uint32_t end = span->end < mesh->triangle_count ? span->end : mesh->triangle_count;
+    uint32_t first = flat->first_triangle[span->instance];
+    for (uint32_t t = span->begin; t < end; ++t) {
+        uint32_t *corner = &f->indices[3 * ((size_t)first + t)];
+        for (size_t k = 0; k < 3; ++k)
+            corner[k] = flat->first_vertex[span->instance] + mesh->indices[3 * (size_t)t + k];
+        f->boxes[first + t] = accel_triangle_box(&f->positions[3 * (size_t)corner[0]],
+                                                 &f->positions[3 * (size_t)corner[1]],
+                                                 &f->positions[3 * (size_t)corner[2]]);
+        f->owners[first + t] = span->instance;
+    }
+    if (f->whole && span->begin == 0)
+        material_bits_whole(f->accel->scene, flat->materials, mesh, f->whole + first);
+}
+
+static whit_result refuse_range(const struct flattening *f)
+{
+    const struct accel *accel = f->accel;
+    for (uint32_t i = 0; i < accel->world->span_count; ++i) {
+        if (!accel->world->spans[i].bad)
+            continue;
+        uint32_t instance = accel->world->spans[i].instance;
+        const char *name = accel->scene->instances[instance].name;
+        log_error(&accel->log, "%s: instance %u `%s`: its triangles are out of range at %g s",
+                  accel->scene->name, instance, name ? name : "", f->pose->time_s);
+        return WHIT_ERROR_INPUT;
+    }
+    return WHIT_OK;
+}
+
+static whit_result world_build(struct flattening *f)
+{
+    struct accel *accel = f->accel;
+    struct accel_flat *flat = accel->world;
+    uint32_t threads = accel->params.mesh.thread_count;
+    uint32_t count = flat->first_triangle[accel->instance_count];
+    uint32_t vertices = flat->first_vertex[accel->instance_count];
+    bool split = accel->params.mesh.builder == BVH_SPATIAL;
+    f->positions = array_alloc(vertices, 3 * sizeof *f->positions);
+    f->indices = array_alloc(count, 3 * sizeof *f->indices);
+    f->owners = array_alloc(count, sizeof *f->owners);
+    f->boxes = array_alloc(count, sizeof *f->boxes);
+    f->whole = split ? array_alloc(count, 1) : NULL;
+    if (!f->positions || !f->indices || !f->owners || !f->boxes || (split && !f->whole))
+        return WHIT_ERROR_MEMORY;
+    threads_for(threads, flat->span_count, place_vertices, f);
+    whit_result result = refuse_range(f);
+    if (result != WHIT_OK)
+        return result;
+    threads_for(threads, flat->span_count, place_triangles, f);
+    const struct bvh_triangles triangles = {f->positions, f->indices, f->whole};
+    struct bvh_params params = accel->params.mesh;
+    params.triangles = &triangles;
+    return bvh_build(&accel->log, f->boxes, count, &params, &f->tree);
+}
+
+static void write_records(void *user, uint32_t index)
+{
+    const struct flattening *f = user;
+    const struct accel *accel = f->accel;
+    uint32_t begin = index * SPAN, left = f->tree.reference_count - begin;
+    uint32_t end = begin + (left < SPAN ? left : SPAN);
+    for (uint32_t i = begin; i < end; ++i) {
+        uint32_t triangle = f->tree.order[i], instance = f->owners[triangle];
+        const uint32_t *corner = &f->indices[3 * (size_t)triangle];
+        struct gpu_triangle record =
+            material_bits_record(accel->scene, accel->world->materials, mesh_of(f, instance),
+                                 triangle - accel->world->first_triangle[instance]);
+        memcpy(record.v0, &f->positions[3 * (size_t)corner[0]], sizeof record.v0);
+        memcpy(record.v1, &f->positions[3 * (size_t)corner[1]], sizeof record.v1);
+        memcpy(record.v2, &f->positions[3 * (size_t)corner[2]], sizeof record.v2);
+        record.flags |= instance << TRIANGLE_INSTANCE_SHIFT;
+        if (affine_determinant(&f->pose->instances[instance]) < 0.0)
+            record.flags |= TRIANGLE_MIRRORED;
+        f->triangles[i] = record;
+    }
+}
+
+static whit_result world_write(struct flattening *f)
+{
+    uint32_t count = f->tree.reference_count;
+    f->triangles = array_alloc_aligned(count, sizeof *f->triangles);
+    if (!f->triangles)
+        return WHIT_ERROR_MEMORY;
+    threads_for(f->accel->params.mesh.thread_count, (count + SPAN - 1) / SPAN, write_records, f);
+    return WHIT_OK;
+}
+
+/* Nothing fails from here on. The tree's nodes and the records change hands. */
+static void world_commit(struct flattening *f)
+{
+    struct accel *accel = f->accel;
+    struct bvh *tree = &f->tree;
+    struct accel_mesh *mesh = &accel->meshes[0];
+    free(accel->nodes);
+    free(accel->triangles);
+    accel->nodes = tree->nodes;
+    accel->triangles = f->triangles;
+    tree->nodes = NULL;
+    f->triangles = NULL;
+    *mesh = (struct accel_mesh){
+        .root = tree->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF,
+        .node_count = tree->node_count,
+        .record_count = tree->reference_count,
+        .triangle_count = tree->primitive_count,
+        .depth = tree->depth,
+        .sah_cost = tree->sah_cost,
+        .build_ms = tree->build_ms,
+    };
+    if (tree->node_count > 0) {
+        memcpy(mesh->box.lo, accel->nodes[0].lo, sizeof mesh->box.lo);
+        memcpy(mesh->box.hi, accel->nodes[0].hi, sizeof mesh->box.hi);
+    }
+    accel->node_count = tree->node_count;
+    accel->record_count = tree->reference_count;
+    accel->triangle_count = tree->primitive_count;
+    accel->mesh_depth = tree->depth;
+    accel->clipped = tree->clipped;
+}
+
+whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose)
+{
+    struct flattening f = {.accel = accel, .pose = pose};
+    whit_result result = world_build(&f);
+    if (result == WHIT_OK)
+        result = world_write(&f);
+    if (result == WHIT_OK)
+        world_commit(&f);
+    else if (result == WHIT_ERROR_MEMORY)
+        log_error(&accel->log, "%s: out of memory for one tree over all its triangles",
+                  accel->scene->name);
+    bvh_finish(&f.tree);
+    free(f.triangles);
+    free(f.positions);
+    free(f.indices);
+    free(f.owners);
+    free(f.boxes);
+    free(f.whole);
+    return result;
+}
