@@ -359,6 +359,15 @@ static bool triangles_match(const struct view *view, const struct mesh_user *use
     return true;
 }
 
+static whit_result parts_check(const struct view *view, const struct accel *accel)
+{
+    if (!view->split)
+        return WHIT_OK;
+    return accel_validate_parts(view->log, view->name, &view->nodes[view->first_node],
+                                view->node_count, accel->triangles, view->primitive_count,
+                                view->primitive, view->user);
+}
+
 static whit_result validate_mesh(const struct accel *accel, uint32_t index)
 {
     const struct accel_mesh *m = &accel->meshes[index];
@@ -400,7 +409,7 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
     uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[m->first_node]) : BVH_EMPTY_REF;
     bool same = stated(&view, "depth", m->depth, found.depth) &&
                 stated(&view, "root", m->root, root) && triangles_match(&view, &user);
-    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+    return same ? parts_check(&view, accel) : WHIT_ERROR_FAILED;
 }
 
 /* ---- One tree for all ---- */
@@ -485,7 +494,7 @@ static whit_result validate_flat(const struct accel *accel)
                 stated(&view, "depth", m->depth, found.depth) &&
                 stated(&view, "depth of all meshes", accel->mesh_depth, found.depth) &&
                 stated(&view, "root", m->root, root) && flat_records_match(&view, accel);
-    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+    return same ? parts_check(&view, accel) : WHIT_ERROR_FAILED;
 }
 
 /* ---- The tree over instances ---- */

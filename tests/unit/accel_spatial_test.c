@@ -391,6 +391,61 @@ static void same_cost_for_any_order(void **state)
 
 enum { RAYS = 12000 };
 
+/* At where edges of triangles pass faces of leaves, from near and far: where a part's box has its
+   corners. Every fourth ray goes nearly along the triangle. */
+static struct gpu_ray ray_at_leaf(const struct accel *accel, double distance)
+{
+    const struct accel_mesh *mesh = &accel->meshes[0];
+    for (;;) {
+        uint32_t index = random_bits() % mesh->node_count, edge = random_bits() % 3,
+                 axis = random_bits() % 3;
+        const struct gpu_bvh_node *leaf = &accel->nodes[mesh->first_node + index];
+        if (index == 1 || bvh_count(leaf) == 0)
+            continue;
+        const struct gpu_triangle *t =
+            &accel->triangles[leaf->first + random_bits() % bvh_count(leaf)];
+        const float *v[3] = {t->v0, t->v1, t->v2}, *a = v[edge], *b = v[(edge + 1) % 3];
+        double s = ((double)(random_bits() % 2 ? leaf->lo : leaf->hi)[axis] - (double)a[axis]) /
+                   ((double)b[axis] - (double)a[axis]);
+        if (!(s >= 0.0 && s <= 1.0))
+            continue;
+        bool along = random_bits() % 4 == 0;
+        double w = (double)random_float() * distance;
+        struct gpu_ray ray = {.t_max = INFINITY};
+        for (int k = 0; k < 3; ++k) {
+            double target = (double)a[k] + s * ((double)b[k] - (double)a[k]);
+            double size = (double)mesh->box.hi[k] - (double)mesh->box.lo[k];
+            double off = size * ((double)random_float() - 0.5);
+            ray.origin[k] = (float)(along ? target + w * ((double)v[(edge + 2) % 3][k] - target) +
+                                                1e-7 * distance * off
+                                          : target + distance * off);
+            ray.dir[k] = (float)(target - (double)ray.origin[k]);
+        }
+        return ray;
+    }
+}
+
+static void assert_same_at_leaves(const struct scene *scene)
+{
+    struct accel *plain = soup_accel(scene, &(struct bvh_params){.builder = BVH_BINNED});
+    struct accel *split = soup_accel(
+        scene, &(struct bvh_params){.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_budget = 4});
+    uint32_t status = 0, found = 0;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_ray ray = ray_at_leaf(split, i % 3 == 0 ? 1e3 : i % 3 == 1 ? 30.0 : 1.0);
+        struct gpu_hit expected, hit;
+        traverse_float(plain, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &expected, NULL,
+                       &status);
+        traverse_float(split, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+        assert_memory_equal(&hit, &expected, sizeof hit);
+        found += hit.primitive != HIT_NONE;
+    }
+    assert_int_equal(status, 0);
+    assert_true(found > RAYS / 2);
+    accel_destroy(plain);
+    accel_destroy(split);
+}
+
 static void assert_same_hits(const struct soup *soup, const struct scene *scene, double visits)
 {
     struct gpu_hit *expected = malloc(RAYS * sizeof *expected), *hits = malloc(RAYS * sizeof *hits);
@@ -426,9 +481,49 @@ static void hits_are_the_same(void **state)
     for (size_t i = 0; i < sizeof soups / sizeof *soups; ++i) {
         struct scene *scene = soup_scene(&soups[i]);
         assert_same_hits(&soups[i], scene, visits[i]);
+        if (i < 3)
+            assert_same_at_leaves(scene);
         scene_destroy(scene);
         soup_finish(&soups[i]);
     }
+}
+
+/* A leaf that loses a piece of a part: the validator misses it. */
+static void lost_parts_are_noticed(void **state)
+{
+    (void)state;
+    random_state = 12;
+    struct soup soup = soup_rooms(300);
+    struct scene *scene = soup_scene(&soup);
+    char said[201] = "";
+    struct accel_params params = {
+        .mesh = {.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_budget = 3}};
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    accel->log = (struct log){keep_message, said, WHIT_LOG_ERROR};
+    assert_int_equal(accel_validate(accel), WHIT_OK);
+    const struct accel_mesh *mesh = &accel->meshes[0];
+    uint32_t refused = 0, by_points = 0;
+    for (uint32_t i = 2; i < mesh->node_count; i += 7) {
+        struct gpu_bvh_node *leaf = &accel->nodes[mesh->first_node + i];
+        struct gpu_bvh_node *pair = &accel->nodes[mesh->first_node + (i & ~1u)];
+        struct gpu_bvh_node kept[2] = {pair[0], pair[1]};
+        uint32_t axis = 0;
+        for (uint32_t a = 1; a < 3; ++a)
+            axis = leaf->hi[a] - leaf->lo[a] > leaf->hi[axis] - leaf->lo[axis] ? a : axis;
+        if (bvh_count(leaf) == 0)
+            continue;
+        leaf->hi[axis] = leaf->lo[axis] + 0.05f * (leaf->hi[axis] - leaf->lo[axis]);
+        bvh_set_axis(pair);
+        said[0] = 0;
+        refused += accel_validate(accel) != WHIT_OK;
+        by_points += strstr(said, "a part of a primitive") != NULL;
+        memcpy(pair, kept, sizeof kept);
+    }
+    assert_true(refused > 50 && by_points > 10);
+    accel_destroy(accel);
+    scene_destroy(scene);
+    soup_finish(&soup);
 }
 
 /* Shadow rays add up filters record by record: each must be there once. */
@@ -481,6 +576,7 @@ int main(void)
         cmocka_unit_test(same_bytes_for_any_thread_count),
         cmocka_unit_test(same_cost_for_any_order),
         cmocka_unit_test(hits_are_the_same),
+        cmocka_unit_test(lost_parts_are_noticed),
         cmocka_unit_test(filters_are_met_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

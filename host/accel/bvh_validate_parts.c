@@ -1,0 +1,64 @@
+/* Split triangles: is all of each in the leaves that hold it? By points on it, and without the
+   clipper that made the parts. */
+#include <stdlib.h>
+
+#include "accel/accel_inside.h"
+#include "base/array.h"
+
+/* Corners, middles of edges and inside, in sixths: one bit each. */
+enum { STEPS = 6, POINTS = (STEPS + 1) * (STEPS + 2) / 2 };
+
+/* Within the triangle's own box, where rounding would leave it. */
+static double point_along(const struct gpu_triangle *t, int i, int j, int axis)
+{
+    double a = (double)t->v0[axis], b = (double)t->v1[axis], c = (double)t->v2[axis];
+    double at = (a * i + b * j + c * (STEPS - i - j)) / STEPS;
+    double lo = a < b ? a : b, hi = a > b ? a : b;
+    lo = c < lo ? c : lo;
+    hi = c > hi ? c : hi;
+    return at < lo ? lo : at > hi ? hi : at;
+}
+
+static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh_node *node)
+{
+    uint32_t inside = 0;
+    int point = 0;
+    for (int i = 0; i <= STEPS; ++i) {
+        for (int j = 0; i + j <= STEPS; ++j, ++point) {
+            bool in = true;
+            for (int axis = 0; axis < 3 && in; ++axis) {
+                double at = point_along(t, i, j, axis);
+                in = at >= (double)node->lo[axis] && at <= (double)node->hi[axis];
+            }
+            inside |= (uint32_t)in << point;
+        }
+    }
+    return inside;
+}
+
+whit_result accel_validate_parts(const struct log *log, const char *name,
+                                 const struct gpu_bvh_node *nodes, uint32_t node_count,
+                                 const struct gpu_triangle *triangles, uint32_t primitive_count,
+                                 uint32_t (*primitive)(const void *user, uint32_t slot),
+                                 const void *user)
+{
+    uint32_t *seen = array_alloc_zeroed(primitive_count, sizeof *seen);
+    if (!seen) {
+        log_error(log, "%s: out of memory for validation", name);
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < node_count; ++i) {
+        for (uint32_t k = 0; i != 1 && k < bvh_count(&nodes[i]); ++k) {
+            uint32_t slot = nodes[i].first + k;
+            seen[primitive(user, slot)] |= points_inside(&triangles[slot], &nodes[i]);
+        }
+    }
+    uint32_t first_bad = 0;
+    while (first_bad < primitive_count && seen[first_bad] == (1u << POINTS) - 1)
+        ++first_bad;
+    free(seen);
+    if (first_bad == primitive_count)
+        return WHIT_OK;
+    log_error(log, "%s: a part of a primitive is in none of its leaves (%u)", name, first_bad);
+    return WHIT_ERROR_FAILED;
+}
