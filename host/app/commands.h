@@ -6,7 +6,7 @@
 #include "app/job.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
-    command_devices;
+    command_devices, command_bench;
 
 /* A quarter of what 8 bits can show. */
 #define BAILOUT_DEFAULT (1.0 / 1024.0)

@@ -1,6 +1,7 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
   app/main.c app/cli.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c app/frames.c
+  app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_table.c
   app/render_command.c app/scene_command.c app/trace_command.c app/bvh_command.c app/study.c
   app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
 set_target_properties(whit_program PROPERTIES
@@ -11,3 +12,5 @@ target_link_libraries(whit_program PRIVATE whit_flags whit PkgConfig::JANSSON m)
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES app/completion/whit.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/whit
+  FILES_MATCHING PATTERN "*.json")

@@ -1,0 +1,103 @@
+/* Benches: cases measured in turns, their figures as tables and as JSON. */
+#ifndef APP_BENCH_H
+#define APP_BENCH_H
+
+#include "app/cli.h"
+#include "app/document.h"
+
+enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12 };
+
+/* What `whit bench` was asked for, and where its answers go. */
+struct bench {
+    const char *scenes; /* the folder, or NULL: where whit finds it */
+    const char *json;   /* NULL: text only */
+    const char *device_name;
+    bool quick, quiet;
+    uint32_t runs;
+    uint32_t width, height;
+    double naive_limit_s;
+    whit_device *device;
+    whit_device_info device_info;
+    struct cli_progress progress;
+    uint32_t step, step_count; /* of the section, for the progress */
+    json_t *sections;
+};
+
+struct bench_scene {
+    whit_scene *scene;
+    whit_scene_info info;
+    char name[32];
+};
+
+/* Times in ms: in the order of the runs, and sorted up once they are complete. */
+struct bench_times {
+    double ms[BENCH_RUNS_MOST];
+    uint32_t count;
+};
+
+struct bench_case {
+    const char *label;
+    struct bench_scene *scene;
+    whit_accel_params accel_params;
+    whit_traversal traversal;
+    uint32_t width, height; /* 0: the bench's */
+    whit_accel *accel;
+    whit_accel_info accel_info;
+    whit_renderer *renderer;
+    struct bench_times build, frame;
+    whit_stats counted;
+    bool has_counts;
+};
+
+/* `name` without .json. `quiet`: what goes wrong with its trees is not said. */
+WHIT_CHECK whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
+                                  struct bench_scene *scene);
+WHIT_CHECK whit_result bench_load_file(const char *path, bool quiet, struct bench_scene *scene);
+void bench_unload(struct bench_scene *scene);
+
+/* Steps that a section's cases take, for the progress. */
+void bench_begin(struct bench *bench, uint32_t steps);
+void bench_step(struct bench *bench);
+void bench_end(struct bench *bench);
+
+/* Builds each case's trees `runs` times, in turns; the last ones stay. */
+WHIT_CHECK whit_result bench_build(struct bench *bench, struct bench_case *cases, uint32_t count,
+                                   uint32_t runs);
+/* Renders each case's picture, once before the clock counts and then `runs` times, in turns. */
+WHIT_CHECK whit_result bench_render(struct bench *bench, struct bench_case *cases, uint32_t count,
+                                    uint32_t runs);
+/* Renders each once more, with counters. */
+WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count);
+void bench_case_finish(struct bench_case *cases, uint32_t count);
+
+double bench_median(const struct bench_times *times);
+/* Half the width of the middle half. */
+double bench_spread(const struct bench_times *times);
+/* 1: `a` takes longer beyond both spreads; -1: `b` does; 0: neither. */
+int bench_compare(const struct bench_times *a, const struct bench_times *b);
+double bench_fps(const struct bench_case *c);
+/* Nodes opened a ray (pairs, leaves, instances), over all rays. */
+double bench_visits(const struct bench_case *c);
+double bench_triangle_tests(const struct bench_case *c);
+json_t *bench_document(const struct bench_case *c);
+
+/* ---- Tables ---- */
+
+enum { TABLE_COLUMNS_MOST = 12, TABLE_ROWS_MOST = 20, TABLE_CELL = 56 };
+struct table {
+    uint32_t column_count, row_count, cell;
+    char cells[TABLE_ROWS_MOST][TABLE_COLUMNS_MOST][TABLE_CELL];
+};
+/* Heads of columns, ended by NULL. */
+void table_begin(struct table *table, const char *const *heads);
+void table_row(struct table *table);
+void table_cell(struct table *table, const char *format, ...) WHIT_PRINTF(2, 3);
+void table_ms(struct table *table, const struct bench_times *times);
+/* As Markdown, aligned: the first column to the left, all others to the right. */
+void table_print(const struct table *table);
+
+/* ---- The report ---- */
+
+whit_result bench_report(struct bench *bench);
+
+#endif

@@ -1,0 +1,305 @@
+#define _GNU_SOURCE
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/bench.h"
+
+/* ---- Scenes ---- */
+
+/* Beside the program, where it is built or installed. */
+static bool find_beside_program(const char *name, char *path, size_t size)
+{
+    static const char *const folders[] = {"../scenes", "../../scenes", "../share/whit/scenes"};
+    char program[2048];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0)
+        return false;
+    program[length] = 0;
+    char *slash = strrchr(program, '/');
+    if (!slash)
+        return false;
+    *slash = 0;
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; ++i) {
+        snprintf(path, size, "%s/%s/%s.json", program, folders[i], name);
+        if (access(path, R_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+whit_result bench_load_file(const char *path, bool quiet, struct bench_scene *scene)
+{
+    const whit_load_params params = {.cancel = &cli_cancel};
+    whit_result result =
+        whit_scene_load(path, &params, quiet ? NULL : &cli_log_errors, &scene->scene);
+    if (result == WHIT_OK)
+        whit_scene_get_info(scene->scene, &scene->info);
+    return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
+}
+
+whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
+                       struct bench_scene *scene)
+{
+    char path[2200];
+    *scene = (struct bench_scene){0};
+    snprintf(scene->name, sizeof scene->name, "%s", name);
+    snprintf(path, sizeof path, "%s/%s.json", bench->scenes ? bench->scenes : "scenes", name);
+    if (!bench->scenes && access(path, R_OK) != 0 &&
+        !find_beside_program(name, path, sizeof path)) {
+        cli_error("%s.json is not here: --scenes FOLDER says where whit's scenes are", name);
+        return WHIT_ERROR_INPUT;
+    }
+    return bench_load_file(path, quiet, scene);
+}
+
+void bench_unload(struct bench_scene *scene)
+{
+    whit_scene_destroy(scene->scene);
+    *scene = (struct bench_scene){0};
+}
+
+/* ---- Progress ---- */
+
+void bench_begin(struct bench *bench, uint32_t steps)
+{
+    cli_progress_init(&bench->progress, bench->quiet);
+    bench->step = 0;
+    bench->step_count = steps;
+}
+
+void bench_step(struct bench *bench)
+{
+    ++bench->step;
+    cli_progress_update(&bench->progress, (double)bench->step / bench->step_count);
+}
+
+void bench_end(struct bench *bench)
+{
+    cli_progress_finish(&bench->progress);
+}
+
+/* ---- Figures ---- */
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void add_time(struct bench_times *times, double ms)
+{
+    if (times->count < BENCH_RUNS_MOST)
+        times->ms[times->count++] = ms;
+}
+
+/* The value below which `share` of the times are, between neighbours by a straight line. */
+static double quantile(const struct bench_times *times, double share)
+{
+    double sorted[BENCH_RUNS_MOST];
+    if (times->count == 0)
+        return 0.0;
+    memcpy(sorted, times->ms, times->count * sizeof *sorted);
+    qsort(sorted, times->count, sizeof *sorted, compare_numbers);
+    double at = share * (times->count - 1);
+    uint32_t below = (uint32_t)at;
+    uint32_t above = below + 1 < times->count ? below + 1 : below;
+    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+}
+
+double bench_median(const struct bench_times *times)
+{
+    return quantile(times, 0.5);
+}
+
+double bench_spread(const struct bench_times *times)
+{
+    return 0.5 * (quantile(times, 0.75) - quantile(times, 0.25));
+}
+
+int bench_compare(const struct bench_times *a, const struct bench_times *b)
+{
+    double difference = bench_median(a) - bench_median(b);
+    if (fabs(difference) <= bench_spread(a) + bench_spread(b))
+        return 0;
+    return difference > 0.0 ? 1 : -1;
+}
+
+double bench_fps(const struct bench_case *c)
+{
+    double ms = bench_median(&c->frame);
+    return ms > 0.0 ? 1e3 / ms : 0.0;
+}
+
+static double sum_of_costs(const struct bench_case *c, double *rays, double *triangles)
+{
+    double visits = 0.0;
+    *rays = *triangles = 0.0;
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
+        const whit_cost *cost = &c->counted.costs[kind];
+        *rays += (double)cost->rays;
+        *triangles += (double)cost->triangles;
+        visits += (double)(cost->pairs + cost->leaves + cost->instances);
+    }
+    return visits;
+}
+
+double bench_visits(const struct bench_case *c)
+{
+    double rays, triangles, visits = sum_of_costs(c, &rays, &triangles);
+    return rays > 0.0 ? visits / rays : 0.0;
+}
+
+double bench_triangle_tests(const struct bench_case *c)
+{
+    double rays, triangles;
+    sum_of_costs(c, &rays, &triangles);
+    return rays > 0.0 ? triangles / rays : 0.0;
+}
+
+static json_t *times_document(const struct bench_times *times)
+{
+    json_t *object = document_object();
+    document_ms(object, "median", bench_median(times));
+    document_ms(object, "spread", bench_spread(times));
+    document_count(object, "runs", times->count);
+    return object;
+}
+
+static void put_counts(json_t *object, const struct bench_case *c)
+{
+    const whit_cost *primary = &c->counted.costs[WHIT_RAY_PRIMARY];
+    document_number(object, "visits_per_ray", bench_visits(c));
+    document_number(object, "triangle_tests_per_ray", bench_triangle_tests(c));
+    if (primary->records)
+        document_number(object, "depth_mean",
+                        (double)primary->depth_sum / (double)primary->records);
+    document_count(object, "depth_max", primary->depth);
+}
+
+json_t *bench_document(const struct bench_case *c)
+{
+    json_t *object = document_object();
+    document_text(object, "case", c->label);
+    document_text(object, "scene", c->scene->name);
+    document_count(object, "triangles", c->scene->info.triangle_count);
+    if (c->build.count)
+        document_put(object, "build_ms", times_document(&c->build));
+    if (c->frame.count) {
+        document_put(object, "frame_ms", times_document(&c->frame));
+        document_number(object, "fps", bench_fps(c));
+        document_count(object, "width", c->width);
+        document_count(object, "height", c->height);
+    }
+    if (c->accel_info.node_count) {
+        document_number(object, "sah_cost", c->accel_info.sah_cost);
+        document_count(object, "nodes", c->accel_info.node_count);
+        document_count(object, "references", c->accel_info.reference_count);
+        document_count(object, "depth", c->accel_info.depth);
+    }
+    if (c->has_counts)
+        put_counts(object, c);
+    return object;
+}
+
+/* ---- Runs ---- */
+
+static whit_result build_once(struct bench *bench, struct bench_case *c)
+{
+    whit_accel_params params = c->accel_params;
+    params.cancel = &cli_cancel;
+    whit_accel_destroy(c->accel);
+    c->accel = NULL;
+    whit_result result = whit_accel_create(c->scene->scene, &params, &c->accel);
+    if (result != WHIT_OK)
+        return result;
+    whit_accel_get_info(c->accel, &c->accel_info);
+    add_time(&c->build, c->accel_info.build_ms);
+    bench_step(bench);
+    return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+whit_result bench_build(struct bench *bench, struct bench_case *cases, uint32_t count,
+                        uint32_t runs)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t run = 0; run < runs; ++run) {
+        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+            result = build_once(bench, &cases[i]);
+    }
+    return result;
+}
+
+static whit_result create_renderer(struct bench *bench, struct bench_case *c, bool counting,
+                                   whit_renderer **renderer)
+{
+    c->width = c->width ? c->width : bench->width;
+    c->height = c->height ? c->height : bench->height;
+    const whit_renderer_params params = {
+        .width = c->width,
+        .height = c->height,
+        .no_bounces = true,
+        .bailout = -1.0,
+        .traversal = c->traversal,
+        .count = counting,
+        .cancel = &cli_cancel,
+    };
+    return whit_renderer_create(bench->device, c->accel, &params, renderer);
+}
+
+static whit_result render_once(struct bench *bench, struct bench_case *c, bool timed)
+{
+    whit_stats stats;
+    whit_result result = whit_renderer_render(c->renderer);
+    if (result != WHIT_OK)
+        return result;
+    whit_renderer_get_stats(c->renderer, &stats);
+    if (timed)
+        add_time(&c->frame, stats.render_ms);
+    bench_step(bench);
+    return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+whit_result bench_render(struct bench *bench, struct bench_case *cases, uint32_t count,
+                         uint32_t runs)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+        result = create_renderer(bench, &cases[i], false, &cases[i].renderer);
+    for (uint32_t run = 0; run <= runs; ++run) {
+        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+            result = render_once(bench, &cases[i], run > 0);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        whit_renderer_destroy(cases[i].renderer);
+        cases[i].renderer = NULL;
+    }
+    return result;
+}
+
+whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
+        struct bench_case *c = &cases[i];
+        result = create_renderer(bench, c, true, &c->renderer);
+        if (result == WHIT_OK)
+            result = render_once(bench, c, false);
+        if (result == WHIT_OK) {
+            whit_renderer_get_stats(c->renderer, &c->counted);
+            c->has_counts = true;
+        }
+        whit_renderer_destroy(c->renderer);
+        c->renderer = NULL;
+    }
+    return result;
+}
+
+void bench_case_finish(struct bench_case *cases, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        whit_renderer_destroy(cases[i].renderer);
+        whit_accel_destroy(cases[i].accel);
+    }
+}

@@ -1,0 +1,626 @@
+/* The tables of the report that whit comes from, on whit's scenes of the same sizes. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/bench.h"
+
+/* What the report says; it names no machine like this one. */
+static const double report_cube_fps[2] = {120.0, 40.0}; /* with a tree, without */
+static const double report_build_s[2] = {0.328, 249.8}; /* 7 bins, every position */
+static const double report_build_fps[2] = {2.7, 4.7};
+static const double report_order_fps[3] = {22.0, 33.0, 28.0}; /* none, by distance, by sign */
+
+#define CASES(array) (uint32_t)(sizeof(array) / sizeof((array)[0]))
+
+/* ---- Sections ---- */
+
+struct section {
+    struct bench *bench;
+    json_t *object, *rows, *sentences;
+    struct table table;
+    char said[BENCH_NOTES_MOST][400];
+    uint32_t said_count;
+};
+
+static void section_begin(struct section *section, struct bench *bench, const char *name,
+                          uint32_t steps)
+{
+    *section = (struct section){
+        .bench = bench,
+        .object = document_object(),
+        .rows = document_array(),
+        .sentences = document_array(),
+    };
+    document_text(section->object, "table", name);
+    bench_begin(bench, steps);
+}
+
+/* A sentence below the table. */
+static void say(struct section *section, const char *format, ...) WHIT_PRINTF(2, 3);
+static void say(struct section *section, const char *format, ...)
+{
+    if (section->said_count == BENCH_NOTES_MOST)
+        return;
+    char *text = section->said[section->said_count++];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof section->said[0], format, args);
+    va_end(args);
+    document_append(section->sentences, json_string(text));
+}
+
+/* Prints it, unless it was cut short. */
+static whit_result section_end(struct section *section, const char *title, whit_result result)
+{
+    bench_end(section->bench);
+    document_put(section->object, "rows", section->rows);
+    document_put(section->object, "sentences", section->sentences);
+    if (result != WHIT_OK) {
+        json_decref(section->object);
+        return result;
+    }
+    printf("\n### %s\n\n", title);
+    table_print(&section->table);
+    putchar('\n');
+    for (uint32_t i = 0; i < section->said_count; ++i)
+        printf("- %s\n", section->said[i]);
+    fflush(stdout);
+    document_append(section->bench->sections, section->object);
+    return WHIT_OK;
+}
+
+/* One measured case as a row of JSON, with the report's figure where it has one (else 0). */
+static void keep(struct section *section, const struct bench_case *c, const char *key,
+                 double report)
+{
+    json_t *row = bench_document(c);
+    if (report > 0.0)
+        document_number(row, key, report);
+    document_append(section->rows, row);
+}
+
+/* ---- Trees and none ---- */
+
+/* Pixels on a side of the full picture for one of the small picture. */
+enum { SHRINK = 20, SHRINK_QUICK = 4 };
+
+static double estimated_frame_ms(const struct bench *bench, const struct bench_case *small)
+{
+    double pixels = (double)bench->width * bench->height;
+    return bench_median(&small->frame) * pixels / ((double)small->width * small->height);
+}
+
+static void row_of_trees(struct section *section, const struct bench_case *c, const char *report,
+                         double estimate_ms)
+{
+    table_row(&section->table);
+    table_cell(&section->table, "%s, %s", c->scene->name, c->label);
+    table_cell(&section->table, "%s", report);
+    if (estimate_ms > 0.0) {
+        table_cell(&section->table, "%.3g (estimated)", 1e3 / estimate_ms);
+        table_cell(&section->table, "%.0f (estimated)", estimate_ms);
+        return;
+    }
+    table_cell(&section->table, "%.1f", bench_fps(c));
+    table_ms(&section->table, &c->frame);
+}
+
+static void judge_trees(struct section *section, const struct bench_case *cases)
+{
+    double report = report_cube_fps[0] / report_cube_fps[1];
+    double ratio = bench_fps(&cases[0]) / bench_fps(&cases[1]);
+    int slower = bench_compare(&cases[1].frame, &cases[0].frame);
+    say(section,
+        "Cube: %s; with a tree it makes %.2f times as many frames as without (report: %.1f).",
+        slower > 0   ? "the report's claim that the tree pays holds here"
+        : slower < 0 ? "the report's claim that the tree pays does NOT hold here"
+                     : "the report's claim that the tree pays does NOT hold here, as there is no "
+                       "difference beyond the spread",
+        ratio, report);
+    double estimate_ms = estimated_frame_ms(section->bench, &cases[3]);
+    say(section,
+        "34k without a tree is estimated, not measured: the same view in %u x %u pixels took "
+        "%.0f ms, times %.0f for the pixels of the full picture. That is %.0f times the frame with "
+        "a tree; the report's never finished.",
+        cases[3].width, cases[3].height, bench_median(&cases[3].frame),
+        (double)section->bench->width * section->bench->height /
+            ((double)cases[3].width * cases[3].height),
+        estimate_ms / bench_median(&cases[2].frame));
+}
+
+static whit_result trees_on_and_off(struct bench *bench)
+{
+    struct bench_scene cube = {0}, many = {0};
+    struct section section;
+    uint32_t shrink = bench->quick ? SHRINK_QUICK : SHRINK;
+    const whit_accel_params with = {.bins = 7}, without = {.build = WHIT_BUILD_NONE};
+    struct bench_case cases[] = {
+        {.label = "tree", .scene = &cube, .accel_params = with},
+        {.label = "no tree", .scene = &cube, .accel_params = without},
+        {.label = "tree", .scene = &many, .accel_params = with},
+        {.label = "no tree",
+         .scene = &many,
+         .accel_params = without,
+         .width = bench->width / shrink,
+         .height = bench->height / shrink},
+    };
+    const uint32_t few = bench->runs < 3 ? bench->runs : 3;
+    section_begin(&section, bench, "trees", CASES(cases) + 2 + 2 * bench->runs + 2 * (1 + few));
+    whit_result result = bench_load(bench, "cube", false, &cube);
+    if (result == WHIT_OK)
+        result = bench_load(bench, "34k", false, &many);
+    if (result == WHIT_OK)
+        result = bench_build(bench, cases, CASES(cases), 1);
+    if (result == WHIT_OK)
+        result = bench_render(bench, cases, 2, bench->runs);
+    if (result == WHIT_OK)
+        result = bench_render(bench, cases + 2, 2, few);
+    if (result == WHIT_OK) {
+        static const char *const heads[] = {"scene", "report, fps", "whit, fps", "ms a frame",
+                                            NULL};
+        table_begin(&section.table, heads);
+        row_of_trees(&section, &cases[0], "120", 0.0);
+        row_of_trees(&section, &cases[1], "40", 0.0);
+        row_of_trees(&section, &cases[2], "-", 0.0);
+        row_of_trees(&section, &cases[3], "never done", estimated_frame_ms(bench, &cases[3]));
+        for (uint32_t i = 0; i < CASES(cases); ++i)
+            keep(&section, &cases[i], "report_fps", i < 2 ? report_cube_fps[i] : 0.0);
+        judge_trees(&section, cases);
+    }
+    bench_case_finish(cases, CASES(cases));
+    bench_unload(&cube);
+    bench_unload(&many);
+    return section_end(&section, "Trees on and off", result);
+}
+
+/* ---- Bins or every position ---- */
+
+/* The build of `sweep-naive`, measured or estimated. */
+struct naive {
+    double build_ms;
+    bool estimated;
+    double exponent;
+    uint32_t sizes[2]; /* triangles of the landscapes it was estimated from */
+    double sizes_ms[2];
+};
+
+/* A landscape like that of 54k.json. */
+static whit_result landscape(const char *folder, uint32_t steps, struct bench_scene *scene)
+{
+    char path[512], text[256];
+    snprintf(path, sizeof path, "%s/whit-bench-%u-%.0f.json", folder, steps, whit_clock_ms());
+    int size = snprintf(text, sizeof text,
+                        "{\"objects\":[{\"shape\":\"terrain\",\"size\":12,\"height\":2.8,"
+                        "\"steps\":%u,\"seed\":4}]}\n",
+                        steps);
+    *scene = (struct bench_scene){.name = "landscape"};
+    whit_result result = whit_file_write(path, text, (size_t)size, &cli_log);
+    if (result != WHIT_OK)
+        return result;
+    result = bench_load_file(path, false, scene);
+    remove(path);
+    return result;
+}
+
+static whit_result estimate_naive(struct bench *bench, uint32_t triangles, struct naive *out)
+{
+    const uint32_t steps[2] = {bench->quick ? 20 : 58, bench->quick ? 28 : 82};
+    const char *folder = getenv("TMPDIR");
+    whit_result result = WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < 2; ++i) {
+        struct bench_scene scene = {0};
+        struct bench_case c = {
+            .label = "sweep-naive", .scene = &scene, .accel_params.build = WHIT_BUILD_SWEEP_NAIVE};
+        result = landscape(folder && folder[0] ? folder : "/tmp", steps[i], &scene);
+        if (result == WHIT_OK)
+            result = bench_build(bench, &c, 1, 3);
+        out->sizes[i] = (uint32_t)scene.info.triangle_count;
+        out->sizes_ms[i] = bench_median(&c.build);
+        bench_case_finish(&c, 1);
+        bench_unload(&scene);
+    }
+    if (result != WHIT_OK)
+        return result;
+    out->exponent = log(out->sizes_ms[1] / out->sizes_ms[0]) /
+                    log((double)out->sizes[1] / (double)out->sizes[0]);
+    out->build_ms = out->sizes_ms[1] * pow((double)triangles / out->sizes[1], out->exponent);
+    out->estimated = true;
+    return WHIT_OK;
+}
+
+static whit_result measure_naive(struct bench *bench, struct naive *out)
+{
+    struct bench_scene scene;
+    struct bench_case c = {
+        .label = "sweep-naive",
+        .scene = &scene,
+        .accel_params = {.build = WHIT_BUILD_SWEEP_NAIVE, .time_limit_s = bench->naive_limit_s}};
+    *out = (struct naive){0};
+    whit_result result = bench_load(bench, "54k", true, &scene);
+    if (result == WHIT_OK)
+        result = bench_build(bench, &c, 1, 1);
+    uint32_t triangles = (uint32_t)scene.info.triangle_count;
+    out->build_ms = c.accel_info.build_ms;
+    bench_case_finish(&c, 1);
+    bench_unload(&scene);
+    return result == WHIT_ERROR_TIME_LIMIT ? estimate_naive(bench, triangles, out) : result;
+}
+
+static void judge_builds(struct section *section, const struct bench_case *cases,
+                         const struct naive *naive)
+{
+    const struct bench_case *binned = &cases[0], *sweep = &cases[1];
+    double binned_ms = bench_median(&binned->build), sweep_ms = bench_median(&sweep->build);
+    if (naive->estimated)
+        say(section,
+            "sweep-naive was stopped after %g s and is estimated: landscapes of the same kind with "
+            "%u and %u triangles took %.1f and %.1f ms (medians of 3), which grows as n^%.2f; "
+            "continued to this size.",
+            section->bench->naive_limit_s, naive->sizes[0], naive->sizes[1], naive->sizes_ms[0],
+            naive->sizes_ms[1], naive->exponent);
+    say(section,
+        "Trying every position in the report's way takes %.0f times as long as 7 bins (report: "
+        "%.0f); sorted once it gives the same tree in %.1f times as long.",
+        naive->build_ms / binned_ms, report_build_s[1] / report_build_s[0], sweep_ms / binned_ms);
+    int faster = bench_compare(&binned->frame, &sweep->frame);
+    say(section,
+        "The report's claim that every position makes the faster tree %s: %.2f times the frames "
+        "of 7 bins (report: %.2f).",
+        faster > 0   ? "holds here"
+        : faster < 0 ? "does NOT hold here"
+                     : "does NOT hold here, as there is no difference beyond the spread",
+        bench_fps(sweep) / bench_fps(binned), report_build_fps[1] / report_build_fps[0]);
+}
+
+static void rows_of_builds(struct section *section, const struct bench_case *cases,
+                           const struct naive *naive)
+{
+    static const char *const heads[] = {"build",       "report, s",    "whit, ms",
+                                        "report, fps", "whit, fps",    "ms a frame",
+                                        "SAH cost",    "visits a ray", NULL};
+    static const char *const names[3] = {"binned:7", "sweep-naive", "sweep"};
+    struct table *table = &section->table;
+    table_begin(table, heads);
+    for (int i = 0; i < 3; ++i) {
+        const struct bench_case *c = &cases[i ? 1 : 0];
+        table_row(table);
+        table_cell(table, "%s", names[i]);
+        if (i < 2)
+            table_cell(table, "%g", report_build_s[i]);
+        else
+            table_cell(table, "-");
+        if (i == 1)
+            table_cell(table, naive->estimated ? "%.0f (estimated)" : "%.0f", naive->build_ms);
+        else
+            table_ms(table, &c->build);
+        if (i < 2)
+            table_cell(table, "%.1f", report_build_fps[i]);
+        else
+            table_cell(table, "-");
+        table_cell(table, i == 1 ? "as sweep" : "%.1f", bench_fps(c));
+        table_ms(table, &c->frame);
+        table_cell(table, "%.2f", c->accel_info.sah_cost);
+        table_cell(table, "%.2f", bench_visits(c));
+    }
+}
+
+static void keep_naive(struct section *section, const struct naive *naive)
+{
+    json_t *row = document_object();
+    document_text(row, "case", "sweep-naive");
+    document_number(row, "build_ms_once", naive->build_ms);
+    document_flag(row, "estimated", naive->estimated);
+    document_number(row, "report_build_s", report_build_s[1]);
+    document_number(row, "report_fps", report_build_fps[1]);
+    document_append(section->rows, row);
+}
+
+static whit_result bins_or_all(struct bench *bench)
+{
+    struct bench_scene scene = {0};
+    struct section section;
+    struct naive naive = {0};
+    struct bench_case cases[] = {
+        {.label = "binned:7", .scene = &scene, .accel_params.bins = 7},
+        {.label = "sweep", .scene = &scene, .accel_params.build = WHIT_BUILD_SWEEP},
+    };
+    section_begin(&section, bench, "builds", 4 * bench->runs + 11);
+    whit_result result = bench_load(bench, "54k", false, &scene);
+    if (result == WHIT_OK)
+        result = bench_build(bench, cases, CASES(cases), bench->runs);
+    if (result == WHIT_OK)
+        result = bench_render(bench, cases, CASES(cases), bench->runs);
+    if (result == WHIT_OK)
+        result = bench_count(bench, cases, CASES(cases));
+    if (result == WHIT_OK)
+        result = measure_naive(bench, &naive);
+    if (result == WHIT_OK) {
+        rows_of_builds(&section, cases, &naive);
+        keep(&section, &cases[0], "report_fps", report_build_fps[0]);
+        keep_naive(&section, &naive);
+        keep(&section, &cases[1], "report_fps", 0.0);
+        judge_builds(&section, cases, &naive);
+    }
+    bench_case_finish(cases, CASES(cases));
+    bench_unload(&scene);
+    return section_end(&section, "54k: bins, or every position", result);
+}
+
+/* ---- Orders of traversal ---- */
+
+static void rows_of_orders(struct section *section, const struct bench_case *cases, uint32_t count)
+{
+    static const char *const heads[] = {"order",       "report, fps",  "whit, fps",
+                                        "ms a frame",  "visits a ray", "triangle tests a ray",
+                                        "depth: mean", "most",         NULL};
+    struct table *table = &section->table;
+    table_begin(table, heads);
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct bench_case *c = &cases[i];
+        const whit_cost *primary = &c->counted.costs[WHIT_RAY_PRIMARY];
+        double records = primary->records ? (double)primary->records : 1.0;
+        table_row(table);
+        table_cell(table, "%s", c->label);
+        table_cell(table, "%.0f", report_order_fps[i]);
+        table_cell(table, "%.1f", bench_fps(c));
+        table_ms(table, &c->frame);
+        table_cell(table, "%.2f", bench_visits(c));
+        table_cell(table, "%.2f", bench_triangle_tests(c));
+        table_cell(table, "%.2f", (double)primary->depth_sum / records);
+        table_cell(table, "%u", primary->depth);
+        keep(section, c, "report_fps", report_order_fps[i]);
+    }
+}
+
+static void judge_pair(struct section *section, const struct bench_case *cases, int faster,
+                       int slower)
+{
+    int found = bench_compare(&cases[slower].frame, &cases[faster].frame);
+    say(section, "%s faster than %s, as in the report, %s: %.2f times the frames (report: %.2f).",
+        cases[faster].label, cases[slower].label,
+        found > 0   ? "holds here"
+        : found < 0 ? "does NOT hold here"
+                    : "does NOT hold here, as there is no difference beyond the spread",
+        bench_fps(&cases[faster]) / bench_fps(&cases[slower]),
+        report_order_fps[faster] / report_order_fps[slower]);
+}
+
+static void judge_orders(struct section *section, const struct bench_case *cases)
+{
+    judge_pair(section, cases, 1, 0);
+    judge_pair(section, cases, 2, 0);
+    judge_pair(section, cases, 1, 2);
+    double visits[3];
+    for (int i = 0; i < 3; ++i)
+        visits[i] = bench_visits(&cases[i]);
+    bool most = visits[0] > visits[1] && visits[0] > visits[2];
+    say(section, "Without an order rays open %s: %.2f nodes, %.2f by distance, %.2f by sign.",
+        most ? "the most nodes" : "NOT the most nodes", visits[0], visits[1], visits[2]);
+    say(section,
+        "Depth: the deepest level whose boxes a camera ray looked at, its mean over camera "
+        "rays and the most.");
+}
+
+static whit_result orders(struct bench *bench)
+{
+    struct bench_scene scene = {0};
+    struct section section;
+    const whit_accel_params params = {.bins = 7};
+    struct bench_case cases[] = {
+        {.label = "basic", .traversal = WHIT_TRAVERSAL_BASIC},
+        {.label = "distance", .traversal = WHIT_TRAVERSAL_DISTANCE},
+        {.label = "sign", .traversal = WHIT_TRAVERSAL_SIGN},
+    };
+    for (uint32_t i = 0; i < CASES(cases); ++i) {
+        cases[i].scene = &scene;
+        cases[i].accel_params = params;
+    }
+    section_begin(&section, bench, "orders", CASES(cases) * (3 + bench->runs));
+    whit_result result = bench_load(bench, "8k", false, &scene);
+    if (result == WHIT_OK)
+        result = bench_build(bench, cases, CASES(cases), 1);
+    if (result == WHIT_OK)
+        result = bench_render(bench, cases, CASES(cases), bench->runs);
+    if (result == WHIT_OK)
+        result = bench_count(bench, cases, CASES(cases));
+    if (result == WHIT_OK) {
+        rows_of_orders(&section, cases, CASES(cases));
+        judge_orders(&section, cases);
+    }
+    bench_case_finish(cases, CASES(cases));
+    bench_unload(&scene);
+    return section_end(&section, "8k: three orders of traversal", result);
+}
+
+/* ---- More builders ---- */
+
+static void rows_of_builders(struct section *section, const struct bench_case *cases,
+                             uint32_t count)
+{
+    static const char *const heads[] = {"build",      "ms to build",  "references",
+                                        "SAH cost",   "visits a ray", "triangle tests a ray",
+                                        "ms a frame", "fps",          NULL};
+    struct table *table = &section->table;
+    table_begin(table, heads);
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct bench_case *c = &cases[i];
+        table_row(table);
+        table_cell(table, "%s", c->label);
+        table_ms(table, &c->build);
+        table_cell(table, "%u", c->accel_info.reference_count);
+        table_cell(table, "%.2f", c->accel_info.sah_cost);
+        table_cell(table, "%.2f", bench_visits(c));
+        table_cell(table, "%.2f", bench_triangle_tests(c));
+        table_ms(table, &c->frame);
+        table_cell(table, "%.1f", bench_fps(c));
+        keep(section, c, "", 0.0);
+    }
+}
+
+/* Loads, measures all there is, makes the table. */
+static whit_result measure_builders(struct section *section, const char *scene_name,
+                                    struct bench_scene *scene, struct bench_case *cases,
+                                    uint32_t count)
+{
+    struct bench *bench = section->bench;
+    whit_result result = bench_load(bench, scene_name, false, scene);
+    for (uint32_t i = 0; i < count; ++i)
+        cases[i].scene = scene;
+    if (result == WHIT_OK)
+        result = bench_build(bench, cases, count, bench->runs);
+    if (result == WHIT_OK)
+        result = bench_render(bench, cases, count, bench->runs);
+    if (result == WHIT_OK)
+        result = bench_count(bench, cases, count);
+    if (result == WHIT_OK)
+        rows_of_builders(section, cases, count);
+    return result;
+}
+
+/* A quick run keeps a few of the cases. */
+static uint32_t choose_cases(const struct bench *bench, struct bench_case *cases, uint32_t count,
+                             const char *const *quick)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        bool wanted = !bench->quick;
+        for (uint32_t k = 0; quick[k]; ++k)
+            wanted = wanted || strcmp(quick[k], cases[i].label) == 0;
+        if (wanted)
+            cases[kept++] = cases[i];
+    }
+    return kept;
+}
+
+static const struct bench_case *find_case(const struct bench_case *cases, uint32_t count,
+                                          const char *label)
+{
+    uint32_t i = 0;
+    while (i + 1 < count && strcmp(cases[i].label, label) != 0)
+        ++i;
+    return &cases[i];
+}
+
+/* The fewest bins that cost at most 2 % more than the best. */
+static void judge_bins(struct section *section, const struct bench_case *cases, uint32_t bin_cases)
+{
+    uint32_t best = 0, enough = 0;
+    for (uint32_t i = 0; i < bin_cases; ++i) {
+        if (cases[i].accel_info.sah_cost < cases[best].accel_info.sah_cost)
+            best = i;
+    }
+    double best_cost = cases[best].accel_info.sah_cost;
+    while (cases[enough].accel_info.sah_cost > 1.02 * best_cost)
+        ++enough;
+    const struct bench_case *sweep = &cases[bin_cases];
+    char fewest[64] = "";
+    if (enough != best)
+        snprintf(fewest, sizeof fewest, "; %s is within 2 %% of it", cases[enough].label);
+    say(section, "Least SAH cost among bins: %s (%.2f)%s. sweep is at %.2f, %.1f %% %s.",
+        cases[best].label, best_cost, fewest, sweep->accel_info.sah_cost,
+        100.0 * fabs(sweep->accel_info.sah_cost / best_cost - 1.0),
+        sweep->accel_info.sah_cost <= best_cost ? "below" : "above");
+}
+
+static whit_result numbers_of_bins(struct bench *bench)
+{
+    struct bench_scene scene = {0};
+    struct section section;
+    struct bench_case cases[] = {
+        {.label = "binned:2", .accel_params.bins = 2},
+        {.label = "binned:4", .accel_params.bins = 4},
+        {.label = "binned:7", .accel_params.bins = 7},
+        {.label = "binned:8", .accel_params.bins = 8},
+        {.label = "binned:16", .accel_params.bins = 16},
+        {.label = "binned:32", .accel_params.bins = 32},
+        {.label = "binned:64", .accel_params.bins = 64},
+        {.label = "sweep", .accel_params.build = WHIT_BUILD_SWEEP},
+    };
+    static const char *const quick[] = {"binned:2", "binned:7", "sweep", NULL};
+    uint32_t count = choose_cases(bench, cases, CASES(cases), quick);
+    section_begin(&section, bench, "bins", count * (2 * bench->runs + 2));
+    whit_result result = measure_builders(&section, "54k", &scene, cases, count);
+    if (result == WHIT_OK)
+        judge_bins(&section, cases, count - 1);
+    bench_case_finish(cases, count);
+    bench_unload(&scene);
+    return section_end(&section, "54k: how many bins", result);
+}
+
+static void judge_spatial(struct section *section, const struct bench_case *sweep,
+                          const struct bench_case *spatial)
+{
+    double references = spatial->accel_info.reference_count;
+    int faster = bench_compare(&sweep->frame, &spatial->frame);
+    say(section,
+        "Spatial splits make %.0f %% more references than there are triangles; rays open %.0f %% "
+        "%s nodes than in the tree of sweep, and the frame %s: %.2f times its frames.",
+        100.0 * (references / (double)spatial->scene->info.mesh_triangle_count - 1.0),
+        100.0 * fabs(bench_visits(spatial) / bench_visits(sweep) - 1.0),
+        bench_visits(spatial) < bench_visits(sweep) ? "fewer" : "more",
+        faster > 0   ? "is faster"
+        : faster < 0 ? "is slower"
+                     : "takes as long, within the spread",
+        bench_fps(spatial) / bench_fps(sweep));
+}
+
+static whit_result spatial_splits(struct bench *bench, const char *scene_name, const char *title)
+{
+    struct bench_scene scene = {0};
+    struct section section;
+    struct bench_case cases[] = {
+        {.label = "binned:7", .accel_params.bins = 7},
+        {.label = "binned"},
+        {.label = "binned+opt", .accel_params.optimize = true},
+        {.label = "sweep", .accel_params.build = WHIT_BUILD_SWEEP},
+        {.label = "sweep+opt", .accel_params = {.build = WHIT_BUILD_SWEEP, .optimize = true}},
+        {.label = "spatial", .accel_params.build = WHIT_BUILD_SPATIAL},
+        {.label = "spatial+opt", .accel_params = {.build = WHIT_BUILD_SPATIAL, .optimize = true}},
+    };
+    static const char *const quick[] = {"sweep", "spatial", NULL};
+    uint32_t count = choose_cases(bench, cases, CASES(cases), quick);
+    section_begin(&section, bench, scene_name, count * (2 * bench->runs + 2));
+    whit_result result = measure_builders(&section, scene_name, &scene, cases, count);
+    if (result == WHIT_OK)
+        judge_spatial(&section, find_case(cases, count, "sweep"),
+                      find_case(cases, count, "spatial"));
+    bench_case_finish(cases, count);
+    bench_unload(&scene);
+    return section_end(&section, title, result);
+}
+
+/* ---- All of it ---- */
+
+static void print_head(const struct bench *bench)
+{
+    const whit_device_info *device = &bench->device_info;
+    printf(
+        "## The report's tables\n\n"
+        "%s, %s.\n"
+        "%u x %u pixels, one sample, no bounces, with shadows; fps is 1000 over the median of\n"
+        "renders in ms; ± is half the width of the middle half. %u runs of each case, in turns.\n"
+        "The report's figures are from another machine: only ratios compare.\n",
+        device->name, device->driver, bench->width, bench->height, bench->runs);
+    if (bench->quick)
+        printf("\n**Quick run: pictures too small and runs too few for figures to be quoted.**\n");
+    fflush(stdout);
+}
+
+whit_result bench_report(struct bench *bench)
+{
+    print_head(bench);
+    whit_result result = trees_on_and_off(bench);
+    if (result == WHIT_OK)
+        result = bins_or_all(bench);
+    if (result == WHIT_OK)
+        result = orders(bench);
+    if (result == WHIT_OK)
+        result = numbers_of_bins(bench);
+    if (result == WHIT_OK)
+        result = spatial_splits(bench, "strands", "strands: spatial splits, long thin triangles");
+    if (result == WHIT_OK)
+        result = spatial_splits(bench, "atrium", "atrium: spatial splits, an interior");
+    return result;
+}
