@@ -22,7 +22,8 @@ for tile in 16 32 512; do
     check "tiles of $tile give the same picture" cmp a.png b.png
 done
 for option in "--effects all" "--load-path storage" "--load-path texel" "--build median" \
-    "--build binned:4" "--threads 1" "--stats json"; do
+    "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
+    "--stats json"; do
     # shellcheck disable=SC2086
     expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
     check "$option gives the same picture" cmp a.png b.png

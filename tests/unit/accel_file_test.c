@@ -106,6 +106,7 @@ static whit_result create(const struct scene *scene, const struct bvh_params *me
                           const char *file, struct accel **accel)
 {
     struct accel_params params = {.mesh = *mesh, .tree_file = file, .validate = true};
+    params.mesh.thread_count = params.instances.thread_count = 1; /* thousands of small scenes */
     said.count = 0;
     return accel_create(&heard, scene, &params, accel);
 }
