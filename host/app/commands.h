@@ -4,6 +4,7 @@
 
 #include "app/frames.h"
 #include "app/job.h"
+#include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench;
@@ -17,7 +18,9 @@ struct render_request {
     uint32_t width, height, samples, depth, tile_size;
     double bailout; /* 0: every ray is traced */
     bool no_shadows, all_effects;
-    struct frames frames; /* with them `output` and `ids` are patterns */
+    struct cost_view view; /* instead of colours */
+    bool counters;         /* costs in --stats */
+    struct frames frames;  /* with them `output` and `ids` are patterns */
 };
 
 /* Saves what `request` names of the picture just rendered (render_command.c). */
@@ -26,11 +29,11 @@ whit_result render_save(const struct job *job, const struct render_request *requ
 
 /* What a picture says about itself: only what decides its pixels, so that the same inputs give the
    same bytes. */
-enum { RECIPE_TEXTS = 8 };
+enum { RECIPE_TEXTS = 9 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];
     uint32_t count;
-    char *command, *options, *counters; /* owned */
+    char *command, *options, *counters, *view; /* owned */
     char hash[17];
     whit_device_info device;
 };
@@ -38,6 +41,9 @@ struct recipe {
 /* False when memory ran out, which was said. */
 bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
                  const whit_stats *stats);
+/* Adds what a picture of costs shows; false as above. */
+bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
+                     const struct view_figures *figures);
 void recipe_finish(struct recipe *recipe);
 
 /* The device's driver without the name of the device in front. */

@@ -104,6 +104,11 @@ void frames_progress_update(void *user, double done)
 
 /* ---- Times ---- */
 
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
 static void add_cost(const whit_cost *from, whit_cost *to)
 {
     to->rays += from->rays;
@@ -111,8 +116,15 @@ static void add_cost(const whit_cost *from, whit_cost *to)
     to->leaves += from->leaves;
     to->instances += from->instances;
     to->triangles += from->triangles;
-    to->stack = from->stack > to->stack ? from->stack : to->stack;
-    to->depth = from->depth > to->depth ? from->depth : to->depth;
+    to->stack = larger(from->stack, to->stack);
+    to->depth = larger(from->depth, to->depth);
+    to->records += from->records;
+    to->stack_sum += from->stack_sum;
+    to->depth_sum += from->depth_sum;
+    to->most_pairs = larger(from->most_pairs, to->most_pairs);
+    to->most_leaves = larger(from->most_leaves, to->most_leaves);
+    to->most_instances = larger(from->most_instances, to->most_instances);
+    to->most_triangles = larger(from->most_triangles, to->most_triangles);
 }
 
 static void add_stats(const whit_stats *from, whit_stats *to)

@@ -44,6 +44,35 @@ static void put_output(FILE *to, const char *output)
     fprintf(to, " -o whit%s", dot ? dot : "");
 }
 
+/* A picture of costs shows what trees and traversals are like: they are part of it. */
+static void put_view(FILE *to, const struct job *job, const struct render_request *request)
+{
+    static const char *const traversals[] = {"distance", "sign", "basic"};
+    char build[JOB_BUILD_NAME];
+    job_build_name(&job->build, build);
+    fprintf(to, " --view %s --view-rays %s", view_name(&request->view),
+            view_rays_name(&request->view));
+    if (request->view.scale > 0.0) {
+        fputs(" --view-scale", to);
+        put_number(to, request->view.scale);
+    }
+    if (job->no_trees) {
+        fputs(" --no-bvh", to);
+    } else if (job->tree_path) {
+        fputs(" --tree", to);
+        put_word(to, job->tree_path);
+    } else {
+        fprintf(to, " --build %s", build);
+    }
+    if (job->leaf_limit)
+        fprintf(to, " --leaf %u", job->leaf_limit);
+    if (job->instance_build == WHIT_BUILD_MEDIAN)
+        fputs(" --instance-build median", to);
+    if (job->instance_refit)
+        fputs(" --instance-update refit", to);
+    fprintf(to, " --traversal %s", traversals[job->traversal]);
+}
+
 static char *command_line(const struct job *job, const struct render_request *request)
 {
     char *text = NULL;
@@ -74,6 +103,8 @@ static char *command_line(const struct job *job, const struct render_request *re
         fprintf(to, " --texture-limit %u", job->texture_limit);
     if (job->flatten)
         fputs(" --instances off", to);
+    if (request->view.given)
+        put_view(to, job, request);
     if (fclose(to) != 0) {
         free(text);
         return NULL;
@@ -143,8 +174,23 @@ bool recipe_init(struct recipe *recipe, const struct job *job, const struct rend
     return true;
 }
 
+bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
+                     const struct view_figures *figures)
+{
+    json_t *object = document_object();
+    document_text(object, "view", view_name(view));
+    document_text(object, "rays", view_rays_name(view));
+    document_number(object, "scale", figures->scale);
+    document_number(object, "mean", figures->mean);
+    document_number(object, "most", figures->most);
+    recipe->view = document_line(object);
+    add(recipe, "whit:view", recipe->view);
+    return recipe->view != NULL;
+}
+
 void recipe_finish(struct recipe *recipe)
 {
+    free(recipe->view);
     free(recipe->command);
     free(recipe->options);
     free(recipe->counters);

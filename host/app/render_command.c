@@ -16,6 +16,10 @@ enum render_id {
     ID_EFFECTS,
     ID_TILE,
     ID_FRAMES,
+    ID_VIEW,
+    ID_VIEW_RAYS,
+    ID_VIEW_SCALE,
+    ID_COUNTERS,
 };
 
 enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
@@ -42,6 +46,14 @@ static const struct cli_option options[] = {
      "compile what the scene calls for, or everything; the\n"
      "picture is the same (auto)"},
     {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
+    {ID_VIEW, "view", "color|depth|visits|boxes|tris|stack",
+     "what traversals cost instead of colours: a heat map\n"
+     "(.png) or the numbers (.exr, .pfm)"},
+    {ID_VIEW_RAYS, "view-rays", "KIND",
+     "of primary, shadow, reflected, refracted or all rays\n"
+     "(primary)"},
+    {ID_VIEW_SCALE, "view-scale", "auto|X", "the number of the brightest colour (auto)"},
+    {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
     JOB_OPTION_TEXTURES,
@@ -98,6 +110,18 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         break;
     case ID_FRAMES:
         frames_read(reader, &request->frames);
+        break;
+    case ID_VIEW:
+        view_read(reader, &request->view);
+        break;
+    case ID_VIEW_RAYS:
+        view_read_rays(reader, &request->view);
+        break;
+    case ID_VIEW_SCALE:
+        view_read_scale(reader, &request->view);
+        break;
+    case ID_COUNTERS:
+        request->counters = true;
         break;
     default:
         break;
@@ -230,6 +254,7 @@ static whit_result create_renderer(struct job *job, const struct render_request 
         .time_limit_s = cli_time_left_s(),
         .load_path = job->load_path,
         .traversal = job->traversal,
+        .count = request->view.given || request->counters,
     };
     return whit_renderer_create(job->device, job->accel, &params, renderer);
 }
@@ -248,6 +273,23 @@ static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
     return result;
 }
 
+static whit_result save_view(whit_renderer *renderer, const struct render_request *request,
+                             struct recipe *recipe)
+{
+    whit_image *image;
+    struct view_figures figures;
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    whit_result result = view_image(renderer, &request->view, request->output, &figures, &image);
+    if (result != WHIT_OK)
+        return result;
+    result = recipe_add_view(recipe, &request->view, &figures)
+                 ? whit_image_save(image, request->output, recipe->texts, recipe->count, &cli_log)
+                 : WHIT_ERROR_MEMORY;
+    whit_image_destroy(image);
+    return result;
+}
+
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats)
 {
@@ -258,7 +300,8 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     if (request->ids)
         result = save(renderer, WHIT_AOV_IDS, request->ids, &recipe);
     if (result == WHIT_OK)
-        result = save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
+        result = request->view.given ? save_view(renderer, request, &recipe)
+                                     : save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
     recipe_finish(&recipe);
     return result;
 }
@@ -364,8 +407,10 @@ static int run(const struct cli_command *command, int argc, char **argv)
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &job, &request);
     if (!job_options_done(&job, &reader) || !frames_check(&reader, &job, &request) ||
-        !check_outputs(&reader, &request))
+        !view_check(&reader, &request.view) || !check_outputs(&reader, &request))
         return reader.status;
+    if (request.counters && job.stats == JOB_STATS_NONE)
+        job.stats = JOB_STATS_TEXT;
     if (request.frames.given)
         job.time_s = (double)request.frames.first / job.fps;
     int status = work(&job, &request);

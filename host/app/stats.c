@@ -134,6 +134,8 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
+    if (request->view.given || request->counters)
+        document_put(root, "costs", costs_document(figures->render));
     document_put(root, "tree", tree_document(&figures->tree));
     if (figures->sequence)
         document_put(root, "frames", frames_document(job, figures->sequence));
@@ -219,6 +221,8 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("device     %s (%s)\n", figures->device.name, stats_driver(&figures->device));
     print_times(job, figures);
     print_rays(figures);
+    if (request->view.given || request->counters)
+        costs_print(figures->render);
     printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
            tree->node_count, tree->leaf_count, tree->triangle_count, tree->instance_depth,
            tree->depth, tree->sah_cost);

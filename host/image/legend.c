@@ -72,14 +72,15 @@ void legend_init(struct legend *legend, uint32_t picture_width, const char *titl
     *legend = (struct legend){.scale = scale, .zoom = zoom_for(picture_width)};
     copy_text(legend->title, title);
     copy_text(legend->unit, unit);
-    shorten(legend->unit, WIDTH_LEAST / 2);
-    uint32_t others = 2 * MARGIN + text_width(legend->unit) + (legend->unit[0] ? UNIT_GAP : 0);
-    uint32_t wanted = text_width(legend->title) + others;
+    uint32_t gap = legend->unit[0] ? UNIT_GAP : 0;
+    uint32_t wanted = text_width(legend->title) + gap + text_width(legend->unit) + 2 * MARGIN;
     wanted = wanted > WIDTH_WANTED ? WIDTH_WANTED : wanted < WIDTH_LEAST ? WIDTH_LEAST : wanted;
     wanted *= legend->zoom;
     legend->width = picture_width > wanted ? picture_width : wanted;
     legend->height = STRIP_ROWS * legend->zoom;
-    shorten(legend->title, legend->width / legend->zoom - others);
+    uint32_t room = legend->width / legend->zoom - 2 * MARGIN;
+    shorten(legend->unit, room / 2);
+    shorten(legend->title, room - gap - text_width(legend->unit));
 }
 
 struct canvas {

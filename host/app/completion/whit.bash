@@ -16,6 +16,8 @@ _whit() {
         --load-path) words="auto storage texel" ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
+        --view) words="color depth visits boxes tris stack" ;;
+        --view-rays) words="primary shadow reflected refracted all" ;;
         --traversal) words="distance sign basic" ;;
         esac
     fi

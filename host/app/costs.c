@@ -1,0 +1,88 @@
+/* The costs of a picture by kind of ray, for --stats. */
+#include "app/document.h"
+#include "app/view_image.h"
+
+static const char *const kind_names[WHIT_RAY_KINDS] = {"primary", "shadow", "reflected",
+                                                       "refracted"};
+
+enum { FIGURES = 7 };
+static const char *const figure_names[FIGURES] = {"pairs",     "boxes", "leaves", "triangles",
+                                                  "instances", "stack", "depth"};
+
+/* A ray; stack and depth: of a sample of a pixel. */
+static void find_means(const whit_cost *cost, double out[FIGURES])
+{
+    double rays = cost->rays ? (double)cost->rays : 1.0;
+    double records = cost->records ? (double)cost->records : 1.0;
+    out[0] = (double)cost->pairs / rays;
+    out[1] = 2.0 * out[0];
+    out[2] = (double)cost->leaves / rays;
+    out[3] = (double)cost->triangles / rays;
+    out[4] = (double)cost->instances / rays;
+    out[5] = (double)cost->stack_sum / records;
+    out[6] = (double)cost->depth_sum / records;
+}
+
+/* In one sample of a pixel. */
+static void find_most(const whit_cost *cost, uint64_t out[FIGURES])
+{
+    out[0] = cost->most_pairs;
+    out[1] = 2 * (uint64_t)cost->most_pairs;
+    out[2] = cost->most_leaves;
+    out[3] = cost->most_triangles;
+    out[4] = cost->most_instances;
+    out[5] = cost->stack;
+    out[6] = cost->depth;
+}
+
+static void print_kind(const char *name, const whit_cost *cost)
+{
+    double means[FIGURES];
+    uint64_t most[FIGURES];
+    find_means(cost, means);
+    find_most(cost, most);
+    printf("  %-10s %10llu", name, (unsigned long long)cost->rays);
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9.2f", means[i]);
+    printf("\n  %-10s %10s", "", "most");
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9llu", (unsigned long long)most[i]);
+    putchar('\n');
+}
+
+void costs_print(const whit_stats *stats)
+{
+    printf("costs of a ray: means, and most in one sample of a pixel\n  %-10s %10s", "", "rays");
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9s", figure_names[i]);
+    putchar('\n');
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
+        if (stats->costs[kind].rays)
+            print_kind(kind_names[kind], &stats->costs[kind]);
+    }
+}
+
+static json_t *kind_document(const whit_cost *cost)
+{
+    double means[FIGURES];
+    uint64_t most[FIGURES];
+    find_means(cost, means);
+    find_most(cost, most);
+    json_t *kind = document_object(), *mean = document_object(), *largest = document_object();
+    document_count(kind, "rays", cost->rays);
+    for (int i = 0; i < FIGURES; ++i) {
+        document_number(mean, figure_names[i], means[i]);
+        document_count(largest, figure_names[i], most[i]);
+    }
+    document_put(kind, "mean", mean);
+    document_put(kind, "most", largest);
+    return kind;
+}
+
+json_t *costs_document(const whit_stats *stats)
+{
+    json_t *costs = document_object();
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
+        document_put(costs, kind_names[kind], kind_document(&stats->costs[kind]));
+    return costs;
+}
