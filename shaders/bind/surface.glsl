@@ -20,7 +20,7 @@ struct Surface {
 
 uint shade_index_of(uint instance, uint primitive)
 {
-    if (SPEC_INSTANCED == 0u)
+    if (SPEC_INSTANCED == 0u && SPEC_FLAT == 0u)
         return frame.shade_base + primitive;
     return fetch_instance_row(instance * INSTANCE_ROWS + 3u).y + primitive;
 }
@@ -68,6 +68,15 @@ void place_point(InstanceFrame inverse, vec3 f0, vec3 f1, vec3 f2, inout vec3 p,
             rounding_bound(2.0) * abs(p);
 }
 
+// By the inverse transpose.
+vec3 place_normal(InstanceFrame inverse, vec3 n)
+{
+    vec3 c0 = vec3(inverse.inverse0.x, inverse.inverse1.x, inverse.inverse2.x);
+    vec3 c1 = vec3(inverse.inverse0.y, inverse.inverse1.y, inverse.inverse2.y);
+    vec3 c2 = vec3(inverse.inverse0.z, inverse.inverse1.z, inverse.inverse2.z);
+    return rotate_rows(c0, c1, c2, n);
+}
+
 Surface fetch_surface(Hit hit)
 {
     Surface s;
@@ -97,15 +106,18 @@ Surface fetch_surface(Hit hit)
         vec3 f1 = row_vec3(fetch_instance_row(hit.instance * INSTANCE_ROWS + 5u));
         vec3 f2 = row_vec3(fetch_instance_row(hit.instance * INSTANCE_ROWS + 6u));
         place_point(inverse, f0, f1, f2, s.p, s.error);
-        vec3 c0 = vec3(inverse.inverse0.x, inverse.inverse1.x, inverse.inverse2.x);
-        vec3 c1 = vec3(inverse.inverse0.y, inverse.inverse1.y, inverse.inverse2.y);
-        vec3 c2 = vec3(inverse.inverse0.z, inverse.inverse1.z, inverse.inverse2.z);
-        ng = rotate_rows(c0, c1, c2, ng);
-        ns = rotate_rows(c0, c1, c2, ns);
+        ng = place_normal(inverse, ng);
+        ns = place_normal(inverse, ns);
         if (SPEC_NORMAL_MAPS != 0u) {
             s.e1 = rotate_rows(f0, f1, f2, e1);
             s.e2 = rotate_rows(f0, f1, f2, e2);
         }
+    }
+    // Vertices are in world space already; normals of vertices are not.
+    if (SPEC_FLAT != 0u) {
+        bool mirrored = (fetch_triangle_row(row + 1u).w & TRIANGLE_MIRRORED) != 0u;
+        ng = mirrored ? -ng : ng;
+        ns = SPEC_SMOOTH_NORMALS != 0u ? place_normal(fetch_instance_frame(hit.instance), ns) : ng;
     }
     s.ng = normalize_or(ng, vec3(0.0, 1.0, 0.0));
     s.ns = normalize_or(ns, s.ng);
