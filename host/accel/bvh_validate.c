@@ -547,7 +547,7 @@ static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_
             log_error(&accel->log, "instances: %u does not refer to its mesh", i);
             return false;
         }
-        dense[i] = in->root == BVH_EMPTY_REF ? UINT32_MAX : (*count)++;
+        dense[i] = accel->no_trees || in->root == BVH_EMPTY_REF ? UINT32_MAX : (*count)++;
     }
     return true;
 }

@@ -59,7 +59,7 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
         passes_check(renderer);
     /* Those that trace batches are made when they are called for. */
     if (result == WHIT_OK && !renderer->whitted.pipeline)
-        result = variant_create_whitted(renderer, &renderer->whitted);
+        result = variant_create_whitted(renderer);
     renderer->stats.upload_ms = uploaded_ms - posed_ms;
     renderer->stats.compile_ms = clock_ms() - uploaded_ms;
     renderer->stats.device_bytes = renderer->scene_buffers.bytes;

@@ -133,9 +133,16 @@ static uint32_t largest_tile(const struct renderer *renderer)
     uint32_t tile = params->tile_size         ? params->tile_size
                     : renderer->has_secondary ? TILE_STACKED_MAX
                                               : TILE_MAX;
+    if (renderer->accel->no_trees && !params->tile_size)
+        tile = TILE_STACKED_MAX;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
-    uint64_t slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
-    while (renderer->has_secondary && tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
+    uint64_t slot_bytes = 0;
+    if (renderer->has_secondary)
+        slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
+    uint64_t passed_bytes = sizeof(struct gpu_passed) * renderer->pose.light_count;
+    if (renderer->accel->no_trees && passed_bytes > slot_bytes)
+        slot_bytes = passed_bytes;
+    while (tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
         tile /= 2;
     return tile;
 }
@@ -227,10 +234,12 @@ static whit_result create_parts(struct renderer *renderer)
     if (result == WHIT_OK)
         result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
                               "frame", &renderer->scene_buffers.frame);
+    if (result == WHIT_OK)
+        result = brute_create(renderer);
     double uploaded_ms = clock_ms();
     renderer->stats.upload_ms = uploaded_ms - start_ms;
     if (result == WHIT_OK)
-        result = variant_create_whitted(renderer, &renderer->whitted);
+        result = variant_create_whitted(renderer);
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
     renderer->stats.compile_ms = clock_ms() - uploaded_ms;
@@ -281,6 +290,7 @@ void renderer_destroy(struct renderer *renderer)
     commands_destroy(renderer->commands);
     passes_finish(renderer);
     trace_finish(&renderer->trace);
+    brute_finish(&renderer->brute);
     pixel_buffers_finish(&renderer->pixel_buffers);
     costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);
@@ -301,14 +311,7 @@ static void sample_position(uint32_t index, uint32_t count, float xy[2])
     xy[1] = (float)(reversed + 0.5 / count);
 }
 
-/* What one picture in the making knows. */
-struct progress {
-    double start_ms;
-    uint32_t tile;
-    uint64_t work_done, work_total; /* block samples */
-};
-
-static whit_result stop_asked(const struct renderer *renderer, const struct progress *progress)
+whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
 {
     const struct render_params *params = &renderer->params;
     if (params->cancel && *params->cancel)
@@ -338,7 +341,7 @@ static whit_result submit(struct renderer *renderer)
     return status_check(renderer);
 }
 
-static void clear_work(struct renderer *renderer, uint32_t list)
+void render_clear_work(struct renderer *renderer, uint32_t list)
 {
     commands_copy(renderer->commands, renderer->pixel_buffers.work_head, 0,
                   renderer->pixel_buffers.work[list], 0, sizeof(struct gpu_work));
@@ -352,7 +355,7 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
     if (result != WHIT_OK)
         return result;
     commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
-    clear_work(renderer, 1);
+    render_clear_work(renderer, 1);
     commands_barrier(commands);
     commands_span_begin(commands, "sample");
     commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[0]);
@@ -373,7 +376,7 @@ static void record_passes(struct renderer *renderer, const struct gpu_chunk *chu
     for (uint32_t i = first; i < first + passes; ++i) {
         uint32_t in = (i + 1) % 2;
         commands_barrier(commands);
-        clear_work(renderer, 1 - in);
+        render_clear_work(renderer, 1 - in);
         commands_barrier(commands);
         commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[in]);
         commands_push(commands, &stacked, sizeof stacked);
@@ -382,7 +385,7 @@ static void record_passes(struct renderer *renderer, const struct gpu_chunk *chu
     }
 }
 
-static whit_result finish_submission(struct renderer *renderer)
+whit_result render_finish_submission(struct renderer *renderer)
 {
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
@@ -398,7 +401,7 @@ static whit_result render_sample(struct renderer *renderer, const struct gpu_chu
     whit_result result = record_primary(renderer, chunk);
     if (result == WHIT_OK) {
         record_passes(renderer, chunk, first, passes);
-        result = finish_submission(renderer);
+        result = render_finish_submission(renderer);
     }
     for (;;) {
         double spent_ms = clock_ms() - start_ms;
@@ -410,7 +413,7 @@ static whit_result render_sample(struct renderer *renderer, const struct gpu_chu
         result = buffer_read(renderer->pixel_buffers.work[(first + 1) % 2], 0, &head, sizeof head);
         if (result != WHIT_OK || head.count == 0)
             return result;
-        result = stop_asked(renderer, progress);
+        result = render_stop_asked(renderer, progress);
         if (result != WHIT_OK)
             return result;
         if (spent_ms < SUBMISSION_TARGET_MS && passes < PASSES_MAX)
@@ -423,7 +426,7 @@ static whit_result render_sample(struct renderer *renderer, const struct gpu_chu
             return result;
         commands_span_begin(renderer->commands, "bounces");
         record_passes(renderer, chunk, first, passes);
-        result = finish_submission(renderer);
+        result = render_finish_submission(renderer);
     }
 }
 
@@ -445,13 +448,14 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
     uint32_t samples = renderer->params.samples;
     double longest_ms = 0.0;
     for (uint32_t s = 0; s < samples; ++s) {
-        whit_result result = stop_asked(renderer, progress);
+        whit_result result = render_stop_asked(renderer, progress);
         if (result != WHIT_OK)
             return result;
         chunk->sample_index = s;
         chunk->sample_weight = 1.0f / (float)samples;
         sample_position(s, samples, chunk->sample_xy);
-        result = render_sample(renderer, chunk, progress, &longest_ms);
+        result = renderer->accel->no_trees ? brute_sample(renderer, chunk, progress, &longest_ms)
+                                           : render_sample(renderer, chunk, progress, &longest_ms);
         if (result == WHIT_OK)
             result = costs_add(renderer, chunk);
         if (result != WHIT_OK)
@@ -563,8 +567,8 @@ whit_result renderer_render(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     costs_clear(renderer);
-    whit_result result = WHIT_OK;
-    if (!one_band(renderer))
+    whit_result result = brute_check_time(renderer);
+    if (result == WHIT_OK && !one_band(renderer))
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !one_band(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
@@ -573,6 +577,7 @@ whit_result renderer_render(struct renderer *renderer)
     struct progress progress = {
         .start_ms = clock_ms(),
         .tile = params->tile_size                             ? params->tile_size
+                : renderer->accel->no_trees                   ? TILE_MIN
                 : largest < TILE_FIRST && largest >= TILE_MIN ? largest
                                                               : TILE_FIRST,
         .work_total = (uint64_t)blocks_across(params->width) * blocks_across(params->height) *

@@ -43,6 +43,28 @@ struct trace_state {
     double device_ms;
 };
 
+/* A run of dispatches without trees: runs from `first_run` up to an empty one. */
+struct brute_range {
+    uint32_t first_run, turns; /* of loops */
+};
+
+/* Without trees only. */
+struct brute_state {
+    struct buffer *runs;           /* gpu_run */
+    struct buffer *found, *passed; /* of a chunk */
+    struct brute_range *ranges;
+    uint32_t range_count;
+    struct pass closest, shadow; /* renderer->whitted: the phase that shades */
+    bool time_checked;
+};
+
+/* What one picture in the making knows. */
+struct progress {
+    double start_ms;
+    uint32_t tile;
+    uint64_t work_done, work_total; /* block samples */
+};
+
 struct renderer {
     struct log log;
     struct device *device;
@@ -54,6 +76,7 @@ struct renderer {
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
     struct pass whitted;
+    struct brute_state brute;
     struct trace_state trace;
     struct commands *commands;
     struct gpu_frame frame;
@@ -85,6 +108,16 @@ void costs_clear(struct renderer *renderer);
 /* Takes over what the kernel counted for one sample of a chunk. */
 WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
 
+/* brute.c: pictures without trees. */
+WHIT_CHECK whit_result brute_create(struct renderer *renderer);
+void brute_finish(struct brute_state *brute);
+/* All rays of one sample of one chunk. *longest_ms: of its submissions. */
+WHIT_CHECK whit_result brute_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                    const struct progress *progress, double *longest_ms);
+/* With trees WHIT_OK. Else WHIT_ERROR_TIME_LIMIT when a part of the picture tells that all of it
+   will take longer than allowed. */
+WHIT_CHECK whit_result brute_check_time(struct renderer *renderer);
+
 /* upload.c */
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
@@ -108,7 +141,7 @@ WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */
 struct gpu_spec variant_spec(const struct renderer *renderer);
-WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass);
+WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 void pass_finish(struct pass *pass);
 void passes_finish(struct renderer *renderer);
@@ -118,6 +151,12 @@ void trace_finish(struct trace_state *trace);
 
 /* render.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
+
+/* render.c: what submissions are made of. */
+WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
+                                         const struct progress *progress);
+void render_clear_work(struct renderer *renderer, uint32_t list);
+WHIT_CHECK whit_result render_finish_submission(struct renderer *renderer);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct renderer *renderer);

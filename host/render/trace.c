@@ -4,8 +4,9 @@
 #include "base/clock.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20, /* rays in device memory */
-    TRACE_FIRST = 1 << 14,    /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_CAPACITY = 1 << 20,    /* rays in device memory */
+    TRACE_FIRST = 1 << 14,       /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST_BRUTE = 1 << 10, /* the same without trees */
 };
 /* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
@@ -42,24 +43,20 @@ static whit_result prepare(struct renderer *renderer, bool any)
     return result;
 }
 
-/* One dispatch over rays [0, count) of the ray buffer. */
-static whit_result dispatch(struct renderer *renderer, bool any, uint32_t count)
+/* One dispatch over rays [0, batch->ray_count) of the ray buffer. */
+static whit_result dispatch(struct renderer *renderer, bool any, const struct gpu_batch *batch)
 {
-    const struct accel *accel = renderer->accel;
     struct pass *pass = any ? &renderer->trace.any : &renderer->trace.closest;
-    struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root};
-    if (accel->instance_count == 0)
-        batch.root = BVH_EMPTY_REF;
     whit_result result = commands_begin(renderer->commands);
     if (result != WHIT_OK)
         return result;
     commands_fill(renderer->commands, renderer->pixel_buffers.status, 0, 4, 0);
     commands_barrier(renderer->commands);
     commands_bind(renderer->commands, pass->pipeline, pass->sets[0]);
-    commands_push(renderer->commands, &batch, sizeof batch);
+    commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
-    commands_dispatch(renderer->commands, (count + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE, 1,
-                      1);
+    commands_dispatch(renderer->commands,
+                      (batch->ray_count + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE, 1, 1);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);
@@ -68,6 +65,30 @@ static whit_result dispatch(struct renderer *renderer, bool any, uint32_t count)
     if (result == WHIT_OK)
         renderer->trace.device_ms += commands_span_ms(renderer->commands, 0);
     return result == WHIT_OK ? status_check(renderer) : result;
+}
+
+static whit_result cancelled(const struct renderer *renderer)
+{
+    return renderer->params.cancel && *renderer->params.cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+/* Rays [0, count) of the ray buffer, through the trees or, without any, all ranges of records. */
+static whit_result trace_piece(struct renderer *renderer, bool any, uint32_t count)
+{
+    const struct accel *accel = renderer->accel;
+    const struct brute_state *brute = &renderer->brute;
+    struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root, .begin = 1};
+    if (accel->instance_count == 0)
+        batch.root = BVH_EMPTY_REF;
+    whit_result result = dispatch(renderer, any, &batch);
+    for (uint32_t i = 1; result == WHIT_OK && i < brute->range_count; ++i) {
+        batch.begin = 0;
+        batch.first_run = brute->ranges[i].first_run;
+        result = cancelled(renderer);
+        if (result == WHIT_OK)
+            result = dispatch(renderer, any, &batch);
+    }
+    return result;
 }
 
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
@@ -79,15 +100,16 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     }
     renderer->trace.device_ms = 0.0;
     whit_result result = prepare(renderer, any);
-    uint64_t piece = TRACE_FIRST;
+    uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BRUTE : TRACE_FIRST;
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
-        if (renderer->params.cancel && *renderer->params.cancel)
-            return WHIT_ERROR_CANCELLED;
+        result = cancelled(renderer);
+        if (result != WHIT_OK)
+            break;
         uint64_t size = count - done < piece ? count - done : piece;
         double start_ms = clock_ms();
         result = buffer_write(renderer->trace.rays, 0, rays + done, size * sizeof *rays);
         if (result == WHIT_OK)
-            result = dispatch(renderer, any, (uint32_t)size);
+            result = trace_piece(renderer, any, (uint32_t)size);
         if (result == WHIT_OK)
             result = buffer_read(renderer->trace.hits, 0, hits + done, size * sizeof *hits);
         if (result == WHIT_OK && costs)

@@ -95,7 +95,8 @@ static whit_result create_pass(struct renderer *renderer, enum kernel kernel,
     return pipeline_create(renderer->device, &params, &pass->pipeline);
 }
 
-whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
+/* `brute`: BRUTE_*. */
+static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
@@ -112,7 +113,11 @@ whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
     bind(&bindings, BIND_WORK_IN, BINDING_STORAGE, pixels->work[0]);
     bind(&bindings, BIND_WORK_OUT, BINDING_STORAGE, pixels->work[1]);
     bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
+    bind(&bindings, BIND_RUNS, BINDING_STORAGE, renderer->brute.runs);
+    bind(&bindings, BIND_FOUND, BINDING_STORAGE, renderer->brute.found);
+    bind(&bindings, BIND_PASSED, BINDING_STORAGE, renderer->brute.passed);
     struct gpu_spec spec = variant_spec(renderer);
+    spec.SPEC_BRUTE = brute;
     whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, bindings.kinds,
                                      BIND_WHITTED_COUNT, sizeof(struct gpu_chunk), "whitted", pass);
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
@@ -124,13 +129,26 @@ whit_result variant_create_whitted(struct renderer *renderer, struct pass *pass)
     return result;
 }
 
+whit_result variant_create_whitted(struct renderer *renderer)
+{
+    struct brute_state *brute = &renderer->brute;
+    if (!renderer->accel->no_trees)
+        return create_whitted(renderer, BRUTE_OFF, &renderer->whitted);
+    whit_result result = create_whitted(renderer, BRUTE_CLOSEST, &brute->closest);
+    if (result == WHIT_OK && renderer->pose.light_count > 0 && !renderer->params.no_shadows)
+        result = create_whitted(renderer, BRUTE_SHADOW, &brute->shadow);
+    return result == WHIT_OK ? create_whitted(renderer, BRUTE_SHADE, &renderer->whitted) : result;
+}
+
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
 {
     struct bindings bindings = bind_trees(renderer);
     bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
+    bind(&bindings, BIND_TRACE_RUNS, BINDING_STORAGE, renderer->brute.runs);
     struct gpu_spec spec = variant_spec(renderer);
+    spec.SPEC_BRUTE = renderer->accel->no_trees ? BRUTE_CLOSEST : BRUTE_OFF;
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;
     spec.SPEC_FILTERS = 0;
@@ -154,6 +172,8 @@ void pass_finish(struct pass *pass)
 void passes_finish(struct renderer *renderer)
 {
     pass_finish(&renderer->whitted);
+    pass_finish(&renderer->brute.closest);
+    pass_finish(&renderer->brute.shadow);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);
 }

@@ -15,7 +15,8 @@
 #define BIND_RAYS        7
 #define BIND_HITS        8
 #define BIND_TRACE_COSTS 9
-#define BIND_TRACE_COUNT 10 /* bindings of that kernel */
+#define BIND_TRACE_RUNS  10
+#define BIND_TRACE_COUNT 11 /* bindings of that kernel */
 
 /* The Whitted kernel. */
 #define BIND_SHADING        7
@@ -31,6 +32,9 @@
 #define BIND_WORK_IN        17
 #define BIND_WORK_OUT       18
 #define BIND_COSTS          19
-#define BIND_WHITTED_COUNT  20
+#define BIND_RUNS           20
+#define BIND_FOUND          21
+#define BIND_PASSED         22
+#define BIND_WHITTED_COUNT  23
 
 #endif

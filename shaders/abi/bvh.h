@@ -131,12 +131,22 @@ GPU_ASSERT_AT(gpu_cost, triangles, 16)
 #define RAY_REFRACTED  3u
 #define RAY_KIND_COUNT 4u
 
+/* Without trees: records of one instance that a dispatch tests. A range of runs ends with an empty
+   one, so that no loop depends on push constants (see bind/shading.glsl). */
+struct gpu_run {
+    gpu_uint instance; /* without instances to go through: 0 */
+    gpu_uint first;    /* record */
+    gpu_uint count;    /* 0: end of the range */
+    gpu_uint begins;   /* 1: the first run of its instance */
+};
+GPU_ASSERT_SIZE(gpu_run, 16)
+
 /* Push constants of the ray batch kernel. */
 struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
-    gpu_uint pad0;
-    gpu_uint pad1;
+    gpu_uint first_run; /* without trees: of the range */
+    gpu_uint begin;     /* 1: it is the first range */
 };
 
 #define HIT_NONE 0xffffffffu

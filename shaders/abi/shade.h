@@ -164,9 +164,9 @@ struct gpu_chunk {
     gpu_uint sample_index;
     gpu_float sample_weight;
     gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
-    gpu_uint pad0;
-    gpu_uint pad1;
-    gpu_uint pad2;
+    gpu_uint begin;     /* without trees: 1: the first range of runs */
+    gpu_uint first_run; /* of the range */
+    gpu_uint light;     /* BRUTE_SHADOW */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 48)
 
@@ -179,6 +179,25 @@ struct gpu_work {
     gpu_uint count;
 };
 GPU_ASSERT_SIZE(gpu_work, 16)
+
+/* Without trees, of a slot: its ray's hit so far. */
+struct gpu_found {
+    gpu_float t, u, v;
+    gpu_uint triangle;  /* record */
+    gpu_uint primitive; /* HIT_NONE: none */
+    gpu_uint instance;
+    gpu_uint pad0;
+    gpu_uint pad1;
+};
+GPU_ASSERT_SIZE(gpu_found, 32)
+GPU_ASSERT_AT(gpu_found, primitive, 16)
+
+/* Without trees, of a slot and a light: what is in between so far. */
+struct gpu_passed {
+    gpu_uint red, green, blue; /* optical depth */
+    gpu_uint blocked;          /* 1: no light passes */
+};
+GPU_ASSERT_SIZE(gpu_passed, 16)
 
 /* What the kernel counted for a pixel. */
 struct gpu_counts {

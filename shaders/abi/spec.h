@@ -10,6 +10,13 @@
 #define LOAD_STORAGE 0u
 #define LOAD_TEXEL   1u
 
+/* Without trees rays test runs of triangle records, as many in one dispatch as a driver that ends
+   long loops grants. So the work on a ray is cut in phases of several dispatches each. */
+#define BRUTE_OFF     0u
+#define BRUTE_CLOSEST 1u /* the hit so far, one range of runs further */
+#define BRUTE_SHADOW  2u /* what passes to a light so far, one range of runs further */
+#define BRUTE_SHADE   3u /* with both known: light, and the rays that the surface calls for */
+
 /*    id  name                 default  meaning */
 #define GPU_SPEC_LIST(X)                                                                           \
     X(0, SPEC_GROUP_SIZE, 64)         /* invocations in a workgroup */                             \
@@ -38,7 +45,7 @@
     X(23, SPEC_ORDER, 0)              /* ORDER_* */                                                \
     X(24, SPEC_COUNT, 0)              /* count what traversals cost */                             \
     X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
-    X(26, SPEC_BRUTE, 0)              /* no trees: every triangle of every instance */             \
+    X(26, SPEC_BRUTE, 0)              /* BRUTE_*: no trees, every triangle of every instance */    \
     X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */
 
 #ifdef __STDC_VERSION__

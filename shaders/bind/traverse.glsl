@@ -327,6 +327,19 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
+bool is_usable(vec3 origin, vec3 dir)
+{
+    precise vec3 bounded = (origin - origin) + (dir - dir); // 0, or NaN
+    return bounded.x + bounded.y + bounded.z == 0.0 && dir != vec3(0.0);
+}
+
+gpu_cost add_up(gpu_cost a, gpu_cost b)
+{
+    return gpu_cost(a.rays + b.rays, a.pairs + b.pairs, a.leaves + b.leaves,
+                    a.instances + b.instances, a.triangles + b.triangles, max(a.stack, b.stack),
+                    max(a.depth, b.depth), 0u);
+}
+
 // Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`.
 // Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or
 // without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene). Not finite rays hit nothing.
@@ -336,8 +349,7 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
     Hit hit = make_hit(t_max);
     if (SPEC_COUNT != 0u)
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
-    precise vec3 bounded = (origin - origin) + (dir - dir); // 0, or NaN
-    if (!(bounded.x + bounded.y + bounded.z == 0.0) || dir == vec3(0.0))
+    if (!is_usable(origin, dir))
         root = REF_DONE;
     if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);

@@ -1,17 +1,26 @@
 // A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../bind/traverse.glsl"
+#include "../bind/runs.glsl"
 
 layout(local_size_x_id = 0) in;
 
 layout(push_constant) uniform Batch { gpu_batch batch; };
 layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray rays[]; };
-layout(set = 0, binding = BIND_HITS, std430) writeonly buffer HitBuffer { gpu_hit hits[]; };
-layout(set = 0, binding = BIND_TRACE_COSTS, std430) writeonly buffer CostBuffer
+layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer { gpu_hit hits[]; };
+layout(set = 0, binding = BIND_TRACE_COSTS, std430) buffer CostBuffer
 {
     gpu_cost costs[]; // with SPEC_COUNT
 };
+layout(set = 0, binding = BIND_TRACE_RUNS, std430) readonly buffer RunBuffer
+{
+    gpu_run runs[]; // with SPEC_BRUTE
+};
+
+gpu_run fetch_run(uint index)
+{
+    return runs[index];
+}
 
 bool cutout_is_solid(uint instance, uint primitive, float u, float v)
 {
@@ -40,16 +49,41 @@ vec3 geometric_normal(Hit hit)
     return rotate_rows(c0, c1, c2, n);
 }
 
+// The ray's hit; without trees that within the ranges so far, whose `triangle` is HIT_NONE unless it
+// is in this one.
+Hit trace(const uint mode, uint index)
+{
+    gpu_ray ray = rays[index];
+    if (SPEC_BRUTE == BRUTE_OFF)
+        return traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
+                        HIT_NONE);
+    Hit hit = make_hit(ray.t_max);
+    hit.triangle = HIT_NONE;
+    gpu_hit before = hits[index];
+    if (batch.begin == 0u && before.primitive != HIT_NONE) {
+        hit.t = before.t;
+        hit.u = before.u;
+        hit.v = before.v;
+        hit.primitive = before.primitive;
+        hit.instance = before.instance;
+    }
+    traverse_runs(mode, ray.origin, ray.dir, ray.t_min, batch.first_run, batch.begin, HIT_NONE,
+                  HIT_NONE, hit);
+    return hit;
+}
+
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
     if (index >= batch.ray_count)
         return;
-    gpu_ray ray = rays[index];
-    Hit hit = SPEC_ANY_HIT != 0u ? traverse(TRAVERSE_ANY, ray.origin, ray.dir, ray.t_min, ray.t_max,
-                                            batch.root, HIT_NONE, HIT_NONE)
-                                 : traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, ray.t_min,
-                                            ray.t_max, batch.root, HIT_NONE, HIT_NONE);
+    Hit hit = SPEC_ANY_HIT != 0u ? trace(TRAVERSE_ANY, index) : trace(TRAVERSE_CLOSEST, index);
+    report_status(hit.status);
+    bool resumed = SPEC_BRUTE != BRUTE_OFF && batch.begin == 0u;
+    if (SPEC_COUNT != 0u)
+        costs[index] = resumed ? add_up(costs[index], traversal_cost) : traversal_cost;
+    if (resumed && hit.triangle == HIT_NONE)
+        return;
     bool met = hit.primitive != HIT_NONE;
     gpu_hit answer;
     answer.t = met ? hit.t : uintBitsToFloat(0x7f800000u);
@@ -62,7 +96,4 @@ void main()
     answer.ng_y = ng.y;
     answer.ng_z = ng.z;
     hits[index] = answer;
-    if (SPEC_COUNT != 0u)
-        costs[index] = traversal_cost;
-    report_status(hit.status);
 }

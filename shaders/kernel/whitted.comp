@@ -1,10 +1,12 @@
 // One ray of each pixel's ray tree (Whitted 1980): a camera ray, or the top of the pixel's ray
 // stack. Local light with shadows goes to the pixel, the rays it calls for go on the stack. Pixels
-// with rays left are listed for the next dispatch, so that no dispatch runs long.
+// with rays left are listed for the next dispatch, so that no dispatch runs long. Without trees one
+// ray is several dispatches, see BRUTE_*.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../lib/optics.glsl"
 #include "../bind/light.glsl"
+#include "../bind/runs.glsl"
 #include "../bind/surface.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -30,6 +32,18 @@ layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
 
 // RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
 layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
+
+layout(set = 0, binding = BIND_RUNS, std430) readonly buffer RunBuffer { gpu_run runs[]; };
+layout(set = 0, binding = BIND_FOUND, std430) buffer FoundBuffer { gpu_found found[]; };
+layout(set = 0, binding = BIND_PASSED, std430) buffer PassedBuffer
+{
+    gpu_passed passed[]; // frame.light_count per slot of the chunk
+};
+
+gpu_run fetch_run(uint index)
+{
+    return runs[index];
+}
 
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 
@@ -210,15 +224,7 @@ void add_cost(uint slot, uint kind)
     if (SPEC_COUNT == 0u)
         return;
     uint at = slot * RAY_KIND_COUNT + kind;
-    gpu_cost sum = costs[at];
-    sum.rays += traversal_cost.rays;
-    sum.pairs += traversal_cost.pairs;
-    sum.leaves += traversal_cost.leaves;
-    sum.instances += traversal_cost.instances;
-    sum.triangles += traversal_cost.triangles;
-    sum.stack = max(sum.stack, traversal_cost.stack);
-    sum.depth = max(sum.depth, traversal_cost.depth);
-    costs[at] = sum;
+    costs[at] = add_up(costs[at], traversal_cost);
 }
 
 void clear_costs(uint slot)
@@ -229,16 +235,41 @@ void clear_costs(uint slot)
         costs[slot * RAY_KIND_COUNT + kind] = gpu_cost(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }
 
+// What the shadow ray of a light meets. Without trees: in the ranges so far.
+Hit find_blocker(uint slot, uint light, vec3 origin, vec3 to_light, float distance, Hit from)
+{
+    Hit blocker;
+    if (SPEC_BRUTE == BRUTE_OFF) {
+        blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
+                           from.instance, from.primitive);
+        add_cost(slot, RAY_SHADOW);
+        return blocker;
+    }
+    uint at = slot * frame.light_count + light;
+    blocker = make_hit(distance);
+    if (SPEC_BRUTE == BRUTE_SHADE || chunk.begin == 0u) {
+        gpu_passed before = passed[at];
+        blocker.filter_depth = uvec3(before.red, before.green, before.blue);
+        blocker.primitive = before.blocked != 0u ? 0u : HIT_NONE;
+    }
+    if (SPEC_BRUTE == BRUTE_SHADOW) {
+        traverse_runs(TRAVERSE_SHADOW, origin, to_light, 0.0, chunk.first_run, chunk.begin,
+                      from.instance, from.primitive, blocker);
+        add_cost(slot, RAY_SHADOW);
+        passed[at] = gpu_passed(blocker.filter_depth.r, blocker.filter_depth.g,
+                                blocker.filter_depth.b, uint(blocker.primitive != HIT_NONE));
+    }
+    return blocker;
+}
+
 // How much of a light passes to `p`: 1 less opaque things in between, times the filters.
-vec3 light_share(uint slot, vec3 p, vec3 error, vec3 side, vec3 to_light, float distance, Hit from,
-                 inout uint status)
+vec3 light_share(uint slot, uint light, vec3 p, vec3 error, vec3 side, vec3 to_light,
+                 float distance, Hit from, inout uint status)
 {
     if (SPEC_SHADOWS == 0u)
         return vec3(1.0);
     vec3 origin = offset_origin(p, error, side);
-    Hit blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
-                           from.instance, from.primitive);
-    add_cost(slot, RAY_SHADOW);
+    Hit blocker = find_blocker(slot, light, origin, to_light, distance, from);
     status |= blocker.status;
     if (blocker.primitive != HIT_NONE)
         return vec3(0.0);
@@ -247,7 +278,7 @@ vec3 light_share(uint slot, vec3 p, vec3 error, vec3 side, vec3 to_light, float 
     return exp2(vec3(blocker.filter_depth) * (-1.0 / SHADOW_DEPTH_SCALE));
 }
 
-// Light from all lights, towards the eye.
+// Light from all lights, towards the eye. The phase BRUTE_SHADOW has one light.
 vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays,
                  inout uint status)
 {
@@ -255,7 +286,7 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint 
     if (SPEC_LIGHTS == 0u)
         return sum;
     float cos_view = max(dot(view, s.ns), 0.0);
-    uint i = 0u;
+    uint i = SPEC_BRUTE == BRUTE_SHADOW ? chunk.light : 0u;
     do {
         vec3 to_light, arriving;
         float distance;
@@ -274,14 +305,14 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint 
         lit = lit && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
         if (lit) {
             vec3 share =
-                light_share(slot, s.p, s.error, s.ng, to_light, distance, hit, status);
+                light_share(slot, i, s.p, s.error, s.ng, to_light, distance, hit, status);
             sum += reflected * arriving * share;
             if (SPEC_SHADOWS != 0u)
                 shadow_rays++;
         }
         i++;
-    } while (i < frame.light_count);
-    if (i < frame.light_count)
+    } while (SPEC_BRUTE != BRUTE_SHADOW && i < frame.light_count);
+    if (SPEC_BRUTE != BRUTE_SHADOW && i < frame.light_count)
         status |= STATUS_UNFINISHED_LOOP;
     return sum;
 }
@@ -315,7 +346,7 @@ bool worth(vec3 weight)
 void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit,
                    inout gpu_counts count, inout uint status)
 {
-    if (SPEC_SECONDARY == 0u || ray.bounces >= frame.depth)
+    if (SPEC_SECONDARY == 0u || SPEC_BRUTE == BRUTE_SHADOW || ray.bounces >= frame.depth)
         return;
     uint bounces = ray.bounces + 1u;
     float solid = 1.0 - o.straight;
@@ -383,6 +414,42 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
     return light * ray.weight * (1.0 - o.straight);
 }
 
+Hit found_hit(uint slot)
+{
+    gpu_found before = found[slot];
+    Hit hit = make_hit(FLOAT_LARGEST);
+    if (before.primitive == HIT_NONE)
+        return hit;
+    hit.t = before.t;
+    hit.u = before.u;
+    hit.v = before.v;
+    hit.triangle = before.triangle;
+    hit.primitive = before.primitive;
+    hit.instance = before.instance;
+    return hit;
+}
+
+// Without trees: the phases before BRUTE_SHADE. Leaves the pixel alone.
+void extend_ranges(uint slot, Ray ray)
+{
+    Hit hit = make_hit(FLOAT_LARGEST);
+    if (SPEC_BRUTE == BRUTE_SHADOW || chunk.begin == 0u)
+        hit = found_hit(slot);
+    if (SPEC_BRUTE == BRUTE_CLOSEST) {
+        traverse_runs(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, chunk.first_run, chunk.begin,
+                      ray.skip_instance, ray.skip_primitive, hit);
+        add_cost(slot, ray.kind);
+        found[slot] = gpu_found(hit.t, hit.u, hit.v, hit.triangle, hit.primitive, hit.instance,
+                                0u, 0u);
+        report_status(hit.status);
+    } else if (hit.primitive != HIT_NONE) {
+        gpu_counts ignored = gpu_counts(0u, 0u, 0u, 0u);
+        uint status = 0u;
+        shade_hit(slot, ray, hit, ignored, status);
+        report_status(status);
+    }
+}
+
 void list_for_next(uint slot)
 {
     uint at = atomicAdd(work_out.count, 1u);
@@ -412,11 +479,21 @@ void main()
         ray = stacked_ray(slot * frame.stack_size + count.stack);
     } else {
         count.stack = 0u;
-        clear_costs(slot);
+        if (SPEC_BRUTE == BRUTE_OFF || (SPEC_BRUTE == BRUTE_CLOSEST && chunk.begin != 0u))
+            clear_costs(slot);
     }
-    Hit hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
+    if (SPEC_BRUTE == BRUTE_CLOSEST || SPEC_BRUTE == BRUTE_SHADOW) {
+        extend_ranges(slot, ray);
+        return;
+    }
+    Hit hit;
+    if (SPEC_BRUTE == BRUTE_SHADE) {
+        hit = found_hit(slot);
+    } else {
+        hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
                        ray.skip_instance, ray.skip_primitive);
-    add_cost(slot, ray.kind);
+        add_cost(slot, ray.kind);
+    }
     uint status = hit.status;
     bool met = hit.primitive != HIT_NONE;
     vec3 radiance = environment_radiance(ray.dir) * ray.weight;
