@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,14 @@
 #include "scene/shapes.h"
 
 static const struct log silent;
+static char last_error[256];
+
+static void keep_error(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (level == WHIT_LOG_ERROR)
+        snprintf(last_error, sizeof last_error, "%s", message);
+}
 
 /* Each takes the mesh over and gives an index; no failure is expected. */
 static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings,
@@ -256,6 +265,18 @@ static void one_instance_at_the_origin_is_told_apart(void **state)
     }
 }
 
+static void assert_missed(const struct accel *accel)
+{
+    const struct gpu_ray ray = {.dir = {0.1f, 0.2f, -1}, .t_max = INFINITY};
+    for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order) {
+        struct gpu_hit hit;
+        uint32_t status = 0;
+        traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+        assert_int_equal(hit.primitive, HIT_NONE);
+        assert_int_equal(status, 0);
+    }
+}
+
 static void scenes_without_anything(void **state)
 {
     (void)state;
@@ -271,6 +292,7 @@ static void scenes_without_anything(void **state)
         assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
         assert_int_equal(accel->instance_node_count, 0);
         assert_false(accel->single_identity);
+        assert_missed(accel);
         accel_destroy(accel);
         scene_destroy(scene);
     }
@@ -302,11 +324,14 @@ static void matrices_without_inverse_are_refused(void **state)
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     struct accel *accel = build(scene, 1);
     struct scene_pose pose;
+    accel->log = (struct log){.fn = keep_error, .level = WHIT_LOG_ERROR};
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     const double bad[] = {0.0, (double)NAN, (double)INFINITY, 1e-60, 1e60};
     for (int k = 0; k < 5; ++k) {
         pose.instances[1].m[0] = bad[k];
         assert_int_equal(accel_pose(accel, &pose), WHIT_ERROR_INPUT);
+        assert_string_equal(last_error,
+                            "test: instance 1 ``: its matrix has no inverse in range at 0 s");
         assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
     }
     pose.instances[1].m[0] = -1.0;

@@ -1,0 +1,291 @@
+/* What transforms cost in accuracy: hits in instances against the same triangles placed in double.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel.h"
+#include "base/array.h"
+#include "scene/shapes.h"
+
+static const struct log silent;
+
+static double random_signed(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1.0;
+}
+
+static struct scene *sphere_scene(const struct affine *matrices, uint32_t count)
+{
+    struct scene *scene = scene_create(&silent, "instances");
+    struct scene_mesh mesh;
+    struct scene_material grey;
+    assert_non_null(scene);
+    scene_material_init(&grey, "grey");
+    scene_add_material(scene, grey);
+    assert_int_equal(shape_sphere(1.0, 48, 32, &mesh), WHIT_OK);
+    mesh.name = string_copy("sphere");
+    scene_add_mesh(scene, mesh);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct scene_instance instance = {
+            .name = string_copy("ball"), .node = SCENE_NONE, .has_local = true};
+        instance.local = matrices[i];
+        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static struct accel *build(const struct scene *scene)
+{
+    const struct accel_params params = {.validate = true};
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    return accel;
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A corner, and the normal on the side of the instance's, of a triangle placed in double. */
+static void world_plane(const struct scene *scene, const struct affine *matrix, uint32_t primitive,
+                        double at[3], double normal[3])
+{
+    const struct scene_mesh *mesh = &scene->meshes[0];
+    double v[3][3], e1[3], e2[3];
+    for (size_t k = 0; k < 3; ++k) {
+        const float *p = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)primitive + k]];
+        affine_point(matrix, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, v[k]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        at[i] = v[0][i];
+        e1[i] = v[1][i] - v[0][i];
+        e2[i] = v[2][i] - v[0][i];
+    }
+    cross(e1, e2, normal);
+    for (int i = 0; i < 3 && affine_determinant(matrix) < 0.0; ++i)
+        normal[i] = -normal[i];
+}
+
+/* From outside the instance to a point inside its unit sphere, rounded to floats. */
+static struct gpu_ray aimed_ray(const struct affine *matrix, uint64_t *state)
+{
+    double from[3], to[3], size = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        from[i] = random_signed(state);
+        to[i] = 0.55 * random_signed(state);
+        size += from[i] * from[i];
+    }
+    for (int i = 0; i < 3; ++i)
+        from[i] *= 4.0 / sqrt(size);
+    affine_point(matrix, from, from);
+    affine_point(matrix, to, to);
+    struct gpu_ray ray = {.t_max = INFINITY};
+    for (int i = 0; i < 3; ++i) {
+        ray.origin[i] = (float)from[i];
+        ray.dir[i] = (float)(to[i] - (double)ray.origin[i]);
+    }
+    return ray;
+}
+
+struct errors {
+    double t_mean, t_most; /* relative */
+    double normal_most;    /* radians */
+    uint32_t met;
+};
+
+enum { RAYS = 20000 };
+
+static struct errors measure(const struct affine *matrix)
+{
+    struct scene *scene = sphere_scene(matrix, 1);
+    struct accel *accel = build(scene);
+    struct errors errors = {0};
+    uint64_t state = 1;
+    for (int i = 0; i < RAYS; ++i) {
+        struct gpu_ray ray = aimed_ray(matrix, &state);
+        struct gpu_hit hit;
+        uint32_t status = 0;
+        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+        assert_int_equal(status, 0);
+        if (hit.primitive == HIT_NONE)
+            continue;
+        double at[3], normal[3], d[3], across[3], to[3];
+        double ng[3] = {(double)hit.ng_x, (double)hit.ng_y, (double)hit.ng_z};
+        world_plane(scene, matrix, hit.primitive, at, normal);
+        for (int k = 0; k < 3; ++k) {
+            d[k] = (double)ray.dir[k];
+            to[k] = at[k] - (double)ray.origin[k];
+        }
+        double t = dot(to, normal) / dot(d, normal), off = fabs((double)hit.t - t) / t;
+        errors.t_mean += off;
+        errors.t_most = fmax(errors.t_most, off);
+        cross(ng, normal, across);
+        double angle = atan2(sqrt(dot(across, across)), dot(ng, normal));
+        errors.normal_most = fmax(errors.normal_most, angle);
+        ++errors.met;
+    }
+    errors.t_mean /= errors.met ? errors.met : 1;
+    accel_destroy(accel);
+    scene_destroy(scene);
+    return errors;
+}
+
+static struct affine turned(double x, double y, double z, double sx, double sy, double sz)
+{
+    return affine_from_trs((const double[3]){x, y, z}, (const double[4]){0.3, -0.5, 0.2, 0.8},
+                           (const double[3]){sx, sy, sz});
+}
+
+static void far_translations_keep_their_precision(void **state)
+{
+    (void)state;
+    static const double far[] = {0, 1e3, 1e5, 1e6};
+    for (size_t i = 0; i < sizeof far / sizeof *far; ++i) {
+        struct affine matrix = turned(far[i], -far[i], 0.5 * far[i], 1, 1, 1);
+        struct errors errors = measure(&matrix);
+        print_message("  at %g: t off by %.2g on average, %.2g at most, of %u hits\n", far[i],
+                      errors.t_mean, errors.t_most, errors.met);
+        assert_true(errors.met > RAYS * 9 / 10);
+        assert_true(errors.t_mean <= 2e-7);
+        assert_true(errors.t_most <= 1e-4);
+    }
+}
+
+static void assert_scale(const char *what, const struct affine *matrix, double stretch)
+{
+    struct errors errors = measure(matrix);
+    print_message("  %s: t off by %.2g on average, %.2g at most, of %u hits\n", what, errors.t_mean,
+                  errors.t_most, errors.met);
+    assert_true(errors.met > RAYS * 9 / 10);
+    assert_true(errors.t_mean <= 2e-7 * stretch);
+    assert_true(errors.t_most <= fmin(1e-4 * stretch, 4.0 * 0x1p-24 * stretch + 1e-4));
+}
+
+/* `stretch` is how much longer the world's longest axis is than the shortest one, where these are
+   turned: each coordinate of the object is then a difference of the world's longest. */
+static void scales_keep_their_precision(void **state)
+{
+    (void)state;
+    struct affine small = turned(1e-6, 2e-6, 3e-6, 1e-6, 1e-6, 1e-6);
+    struct affine large = turned(1e6, 2e6, 3e6, 1e6, 1e6, 1e6);
+    struct affine straight = affine_identity(), stretched = turned(1, 2, 3, 1, 1e2, 1e4);
+    struct affine mirrored = turned(1, 2, 3, -1, 1, 1), twice = turned(1, 2, 3, -2, -1, 3);
+    straight.m[5] = 1e2;
+    straight.m[10] = 1e4;
+    assert_scale("1e-6", &small, 1);
+    assert_scale("1e6", &large, 1);
+    assert_scale("1, 1e2, 1e4", &straight, 1);
+    assert_scale("1, 1e2, 1e4, turned", &stretched, 1e4);
+    assert_scale("mirrored", &mirrored, 1);
+    assert_scale("mirrored twice", &twice, 3);
+}
+
+/* diag(2, 1, 1) puts a normal that goes by the matrix itself off by 36.87 degrees at worst. */
+static void normals_go_by_the_inverse_transpose(void **state)
+{
+    (void)state;
+    struct affine stretched = affine_identity(), sheared = turned(1, 2, 3, 2, 0.5, -1.5);
+    struct affine shear = affine_identity();
+    stretched.m[0] = 2.0;
+    shear.m[1] = 0.8;
+    shear.m[9] = -0.6;
+    sheared = affine_multiply(&sheared, &shear);
+    const struct affine all[] = {stretched, sheared};
+    for (size_t i = 0; i < 2; ++i) {
+        struct errors errors = measure(&all[i]);
+        print_message("  normals off by %.2g rad at most, of %u hits\n", errors.normal_most,
+                      errors.met);
+        assert_true(errors.met > RAYS * 9 / 10);
+        assert_true(errors.normal_most < 1e-6);
+    }
+}
+
+/* 0 + 0 may come with another sign; nothing else may. */
+static void an_identity_is_no_transform(void **state)
+{
+    (void)state;
+    struct affine identity = affine_identity();
+    struct scene *scene = sphere_scene(&identity, 1);
+    struct accel *accel = build(scene);
+    uint64_t random = 3;
+    uint32_t met = 0;
+    for (int i = 0; i < RAYS; ++i) {
+        struct gpu_ray ray = aimed_ray(&identity, &random);
+        struct gpu_hit plain, moved;
+        uint32_t status = 0;
+        if (i % 4 == 0)
+            ray.dir[i / 4 % 3] = -0.0f;
+        accel->single_identity = true;
+        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &plain, NULL,
+                       &status);
+        accel->single_identity = false;
+        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &moved, NULL,
+                       &status);
+        assert_int_equal(status, 0);
+        assert_memory_equal(&plain, &moved, offsetof(struct gpu_hit, ng_x));
+        assert_true(plain.ng_x == moved.ng_x && plain.ng_y == moved.ng_y &&
+                    plain.ng_z == moved.ng_z);
+        met += plain.primitive != HIT_NONE;
+    }
+    assert_true(met > RAYS / 2);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+/* Equal boxes: nothing can be ruled out, and the first instance is the one that is hit. */
+static void instances_in_one_place_are_all_entered(void **state)
+{
+    (void)state;
+    enum { COUNT = 10000 };
+    struct affine *matrices = malloc(COUNT * sizeof *matrices);
+    assert_non_null(matrices);
+    for (int i = 0; i < COUNT; ++i)
+        matrices[i] = affine_identity();
+    struct scene *scene = sphere_scene(matrices, COUNT);
+    struct accel *accel = build(scene);
+    uint64_t random = 5;
+    for (int i = 0; i < 20; ++i) {
+        struct gpu_ray ray = aimed_ray(&matrices[0], &random);
+        struct gpu_hit hit;
+        struct gpu_cost cost = {0};
+        uint32_t status = 0;
+        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost,
+                       &status);
+        assert_int_equal(status, 0);
+        assert_int_equal(hit.instance, 0);
+        assert_int_equal(cost.instances, COUNT);
+    }
+    accel_destroy(accel);
+    scene_destroy(scene);
+    free(matrices);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(far_translations_keep_their_precision),
+        cmocka_unit_test(scales_keep_their_precision),
+        cmocka_unit_test(normals_go_by_the_inverse_transpose),
+        cmocka_unit_test(an_identity_is_no_transform),
+        cmocka_unit_test(instances_in_one_place_are_all_entered),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
