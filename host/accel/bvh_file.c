@@ -293,6 +293,42 @@ static void on_violation(void *user, whit_log_level level, const char *message)
     snprintf(reader->violation, sizeof reader->violation, "%s", message);
 }
 
+static void make_boxes(const struct scene_mesh *mesh, struct bvh_box *boxes)
+{
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        const uint32_t *corner = &mesh->indices[3 * (size_t)i];
+        boxes[i] = accel_triangle_box(&mesh->positions[3 * (size_t)corner[0]],
+                                      &mesh->positions[3 * (size_t)corner[1]],
+                                      &mesh->positions[3 * (size_t)corner[2]]);
+    }
+}
+
+static uint32_t primitive_at(const void *user, uint32_t slot)
+{
+    return ((const struct bvh *)user)->order[slot];
+}
+
+/* Of a tree that is valid but for this: is all of each split triangle in its leaves? */
+static whit_result check_parts(const struct log *log, const struct scene_mesh *mesh,
+                               const struct bvh *tree)
+{
+    struct gpu_triangle *triangles = array_alloc_zeroed(tree->reference_count, sizeof *triangles);
+    if (!triangles) {
+        log_error(log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < tree->reference_count; ++i) {
+        const uint32_t *corner = &mesh->indices[3 * (size_t)tree->order[i]];
+        memcpy(triangles[i].v0, &mesh->positions[3 * (size_t)corner[0]], sizeof triangles[i].v0);
+        memcpy(triangles[i].v1, &mesh->positions[3 * (size_t)corner[1]], sizeof triangles[i].v1);
+        memcpy(triangles[i].v2, &mesh->positions[3 * (size_t)corner[2]], sizeof triangles[i].v2);
+    }
+    whit_result result = accel_validate_parts(log, "tree", tree->nodes, tree->node_count, triangles,
+                                              tree->primitive_count, primitive_at, tree);
+    free(triangles);
+    return result;
+}
+
 static whit_result check_tree(struct reader *reader, const struct scene_mesh *mesh,
                               struct bvh *tree)
 {
@@ -303,14 +339,11 @@ static whit_result check_tree(struct reader *reader, const struct scene_mesh *me
         log_error(reader->log, "%s: out of memory", reader->path);
         return WHIT_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
-        const uint32_t *corner = &mesh->indices[3 * (size_t)i];
-        boxes[i] = accel_triangle_box(&mesh->positions[3 * (size_t)corner[0]],
-                                      &mesh->positions[3 * (size_t)corner[1]],
-                                      &mesh->positions[3 * (size_t)corner[2]]);
-    }
+    make_boxes(mesh, boxes);
     whit_result result = bvh_validate(&log, tree, boxes, limit);
     free(boxes);
+    if (result == WHIT_OK && tree->reference_count > tree->primitive_count)
+        result = check_parts(&log, mesh, tree);
     if (result != WHIT_OK) {
         log_error(reader->log, "%s: mesh %s: %s", reader->path, reader->mesh, reader->violation);
         return result == WHIT_ERROR_FAILED ? WHIT_ERROR_INPUT : result;

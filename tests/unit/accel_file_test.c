@@ -388,6 +388,42 @@ static void bad_trees_are_refused(void **state)
     scene_destroy(scene);
 }
 
+/* A leaf that holds a part of a triangle gets a box that is too small by a third: no other leaf has
+   what is missing, whatever the boxes of all of them unite to. */
+static void lost_parts_are_refused(void **state)
+{
+    (void)state;
+    static const struct bvh_params spatial = {
+        .builder = BVH_SPATIAL, .spatial_alpha = 1e-9f, .spatial_budget = 2.0f, .leaf_limit = 1};
+    struct scene *scene = needles(false);
+    save(scene, &spatial, path);
+    size_t size;
+    uint8_t *bytes = bytes_of(path, &size);
+    uint32_t node_count, refused = 0, tried = 0;
+    memcpy(&node_count, bytes + HEADER_BYTES, sizeof node_count);
+    for (uint32_t i = 2; i < node_count; ++i) {
+        uint8_t *at = bytes + HEADER_BYTES + MESH_BYTES + (size_t)i * NODE_BYTES;
+        struct gpu_bvh_node before, node;
+        memcpy(&before, at, sizeof before);
+        if (bvh_count(&before) == 0 || ++tried > 60)
+            continue;
+        node = before;
+        for (int k = 0; k < 3; ++k)
+            node.hi[k] = node.lo[k] + (node.hi[k] - node.lo[k]) * 0.667f;
+        memcpy(at, &node, sizeof node);
+        write_signed(bytes, size);
+        struct accel *accel;
+        whit_result result = create(scene, &spatial, path, &accel);
+        assert_int_equal(said.count, result == WHIT_OK ? 0 : 1);
+        refused += result != WHIT_OK;
+        accel_destroy(accel);
+        memcpy(at, &before, sizeof before);
+    }
+    assert_int_equal(refused, 60);
+    free(bytes);
+    scene_destroy(scene);
+}
+
 static void files_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -427,6 +463,7 @@ int main(void)
         cmocka_unit_test(every_other_length_is_refused),
         cmocka_unit_test(signed_garbage_does_no_harm),
         cmocka_unit_test(bad_trees_are_refused),
+        cmocka_unit_test(lost_parts_are_refused),
         cmocka_unit_test(files_that_are_none_are_refused),
         cmocka_unit_test(writing_fails_cleanly),
     };
