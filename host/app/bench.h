@@ -66,7 +66,8 @@ WHIT_CHECK whit_result bench_build(struct bench *bench, struct bench_case *cases
 /* Renders each case's picture, once before the clock counts and then `runs` times, in turns. */
 WHIT_CHECK whit_result bench_render(struct bench *bench, struct bench_case *cases, uint32_t count,
                                     uint32_t runs);
-/* Renders each once more, with counters. */
+/* Renders each once more, with counters. Quick benches count while they are timed, which spares
+   pipelines: then this does nothing. */
 WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count);
 void bench_case_finish(struct bench_case *cases, uint32_t count);
 

@@ -261,17 +261,25 @@ static whit_result render_once(struct bench *bench, struct bench_case *c, bool t
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
+static void keep_counts(struct bench_case *c)
+{
+    whit_renderer_get_stats(c->renderer, &c->counted);
+    c->has_counts = true;
+}
+
 whit_result bench_render(struct bench *bench, struct bench_case *cases, uint32_t count,
                          uint32_t runs)
 {
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
-        result = create_renderer(bench, &cases[i], false, &cases[i].renderer);
+        result = create_renderer(bench, &cases[i], bench->quick, &cases[i].renderer);
     for (uint32_t run = 0; run <= runs; ++run) {
         for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
             result = render_once(bench, &cases[i], run > 0);
     }
     for (uint32_t i = 0; i < count; ++i) {
+        if (result == WHIT_OK && bench->quick)
+            keep_counts(&cases[i]);
         whit_renderer_destroy(cases[i].renderer);
         cases[i].renderer = NULL;
     }
@@ -283,13 +291,13 @@ whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t 
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         struct bench_case *c = &cases[i];
+        if (c->has_counts)
+            continue;
         result = create_renderer(bench, c, true, &c->renderer);
         if (result == WHIT_OK)
             result = render_once(bench, c, false);
-        if (result == WHIT_OK) {
-            whit_renderer_get_stats(c->renderer, &c->counted);
-            c->has_counts = true;
-        }
+        if (result == WHIT_OK)
+            keep_counts(c);
         whit_renderer_destroy(c->renderer);
         c->renderer = NULL;
     }

@@ -604,7 +604,8 @@ static void print_head(const struct bench *bench)
         "The report's figures are from another machine: only ratios compare.\n",
         device->name, device->driver, bench->width, bench->height, bench->runs);
     if (bench->quick)
-        printf("\n**Quick run: pictures too small and runs too few for figures to be quoted.**\n");
+        printf("\n**Quick run: small pictures, few runs and counters on: not for figures to be "
+               "quoted.**\n");
     fflush(stdout);
 }
 

@@ -1,0 +1,56 @@
+#!/bin/sh
+# `whit bench`: the list, the report's tables on small pictures, refusals, Ctrl+C.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/files" "$OUT/tmp"
+TMPDIR=$OUT/tmp
+export TMPDIR
+
+expect 0 "no bench named" bench
+check "lists the benches" grep -q "^report " "$OUT/stdout"
+refuse 2 "a bench that is not there" "did you mean .report" bench reprot
+refuse 2 "a folder without scenes" "nowhere/cube.json" bench report --quick --scenes "$OUT/nowhere"
+refuse 2 "JSON to a pipe" "tables are printed" bench report --json -
+refuse 2 "no runs" "from 1 to 99" bench report --runs 0
+
+J=$OUT/files/figures.json
+expect 0 "the report, quick" bench report --quick --scenes "$SCENES" --json "$J"
+check "says nothing on a pipe" test ! -s "$OUT/stderr"
+check "six tables" test "$(grep -c '^### ' "$OUT/stdout")" -eq 6
+check "is said to be quick" grep -q "Quick run" "$OUT/stdout"
+for row in "cube, no tree" "34k, no tree .*estimated" "sweep-naive .*249.8 .*estimated" \
+    "distance .*33 " "sign .*28 " "binned:7 .*0.328" "binned:2" "spatial"; do
+    check "a row of $row" grep -q "^| $row" "$OUT/stdout"
+done
+check "the estimate of 34k is explained" grep -q "34k without a tree is estimated" "$OUT/stdout"
+check "that of sweep-naive too" grep -q "was stopped after 0.2 s and is estimated" "$OUT/stdout"
+check "claims are judged" \
+    test "$(grep -cE '^- .*(holds here|does NOT hold here)' "$OUT/stdout")" -ge 5
+check "the figures as JSON" grep -q '"bench":"report".*"tables":\[{"table":"trees"' "$J"
+for key in fps frame_ms build_ms visits_per_ray sah_cost references depth_mean report_fps; do
+    check "with $key" grep -q "\"$key\":" "$J"
+done
+# In the cube's table the estimated scene has by far the longest frame.
+slow=$(awk -F'|' '/^\| 34k, tree/ { tree = $5 } /^\| 34k, no tree/ { none = $5 }
+    END { print (none + 0 > 2 * (tree + 0)) }' "$OUT/stdout")
+check "34k is slower without a tree" test "$slow" = 1
+# Whatever the machine, an order saves visits.
+saved=$(awk -F'|' '/^\| basic/ { b = $6 } /^\| distance/ { d = $6 } /^\| sign/ { s = $6 }
+    END { print (b > 0 && d + 0 < b + 0 && s + 0 < b + 0) }' "$OUT/stdout")
+check "basic opens the most nodes" test "$saved" = 1
+# Spatial splits: more references than triangles, and fewer visits where these are long and thin.
+split=$(awk -F'|' '/^### strands/ { here = 1 } /^### atrium/ { here = 0 }
+    here && /^\| sweep / { n = $4; v = $6 } here && /^\| spatial / { m = $4; w = $6 }
+    END { print (n == 20002 && m + 0 > n + 0 && w + 0 < v + 0) }' "$OUT/stdout")
+check "strands: more references, fewer visits" test "$split" = 1
+check "no scratch files stay" is_empty "$OUT/tmp"
+
+"$WHIT" bench report --runs 99 --naive-limit 60 --scenes "$SCENES" --json "$OUT/files/never" \
+    >/dev/null 2>"$OUT/stderr" &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid
+status=$?
+check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
+check "and no file" test "$(ls -A "$OUT/files")" = figures.json
+finish
