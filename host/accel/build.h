@@ -84,6 +84,9 @@ whit_result topdown_grow(const struct log *log, const struct build_methods *meth
                          const struct bvh_params *params, const struct build_bounds *bounds,
                          uint32_t count, struct bvh *out);
 
+/* bvh_complete by several threads: the same bits for any number of them. */
+void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);
+
 /* ---- Records (records.c) ---- */
 
 /* In the order of the input, zeros without sign, and room for `spare` more behind them. free() */
@@ -110,17 +113,18 @@ whit_result naive_build(const struct log *log, struct build_record *records,
 /* ---- Small subtrees (small.c) ---- */
 
 /* At most BUILD_SMALL boxes, and their order along each axis. */
-enum { BUILD_SMALL = 24 };
+enum { BUILD_SMALL = 16 };
 struct small {
     f4 lo[BUILD_SMALL], hi[BUILD_SMALL];
     alignas(16) float centroid[BUILD_SMALL][4];
-    uint8_t order[3][BUILD_SMALL];
+    uint8_t order[2][3]
+                 [BUILD_SMALL];  /* nodes read one side and write the other for their children */
+    uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
 };
 
-/* Fills `order`: by centroid, equal ones by position. */
+/* Fills order[0]: by centroid, equal ones by position. */
 void small_sort(struct small *small, uint32_t count);
-/* Grows the subtree over the boxes of `range` by sweeping over every position. Leaves are in the
-   order of `order[0]`, which changes. */
+/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0]. */
 void small_grow(struct small *small, const struct build_output *output,
                 const struct bvh_params *params, const struct build_range *range);
 

@@ -1,7 +1,8 @@
 /* What is computed of a finished tree, whatever built it. */
 #include <math.h>
 
-#include "accel/accel.h"
+#include "accel/build.h"
+#include "base/threads.h"
 
 static double half_area(const struct gpu_bvh_node *node)
 {
@@ -55,20 +56,64 @@ static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node)
     return 1 + (a > b ? a : b);
 }
 
-void bvh_complete(struct bvh *bvh, double traversal_cost)
+/* Sums of chunks are summed up in the order of the chunks, whoever made them. */
+enum { CHUNK_NODES = 16384, CHUNKS_MAX = 512 };
+
+struct chunks {
+    struct bvh *bvh;
+    uint32_t nodes; /* of a chunk; even */
+    struct tally tallies[CHUNKS_MAX];
+};
+
+static void chunk_complete(void *user, uint32_t index)
 {
+    struct chunks *chunks = user;
+    struct bvh *bvh = chunks->bvh;
     struct tally tally = {0};
-    for (uint32_t i = 0; i < bvh->node_count; ++i) {
+    uint32_t begin = index * chunks->nodes;
+    uint32_t end =
+        bvh->node_count - begin > chunks->nodes ? begin + chunks->nodes : bvh->node_count;
+    for (uint32_t i = begin; i < end; ++i) {
         if (i == 1)
             continue;
         node_tally(&bvh->nodes[i], &tally);
         if (i >= 2 && i % 2 == 0)
             bvh_set_axis(&bvh->nodes[i]);
     }
+    chunks->tallies[index] = tally;
+}
+
+static struct tally nodes_complete(struct bvh *bvh, uint32_t thread_count)
+{
+    struct tally sum = {0};
+    struct chunks chunks = {.bvh = bvh, .nodes = CHUNK_NODES};
+    while ((uint64_t)chunks.nodes * CHUNKS_MAX < bvh->node_count)
+        chunks.nodes *= 2;
+    uint32_t count = (bvh->node_count + chunks.nodes - 1) / chunks.nodes;
+    threads_for(thread_count, count, chunk_complete, &chunks);
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct tally *part = &chunks.tallies[i];
+        sum.area_inner += part->area_inner;
+        sum.area_leaves += part->area_leaves;
+        sum.leaf_count += part->leaf_count;
+        sum.leaf_largest =
+            part->leaf_largest > sum.leaf_largest ? part->leaf_largest : sum.leaf_largest;
+    }
+    return sum;
+}
+
+void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count)
+{
+    struct tally tally = nodes_complete(bvh, thread_count);
     double root = bvh->node_count > 0 ? half_area(&bvh->nodes[0]) : 0.0;
     bvh->sah_cost =
         root > 0.0 ? (tally.area_inner * traversal_cost + tally.area_leaves) / root : 0.0;
     bvh->leaf_count = tally.leaf_count;
     bvh->leaf_largest = tally.leaf_largest;
     bvh->depth = bvh->node_count > 0 ? subtree_depth(bvh->nodes, 0) : 0;
+}
+
+void bvh_complete(struct bvh *bvh, double traversal_cost)
+{
+    build_complete(bvh, traversal_cost, 1);
 }

@@ -131,7 +131,7 @@ static void grow_small(void *user, const struct build_output *output,
     small_sort(&small, range->count);
     small_grow(&small, output, c->params, range);
     for (uint32_t i = 0; i < range->count; ++i)
-        own[i] = moved[small.order[0][i]];
+        own[i] = moved[small.leaves[i]];
 }
 
 whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,

@@ -14,7 +14,6 @@ enum {
     BINS_MOST = 32,
     CHUNKS_MAX = 16,
     CHUNK_LEAST = 4096,
-    TWO_SETS_LEAST = 1024, /* neighbours often meet in a bin: two sets do not wait for each other */
 };
 
 /* Bin of a centroid: (centroid - origin) * scale, truncated. Partitioning evaluates the very same
@@ -104,20 +103,8 @@ static void bins_fill(struct bins *bins, const struct grid *grid,
                       const struct build_record *records, uint32_t count)
 {
     bins_clear(bins, grid->bins);
-    if (count < TWO_SETS_LEAST) {
-        for (uint32_t i = 0; i < count; ++i)
-            bins_add(bins, grid, &records[i]);
-        return;
-    }
-    struct bins odd;
-    bins_clear(&odd, grid->bins);
-    for (uint32_t i = 0; i < (count & ~1u); i += 2) {
+    for (uint32_t i = 0; i < count; ++i)
         bins_add(bins, grid, &records[i]);
-        bins_add(&odd, grid, &records[i + 1]);
-    }
-    if (count % 2 != 0)
-        bins_add(bins, grid, &records[count - 1]);
-    bins_unite(bins, &odd, grid->bins);
 }
 
 struct chunks {

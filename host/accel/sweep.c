@@ -262,11 +262,11 @@ static void grow_small(void *user, const struct build_output *output,
     }
     for (uint32_t a = 0; a < 3; ++a) {
         for (uint32_t i = 0; i < range->count; ++i)
-            small.order[a][i] = sweep->mark[list[a][i]];
+            small.order[0][a][i] = sweep->mark[list[a][i]];
     }
     small_grow(&small, output, sweep->params, range);
     for (uint32_t i = 0; i < range->count; ++i)
-        list[0][i] = own[small.order[0][i]];
+        list[0][i] = own[small.leaves[i]];
 }
 
 /* ---- */

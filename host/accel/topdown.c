@@ -173,9 +173,11 @@ static uint32_t squeeze(const struct build_output *output, uint32_t slot_count)
         if (slots[i] == UINT32_MAX)
             continue;
         struct gpu_bvh_node *pair = &nodes[2 + 2 * slots[i]];
-        memmove(pair, &nodes[2 + 2 * i], 2 * sizeof *pair);
-        node_link(&pair[0], slots);
-        node_link(&pair[1], slots);
+        struct gpu_bvh_node first = nodes[2 + 2 * i], second = nodes[3 + 2 * i];
+        node_link(&first, slots);
+        node_link(&second, slots);
+        pair[0] = first;
+        pair[1] = second;
     }
     return 2 + 2 * pair_count;
 }
@@ -216,7 +218,7 @@ whit_result topdown_grow(const struct log *log, const struct build_methods *meth
         goto done;
     }
     out->node_count = squeeze(&build.output, count - 1);
-    bvh_complete(out, (double)params->traversal_cost);
+    build_complete(out, (double)params->traversal_cost, build.thread_count);
 done:
     free(build.output.slots);
     free(build.tasks);
