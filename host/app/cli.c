@@ -15,7 +15,7 @@
 enum { GRACE_MS = 80 };
 
 volatile bool cli_cancel;
-static volatile sig_atomic_t interrupt_signal;
+static volatile sig_atomic_t interrupt_signal, end_said;
 static timer_t grace_timer;
 static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
@@ -106,6 +106,7 @@ int cli_exit_of(whit_result result)
 {
     if (result == WHIT_OK)
         return EXIT_FINE;
+    end_said = 1;
     if (cli_cancel) {
         fprintf(stderr, "whit: interrupted, %s\n", written_text);
         return interrupt_signal ? 128 + (int)interrupt_signal : EXIT_INTERRUPTED;
@@ -134,16 +135,12 @@ static void on_alarm(int number)
 {
     (void)number;
     whit_file_abandon_all();
-    if (interrupt_signal) {
-        put("whit: interrupted, ");
+    if (!end_said) { /* else it was about to leave */
+        put(interrupt_signal ? "whit: interrupted, " : "whit: error: the time limit has passed, ");
         put(written_text);
         put("\n");
-        _exit(128 + (int)interrupt_signal);
     }
-    put("whit: error: the time limit has passed, ");
-    put(written_text);
-    put("\n");
-    _exit(EXIT_TIME);
+    _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
 
 static void on_interrupt(int number)
