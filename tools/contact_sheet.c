@@ -3,8 +3,8 @@
                      [--device D] [--texture-limit N]
 
    Folders are searched for scene files, models and all; within them, .json files count when they
-   name whit's schema. Tiles come in the order of their paths. A scene that fails gets a dark tile
-   with the kind of its error, and the exit code is 1. */
+   name whit's schema. Single files may be .png pictures. Tiles come in the order of their paths. A
+   scene that fails gets a dark tile with the kind of its error, and the exit code is 1. */
 #define _GNU_SOURCE
 #include <ctype.h>
 #include <ftw.h>
@@ -120,16 +120,26 @@ static void write_text(struct sheet *sheet, uint32_t x, uint32_t y, const char *
     }
 }
 
+/* What goes over the tile is cut off. */
 static void place(struct sheet *sheet, uint32_t x, uint32_t y, const whit_image *image)
 {
+    whit_image_info info;
+    whit_image_get_info(image, &info);
     const float *pixels = whit_image_floats(image);
-    for (uint32_t row = 0; row < sheet->height; ++row) {
-        for (uint32_t column = 0; column < sheet->width; ++column) {
-            const float *from = pixels + 4 * ((size_t)row * sheet->width + column);
+    for (uint32_t row = 0; row < sheet->height && row < info.height; ++row) {
+        for (uint32_t column = 0; column < sheet->width && column < info.width; ++column) {
+            const float *from = pixels + info.channels * ((size_t)row * info.width + column);
             float *to = sheet->pixels + 3 * ((size_t)(y + row) * sheet->sheet_width + x + column);
-            memcpy(to, from, 3 * sizeof *to);
+            for (uint32_t c = 0; c < 3; ++c)
+                to[c] = from[info.channels >= 3 ? c : 0];
         }
     }
+}
+
+static bool is_picture(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".png") == 0;
 }
 
 static whit_result render(const struct sheet *sheet, whit_device *device, const char *path,
@@ -166,7 +176,8 @@ static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
         uint32_t y = i / sheet->columns * (sheet->height + LABEL_ROWS);
         whit_image *image = NULL;
         double start_ms = whit_clock_ms();
-        whit_result result = render(sheet, device, files[i], &image);
+        whit_result result = is_picture(files[i]) ? whit_image_load(files[i], &log_errors, &image)
+                                                  : render(sheet, device, files[i], &image);
         if (result == WHIT_OK) {
             place(sheet, x, y, image);
         } else {

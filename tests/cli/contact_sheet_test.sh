@@ -14,6 +14,10 @@ grep -q '^ *1 .*fine.*/cube.json$' "$out/list" || grep -q '^ *1 .*ok.*/cube.json
     { cat "$out/list"; exit 1; }
 grep -q '^.*: 2 scenes, 0 failed$' "$out/list"
 "$check" "$out/sheet.png" 192 96
+"$sheet" "$out/cube.json" "$out/sheet.png" -o "$out/second.png" --size 96x72 --aa 1 >"$out/list"
+grep -q '^.*: 2 scenes, 0 failed$' "$out/list"
+"$check" "$out/second.png" 192 96
+rm "$out/second.png"
 
 echo '{ "objects": 3 }' >"$out/broken.json"
 code=0
