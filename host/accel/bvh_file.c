@@ -374,6 +374,24 @@ static whit_result read_trees(struct reader *reader, struct bvh *trees)
     return result;
 }
 
+whit_result bvh_file_parse(const struct log *log, const char *path, const uint8_t *data,
+                           size_t size_bytes, const struct scene *scene, struct bvh_params *params,
+                           struct bvh *trees)
+{
+    struct reader reader = {
+        .log = log, .path = path, .scene = scene, .data = data, .params = params};
+    whit_result result = check_format(&reader, size_bytes);
+    if (result == WHIT_OK)
+        result = check_scene(&reader);
+    if (result == WHIT_OK)
+        result = read_params(&reader);
+    if (result == WHIT_OK)
+        result = read_trees(&reader, trees);
+    for (uint32_t i = 0; result != WHIT_OK && i < scene->mesh_count; ++i)
+        bvh_finish(&trees[i]);
+    return result;
+}
+
 whit_result bvh_file_read(const struct log *log, const char *path, const struct scene *scene,
                           struct bvh_params *params, struct bvh *trees)
 {
@@ -382,17 +400,7 @@ whit_result bvh_file_read(const struct log *log, const char *path, const struct 
     whit_result result = file_read(log, path, 0, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    struct reader reader = {
-        .log = log, .path = path, .scene = scene, .data = data, .params = params};
-    result = check_format(&reader, size_bytes);
-    if (result == WHIT_OK)
-        result = check_scene(&reader);
-    if (result == WHIT_OK)
-        result = read_params(&reader);
-    if (result == WHIT_OK)
-        result = read_trees(&reader, trees);
+    result = bvh_file_parse(log, path, data, size_bytes, scene, params, trees);
     free(data);
-    for (uint32_t i = 0; result != WHIT_OK && i < scene->mesh_count; ++i)
-        bvh_finish(&trees[i]);
     return result;
 }

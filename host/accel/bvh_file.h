@@ -2,6 +2,8 @@
 #ifndef ACCEL_BVH_FILE_H
 #define ACCEL_BVH_FILE_H
 
+#include <stddef.h>
+
 #include "accel/accel.h"
 
 /* Appears whole or not at all. The same trees give the same bytes. WHIT_ERROR_USAGE for scenes that
@@ -15,5 +17,9 @@ WHIT_CHECK whit_result bvh_file_write(const struct accel *accel, const char *pat
 WHIT_CHECK whit_result bvh_file_read(const struct log *log, const char *path,
                                      const struct scene *scene, struct bvh_params *params,
                                      struct bvh *trees);
+/* The same of a file's bytes; `path` is for messages. */
+WHIT_CHECK whit_result bvh_file_parse(const struct log *log, const char *path, const uint8_t *data,
+                                      size_t size_bytes, const struct scene *scene,
+                                      struct bvh_params *params, struct bvh *trees);
 
 #endif
