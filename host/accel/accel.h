@@ -136,9 +136,9 @@ struct accel {
     uint32_t mesh_depth;     /* deepest mesh tree */
     bool single_identity;    /* one instance, not moved: traversal may start at meshes[..].root */
     bool clipped;            /* some mesh tree holds clipped triangles */
-    bool flat; /* one tree over the triangles of all instances: meshes[0], the only mesh, is the
-                  world; accel_pose builds it anew. Instances say mesh and shade_base of the
-                  scene's meshes, but root, centre and reach of the world */
+    bool flat;     /* one tree over the triangles of all instances: meshes[0], the only mesh, is the
+                      world; accel_pose builds it anew. Instances say mesh and shade_base of the
+                      scene's meshes, but root, centre and reach of the world */
     bool no_trees; /* BVH_NONE: mesh roots are BVH_EMPTY_REF, rays test every triangle */
     double build_ms, instance_build_ms;
     struct accel_posing *posing; /* buffers of accel_pose */

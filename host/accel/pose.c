@@ -237,7 +237,8 @@ static bool is_identity(const struct affine *a)
 /* Leaves name instances, not ranks. */
 static void tree_place(struct accel *accel, const struct bvh *tree, const uint32_t *indices)
 {
-    memset(accel->nodes, 0, accel->instance_node_capacity * sizeof *accel->nodes);
+    memset(accel->nodes + tree->node_count, 0,
+           (accel->instance_node_capacity - tree->node_count) * sizeof *accel->nodes);
     for (uint32_t i = 0; i < tree->node_count; ++i) {
         accel->nodes[i] = tree->nodes[i];
         if (bvh_count(&accel->nodes[i]) > 0)
