@@ -34,7 +34,8 @@ static whit_result upload_all(struct renderer *renderer)
     return result;
 }
 
-/* Drops the passes whose compiled constants no longer fit. */
+/* Drops the passes whose compiled constants no longer fit; new ones are made when they are called
+   for. */
 static void passes_check(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -52,16 +53,13 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
     renderer->rendered = false;
     whit_result result = take_pose(renderer, time_s);
     double posed_ms = clock_ms();
-    if (result == WHIT_OK)
-        result = upload_all(renderer);
-    double uploaded_ms = clock_ms();
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
         passes_check(renderer);
-    /* Those that trace batches are made when they are called for. */
-    if (result == WHIT_OK && !renderer->whitted.pipeline)
-        result = variant_create_whitted(renderer);
-    renderer->stats.upload_ms = uploaded_ms - posed_ms;
-    renderer->stats.compile_ms = clock_ms() - uploaded_ms;
+        result = upload_all(renderer);
+        renderer->between_times = result != WHIT_OK;
+    }
+    renderer->stats.upload_ms = clock_ms() - posed_ms;
+    renderer->stats.compile_ms = 0.0;
     renderer->stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }

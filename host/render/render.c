@@ -236,13 +236,9 @@ static whit_result create_parts(struct renderer *renderer)
                               "frame", &renderer->scene_buffers.frame);
     if (result == WHIT_OK)
         result = brute_create(renderer);
-    double uploaded_ms = clock_ms();
-    renderer->stats.upload_ms = uploaded_ms - start_ms;
-    if (result == WHIT_OK)
-        result = variant_create_whitted(renderer);
+    renderer->stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
-    renderer->stats.compile_ms = clock_ms() - uploaded_ms;
     renderer->stats.texel_loads = renderer->scene_buffers.texel_loads;
     renderer->stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
@@ -556,18 +552,33 @@ static void clear_stats(struct render_stats *stats)
                                    .texel_loads = stats->texel_loads};
 }
 
+/* Renderers that only trace batches never need the large kernel. */
+static whit_result compile(struct renderer *renderer)
+{
+    if (renderer->whitted.pipeline)
+        return WHIT_OK;
+    double start_ms = clock_ms();
+    whit_result result = variant_create_whitted(renderer);
+    if (result != WHIT_OK)
+        passes_finish(renderer);
+    renderer->stats.compile_ms = clock_ms() - start_ms;
+    return result;
+}
+
 whit_result renderer_render(struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
     renderer->rendered = false;
-    if (!renderer->whitted.pipeline) {
+    if (renderer->between_times) {
         log_error(&renderer->log, "its time could not be set, so there is nothing to render");
         return WHIT_ERROR_USAGE;
     }
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     costs_clear(renderer);
-    whit_result result = brute_check_time(renderer);
+    whit_result result = compile(renderer);
+    if (result == WHIT_OK)
+        result = brute_check_time(renderer);
     if (result == WHIT_OK && !one_band(renderer))
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !one_band(renderer))

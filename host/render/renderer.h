@@ -88,6 +88,7 @@ struct renderer {
     uint32_t node_stack_size;
     bool single_identity;
     bool has_secondary; /* the scene calls for more than camera rays */
+    bool between_times; /* another time was only set in part */
     bool rendered;
 };
 

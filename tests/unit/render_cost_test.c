@@ -125,6 +125,22 @@ static void clipped_trees_cost_the_same(void **state)
     }
 }
 
+/* One tree for all instances, in world space. */
+static void flat_trees_cost_the_same(void **state)
+{
+    (void)state;
+    const struct accel_params flat = {.flatten = true};
+    const struct render_params params = {
+        .width = 16, .height = 16, .order = ORDER_SIGN, .count = true};
+    struct gpu_cost sum = {0};
+    struct fixture f = fixture_open(ring_scene(), &flat, &params);
+    assert_true(f.accel->flat);
+    check_costs(&f, ORDER_SIGN, false, &sum);
+    check_costs(&f, ORDER_SIGN, true, &sum);
+    assert_int_equal(sum.instances, 0);
+    fixture_close(&f);
+}
+
 static void costs_must_be_asked_for(void **state)
 {
     (void)state;
@@ -466,6 +482,7 @@ int main(void)
         cmocka_unit_test(one_mesh_costs_the_same),
         cmocka_unit_test(instances_cost_the_same),
         cmocka_unit_test(clipped_trees_cost_the_same),
+        cmocka_unit_test(flat_trees_cost_the_same),
         cmocka_unit_test(costs_must_be_asked_for),
         cmocka_unit_test(deep_trees_are_walked),
         cmocka_unit_test(understated_depth_is_reported),
