@@ -35,7 +35,7 @@ static inline float clip_float_above(double x)
 
 /* The bounds of the part of the triangle in `cell`, rounded outwards to floats, within the cell.
    They hold that part but for what doubles round: some 2^-50 of the coordinates. False when nothing
-   is left. */
+   is left, or no more than that. */
 bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_box *cell,
                        struct bvh_box *out);
 
