@@ -72,6 +72,7 @@ WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases
 void bench_case_finish(struct bench_case *cases, uint32_t count);
 
 double bench_median(const struct bench_times *times);
+double bench_least(const struct bench_times *times);
 /* Half the width of the middle half. */
 double bench_spread(const struct bench_times *times);
 /* 1: `a` takes longer beyond both spreads; -1: `b` does; 0: neither. */

@@ -113,6 +113,11 @@ double bench_median(const struct bench_times *times)
     return quantile(times, 0.5);
 }
 
+double bench_least(const struct bench_times *times)
+{
+    return quantile(times, 0.0);
+}
+
 double bench_spread(const struct bench_times *times)
 {
     return 0.5 * (quantile(times, 0.75) - quantile(times, 0.25));
