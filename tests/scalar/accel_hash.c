@@ -12,7 +12,7 @@ static float random_unit(uint64_t *state)
     return (float)(*state >> 40) * 0x1p-24f;
 }
 
-/* Triangle i has these corners; some are flat, some on a grid. */
+/* Every other triangle is one of a grid, where planes cost the same but for rounding. */
 static void triangles_make(float *positions, uint32_t *indices, struct bvh_box *boxes)
 {
     uint64_t state = 1;
@@ -21,8 +21,10 @@ static void triangles_make(float *positions, uint32_t *indices, struct bvh_box *
         for (uint32_t k = 0; k < 9; ++k) {
             float *at = &positions[9 * i + k];
             *at = k < 3 ? random_unit(&state) : at[-3] + 0.05f * (random_unit(&state) - 0.5f);
-            if (i % 3 == 0 && k % 3 == 1)
-                *at = (float)(i % 7) - 3.0f;
+            if (i % 2 == 0) {
+                const uint32_t cell[3] = {i % 13, i / 13 % 17, i / 221};
+                *at = 0.1f * (float)cell[k % 3] + (k / 3 == k % 3 ? 0.07f : 0.0f);
+            }
             if (k < 3 || *at < box->lo[k % 3])
                 box->lo[k % 3] = *at;
             if (k < 3 || *at > box->hi[k % 3])
