@@ -78,7 +78,7 @@ static void rays_equal_those_of_trees(void **state)
     }
 }
 
-/* More triangles than a driver grants loop turns, the hits far behind in the list. */
+/* More triangles than a driver grants loop turns, the nearest hit in any range. */
 static void long_lists_are_cut(void **state)
 {
     (void)state;
@@ -89,7 +89,7 @@ static void long_lists_are_cut(void **state)
     mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
     assert_true(mesh.positions && mesh.indices && mesh.materials);
     for (uint32_t i = 0; i < count; ++i) {
-        float z = (float)(count - i);
+        float z = (float)(i * 7919 % count); /* each once, in every range far and near ones */
         const float corners[9] = {0, 0, z, 1, 1, z, 0.5f, 1, z};
         memcpy(&mesh.positions[9 * (size_t)i], corners, sizeof corners);
         for (uint32_t k = 0; k < 3; ++k)
@@ -193,6 +193,18 @@ static void glass_equals_that_of_trees(void **state)
     check_picture(scene, &params);
 }
 
+/* Hits and shadows that go on from one dispatch to the next. */
+static void many_ranges_equal_trees(void **state)
+{
+    (void)state;
+    struct scene *scene = glass_scene_over(130);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_true(scene->triangle_total > 2 * 16384);
+    const struct render_params params = {
+        .width = 26, .height = 18, .depth = 3, .camera = glass_camera, .count = true};
+    check_picture(scene, &params);
+}
+
 /* Cut-outs, blending, thin glass. */
 static void layers_equal_those_of_trees(void **state)
 {
@@ -244,9 +256,13 @@ static void empty_scenes_have_a_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_equal_those_of_trees),  cmocka_unit_test(long_lists_are_cut),
-        cmocka_unit_test(glass_equals_that_of_trees), cmocka_unit_test(layers_equal_those_of_trees),
-        cmocka_unit_test(long_pictures_are_refused),  cmocka_unit_test(empty_scenes_have_a_picture),
+        cmocka_unit_test(rays_equal_those_of_trees),
+        cmocka_unit_test(long_lists_are_cut),
+        cmocka_unit_test(glass_equals_that_of_trees),
+        cmocka_unit_test(layers_equal_those_of_trees),
+        cmocka_unit_test(many_ranges_equal_trees),
+        cmocka_unit_test(long_pictures_are_refused),
+        cmocka_unit_test(empty_scenes_have_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,11 +34,12 @@ static inline struct scene *ring_scene(void)
 }
 
 /* Rings of glass and mirror over terrain, under two lights. */
-static inline struct scene *glass_scene(void)
+/* With 2 * cells^2 triangles of ground. */
+static inline struct scene *glass_scene_over(uint32_t cells)
 {
     struct scene_mesh ring = {0}, ground = {0};
     assert_int_equal(shape_torus(1.0, 0.3, 24, 12, &ring), WHIT_OK);
-    assert_int_equal(shape_terrain(10.0, 1.0, 24, 3, &ground), WHIT_OK);
+    assert_int_equal(shape_terrain(10.0, 1.0, cells, 3, &ground), WHIT_OK);
     struct scene *scene = fixture_scene(ring);
     struct scene_material glass;
     scene_material_init(&glass, "glass");
@@ -68,6 +69,11 @@ static inline struct scene *glass_scene(void)
         assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
     }
     return scene;
+}
+
+static inline struct scene *glass_scene(void)
+{
+    return glass_scene_over(24);
 }
 
 static const char glass_camera[] = "0,4,8,0,0.5,0,0,1,0,40";
