@@ -14,7 +14,7 @@ set_target_properties(whit PROPERTIES LINKER_LANGUAGE C)
 target_link_libraries(whit
   PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
   PRIVATE assimp::assimp PNG::PNG OpenEXR::OpenEXRCore PkgConfig::JANSSON Vulkan::Vulkan
-    Threads::Threads m)
+    SPIRV-Tools-opt stdc++ Threads::Threads m)
 
 set(public_headers api/whit.h base/whit_base.h)
 foreach(header ${public_headers})

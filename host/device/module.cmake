@@ -1,3 +1,8 @@
 whit_module(device
-  SOURCES instance.c device.c cache.c buffer.c pipeline.c commands.c
-  LINK whit_base Vulkan::Vulkan)
+  SOURCES instance.c device.c cache.c buffer.c pipeline.c specialize.cpp commands.c
+  LINK whit_base Vulkan::Vulkan SPIRV-Tools-opt)
+
+# Containers of the C++ library cross into a library that was built without sanitizers.
+if(WHIT_SANITIZE)
+  set_source_files_properties(device/specialize.cpp PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
+endif()

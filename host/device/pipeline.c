@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "device/specialize.h"
 
 static VkDescriptorType descriptor_type(enum binding_kind kind)
 {
@@ -91,15 +92,42 @@ fail:
     return result;
 }
 
-static whit_result make_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+/* The module with its constants filled in; *specialized where the optimizer did that. */
+static whit_result make_module(const struct pipeline *pipeline,
+                               const struct pipeline_params *params, bool *specialized,
+                               VkShaderModule *module)
 {
     struct device *device = pipeline->device;
     whit_result result = WHIT_OK;
+    uint32_t *words = NULL;
+    size_t word_count = params->spirv_bytes / sizeof *words;
+    *specialized = spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
+                                    &words, &word_count);
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = word_count * sizeof *words,
+        .pCode = *specialized ? words : params->spirv,
+    };
+    VK_TRY(device, vkCreateShaderModule(device->vk, &info, NULL, module));
+    device_name_object(device, VK_OBJECT_TYPE_SHADER_MODULE, (uint64_t)*module, pipeline->name);
+fail:
+    free(words);
+    return result;
+}
+
+static whit_result make_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+{
+    struct device *device = pipeline->device;
     VkShaderModule module = VK_NULL_HANDLE;
+    bool specialized;
+    whit_result result = make_module(pipeline, params, &specialized, &module);
+    if (result != WHIT_OK)
+        return result;
     VkSpecializationMapEntry *entries = array_alloc_zeroed(params->spec_count, sizeof *entries);
     if (!entries) {
         log_error(&device->log, "pipeline \"%s\": out of memory", pipeline->name);
-        return WHIT_ERROR_MEMORY;
+        result = WHIT_ERROR_MEMORY;
+        goto fail;
     }
     for (uint32_t i = 0; i < params->spec_count; ++i)
         entries[i] =
@@ -110,21 +138,13 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
         .dataSize = params->spec_count * sizeof(uint32_t),
         .pData = params->spec,
     };
-    VkShaderModuleCreateInfo module_info = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = params->spirv_bytes,
-        .pCode = params->spirv,
-    };
-    VK_TRY(device, vkCreateShaderModule(device->vk, &module_info, NULL, &module));
-    device_name_object(device, VK_OBJECT_TYPE_SHADER_MODULE, (uint64_t)module, pipeline->name);
-
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
                   .pName = "main",
-                  .pSpecializationInfo = params->spec_count > 0 ? &spec : NULL},
+                  .pSpecializationInfo = params->spec_count > 0 && !specialized ? &spec : NULL},
         .layout = pipeline->layout,
     };
     VK_TRY(device,

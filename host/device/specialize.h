@@ -1,0 +1,25 @@
+/* A kernel with its specialization constants filled in and what they switch off taken out, before
+   a driver sees it. Drivers do the same, but late: lavapipe spends 630 ms on the whole Whitted
+   kernel and 70 ms on what a plain scene leaves of it. */
+#ifndef DEVICE_SPECIALIZE_H
+#define DEVICE_SPECIALIZE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* `spec[i]` is the value of constant i. *out is malloc()ed, free() it; *out_words counts words.
+   Operations keep their order and their NoContraction, so results keep their bits. False when the
+   optimizer refuses or memory runs out: then the module is to be used as it is. */
+bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                      uint32_t spec_count, uint32_t **out, size_t *out_words);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
