@@ -224,7 +224,7 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
     return WHIT_OK;
 }
 
-static whit_cost cost_from_render(const struct render_cost *cost)
+static whit_cost cost_to_public(const struct cost_sum *cost)
 {
     return (whit_cost){
         .rays = cost->rays,
@@ -234,7 +234,7 @@ static whit_cost cost_from_render(const struct render_cost *cost)
         .triangles = cost->triangles,
         .stack = cost->stack,
         .depth = cost->depth,
-        .records = cost->samples,
+        .records = cost->records,
         .stack_sum = cost->stack_sum,
         .depth_sum = cost->depth_sum,
         .most_pairs = cost->most_pairs,
@@ -267,7 +267,7 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .load_path = inner.texel_loads ? "texel" : "storage",
     };
     for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
-        stats->costs[kind] = cost_from_render(&inner.costs[kind]);
+        stats->costs[kind] = cost_to_public(&inner.costs[kind]);
     uint64_t rays =
         inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
     if (inner.render_ms > 0.0)
@@ -283,51 +283,9 @@ struct cpu_trace {
     uint64_t count;
     uint32_t order;
     bool any, brute;
-    whit_cost *costs;   /* one a batch, or NULL */
-    uint32_t *statuses; /* one a batch: threads share nothing */
+    struct cost_sum *costs; /* one a batch, or NULL */
+    uint32_t *statuses;     /* one a batch: threads share nothing */
 };
-
-static uint32_t larger(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
-}
-
-/* Of one ray. */
-static void cost_add(whit_cost *sum, const struct gpu_cost *cost)
-{
-    ++sum->records;
-    sum->rays += cost->rays;
-    sum->pairs += cost->pairs;
-    sum->leaves += cost->leaves;
-    sum->instances += cost->instances;
-    sum->triangles += cost->triangles;
-    sum->stack_sum += cost->stack;
-    sum->depth_sum += cost->depth;
-    sum->stack = larger(sum->stack, cost->stack);
-    sum->depth = larger(sum->depth, cost->depth);
-    sum->most_pairs = larger(sum->most_pairs, cost->pairs);
-    sum->most_leaves = larger(sum->most_leaves, cost->leaves);
-    sum->most_instances = larger(sum->most_instances, cost->instances);
-    sum->most_triangles = larger(sum->most_triangles, cost->triangles);
-}
-
-static void cost_merge(whit_cost *sum, const whit_cost *part)
-{
-    sum->records += part->records;
-    sum->rays += part->rays;
-    sum->pairs += part->pairs;
-    sum->leaves += part->leaves;
-    sum->instances += part->instances;
-    sum->triangles += part->triangles;
-    sum->stack_sum += part->stack_sum;
-    sum->depth_sum += part->depth_sum;
-    sum->stack = larger(sum->stack, part->stack);
-    sum->depth = larger(sum->depth, part->depth);
-    sum->most_pairs = larger(sum->most_pairs, part->most_pairs);
-    sum->most_leaves = larger(sum->most_leaves, part->most_leaves);
-    sum->most_instances = larger(sum->most_instances, part->most_instances);
-    sum->most_triangles = larger(sum->most_triangles, part->most_triangles);
-}
 
 static bool cancelled(const whit_renderer *renderer)
 {
@@ -373,13 +331,14 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     }
     threads_for(renderer->accel->params.mesh.thread_count, (uint32_t)batches, trace_batch, trace);
     uint32_t status = 0;
-    if (cost)
-        *cost = (whit_cost){0};
+    struct cost_sum sum = {0};
     for (uint64_t i = 0; i < batches; ++i) {
         status |= trace->statuses[i];
         if (cost)
-            cost_merge(cost, &trace->costs[i]);
+            cost_merge(&sum, &trace->costs[i]);
     }
+    if (cost)
+        *cost = cost_to_public(&sum);
     free(trace->costs);
     free(trace->statuses);
     if (cancelled(renderer))
@@ -406,10 +365,11 @@ static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray
         }
     }
     whit_result result = renderer_trace(renderer->renderer, rays, count, any, hits, costs);
-    if (cost)
-        *cost = (whit_cost){0};
+    struct cost_sum sum = {0};
     for (uint64_t i = 0; cost && result == WHIT_OK && i < count; ++i)
-        cost_add(cost, &costs[i]);
+        cost_add(&sum, &costs[i]);
+    if (cost)
+        *cost = cost_to_public(&sum);
     free(costs);
     return result;
 }

@@ -22,29 +22,6 @@ void costs_clear(struct renderer *renderer)
         image_finish(&renderer->costs[kind]);
 }
 
-static uint32_t larger(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
-}
-
-static void sum_up(struct render_cost *sum, const struct gpu_cost *cost)
-{
-    sum->rays += cost->rays;
-    sum->pairs += cost->pairs;
-    sum->leaves += cost->leaves;
-    sum->instances += cost->instances;
-    sum->triangles += cost->triangles;
-    sum->samples += cost->rays > 0;
-    sum->stack_sum += cost->stack;
-    sum->depth_sum += cost->depth;
-    sum->stack = larger(sum->stack, cost->stack);
-    sum->depth = larger(sum->depth, cost->depth);
-    sum->most_pairs = larger(sum->most_pairs, cost->pairs);
-    sum->most_leaves = larger(sum->most_leaves, cost->leaves);
-    sum->most_instances = larger(sum->most_instances, cost->instances);
-    sum->most_triangles = larger(sum->most_triangles, cost->triangles);
-}
-
 /* Kinds of rays that a picture does without get no memory. */
 static whit_result keep(struct renderer *renderer, uint32_t kind, uint32_t x, uint32_t y,
                         const struct gpu_cost *cost)
@@ -75,7 +52,7 @@ whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk)
             uint32_t y = block / across * 8 + ((i >> 2 & 1) | (i >> 3 & 6));
             for (uint32_t k = 0; x < params->width && y < params->height && k < RAY_KIND_COUNT;
                  ++k) {
-                sum_up(&renderer->stats.costs[k], &costs[i][k]);
+                cost_add(&renderer->stats.costs[k], &costs[i][k]);
                 if (result == WHIT_OK && chunk->sample_index == 0 && costs[i][k].rays > 0)
                     result = keep(renderer, k, x, y, &costs[i][k]);
             }

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "accel/accel.h"
+#include "accel/cost.h"
 #include "device/device.h"
 #include "image/image.h"
 #include "scene/scene.h"
@@ -30,22 +31,13 @@ struct render_params {
     bool count;     /* count what traversals cost */
 };
 
-/* Sums over all rays of a kind; stack and depth: the largest. */
-struct render_cost {
-    uint64_t rays, pairs, leaves, instances, triangles;
-    uint32_t stack, depth;
-    uint64_t samples;              /* of pixels, with rays of this kind */
-    uint64_t stack_sum, depth_sum; /* over samples */
-    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one sample */
-};
-
 struct render_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms;
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
     bool texel_loads;
-    struct render_cost costs[RAY_KIND_COUNT]; /* with params.count */
+    struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
 };
 
 struct renderer;

@@ -168,7 +168,7 @@ static void check_picture(struct scene *scene, const struct render_params *param
                   (unsigned long long)without.stats.rays_reflected,
                   (unsigned long long)without.stats.rays_refracted, without.stats.dispatches);
     for (uint32_t k = 0; params->count && k < RAY_KIND_COUNT; ++k) {
-        const struct render_cost *a = &with.stats.costs[k], *b = &without.stats.costs[k];
+        const struct cost_sum *a = &with.stats.costs[k], *b = &without.stats.costs[k];
         assert_true(a->rays == b->rays && b->pairs == 0 && a->triangles < b->triangles);
         if (k != RAY_SHADOW) /* which end at what blocks them */
             assert_true(b->triangles == b->rays * scene->triangle_total);

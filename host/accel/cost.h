@@ -1,0 +1,22 @@
+/* Sums of what traversals cost. */
+#ifndef ACCEL_COST_H
+#define ACCEL_COST_H
+
+#include <stdint.h>
+
+#include "abi/bvh.h"
+
+/* Over records: rays of a batch, or samples of pixels that have rays of a kind. */
+struct cost_sum {
+    uint64_t rays, pairs, leaves, instances, triangles;
+    uint32_t stack, depth; /* the largest */
+    uint64_t records;
+    uint64_t stack_sum, depth_sum;                                    /* over records */
+    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one record */
+};
+
+/* A record without rays adds nothing. */
+void cost_add(struct cost_sum *sum, const struct gpu_cost *cost);
+void cost_merge(struct cost_sum *sum, const struct cost_sum *part);
+
+#endif
