@@ -10,8 +10,8 @@
 #include "base/threads.h"
 
 enum {
-    TASK_LEAST = 2048,     /* smaller subtrees are not worth a task of their own */
-    TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
+    TASK_LEAST = 2048,    /* smaller subtrees are not worth a task of their own */
+    TASKS_PER_THREAD = 4, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
 };
 
