@@ -12,7 +12,7 @@ static const struct cli_option options[] = {
     {ID_JSON, "json", "FILE", "also write all figures as JSON"},
     {ID_SCENES, "scenes", "FOLDER", "where whit's scenes are (./scenes, or beside the program)"},
     {ID_NAIVE, "naive-limit", "S",
-     "seconds for sweep-naive, which is estimated beyond (20;\n"
+     "seconds for sweep-naive, which is estimated beyond (60;\n"
      "quick: 0.2)"},
     {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},
     {'q', "quiet", NULL, "no progress"},
@@ -63,7 +63,7 @@ static void complete(struct bench *bench)
     if (bench->runs == 0)
         bench->runs = bench->quick ? 2 : 7;
     if (bench->naive_limit_s == 0.0)
-        bench->naive_limit_s = bench->quick ? 0.2 : 20.0;
+        bench->naive_limit_s = bench->quick ? 0.2 : 60.0;
 }
 
 static int list_benches(void)
