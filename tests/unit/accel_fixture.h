@@ -17,25 +17,10 @@
 
 #include "accel/accel.h"
 #include "accel/accel_inside.h"
+#include "random_fixture.h"
 #include "scene/shapes.h"
 
 static const struct log silent;
-static uint64_t random_state;
-
-/* splitmix64 */
-static inline uint32_t random_bits(void)
-{
-    random_state += 0x9e3779b97f4a7c15u;
-    uint64_t z = random_state;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)(z >> 32);
-}
-
-static inline float random_float(void)
-{
-    return (float)(random_bits() >> 8) * 0x1p-24f;
-}
 
 /* ---- Triangles with their boxes ---- */
 
