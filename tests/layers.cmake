@@ -34,10 +34,10 @@ function(read_includes file)
   set(includes "${found}" PARENT_SCOPE)
 endfunction()
 
-# Headers that belong to no module's library column: C11 and POSIX.
+# Headers that belong to no module's library column: C11, POSIX, C++.
 set(system_headers assert complex ctype dirent errno fcntl fenv float getopt immintrin inttypes
   iso646 limits locale math poll pthread setjmp signal stdalign stdarg stdatomic stdbool stddef
-  stdint stdio stdlib stdnoreturn string strings tgmath threads time uchar unistd wchar wctype)
+  stdint stdio stdlib stdnoreturn cstdlib cstring exception unordered_map vector string strings tgmath threads time uchar unistd wchar wctype)
 
 function(check_library file module target)
   string(REGEX REPLACE "^<([^/.>]*).*>$" "\\1" library "${target}")
@@ -73,7 +73,8 @@ endfunction()
 
 file(GLOB modules RELATIVE ${ROOT}/host ${ROOT}/host/*)
 foreach(module ${modules})
-  file(GLOB_RECURSE files ${ROOT}/host/${module}/*.c ${ROOT}/host/${module}/*.h)
+  file(GLOB_RECURSE files ${ROOT}/host/${module}/*.c ${ROOT}/host/${module}/*.cpp
+    ${ROOT}/host/${module}/*.h)
   if(files AND NOT module IN_LIST names)
     complain("host/${module}/ is not in the table of docs/architecture.md")
   endif()

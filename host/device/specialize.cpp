@@ -4,13 +4,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <string>
 #include <unordered_map>
 #include <vector>
 
 #include <spirv-tools/optimizer.hpp>
 
-namespace {
+namespace
+{
 
 std::vector<uint32_t> run(const uint32_t *words, size_t word_count, const uint32_t *spec,
                           uint32_t spec_count)
