@@ -337,8 +337,6 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
         if (cost)
             cost_merge(&sum, &trace->costs[i]);
     }
-    if (cost)
-        *cost = cost_to_public(&sum);
     free(trace->costs);
     free(trace->statuses);
     if (cancelled(renderer))
@@ -350,6 +348,8 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
                   status);
         return WHIT_ERROR_STATUS;
     }
+    if (cost)
+        *cost = cost_to_public(&sum);
     return WHIT_OK;
 }
 
@@ -368,7 +368,7 @@ static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray
     struct cost_sum sum = {0};
     for (uint64_t i = 0; cost && result == WHIT_OK && i < count; ++i)
         cost_add(&sum, &costs[i]);
-    if (cost)
+    if (cost && result == WHIT_OK)
         *cost = cost_to_public(&sum);
     free(costs);
     return result;

@@ -5,7 +5,8 @@
    borrow what they were made from: scene <- accel <- renderer -> device; destroy in reverse order.
    In every params struct, 0 means the default, and NULL params mean all defaults; params are read
    during the call only. On failure an out parameter is NULL or untouched, the reason went to the
-   log callback as one line, and the result says which kind it was.
+   log callback as one line (where the call or a handle has one), and the result says which kind it
+   was.
 
    Threads: different handles may be used from different threads; one handle from one at a time. A
    `cancel` flag may be set from anywhere, a signal handler included. */
@@ -148,7 +149,8 @@ typedef struct whit_accel_params {
     bool optimize;                       /* improve the finished trees by reinsertion */
     uint32_t bins;                       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
     uint32_t leaf_limit;                 /* triangles in a leaf, 1..15; 0: 4 */
-    float spatial_alpha, spatial_budget; /* of WHIT_BUILD_SPATIAL: see docs/cli.md; 0: defaults */
+    float spatial_alpha, spatial_budget; /* of WHIT_BUILD_SPATIAL: see docs/cli.md; 0: defaults;
+                                            budget < 0: none */
     uint32_t threads;                    /* 0: one a core; never changes the tree */
     whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
     bool instance_refit;       /* moving instances keep their tree, with new boxes */
