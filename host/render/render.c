@@ -40,6 +40,7 @@ whit_result status_check(struct renderer *renderer)
         {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed"},
         {STATUS_RAY_STACK_OVERFLOW, "the ray stack overflowed"},
         {STATUS_NON_FINITE, "radiance is not finite"},
+        {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
     };
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
@@ -176,7 +177,7 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
     } all[] = {
         {&p->pixels, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
-        {&p->counts, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "counts"},
+        {&p->counts, pixels * sizeof(struct gpu_counts), BUFFER_STORAGE | BUFFER_HOST, "counts"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
         {&p->work[0], 16 + (uint64_t)p->chunk_slots * 4,
          BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
@@ -188,6 +189,11 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
              ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_stacked_ray)
              : 16,
          BUFFER_STORAGE, "ray stacks"},
+        {&p->ray_media,
+         renderer->has_secondary
+             ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_media)
+             : 16,
+         BUFFER_STORAGE, "ray media"},
     };
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
         result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
@@ -205,7 +211,7 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
 static void pixel_buffers_finish(struct pixel_buffers *p)
 {
     struct buffer *all[] = {p->pixels,  p->ids,       p->counts,     p->status, p->work[0],
-                            p->work[1], p->work_head, p->ray_stacks, p->costs};
+                            p->work[1], p->work_head, p->ray_stacks, p->costs,  p->ray_media};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *p = (struct pixel_buffers){0};

@@ -23,7 +23,8 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     /* Shadows and camera kind are asked for by the user, not found in the scene. */
     spec.SPEC_SHADOWS = !renderer->params.no_shadows;
-    spec.SPEC_ORTHOGRAPHIC = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC];
+    spec.SPEC_CAMERA = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] ? CAMERA_ORTHOGRAPHIC
+                                                                            : CAMERA_PERSPECTIVE;
     if (renderer->params.all_effects)
         return spec;
     const bool *called = effects->called;
@@ -38,7 +39,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_ENVIRONMENT_MAP = called[SCENE_EFFECT_ENVIRONMENT_MAP];
     spec.SPEC_METAL_ROUGH = called[SCENE_EFFECT_METAL_ROUGH];
     spec.SPEC_HIGHLIGHTS = called[SCENE_EFFECT_HIGHLIGHTS] || called[SCENE_EFFECT_METAL_ROUGH];
-    spec.SPEC_LIGHTS = renderer->pose.light_count > 0;
+    spec.SPEC_LIGHTS = renderer->pose.light_count > 0 ? 255 : 0;
     spec.SPEC_FILTERS = called[SCENE_EFFECT_REFRACTION] || called[SCENE_EFFECT_CUTOUTS];
     return spec;
 }
@@ -116,6 +117,7 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
     bind(&bindings, BIND_RUNS, BINDING_STORAGE, renderer->brute.runs);
     bind(&bindings, BIND_FOUND, BINDING_STORAGE, renderer->brute.found);
     bind(&bindings, BIND_PASSED, BINDING_STORAGE, renderer->brute.passed);
+    bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, pixels->ray_media);
     struct gpu_spec spec = variant_spec(renderer);
     spec.SPEC_BRUTE = brute;
     whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, bindings.kinds,

@@ -35,6 +35,7 @@
 #define BIND_RUNS           20
 #define BIND_FOUND          21
 #define BIND_PASSED         22
-#define BIND_WHITTED_COUNT  23
+#define BIND_RAY_MEDIA      23
+#define BIND_WHITTED_COUNT  24
 
 #endif

@@ -59,7 +59,10 @@ GPU_ASSERT_AT(gpu_triangle, shadow, 44)
    so that the order in which a ray meets its filters cannot change the sum. */
 #define TRIANGLE_FILTER    4u
 #define TRIANGLE_MIRRORED  8u /* flat: its instance turns it inside out, its normal is reversed */
-#define TRIANGLE_INSTANCE_SHIFT 4u /* flat: its instance is in the bits from here up */
+#define TRIANGLE_SPHERE        16u  /* no triangle: centre in v0, radius in v1.x; v1.yz and v2 are 0 */
+#define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, but by shadow rays */
+#define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth is a matter of the point met */
+#define TRIANGLE_INSTANCE_SHIFT 7u /* flat: its instance is in the bits from here up */
 #define SHADOW_DEPTH_SCALE 64.0
 
 /* An object placed in the world. t is the same in both spaces: directions are not renormalised.
@@ -157,5 +160,6 @@ struct gpu_batch {
 #define STATUS_RAY_STACK_OVERFLOW   4u
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
+#define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MOST media */
 
 #endif

@@ -29,6 +29,8 @@
 #define MATERIAL_MASK           4u
 #define MATERIAL_BLEND          8u
 #define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not its red */
+#define MATERIAL_CATCHER        32u /* shows nothing but the shadows that fall on it */
+#define MATERIAL_PRIORITY_SHIFT 8u  /* bits 8..15: of the medium inside */
 
 /* See struct scene_material for meaning and units. */
 struct gpu_material {
@@ -133,19 +135,30 @@ struct gpu_frame {
     gpu_uint uv0_row;   /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
     gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
     gpu_uint color_row; /* first triangle: TRIANGLE_COLOR_ROWS each */
-    gpu_uint pad;
+    gpu_float contact;  /* surfaces of two media within this distance along a ray are one */
+    gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
+    gpu_uint eye_media2, eye_media3;
+    gpu_float lens_radius;    /* CAMERA_LENS, world units */
+    gpu_float focus_distance; /* along `forward` */
+    gpu_uint light_samples;   /* of an area light: 1, 4, 16 or 64 */
+    gpu_uint nested;          /* 1: media of the scene may meet or overlap */
 };
-GPU_ASSERT_SIZE(gpu_frame, 160)
+GPU_ASSERT_SIZE(gpu_frame, 192)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
+/* The media that a ray is in, oldest first, two to a word, low half first: material + 1, 0: none
+   more. Lies beside the ray stacks, one for each ray. */
+#define MEDIA_MOST 8u
+struct gpu_media {
+    gpu_uint words0, words1, words2, words3;
+};
+GPU_ASSERT_SIZE(gpu_media, 16)
+
 /* A ray waiting on the ray stack of its pixel. */
-#define STATE_MEDIUM_SHIFT 8u
-#define STATE_MEDIUM_MASK  0x3fffffu
 #define STATE_KIND_SHIFT   30u
 struct gpu_stacked_ray {
     gpu_vec3 origin;
-    gpu_uint state; /* bounces so far | medium << 8: material + 1 it travels in, 0: air
-                       | RAY_* << 30 */
+    gpu_uint state; /* bounces so far (8 bits) | RAY_* << 30 */
     gpu_vec3 dir;   /* unit */
     gpu_uint skip_primitive;
     gpu_vec3 weight;
@@ -166,9 +179,12 @@ struct gpu_chunk {
     gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
     gpu_uint begin;     /* without trees: 1: the first range of runs */
     gpu_uint first_run; /* of the range */
-    gpu_uint light;     /* BRUTE_SHADOW */
+    gpu_uint light;     /* BRUTE_SHADOW: which turn of the loop over lights and their samples */
+    gpu_vec2 lens_xy;   /* CAMERA_LENS: on the unit disk */
+    gpu_uint listed;    /* 1: camera rays of the pixels in the work list alone */
+    gpu_uint pad;
 };
-GPU_ASSERT_SIZE(gpu_chunk, 48)
+GPU_ASSERT_SIZE(gpu_chunk, 64)
 
 /* Head of a work list, followed by the pixels (slots within the chunk). The first three words are
    the arguments of an indirect dispatch. */
@@ -205,7 +221,11 @@ struct gpu_counts {
     gpu_uint reflected;
     gpu_uint refracted;
     gpu_uint stack; /* rays waiting */
+    gpu_uint cut_depth;          /* rays not traced for --depth, with their weights summed up */
+    gpu_uint cut_bailout;        /* likewise for --bailout */
+    gpu_float cut_depth_weight;  /* largest channel of each weight */
+    gpu_float cut_bailout_weight;
 };
-GPU_ASSERT_SIZE(gpu_counts, 16)
+GPU_ASSERT_SIZE(gpu_counts, 32)
 
 #endif

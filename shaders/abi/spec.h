@@ -17,6 +17,21 @@
 #define BRUTE_SHADOW  2u /* what passes to a light so far, one range of runs further */
 #define BRUTE_SHADE   3u /* with both known: light, and the rays that the surface calls for */
 
+/* Which camera rays start at the lens. */
+#define CAMERA_PERSPECTIVE  0u
+#define CAMERA_ORTHOGRAPHIC 1u
+#define CAMERA_LENS         2u /* thin lens, of a perspective camera */
+#define CAMERA_PANORAMA     3u /* equirectangular, all around */
+
+#define FRESNEL_NONE    0u
+#define FRESNEL_EXACT   1u
+#define FRESNEL_SCHLICK 2u /* Schlick's approximation in its place */
+
+/* What the triangle records of all meshes are. */
+#define SPHERES_NONE 0u
+#define SPHERES_SOME 1u
+#define SPHERES_ONLY 2u /* no triangle at all */
+
 /*    id  name                 default  meaning */
 #define GPU_SPEC_LIST(X)                                                                           \
     X(0, SPEC_GROUP_SIZE, 64)         /* invocations in a workgroup */                             \
@@ -38,15 +53,23 @@
     X(16, SPEC_VERTEX_COLORS, 1)                                                                   \
     X(17, SPEC_METAL_ROUGH, 1)                                                                     \
     X(18, SPEC_HIGHLIGHTS, 1)                                                                      \
-    X(19, SPEC_LIGHTS, 1)                                                                          \
-    X(20, SPEC_ORTHOGRAPHIC, 1)                                                                    \
+    X(19, SPEC_LIGHTS, 255)           /* bit k: lights of kind k, LIGHT_* */                       \
+    X(20, SPEC_CAMERA, 0)             /* CAMERA_* */                                               \
     X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */                  \
     X(22, SPEC_SHORT_STACK, 0)        /* top of the node stack in registers: for lavapipe */       \
     X(23, SPEC_ORDER, 0)              /* ORDER_* */                                                \
     X(24, SPEC_COUNT, 0)              /* count what traversals cost */                             \
     X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
     X(26, SPEC_BRUTE, 0)              /* BRUTE_*: no trees, every triangle of every instance */    \
-    X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */
+    X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */            \
+    X(28, SPEC_MEDIA, 1)              /* rays carry a stack of the media that they are in */       \
+    X(29, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
+    X(30, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
+    X(31, SPEC_FILTER_DETAIL, 1)      /* filters that textures pattern, or that absorb */          \
+    X(32, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
+    X(33, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
+    X(34, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
+    X(35, SPEC_EMISSION, 1)
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -1,0 +1,108 @@
+// What a surface does with light: the Whitted model, after textures.
+#ifndef BIND_OPTICS_GLSL
+#define BIND_OPTICS_GLSL
+
+#include "../lib/optics.glsl"
+#include "surface.glsl"
+
+struct Optics {
+    vec3 diffuse, ambient, highlight, emission;
+    vec3 reflected, refracted; // weights of the two rays
+    float straight;            // share that passes undisturbed (opacity)
+    float shininess, alpha;    // of Blinn's highlight; of GGX
+    float eta;
+    bool thin, unlit, metal_rough;
+};
+
+Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
+{
+    Optics o;
+    o.unlit = m.model == MATERIAL_MODEL_UNLIT;
+    o.metal_rough = SPEC_METAL_ROUGH != 0u && m.model == MATERIAL_MODEL_METAL_ROUGH;
+    o.diffuse = m.diffuse * s.color;
+    o.ambient = m.ambient;
+    o.highlight = m.specular;
+    o.emission = m.emission;
+    o.shininess = m.shininess;
+    o.straight = 0.0;
+    float opacity = m.opacity * s.color_alpha;
+    float metallic = m.metallic, roughness = m.roughness, specular_level = m.specular_level;
+    vec3 transmission = m.transmission;
+    if (SPEC_TEXTURES != 0u) {
+        vec4 texel = vec4(1.0);
+        if (m.tex_diffuse != TEXTURE_NONE)
+            texel = sample_use(s, m.tex_diffuse);
+        o.diffuse *= texel.rgb;
+        o.ambient *= texel.rgb;
+        if (m.tex_specular != TEXTURE_NONE)
+            o.highlight *= sample_use(s, m.tex_specular).rgb;
+        if (m.tex_emission != TEXTURE_NONE)
+            o.emission *= sample_use(s, m.tex_emission).rgb;
+        if (SPEC_METAL_ROUGH != 0u && m.tex_metal_rough != TEXTURE_NONE) {
+            vec2 gb = sample_use(s, m.tex_metal_rough).gb;
+            roughness *= gb.x;
+            metallic *= gb.y;
+        }
+        if (SPEC_METAL_ROUGH != 0u && m.tex_specular_level != TEXTURE_NONE)
+            specular_level *= sample_use(s, m.tex_specular_level).a;
+        if (SPEC_REFRACTION != 0u && m.tex_transmission != TEXTURE_NONE)
+            transmission *= sample_use(s, m.tex_transmission).r;
+    }
+    if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
+        if (m.tex_opacity != TEXTURE_NONE)
+            opacity = sample_opacity(m, s.shade_index, s.u, s.v) * s.color_alpha;
+        o.straight = clamp(1.0 - opacity, 0.0, 1.0);
+    }
+    if (SPEC_NORMAL_MAPS != 0u)
+        bend_normal(s, m);
+
+    float cos_view = clamp(abs(dot(dir, s.ns)), 0.0, 1.0);
+    o.eta = inside ? m.ior : 1.0 / m.ior;
+    o.thin = (m.flags & MATERIAL_THIN) != 0u;
+    o.reflected = SPEC_REFLECTION != 0u ? m.reflection : vec3(0.0);
+    o.alpha = 1.0;
+    bool fresnel = (m.flags & MATERIAL_FRESNEL) != 0u;
+    float gloss = 1.0; // share of the mirror ray that roughness leaves
+    if (o.metal_rough) {
+        float r0 = (m.ior - 1.0) / (m.ior + 1.0);
+        vec3 f0 = min(o.highlight * (r0 * r0), vec3(1.0)) * specular_level;
+        f0 = mix(f0, o.diffuse, metallic);
+        gloss = (1.0 - roughness) * (1.0 - roughness);
+        vec3 edge = max(vec3(1.0 - roughness) * mix(specular_level, 1.0, metallic), f0);
+        vec3 f = f0 + (edge - f0) * schlick_weight(cos_view);
+        vec3 kept = 1.0 - clamp(transmission, 0.0, 1.0);
+        transmission *= o.diffuse * (1.0 - metallic);
+        o.diffuse *= (1.0 - metallic) * kept;
+        o.ambient = o.diffuse + f0 * (1.0 - gloss);
+        o.highlight = f0;
+        o.alpha = max(roughness * roughness, 0.02);
+        o.reflected = SPEC_REFLECTION != 0u ? f * gloss : vec3(0.0);
+    } else if (fresnel && SPEC_REFRACTION == 0u) {
+        o.reflected += (vec3(1.0) - o.reflected) * schlick_weight(cos_view) *
+                       float(max(o.reflected.r, max(o.reflected.g, o.reflected.b)) > 0.0);
+    }
+    o.refracted = vec3(0.0);
+    if (SPEC_REFRACTION != 0u) {
+        bool glass = max(transmission.r, max(transmission.g, transmission.b)) > 0.0;
+        float share = o.thin ? fresnel_dielectric(cos_view, 1.0 / m.ior)
+                             : fresnel_dielectric(cos_view, o.eta);
+        if (o.thin) // both faces of a sheet, without interference
+            share = 2.0 * share / (1.0 + share);
+        bool total = !o.thin && o.eta * o.eta * (1.0 - cos_view * cos_view) >= 1.0;
+        if (glass) {
+            o.refracted = fresnel ? transmission * (1.0 - share) : transmission;
+            if (total)
+                o.refracted = vec3(0.0);
+            if (fresnel || total)
+                o.reflected = vec3(total ? 1.0 : share * gloss);
+        } else if (fresnel && !o.metal_rough) {
+            o.reflected += (vec3(1.0) - o.reflected) * schlick_weight(cos_view) *
+                           float(max(o.reflected.r, max(o.reflected.g, o.reflected.b)) > 0.0);
+        }
+        if (SPEC_REFLECTION == 0u && !total)
+            o.reflected = vec3(0.0);
+    }
+    return o;
+}
+
+#endif

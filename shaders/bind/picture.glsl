@@ -1,0 +1,79 @@
+// What a dispatch is told, and the buffers of the pixels it works on.
+#ifndef BIND_PICTURE_GLSL
+#define BIND_PICTURE_GLSL
+
+#include "runs.glsl"
+#include "shading.glsl"
+
+layout(push_constant) uniform Chunk { gpu_chunk chunk; };
+layout(set = 0, binding = BIND_PIXELS, std430) buffer PixelBuffer { vec4 pixels[]; };
+layout(set = 0, binding = BIND_IDS, std430) writeonly buffer IdBuffer { uvec2 ids[]; };
+layout(set = 0, binding = BIND_COUNTS, std430) buffer CountBuffer { gpu_counts counts[]; };
+layout(set = 0, binding = BIND_WORK_IN, std430) readonly buffer WorkInBuffer
+{
+    gpu_work work_in;
+    uint slots_in[];
+};
+layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
+{
+    gpu_work work_out;
+    uint slots_out[];
+};
+
+// RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
+layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
+
+layout(set = 0, binding = BIND_RUNS, std430) readonly buffer RunBuffer { gpu_run runs[]; };
+layout(set = 0, binding = BIND_FOUND, std430) buffer FoundBuffer { gpu_found found[]; };
+layout(set = 0, binding = BIND_PASSED, std430) buffer PassedBuffer
+{
+    gpu_passed passed[]; // frame.light_count per slot of the chunk
+};
+
+gpu_run fetch_run(uint index)
+{
+    return runs[index];
+}
+
+const uint BLOCK_PIXELS = 64u; // 8 x 8
+
+// Which item of the work this invocation takes; the last ones may be past its end.
+uint own_slot()
+{
+    uint group = gl_WorkGroupID.x;
+    if (SPEC_INTERLEAVE != 0u) {
+        uint half_count = (gl_NumWorkGroups.x + 1u) / 2u;
+        group = group < half_count ? group * 2u : (group - half_count) * 2u + 1u;
+    }
+    return group * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
+}
+
+// Pixel of a slot: blocks row by row over the picture; within a block 4 x 2 pixels a subgroup of 8.
+uvec2 slot_pixel(uint slot)
+{
+    uint blocks_x = (frame.width + 7u) / 8u;
+    uint block = chunk.first_block + slot / BLOCK_PIXELS;
+    uint i = slot % BLOCK_PIXELS;
+    uint x = (i & 3u) | ((i >> 1) & 4u);
+    uint y = ((i >> 2) & 1u) | ((i >> 3) & 6u);
+    return uvec2(block % blocks_x, block / blocks_x) * 8u + uvec2(x, y);
+}
+
+// Adds what the last traverse() cost to the pixel's rays of `kind`.
+void add_cost(uint slot, uint kind)
+{
+    if (SPEC_COUNT == 0u)
+        return;
+    uint at = slot * RAY_KIND_COUNT + kind;
+    costs[at] = add_up(costs[at], traversal_cost);
+}
+
+void clear_costs(uint slot)
+{
+    if (SPEC_COUNT == 0u)
+        return;
+    for (uint kind = 0u; kind < RAY_KIND_COUNT; kind++)
+        costs[slot * RAY_KIND_COUNT + kind] = gpu_cost(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
+
+#endif

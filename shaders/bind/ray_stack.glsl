@@ -1,0 +1,68 @@
+// The rays of a pixel's ray tree that wait to be traced.
+#ifndef BIND_RAY_STACK_GLSL
+#define BIND_RAY_STACK_GLSL
+
+#include "picture.glsl"
+
+layout(set = 0, binding = BIND_RAY_STACKS, std430) buffer RayStackBuffer
+{
+    gpu_stacked_ray ray_stacks[]; // frame.stack_size per slot of the chunk
+};
+
+layout(set = 0, binding = BIND_RAY_MEDIA, std430) buffer RayMediaBuffer
+{
+    uvec4 ray_media[]; // struct gpu_media beside each of ray_stacks; with SPEC_MEDIA
+};
+
+const gpu_counts NO_COUNTS = gpu_counts(0u, 0u, 0u, 0u, 0u, 0u, 0.0, 0.0);
+
+struct Ray {
+    vec3 origin, dir, weight;
+    uvec4 media; // struct gpu_media
+    uint bounces, skip_primitive, skip_instance;
+    uint kind; // RAY_*; with SPEC_COUNT
+};
+
+Ray stacked_ray(uint index)
+{
+    gpu_stacked_ray stacked = ray_stacks[index];
+    Ray ray;
+    ray.origin = stacked.origin;
+    ray.dir = stacked.dir;
+    ray.weight = stacked.weight;
+    ray.media = SPEC_MEDIA != 0u ? ray_media[index] : uvec4(0u);
+    ray.bounces = stacked.state & 255u;
+    ray.kind = stacked.state >> STATE_KIND_SHIFT;
+    ray.skip_primitive = stacked.skip_primitive;
+    ray.skip_instance = stacked.skip_instance;
+    return ray;
+}
+
+void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uint bounces,
+              uvec4 media, uint kind, Hit hit, inout uint status)
+{
+    if (top >= frame.stack_size) {
+        status |= STATUS_RAY_STACK_OVERFLOW;
+        return;
+    }
+    gpu_stacked_ray stacked;
+    stacked.origin = origin;
+    stacked.dir = dir;
+    stacked.weight = weight;
+    stacked.state = bounces;
+    if (SPEC_COUNT != 0u)
+        stacked.state |= kind << STATE_KIND_SHIFT;
+    stacked.skip_primitive = hit.primitive;
+    stacked.skip_instance = hit.instance;
+    ray_stacks[slot * frame.stack_size + top] = stacked;
+    if (SPEC_MEDIA != 0u)
+        ray_media[slot * frame.stack_size + top] = media;
+    top++;
+}
+
+bool worth(vec3 weight)
+{
+    return max(weight.r, max(weight.g, weight.b)) >= frame.bailout;
+}
+
+#endif
