@@ -33,6 +33,19 @@ static whit_result load_path_from_name(const struct log *log, const char *name,
     return WHIT_OK;
 }
 
+static whit_result effects_from_text(const struct log *log, const char *text,
+                                     struct render_params *out)
+{
+    if (!text || strcmp(text, "auto") == 0)
+        return WHIT_OK;
+    if (strcmp(text, "all") == 0) {
+        out->all_effects = true;
+        return WHIT_OK;
+    }
+    log_error(log, "effects `%s`: auto or all", text);
+    return WHIT_ERROR_USAGE;
+}
+
 static whit_result render_params_from_public(const struct log *log,
                                              const whit_renderer_params *params,
                                              struct render_params *out)
@@ -48,7 +61,11 @@ static whit_result render_params_from_public(const struct log *log,
                                     : DEPTH_DEFAULT,
         .bailout = params->bailout,
         .no_shadows = params->no_shadows,
-        .all_effects = params->all_effects,
+        .adaptive = params->adaptive,
+        .light_samples = params->light_samples,
+        .schlick = params->schlick,
+        .opaque_shadows = params->opaque_shadows,
+        .compile_beside = params->compile_beside,
         .tile_size = params->tile_size,
         .cancel = params->cancel,
         .progress = params->progress,
@@ -59,7 +76,9 @@ static whit_result render_params_from_public(const struct log *log,
                                                              : ORDER_DISTANCE,
         .count = params->count,
     };
-    return load_path_from_name(log, params->load_path, &out->load_path);
+    whit_result result = effects_from_text(log, params->effects, out);
+    return result == WHIT_OK ? load_path_from_name(log, params->load_path, &out->load_path)
+                             : result;
 }
 
 static whit_result pose_on_cpu(struct accel *accel, double time_s)

@@ -173,6 +173,10 @@ static const char *light_kind_name(enum scene_light_kind kind)
         return "spot";
     case SCENE_LIGHT_AREA_SAMPLE:
         return "area-sample";
+    case SCENE_LIGHT_RECTANGLE:
+        return "rectangle";
+    case SCENE_LIGHT_TRIANGLE:
+        return "triangle";
     }
     return "";
 }
@@ -199,12 +203,18 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
     if (index >= handle->pose.camera_count)
         return;
     const struct scene_camera *camera = &handle->pose.cameras[index];
+    static const char *const kinds[] = {
+        [SCENE_CAMERA_PERSPECTIVE] = "perspective",
+        [SCENE_CAMERA_ORTHOGRAPHIC] = "orthographic",
+        [SCENE_CAMERA_PANORAMA] = "panorama",
+    };
     bool perspective = camera->kind == SCENE_CAMERA_PERSPECTIVE;
+    bool orthographic = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC;
     *info = (whit_camera_info){
         .name = or_empty(camera->name),
-        .kind = perspective ? "perspective" : "orthographic",
+        .kind = kinds[camera->kind],
         .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
-        .height = perspective ? 0.0 : (double)camera->height,
+        .height = orthographic ? (double)camera->height : 0.0,
         .made_by_whit = camera->made_by_whit,
     };
     copy3_double(info->eye, camera->eye);

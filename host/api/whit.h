@@ -75,7 +75,7 @@ void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
    the scene. */
 typedef struct whit_mesh_info {
     const char *name;
-    uint32_t vertex_count, triangle_count, group_count;
+    uint32_t vertex_count, triangle_count, group_count, sphere_count;
     bool has_normals, has_uvs, has_colors;
 } whit_mesh_info;
 typedef struct whit_material_info {
@@ -89,14 +89,14 @@ typedef struct whit_material_info {
 } whit_material_info;
 typedef struct whit_light_info {
     const char *name;
-    const char *kind;                 /* "point", "directional", "spot", "area-sample" */
+    const char *kind; /* "point", "directional", "spot", "area-sample", "rectangle", "triangle" */
     double position[3], direction[3]; /* world, at time 0 */
     float color[3];
     bool made_by_whit;
 } whit_light_info;
 typedef struct whit_camera_info {
     const char *name;
-    const char *kind;                /* "perspective", "orthographic" */
+    const char *kind;                /* "perspective", "orthographic", "panorama" */
     double eye[3], target[3], up[3]; /* world, at time 0 */
     double fov_y_degrees, height;
     bool made_by_whit;
@@ -246,8 +246,16 @@ typedef struct whit_renderer_params {
     double bailout;         /* rays that can add less than this to a pixel are not traced;
                                0: 1/1024, < 0: all are */
     bool no_shadows;
-    bool all_effects;   /* compile everything, not only what the scene calls for */
-    uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
+    double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
+                               instead of 4, and then 64; `samples` is not read; 0: off */
+    uint32_t light_samples; /* of an area light, a fixed pattern: 1, 4, 16 or 64; 0: 16 */
+    bool schlick;           /* Schlick's approximation in place of exact Fresnel */
+    bool opaque_shadows;    /* glass and blended surfaces cast full shadows */
+    /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
+       for with some effects (whit_effect_info) more, or less. Less changes the picture. */
+    const char *effects;
+    bool compile_beside; /* draw with the general kernel while that of the scene is compiled */
+    uint32_t tile_size;  /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
@@ -316,6 +324,15 @@ typedef struct whit_stats {
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
     double mrays_per_s; /* all rays over render_ms */
     uint64_t device_bytes;
+    /* Rays that were not traced, and the largest sum of their weights in one pixel: depth, for
+       params.depth; bailout, for params.bailout. */
+    uint64_t rays_cut_depth, rays_cut_bailout;
+    double weight_cut_depth, weight_cut_bailout;
+    /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
+    double bailout_bound;
+    uint64_t pixels_by_samples[4];                      /* of 1, 4, 16 and 64 samples */
+    uint32_t kernel_instructions, general_instructions; /* SPIR-V: of this kernel; of all effects */
+    bool general; /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;
     const char *load_path;           /* "storage" or "texel" */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */

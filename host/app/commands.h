@@ -16,8 +16,11 @@ extern const struct cli_command command_render, command_scene, command_trace, co
 struct render_request {
     const char *output, *ids, *camera; /* ids, camera: NULL when not given */
     uint32_t width, height, samples, depth, tile_size;
-    double bailout; /* 0: every ray is traced */
-    bool no_shadows, all_effects;
+    double bailout;  /* 0: every ray is traced */
+    double adaptive; /* 0: off; else `samples` is not used */
+    uint32_t light_samples;
+    bool no_shadows, opaque_shadows, schlick;
+    const char *effects;   /* NULL: auto */
     struct cost_view view; /* instead of colours */
     bool counters;         /* costs in --stats */
     struct frames frames;  /* with them `output` and `ids` are patterns */

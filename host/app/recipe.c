@@ -26,7 +26,7 @@ static void put_word(FILE *to, const char *word)
 }
 
 /* The shortest decimal that reads back as `value`. */
-static void put_number(FILE *to, double value)
+static void put_digits(FILE *to, double value)
 {
     char text[40];
     for (int digits = 6; digits <= 17; ++digits) {
@@ -34,7 +34,13 @@ static void put_number(FILE *to, double value)
         if (strtod(text, NULL) == value)
             break;
     }
-    put_word(to, text);
+    fputs(text, to);
+}
+
+static void put_number(FILE *to, double value)
+{
+    fputc(' ', to);
+    put_digits(to, value);
 }
 
 /* `-o` names a file of the same kind, not this one: a copy under another name is the same. */
@@ -73,6 +79,12 @@ static void put_view(FILE *to, const struct job *job, const struct render_reques
     fprintf(to, " --traversal %s", traversals[job->traversal]);
 }
 
+/* Only what is left out does. */
+static bool changes_picture(const char *effects)
+{
+    return effects && strchr(effects, '-');
+}
+
 static char *command_line(const struct job *job, const struct render_request *request)
 {
     char *text = NULL;
@@ -92,13 +104,29 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --time", to);
         put_number(to, job->time_s);
     }
-    fprintf(to, " --aa %u --depth %u", request->samples, request->depth);
+    if (request->adaptive > 0.0) {
+        fputs(" --aa adaptive:", to);
+        put_digits(to, request->adaptive);
+    } else {
+        fprintf(to, " --aa %u", request->samples);
+    }
+    fprintf(to, " --depth %u", request->depth);
     if (request->bailout != BAILOUT_DEFAULT) {
         fputs(" --bailout", to);
         put_number(to, request->bailout);
     }
     if (request->no_shadows)
         fputs(" --no-shadows", to);
+    if (request->opaque_shadows)
+        fputs(" --opaque-shadows", to);
+    if (request->light_samples)
+        fprintf(to, " --light-samples %u", request->light_samples);
+    if (request->schlick)
+        fputs(" --fresnel schlick", to);
+    if (changes_picture(request->effects)) {
+        fputs(" --effects", to);
+        put_word(to, request->effects);
+    }
     if (job->texture_limit)
         fprintf(to, " --texture-limit %u", job->texture_limit);
     if (job->flatten)
@@ -119,10 +147,21 @@ static char *options_line(const struct job *job, const struct render_request *re
     document_count(options, "height", request->height);
     document_text(options, "camera", request->camera);
     document_number(options, "time_s", job->time_s);
-    document_count(options, "samples", request->samples);
+    if (request->adaptive > 0.0)
+        document_number(options, "adaptive", request->adaptive);
+    else
+        document_count(options, "samples", request->samples);
     document_count(options, "depth", request->depth);
     document_number(options, "bailout", request->bailout);
     document_flag(options, "shadows", !request->no_shadows);
+    if (request->opaque_shadows)
+        document_flag(options, "opaque_shadows", true);
+    if (request->light_samples)
+        document_count(options, "light_samples", request->light_samples);
+    if (request->schlick)
+        document_text(options, "fresnel", "schlick");
+    if (changes_picture(request->effects))
+        document_text(options, "effects", request->effects);
     if (job->texture_limit)
         document_count(options, "texture_limit", job->texture_limit);
     if (job->flatten) /* hits are those of triangles in world space: the last bit may differ */

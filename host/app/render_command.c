@@ -13,6 +13,9 @@ enum render_id {
     ID_DEPTH,
     ID_BAILOUT,
     ID_NO_SHADOWS,
+    ID_OPAQUE_SHADOWS,
+    ID_LIGHT_SAMPLES,
+    ID_FRESNEL,
     ID_EFFECTS,
     ID_TILE,
     ID_FRAMES,
@@ -36,15 +39,22 @@ static const struct cli_option options[] = {
     {ID_FRAMES, "frames", "A-B",
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png"},
-    {ID_AA, "aa", "1|4|16|64", "samples a pixel (1)"},
+    {ID_AA, "aa", "1|4|16|64|adaptive:X",
+     "samples a pixel; adaptive: 4, where neighbours differ by\n"
+     "more than X 16, and then 64 (1)"},
     {ID_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},
     {ID_BAILOUT, "bailout", "X",
      "rays that can add less than X to a pixel are not traced;\n"
      "0: all are (1/1024)"},
     {ID_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},
-    {ID_EFFECTS, "effects", "auto|all",
-     "compile what the scene calls for, or everything; the\n"
-     "picture is the same (auto)"},
+    {ID_OPAQUE_SHADOWS, "opaque-shadows", NULL, "glass and blended surfaces cast full shadows"},
+    {ID_LIGHT_SAMPLES, "light-samples", "1|4|16|64",
+     "points of an area light that are tested (16)"},
+    {ID_FRESNEL, "fresnel", "exact|schlick", "or Schlick's approximation in its place (exact)"},
+    {ID_EFFECTS, "effects", "auto|all|+NAME,-NAME",
+     "compile what the scene calls for, or everything: the\n"
+     "picture is the same; or more and less by name: less\n"
+     "changes it. Names: see `whit scene` (auto)"},
     {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     {ID_VIEW, "view", "color|depth|visits|boxes|tris|stack",
      "what traversals cost instead of colours: a heat map\n"
@@ -69,10 +79,27 @@ static void read_samples(struct cli_reader *reader, uint32_t *samples)
         *samples = 1u << (2 * choice);
 }
 
+static void read_aa(struct cli_reader *reader, struct render_request *request)
+{
+    static const char prefix[] = "adaptive:";
+    size_t length = strlen(prefix);
+    if (strncmp(reader->value, prefix, length) != 0) {
+        request->adaptive = 0.0;
+        read_samples(reader, &request->samples);
+        return;
+    }
+    char *end;
+    double contrast = strtod(reader->value + length, &end);
+    if (end == reader->value + length || *end || !(contrast > 0.0 && contrast <= 1.0))
+        cli_misuse(reader, "--aa `%s`: after adaptive: a number above 0, up to 1, is needed",
+                   reader->value);
+    request->adaptive = contrast;
+}
+
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
 {
-    static const char *const effects[] = {"auto", "all", NULL};
+    static const char *const fresnels[] = {"exact", "schlick", NULL};
     uint32_t choice;
     if (job_option(job, reader, id))
         return;
@@ -90,7 +117,17 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         request->camera = reader->value;
         break;
     case ID_AA:
-        read_samples(reader, &request->samples);
+        read_aa(reader, request);
+        break;
+    case ID_OPAQUE_SHADOWS:
+        request->opaque_shadows = true;
+        break;
+    case ID_LIGHT_SAMPLES:
+        read_samples(reader, &request->light_samples);
+        break;
+    case ID_FRESNEL:
+        if (cli_choice(reader, fresnels, &choice))
+            request->schlick = choice == 1;
         break;
     case ID_DEPTH:
         cli_unsigned(reader, 0, DEPTH_MOST, &request->depth);
@@ -102,8 +139,7 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         request->no_shadows = true;
         break;
     case ID_EFFECTS:
-        if (cli_choice(reader, effects, &choice))
-            request->all_effects = choice == 1;
+        request->effects = reader->value;
         break;
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
@@ -246,7 +282,11 @@ static whit_result create_renderer(struct job *job, const struct render_request 
         .no_bounces = request->depth == 0,
         .bailout = request->bailout > 0.0 ? request->bailout : -1.0,
         .no_shadows = request->no_shadows,
-        .all_effects = request->all_effects,
+        .adaptive = request->adaptive,
+        .light_samples = request->light_samples,
+        .schlick = request->schlick,
+        .opaque_shadows = request->opaque_shadows,
+        .effects = request->effects,
         .tile_size = request->tile_size,
         .cancel = &cli_cancel,
         .progress = frames_progress_update,

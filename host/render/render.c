@@ -154,7 +154,7 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
-    uint64_t rows = limit / ((uint64_t)width * 16) / 8 * 8;
+    uint64_t rows = limit / ((uint64_t)width * sizeof(struct gpu_counts)) / 8 * 8;
     uint32_t height = blocks_across(renderer->params.height) * 8;
     p->band_rows = rows < height ? (uint32_t)rows : height;
     if (p->band_rows == 0) {

@@ -20,7 +20,14 @@ struct render_params {
     uint32_t samples; /* 1, 4, 16 or 64; 0: 1 */
     uint32_t depth;   /* most bounces */
     double bailout;   /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
-    bool no_shadows, all_effects;
+    bool no_shadows;
+    double adaptive;        /* contrast from which a pixel gets 16, then 64 samples; 0: off */
+    uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
+    bool schlick, opaque_shadows;
+    bool all_effects; /* compile everything */
+    /* Bits 1 << SCENE_EFFECT_*: compiled though not called for; left out though called for. */
+    uint64_t effects_added, effects_removed;
+    bool compile_beside;
     uint32_t tile_size; /* 16..512; 0: by measured time */
     const volatile bool *cancel;
     void (*progress)(void *user, double done);
@@ -34,6 +41,12 @@ struct render_params {
 struct render_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms;
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
+    uint64_t rays_cut_depth, rays_cut_bailout;
+    double weight_cut_depth, weight_cut_bailout; /* largest sum of one pixel */
+    double bailout_bound;                        /* < 0: not known */
+    uint64_t pixels_by_samples[4];
+    uint32_t kernel_instructions, general_instructions;
+    bool general;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
     bool texel_loads;

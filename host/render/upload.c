@@ -221,6 +221,8 @@ static uint32_t light_code(enum scene_light_kind kind)
     case SCENE_LIGHT_SPOT:
         return LIGHT_SPOT;
     case SCENE_LIGHT_AREA_SAMPLE:
+    case SCENE_LIGHT_RECTANGLE:
+    case SCENE_LIGHT_TRIANGLE:
         return LIGHT_AREA_SAMPLE;
     }
     return LIGHT_POINT;

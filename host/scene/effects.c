@@ -27,6 +27,14 @@ static const char *const names[SCENE_EFFECT_COUNT] = {
     [SCENE_EFFECT_METAL_ROUGH] = "metal-rough",
     [SCENE_EFFECT_INSTANCES] = "instances",
     [SCENE_EFFECT_ORTHOGRAPHIC] = "orthographic",
+    [SCENE_EFFECT_LENS] = "lens",
+    [SCENE_EFFECT_PANORAMA] = "panorama",
+    [SCENE_EFFECT_MEDIA] = "media",
+    [SCENE_EFFECT_SPHERES] = "spheres",
+    [SCENE_EFFECT_TINTED_SHADOWS] = "tinted-shadows",
+    [SCENE_EFFECT_CULLING] = "culling",
+    [SCENE_EFFECT_CATCHERS] = "catchers",
+    [SCENE_EFFECT_TERMINATOR] = "terminator",
 };
 
 const char *scene_effect_name(enum scene_effect effect)
@@ -155,6 +163,8 @@ static void scan_light(struct scene_effects *out, const struct scene_light *ligh
         [SCENE_LIGHT_DIRECTIONAL] = SCENE_EFFECT_DIRECTIONAL_LIGHTS,
         [SCENE_LIGHT_SPOT] = SCENE_EFFECT_SPOT_LIGHTS,
         [SCENE_LIGHT_AREA_SAMPLE] = SCENE_EFFECT_AREA_LIGHTS,
+        [SCENE_LIGHT_RECTANGLE] = SCENE_EFFECT_AREA_LIGHTS,
+        [SCENE_LIGHT_TRIANGLE] = SCENE_EFFECT_AREA_LIGHTS,
     };
     char place[64];
     place_of(&light->origin, place, sizeof place);

@@ -30,6 +30,7 @@ void scene_mesh_finish(struct scene_mesh *mesh)
         free(mesh->groups[i].name);
     free(mesh->groups);
     free(mesh->name);
+    free(mesh->spheres);
     free(mesh->positions);
     free(mesh->normals);
     free(mesh->uvs[0]);

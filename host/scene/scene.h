@@ -77,8 +77,11 @@ struct scene_material {
     float ior;             /* of the inside, default 1.5 */
     bool fresnel;          /* reflection and refraction share by Fresnel */
     bool thin_walled;      /* transmits without bending (glTF without a volume) */
-    bool two_sided;        /* glTF doubleSided; false still hits both sides, normals flip anyway */
+    bool two_sided;        /* glTF doubleSided: an emitter lights both its sides */
+    bool one_sided;        /* not seen from behind: glTF materials that are not doubleSided */
     bool shadow_catcher;   /* MTL illum 10 */
+    uint32_t priority;     /* of the medium inside, 0..255: where media overlap the highest one is
+                              there, of equal ones the one entered last; default 0 */
     float metallic, roughness; /* METAL_ROUGH */
     float specular_level;      /* METAL_ROUGH: KHR_materials_specular factor, default 1 */
     enum scene_alpha alpha;
@@ -93,17 +96,20 @@ struct scene_group {
     uint32_t first_triangle, triangle_count;
 };
 
-/* Triangles in object space. Arrays are owned by the scene; optional ones may be NULL. */
+/* Triangles, or spheres, in object space. Arrays are owned by the scene; optional ones may be NULL.
+   A mesh with spheres has no vertices and no triangles; its primitives are the spheres. */
 struct scene_mesh {
     char *name;
     uint32_t vertex_count, triangle_count, group_count;
+    uint32_t sphere_count;
+    float *spheres;      /* 4 per sphere: centre, radius > 0 */
     float *positions;    /* 3 per vertex */
     float *normals;      /* 3 per vertex, or NULL: flat */
     float *uvs[2];       /* 2 per vertex (v downwards), or NULL */
     float *colors;       /* 4 per vertex linear RGBA, or NULL */
     float *tangents;     /* 4 per vertex, w = sign of the bitangent, or NULL */
     uint32_t *indices;   /* 3 per triangle */
-    uint32_t *materials; /* 1 per triangle: index into the scene's materials */
+    uint32_t *materials; /* 1 per primitive: index into the scene's materials */
     struct scene_group *groups;
     float lo[3], hi[3]; /* bounds, set by scene_freeze; lo > hi when empty */
 };
@@ -148,6 +154,10 @@ enum scene_light_kind {
        `direction` (the surface's normal) is `color`, falling with the cosine to it; inverse-square.
        A Lambertian surface below leaves albedo * color * cos * cos / distance^2. */
     SCENE_LIGHT_AREA_SAMPLE,
+    /* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`; light goes
+       out to the side of edge_u x edge_v, or to both. */
+    SCENE_LIGHT_RECTANGLE,
+    SCENE_LIGHT_TRIANGLE,
 };
 
 /* `position` and `direction` are in the space of `node`. */
@@ -161,12 +171,18 @@ struct scene_light {
     float color[3];      /* radiant intensity; irradiance when directional or without falloff */
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
-    float cos_inner, cos_outer; /* SPOT: full inside inner, none outside outer */
-    bool two_sided;             /* AREA_SAMPLE: |cosine|, else nothing behind the surface */
+    float cos_inner, cos_outer;  /* SPOT: full inside inner, none outside outer */
+    double edge_u[3], edge_v[3]; /* RECTANGLE, TRIANGLE; in the space of `node` */
+    bool two_sided;              /* flat emitters: |cosine|, else nothing behind the surface */
     bool made_by_whit;
 };
 
-enum scene_camera_kind { SCENE_CAMERA_PERSPECTIVE, SCENE_CAMERA_ORTHOGRAPHIC };
+enum scene_camera_kind {
+    SCENE_CAMERA_PERSPECTIVE,
+    SCENE_CAMERA_ORTHOGRAPHIC,
+    SCENE_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
+                              degrees, the height 180 */
+};
 
 /* eye, target and up are in the space of `node`. */
 struct scene_camera {
@@ -174,9 +190,11 @@ struct scene_camera {
     enum scene_camera_kind kind;
     uint32_t node;
     double eye[3], target[3], up[3];
-    float fov_y;  /* PERSPECTIVE: full vertical angle */
-    float height; /* ORTHOGRAPHIC: full height of the picture, world units */
-    float aspect; /* width / height the file asks for; 0: any */
+    float fov_y;          /* PERSPECTIVE: full vertical angle */
+    float height;         /* ORTHOGRAPHIC: full height of the picture, world units */
+    float lens_radius;    /* PERSPECTIVE: of a thin lens, world units; 0: pinhole */
+    float focus_distance; /* along the view, world units; 0: the target's */
+    float aspect;         /* width / height the file asks for; 0: any */
     bool made_by_whit;
 };
 
@@ -223,6 +241,8 @@ struct scene {
     bool has_environment; /* false: scene_freeze makes one */
     float ambient[3];     /* ambient light, times each material's `ambient` */
     bool has_ambient;
+    float contact; /* surfaces of two media within this distance, world units, along a ray are one;
+                      0: only where they touch but for rounding */
     uint64_t triangle_total; /* over instances; set by scene_freeze */
     float time_end_s;        /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;     /* of all files read */
@@ -306,6 +326,14 @@ enum scene_effect {
     SCENE_EFFECT_METAL_ROUGH,
     SCENE_EFFECT_INSTANCES, /* more than one instance, or one that is moved */
     SCENE_EFFECT_ORTHOGRAPHIC,
+    SCENE_EFFECT_LENS, /* depth of field */
+    SCENE_EFFECT_PANORAMA,
+    SCENE_EFFECT_MEDIA, /* refraction with an inside: media, nested by priority */
+    SCENE_EFFECT_SPHERES,
+    SCENE_EFFECT_TINTED_SHADOWS, /* light passes through glass and blended surfaces */
+    SCENE_EFFECT_CULLING,        /* one-sided surfaces */
+    SCENE_EFFECT_CATCHERS,       /* MTL illum 10 */
+    SCENE_EFFECT_TERMINATOR,     /* smooth normals under lights that cast shadows */
     SCENE_EFFECT_COUNT
 };
 
