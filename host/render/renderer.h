@@ -24,7 +24,7 @@ struct pixel_buffers {
     struct buffer *pixels, *ids, *counts;
     struct buffer *ray_stacks, *work[2], *work_head;
     struct buffer *ray_media; /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
-    struct buffer *costs; /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
+    struct buffer *costs;     /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *status;
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */

@@ -24,7 +24,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     /* Shadows and camera kind are asked for by the user, not found in the scene. */
     spec.SPEC_SHADOWS = !renderer->params.no_shadows;
     spec.SPEC_CAMERA = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] ? CAMERA_ORTHOGRAPHIC
-                                                                            : CAMERA_PERSPECTIVE;
+                                                                           : CAMERA_PERSPECTIVE;
     if (renderer->params.all_effects)
         return spec;
     const bool *called = effects->called;
