@@ -154,6 +154,8 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;
     spec.SPEC_FILTERS = 0;
+    spec.SPEC_FILTER_DETAIL = 0;
+    spec.SPEC_CULLING = 0;
     whit_result result =
         create_pass(renderer, KERNEL_TRACE, &spec, bindings.kinds, BIND_TRACE_COUNT,
                     sizeof(struct gpu_batch), any ? "trace any" : "trace closest", pass);

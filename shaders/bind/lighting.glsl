@@ -20,15 +20,15 @@ Hit find_blocker(uint slot, uint light, vec3 origin, vec3 to_light, float distan
     blocker = make_hit(distance);
     if (SPEC_BRUTE == BRUTE_SHADE || chunk.begin == 0u) {
         gpu_passed before = passed[at];
-        blocker.filter_depth = uvec3(before.red, before.green, before.blue);
+        blocker.filter_depth = ivec3(uvec3(before.red, before.green, before.blue));
         blocker.primitive = before.blocked != 0u ? 0u : HIT_NONE;
     }
     if (SPEC_BRUTE == BRUTE_SHADOW) {
         traverse_runs(TRAVERSE_SHADOW, origin, to_light, 0.0, chunk.first_run, chunk.begin,
                       from.instance, from.primitive, blocker);
         add_cost(slot, RAY_SHADOW);
-        passed[at] = gpu_passed(blocker.filter_depth.r, blocker.filter_depth.g,
-                                blocker.filter_depth.b, uint(blocker.primitive != HIT_NONE));
+        passed[at] = gpu_passed(uint(blocker.filter_depth.r), uint(blocker.filter_depth.g),
+                                uint(blocker.filter_depth.b), uint(blocker.primitive != HIT_NONE));
     }
     return blocker;
 }

@@ -36,6 +36,12 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     return sample_opacity(material, index, u, v) >= material.alpha_cutoff;
 }
 
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
+                    ivec3 own)
+{
+    return own;
+}
+
 // Zero where the mesh is flat.
 vec3 smooth_normal(uint shade_index, float u, float v)
 {

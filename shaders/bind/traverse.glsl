@@ -11,6 +11,12 @@
 // Defined by the kernel: whether a cut-out triangle is solid at a point.
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
+// Defined by the kernel: the optical depth that a filter with TRIANGLE_FILTER_DETAIL adds to a shadow
+// ray that meets it at `t` from the front or from behind, in units of 1/64 stop. `own` is that of its
+// record. What enters and leaves a medium adds with either sign: only the sum need not be negative.
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
+                    ivec3 own);
+
 // What may end a traversal; always a constant, so that each use is compiled for its own.
 const uint TRAVERSE_CLOSEST = 0u;
 const uint TRAVERSE_ANY = 1u;    // any hit will do
@@ -26,7 +32,7 @@ struct Hit {
     uint triangle;  // record
     uint primitive; // of its mesh, or HIT_NONE
     uint instance;
-    uvec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
+    ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
     uint status;
 };
 
@@ -39,7 +45,7 @@ Hit make_hit(float t_max)
     hit.triangle = 0u;
     hit.primitive = HIT_NONE;
     hit.instance = HIT_NONE;
-    hit.filter_depth = uvec3(0u);
+    hit.filter_depth = ivec3(0);
     hit.status = 0u;
     return hit;
 }
@@ -232,19 +238,28 @@ bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint
     precise vec3 b = row_vec3(r1) - ray.origin;
     precise vec3 c = row_vec3(r2) - ray.origin;
     float t, u, v;
-    bool met = intersect_triangle(ray, a, b, c, t_min, t, u, v);
+    bool front;
+    bool met = intersect_triangle(ray, a, b, c, t_min, t, u, v, front);
+    if (SPEC_FLAT != 0u)
+        front = front == ((flags & TRIANGLE_MIRRORED) == 0u);
     bool nearer = t < hit.t ||
                   (t == hit.t && (instance < hit.instance ||
                                   (instance == hit.instance && primitive < hit.primitive)));
     bool skipped = primitive == skip_primitive && instance == skip_instance;
     if (mode == TRAVERSE_SHADOW)
         skipped = skipped || (flags & TRIANGLE_NO_SHADOW) != 0u;
+    // Light comes through what the eye sees not.
+    if (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u)
+        skipped = skipped || (!front && (flags & TRIANGLE_ONE_SIDED) != 0u);
     bool accepted = met && nearer && !skipped;
     if (SPEC_CUTOUTS != 0u && accepted && (flags & TRIANGLE_CUTOUT) != 0u)
         accepted = cutout_is_solid(instance, primitive, u, v);
     if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
         (flags & TRIANGLE_FILTER) != 0u) {
-        hit.filter_depth += uvec3(r2.w & 1023u, (r2.w >> 10) & 1023u, (r2.w >> 20) & 1023u);
+        ivec3 depth = ivec3(uvec3(r2.w & 1023u, (r2.w >> 10) & 1023u, (r2.w >> 20) & 1023u));
+        if (SPEC_FILTER_DETAIL != 0u && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
+            depth = filter_detail(instance, primitive, u, v, t, front, depth);
+        hit.filter_depth += depth;
         accepted = false;
     }
     if (accepted) {

@@ -27,6 +27,12 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     return true;
 }
 
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
+                    ivec3 own)
+{
+    return own;
+}
+
 // (v1 - v0) x (v2 - v0), taken to world space by the inverse transpose.
 vec3 geometric_normal(Hit hit)
 {

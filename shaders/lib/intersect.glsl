@@ -92,8 +92,9 @@ void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near
 // An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
 // triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
 // other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
+// `front`: met from the side that sees the vertices go round against the clock.
 bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out float t, out float u,
-                        out float v)
+                        out float v, out bool front)
 {
     vec3 lo, hi;
     lo.x = a.x < b.x ? a.x : b.x;
@@ -137,6 +138,7 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
     u = weight_b;
     v = weight_c;
     t = at > t_near ? at : t_near;
+    front = (det > 0.0) == (ray.shear.z > 0.0);
     // at >= t_min is false for NaN: overflow and zero area are no hits.
     return !(below && above) && det != 0.0 && at >= t_min && t_near <= t_far;
 }
