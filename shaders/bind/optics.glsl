@@ -14,7 +14,8 @@ struct Optics {
     bool thin, unlit, metal_rough;
 };
 
-Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
+// `eta`: index of the side the ray comes from over that of the other.
+Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
 {
     Optics o;
     o.unlit = m.model == MATERIAL_MODEL_UNLIT;
@@ -57,7 +58,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, bool inside)
         bend_normal(s, m);
 
     float cos_view = clamp(abs(dot(dir, s.ns)), 0.0, 1.0);
-    o.eta = inside ? m.ior : 1.0 / m.ior;
+    o.eta = eta;
     o.thin = (m.flags & MATERIAL_THIN) != 0u;
     o.reflected = SPEC_REFLECTION != 0u ? m.reflection : vec3(0.0);
     o.alpha = 1.0;

@@ -65,7 +65,7 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
         s.ns = -s.ns;
     if (dot(s.ns, ray.dir) > 0.0)
         s.ns = s.ng;
-    Optics o = surface_optics(s, m, ray.dir, inside);
+    Optics o = surface_optics(s, m, ray.dir, inside ? m.ior : 1.0 / m.ior);
     if (dot(s.ns, ray.dir) > 0.0)
         s.ns = s.ng;
     push_children(slot, ray, s, o, inside, hit, count, status);
