@@ -101,12 +101,12 @@ whit_result brute_create(struct renderer *renderer)
     brute->ranges = l.ranges;
     brute->range_count = l.range_count;
     uint64_t slots = renderer->pixel_buffers.chunk_slots;
-    uint64_t lights = renderer->pose.light_count ? renderer->pose.light_count : 1;
+    uint64_t turns = lights_turns(renderer) ? lights_turns(renderer) : 1;
     if (result == WHIT_OK)
         result = buffer_create(renderer->device, slots * sizeof(struct gpu_found), BUFFER_STORAGE,
                                "hits so far", &brute->found);
     if (result == WHIT_OK)
-        result = buffer_create(renderer->device, slots * lights * sizeof(struct gpu_passed),
+        result = buffer_create(renderer->device, slots * turns * sizeof(struct gpu_passed),
                                BUFFER_STORAGE, "shadows so far", &brute->passed);
     if (result == WHIT_OK)
         renderer->scene_buffers.bytes += buffer_size(brute->found) + buffer_size(brute->passed);
@@ -206,7 +206,8 @@ static whit_result record_ray(struct submission *s, const struct gpu_chunk *chun
     struct renderer *renderer = s->renderer;
     const struct brute_state *brute = &renderer->brute;
     whit_result result = record_ranges(s, &brute->closest, chunk, list);
-    uint32_t lights = renderer->params.no_shadows ? 0 : renderer->pose.light_count;
+    uint32_t lights =
+        renderer->effects.called[SCENE_EFFECT_SHADOWS] ? renderer->pose.light_count : 0;
     struct gpu_chunk lit = *chunk;
     for (lit.light = 0; result == WHIT_OK && lit.light < lights; ++lit.light)
         result = record_ranges(s, &brute->shadow, &lit, list);

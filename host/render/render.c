@@ -73,6 +73,11 @@ static whit_result check_params(const struct log *log, struct render_params *par
         log_error(log, "%u samples a pixel: must be 1, 4, 16 or 64", n);
         return WHIT_ERROR_USAGE;
     }
+    n = params->light_samples;
+    if (n != 0 && n != 1 && n != 4 && n != 16 && n != 64) {
+        log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
+        return WHIT_ERROR_USAGE;
+    }
     if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX)) {
         log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
         return WHIT_ERROR_USAGE;
@@ -89,13 +94,15 @@ whit_result frame_fill(struct renderer *renderer)
     struct gpu_frame *frame = &renderer->frame;
     const struct accel *accel = renderer->accel;
     const struct scene_environment *environment = &renderer->scene->environment;
-    bool orthographic;
-    whit_result result =
-        camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
-                     renderer->params.width, renderer->params.height, frame, &orthographic);
+    uint32_t kind;
+    whit_result result = camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
+                                      renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
-    renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = orthographic;
+    /* Of all cameras only the one that is drawn counts. */
+    renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
+    renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;
+    renderer->effects.called[SCENE_EFFECT_PANORAMA] = kind == CAMERA_PANORAMA;
     for (int i = 0; i < 3; ++i) {
         frame->zenith[i] = environment->zenith[i] * environment->scale[i];
         frame->horizon[i] = environment->horizon[i] * environment->scale[i];
@@ -103,6 +110,7 @@ whit_result frame_fill(struct renderer *renderer)
         frame->ambient[i] = renderer->scene->ambient[i];
     }
     frame->light_count = renderer->pose.light_count;
+    frame->light_samples = lights_samples(renderer);
     frame->environment_size = renderer->scene_buffers.environment_size;
     frame->root = accel->instance_root;
     frame->shade_base = 0;
@@ -140,7 +148,7 @@ static uint32_t largest_tile(const struct renderer *renderer)
     uint64_t slot_bytes = 0;
     if (renderer->has_secondary)
         slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
-    uint64_t passed_bytes = sizeof(struct gpu_passed) * renderer->pose.light_count;
+    uint64_t passed_bytes = sizeof(struct gpu_passed) * lights_turns(renderer);
     if (renderer->accel->no_trees && passed_bytes > slot_bytes)
         slot_bytes = passed_bytes;
     while (tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
@@ -161,7 +169,7 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
         log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
         return WHIT_ERROR_DEVICE;
     }
-    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] || renderer->params.all_effects;
+    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS];
     p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
     uint32_t tile = largest_tile(renderer);
     uint64_t frame_slots = (uint64_t)blocks_across(width) * (p->band_rows / 8) * 64;
@@ -221,8 +229,7 @@ static bool calls_for_secondary(const struct renderer *renderer)
 {
     const bool *called = renderer->effects.called;
     return renderer->params.depth > 0 &&
-           (renderer->params.all_effects || called[SCENE_EFFECT_REFLECTION] ||
-            called[SCENE_EFFECT_REFRACTION] || called[SCENE_EFFECT_FRESNEL] ||
+           (called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
             called[SCENE_EFFECT_CUTOUTS]);
 }
 
@@ -265,6 +272,7 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
     if (params)
         renderer->params = *params;
     scene_effects_scan(renderer->scene, &renderer->effects);
+    effects_choose(&renderer->params, &renderer->effects);
     whit_result result = check_params(log, &renderer->params);
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
@@ -300,17 +308,6 @@ void renderer_destroy(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     free(renderer);
-}
-
-/* Sample `index` of `count` within its pixel: the centre for one, else a Hammersley set, which is
-   stratified in both directions for powers of 4. */
-static void sample_position(uint32_t index, uint32_t count, float xy[2])
-{
-    double reversed = 0.0, digit = 0.5;
-    for (uint32_t i = index; i; i >>= 1, digit *= 0.5)
-        reversed += (i & 1) ? digit : 0.0;
-    xy[0] = (float)((index + 0.5) / count);
-    xy[1] = (float)(reversed + 0.5 / count);
 }
 
 whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
@@ -455,7 +452,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
             return result;
         chunk->sample_index = s;
         chunk->sample_weight = 1.0f / (float)samples;
-        sample_position(s, samples, chunk->sample_xy);
+        camera_sample(&renderer->frame, s, samples, chunk);
         result = renderer->accel->no_trees ? brute_sample(renderer, chunk, progress, &longest_ms)
                                            : render_sample(renderer, chunk, progress, &longest_ms);
         if (result == WHIT_OK)

@@ -38,6 +38,11 @@ struct render_params {
     bool count;     /* count what traversals cost */
 };
 
+/* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made
+   of cannot be taken out (spheres, instances, kinds of cameras); a lens can: a pinhole is left. */
+bool render_effect_can_add(enum scene_effect effect);
+bool render_effect_can_remove(enum scene_effect effect);
+
 struct render_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms;
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;

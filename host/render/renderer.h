@@ -73,7 +73,7 @@ struct renderer {
     const struct scene *scene;
     struct render_params params;
     struct scene_pose pose;
-    struct scene_effects effects;
+    struct scene_effects effects; /* that kernels are made for: see effects_choose */
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
     struct pass whitted;
@@ -95,14 +95,23 @@ struct renderer {
 
 enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 
-/* camera.c: the camera of params->camera in `pose`. */
+/* camera.c: the camera of params->camera in `pose`, and its CAMERA_*. */
 WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
                                     const char *selector, uint32_t width, uint32_t height,
-                                    struct gpu_frame *frame, bool *orthographic);
+                                    struct gpu_frame *frame, uint32_t *kind);
 
-/* whitted.comp's camera_ray in C, bit for bit: `x` and `y` in pixels, from the upper left. */
-void camera_ray(const struct gpu_frame *frame, bool orthographic, float x, float y,
-                struct gpu_ray *ray);
+/* Sample `index` of `count` (1, 4, 16 or 64) into chunk->sample_xy and lens_xy: fixed patterns, the
+   same for every pixel. A single sample is the middle of the pixel and of the lens. */
+void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
+                   struct gpu_chunk *chunk);
+
+/* whitted.comp's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a camera of
+   `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
+void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
+                const struct gpu_chunk *sample, struct gpu_ray *ray);
+
+/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1. */
+void sine_cosine_pi(float a, float *sine, float *cosine);
 
 /* costs.c: all of it does nothing without params.count. */
 WHIT_CHECK whit_result costs_create(struct renderer *renderer);
@@ -138,8 +147,24 @@ struct material_records {
 WHIT_CHECK whit_result material_records_init(struct renderer *renderer,
                                              struct material_records *records);
 void material_records_finish(struct material_records *records);
+/* lights.c: the rows of all lights of the pose. */
+WHIT_CHECK whit_result lights_write(struct renderer *renderer);
+/* Bits 1 << LIGHT_* of the kinds in `pose`. */
+uint32_t lights_kinds(const struct scene_pose *pose);
+/* Of a flat emitter; 1 where the pose has none. */
+uint32_t lights_samples(const struct renderer *renderer);
+/* The kernel's loop over lights counts light * lights_samples + sample up to lights_turns; lights
+   that are no flat emitters take the first of their turns alone. */
+uint64_t lights_turns(const struct renderer *renderer);
+bool lights_take_turn(const struct renderer *renderer, uint32_t turn);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
+
+/* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
+   does nothing without something else that is off is off too. */
+void effects_choose(const struct render_params *params, struct scene_effects *effects);
+/* Sets the constants that effects switch. */
+void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */
 struct gpu_spec variant_spec(const struct renderer *renderer);

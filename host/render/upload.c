@@ -191,74 +191,9 @@ static bool any_mesh(const struct scene *scene, bool (*has)(const struct scene_m
     return false;
 }
 
-static bool has_normals(const struct scene_mesh *mesh)
-{
-    return mesh->normals != NULL;
-}
-
-static bool has_uvs(const struct scene_mesh *mesh)
-{
-    return mesh->uvs[0] != NULL;
-}
-
 static bool has_second_uvs(const struct scene_mesh *mesh)
 {
     return mesh->uvs[1] != NULL;
-}
-
-static bool has_colors(const struct scene_mesh *mesh)
-{
-    return mesh->colors != NULL;
-}
-
-static uint32_t light_code(enum scene_light_kind kind)
-{
-    switch (kind) {
-    case SCENE_LIGHT_POINT:
-        return LIGHT_POINT;
-    case SCENE_LIGHT_DIRECTIONAL:
-        return LIGHT_DIRECTIONAL;
-    case SCENE_LIGHT_SPOT:
-        return LIGHT_SPOT;
-    case SCENE_LIGHT_AREA_SAMPLE:
-    case SCENE_LIGHT_RECTANGLE:
-    case SCENE_LIGHT_TRIANGLE:
-        return LIGHT_AREA_SAMPLE;
-    }
-    return LIGHT_POINT;
-}
-
-static struct gpu_light make_light(const struct scene_light *light)
-{
-    struct gpu_light out = {
-        .kind = light_code(light->kind),
-        .range = light->range > 0.0f ? light->range : INFINITY,
-        .falloff = light->falloff || light->kind == SCENE_LIGHT_AREA_SAMPLE,
-        .cos_inner = light->cos_inner,
-        .cos_outer = light->cos_outer,
-        .two_sided = light->two_sided,
-    };
-    for (int i = 0; i < 3; ++i) {
-        out.position[i] = (float)light->position[i];
-        out.direction[i] = (float)light->direction[i];
-        out.color[i] = light->color[i];
-    }
-    return out;
-}
-
-static whit_result write_lights(struct renderer *renderer)
-{
-    const struct scene_pose *pose = &renderer->pose;
-    struct gpu_light *lights = array_alloc(pose->light_count, sizeof *lights);
-    if (!lights)
-        return WHIT_ERROR_MEMORY;
-    for (uint32_t i = 0; i < pose->light_count; ++i)
-        lights[i] = make_light(&pose->lights[i]);
-    whit_result result = buffer_write(renderer->scene_buffers.shading,
-                                      (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,
-                                      (uint64_t)pose->light_count * sizeof *lights);
-    free(lights);
-    return result;
 }
 
 /* Which row each kind of record starts at, in renderer->frame. Gives the number of rows. */
@@ -267,13 +202,13 @@ static uint64_t lay_out_rows(struct renderer *renderer, uint32_t use_count)
     const struct scene *scene = renderer->scene;
     struct scene_buffers *buffers = &renderer->scene_buffers;
     struct gpu_frame *frame = &renderer->frame;
-    bool all = renderer->params.all_effects; /* then kernels read every kind */
+    const bool *called = renderer->effects.called;
     uint64_t triangles = 0;
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         triangles += scene->meshes[i].triangle_count;
-    buffers->smooth_normals = all || any_mesh(scene, has_normals);
-    buffers->uv_sets = any_mesh(scene, has_second_uvs) ? 2 : all || any_mesh(scene, has_uvs);
-    buffers->colors = all || any_mesh(scene, has_colors);
+    buffers->smooth_normals = called[SCENE_EFFECT_SMOOTH_NORMALS];
+    buffers->uv_sets = use_count == 0 ? 0 : any_mesh(scene, has_second_uvs) ? 2 : 1;
+    buffers->colors = called[SCENE_EFFECT_VERTEX_COLORS];
     uint64_t rows = (uint64_t)scene->material_count * MATERIAL_ROWS;
     frame->use_row = (uint32_t)rows;
     rows += (uint64_t)use_count * TEXTURE_ROWS;
@@ -311,7 +246,7 @@ static whit_result upload_shading(struct renderer *renderer)
                               (uint64_t)records.use_count * sizeof *records.uses);
     material_records_finish(&records);
     if (result == WHIT_OK)
-        result = write_lights(renderer);
+        result = lights_write(renderer);
     if (result == WHIT_OK && buffers->smooth_normals)
         result = write_triangles(renderer, frame->triangle_row, TRIANGLE_SHADE_ROWS, fill_normals);
     else if (result == WHIT_OK)
@@ -358,7 +293,7 @@ whit_result upload_pose(struct renderer *renderer)
         if (result == WHIT_OK)
             result = upload_instances(renderer);
     }
-    return result == WHIT_OK ? write_lights(renderer) : result;
+    return result == WHIT_OK ? lights_write(renderer) : result;
 }
 
 void upload_finish(struct scene_buffers *buffers)

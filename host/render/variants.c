@@ -3,10 +3,42 @@
 
 #include "kernels.h"
 
+static uint32_t camera_code(const struct renderer *renderer)
+{
+    const bool *called = renderer->effects.called;
+    bool lens_removed = renderer->params.effects_removed >> SCENE_EFFECT_LENS & 1;
+    return called[SCENE_EFFECT_ORTHOGRAPHIC]            ? CAMERA_ORTHOGRAPHIC
+           : called[SCENE_EFFECT_PANORAMA]              ? CAMERA_PANORAMA
+           : called[SCENE_EFFECT_LENS] && !lens_removed ? CAMERA_LENS
+                                                        : CAMERA_PERSPECTIVE;
+}
+
+static bool only_spheres(const struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        if (scene->meshes[i].triangle_count > 0)
+            return false;
+    }
+    return true;
+}
+
+/* Where one effect has a say in the constant of another. */
+static void refine_effects(const struct renderer *renderer, struct gpu_spec *spec)
+{
+    const bool *called = renderer->effects.called;
+    bool all = renderer->params.all_effects;
+    if (spec->SPEC_FRESNEL != FRESNEL_NONE && renderer->params.schlick)
+        spec->SPEC_FRESNEL = FRESNEL_SCHLICK;
+    if (spec->SPEC_SPHERES != SPHERES_NONE && !all && only_spheres(renderer->scene))
+        spec->SPEC_SPHERES = SPHERES_ONLY;
+    spec->SPEC_FILTER_DETAIL = called[SCENE_EFFECT_TINTED_SHADOWS] &&
+                               (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_ABSORPTION] ||
+                                called[SCENE_EFFECT_VERTEX_COLORS] || called[SCENE_EFFECT_CUTOUTS]);
+}
+
 struct gpu_spec variant_spec(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
-    const struct scene_effects *effects = &renderer->effects;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
     spec.SPEC_GROUP_SIZE = RENDER_GROUP_SIZE;
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
@@ -21,26 +53,9 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
-    /* Shadows and camera kind are asked for by the user, not found in the scene. */
-    spec.SPEC_SHADOWS = !renderer->params.no_shadows;
-    spec.SPEC_CAMERA = renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] ? CAMERA_ORTHOGRAPHIC
-                                                                           : CAMERA_PERSPECTIVE;
-    if (renderer->params.all_effects)
-        return spec;
-    const bool *called = effects->called;
-    spec.SPEC_SMOOTH_NORMALS = renderer->scene_buffers.smooth_normals;
-    spec.SPEC_VERTEX_COLORS = renderer->scene_buffers.colors;
-    spec.SPEC_REFRACTION = called[SCENE_EFFECT_REFRACTION];
-    spec.SPEC_REFLECTION = called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_FRESNEL];
-    spec.SPEC_ABSORPTION = called[SCENE_EFFECT_ABSORPTION];
-    spec.SPEC_CUTOUTS = called[SCENE_EFFECT_CUTOUTS];
-    spec.SPEC_TEXTURES = called[SCENE_EFFECT_TEXTURES];
-    spec.SPEC_NORMAL_MAPS = called[SCENE_EFFECT_NORMAL_MAPS];
-    spec.SPEC_ENVIRONMENT_MAP = called[SCENE_EFFECT_ENVIRONMENT_MAP];
-    spec.SPEC_METAL_ROUGH = called[SCENE_EFFECT_METAL_ROUGH];
-    spec.SPEC_HIGHLIGHTS = called[SCENE_EFFECT_HIGHLIGHTS] || called[SCENE_EFFECT_METAL_ROUGH];
-    spec.SPEC_LIGHTS = renderer->pose.light_count > 0 ? 255 : 0;
-    spec.SPEC_FILTERS = called[SCENE_EFFECT_REFRACTION] || called[SCENE_EFFECT_CUTOUTS];
+    spec.SPEC_CAMERA = camera_code(renderer);
+    effects_switch(&renderer->effects, &spec);
+    refine_effects(renderer, &spec);
     return spec;
 }
 
@@ -137,7 +152,7 @@ whit_result variant_create_whitted(struct renderer *renderer)
     if (!renderer->accel->no_trees)
         return create_whitted(renderer, BRUTE_OFF, &renderer->whitted);
     whit_result result = create_whitted(renderer, BRUTE_CLOSEST, &brute->closest);
-    if (result == WHIT_OK && renderer->pose.light_count > 0 && !renderer->params.no_shadows)
+    if (result == WHIT_OK && renderer->effects.called[SCENE_EFFECT_SHADOWS])
         result = create_whitted(renderer, BRUTE_SHADOW, &brute->shadow);
     return result == WHIT_OK ? create_whitted(renderer, BRUTE_SHADE, &renderer->whitted) : result;
 }

@@ -100,24 +100,39 @@ static bool is_glossy_metal_rough(const struct scene_material *m)
     return m->model == SCENE_MODEL_METAL_ROUGH && (m->specular_level > 0.0f || m->metallic > 0.0f);
 }
 
+/* What glass calls for. Light that leaves a dense medium at a grazing angle is reflected as a
+   whole, whatever the material says of reflection. */
+static void scan_glass(struct scene_effects *out, const struct scene_material *m)
+{
+    call_by_material(out, SCENE_EFFECT_REFRACTION, m, "");
+    if (m->thin_walled)
+        return;
+    call_by_material(out, SCENE_EFFECT_MEDIA, m, "");
+    call_by_material(out, SCENE_EFFECT_REFLECTION, m, "total reflection");
+    if (any(m->absorption))
+        call_by_material(out, SCENE_EFFECT_ABSORPTION, m, "");
+}
+
 static void scan_optics(struct scene_effects *out, const struct scene_material *m)
 {
     bool metal_rough = is_glossy_metal_rough(m);
+    if (any(m->emission))
+        call_by_material(out, SCENE_EFFECT_EMISSION, m, "");
+    if (m->shadow_catcher)
+        call_by_material(out, SCENE_EFFECT_CATCHERS, m, "");
+    if (m->one_sided)
+        call_by_material(out, SCENE_EFFECT_CULLING, m, "one-sided");
     if (m->model == SCENE_MODEL_UNLIT)
         return;
-    if (any(m->transmission))
-        call_by_material(out, SCENE_EFFECT_REFRACTION, m, "");
-    if (any(m->transmission) && any(m->absorption))
-        call_by_material(out, SCENE_EFFECT_ABSORPTION, m, "");
     if (any(m->reflection) || metal_rough || (any(m->transmission) && m->fresnel))
         call_by_material(out, SCENE_EFFECT_REFLECTION, m,
                          any(m->reflection) ? ""
                          : metal_rough      ? "metal-rough"
                                             : "glass");
+    if (any(m->transmission))
+        scan_glass(out, m);
     if (metal_rough || (m->fresnel && (any(m->reflection) || any(m->transmission))))
         call_by_material(out, SCENE_EFFECT_FRESNEL, m, metal_rough ? "metal-rough" : "");
-    if (any(m->emission))
-        call_by_material(out, SCENE_EFFECT_EMISSION, m, "");
     if (metal_rough || (m->model == SCENE_MODEL_PHONG && any(m->specular)))
         call_by_material(out, SCENE_EFFECT_HIGHLIGHTS, m, "");
     if (m->model == SCENE_MODEL_METAL_ROUGH)
@@ -154,6 +169,9 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
     if (lets_through(scene, m))
         call_by_material(out, SCENE_EFFECT_CUTOUTS, m,
                          m->alpha == SCENE_ALPHA_MASK ? "alpha mask" : "alpha blend");
+    bool blends = m->alpha == SCENE_ALPHA_BLEND && lets_through(scene, m);
+    if (out->called[SCENE_EFFECT_SHADOWS] && (blends || any(m->transmission)))
+        call_by_material(out, SCENE_EFFECT_TINTED_SHADOWS, m, blends ? "alpha blend" : "");
 }
 
 static void scan_light(struct scene_effects *out, const struct scene_light *light)
@@ -182,6 +200,11 @@ static void scan_geometry(const struct scene *scene, struct scene_effects *out)
         const char *name = mesh->name ? mesh->name : "";
         if (mesh->normals)
             call(out, SCENE_EFFECT_SMOOTH_NORMALS, "mesh `%.60s`", name);
+        if (mesh->normals && out->called[SCENE_EFFECT_SHADOWS])
+            call(out, SCENE_EFFECT_TERMINATOR, "mesh `%.60s` in shadows", name);
+        if (mesh->sphere_count)
+            call(out, SCENE_EFFECT_SPHERES, "%u sphere%s of mesh `%.60s`", mesh->sphere_count,
+                 mesh->sphere_count == 1 ? "" : "s", name);
         if (mesh->colors)
             call(out, SCENE_EFFECT_VERTEX_COLORS, "mesh `%.60s`", name);
     }
@@ -196,14 +219,26 @@ static void scan_geometry(const struct scene *scene, struct scene_effects *out)
     }
 }
 
-/* Only what some triangle of some instance wears counts: libraries of materials cost nothing.
+static void scan_camera(struct scene_effects *out, const struct scene_camera *camera)
+{
+    const char *name = camera->name ? camera->name : "";
+    if (camera->kind == SCENE_CAMERA_ORTHOGRAPHIC)
+        call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%.60s`", name);
+    else if (camera->kind == SCENE_CAMERA_PANORAMA)
+        call(out, SCENE_EFFECT_PANORAMA, "camera `%.60s`", name);
+    else if (camera->lens_radius > 0.0f)
+        call(out, SCENE_EFFECT_LENS, "camera `%.60s`, radius %g", name,
+             (double)camera->lens_radius);
+}
+
+/* Only what some primitive of some mesh wears counts: libraries of materials cost nothing.
    NULL (all count) when memory runs out. */
 static bool *worn_materials(const struct scene *scene)
 {
     bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
     for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[i];
-        for (uint32_t t = 0; t < mesh->triangle_count; ++t)
+        for (uint32_t t = 0; t < mesh->triangle_count + mesh->sphere_count; ++t)
             worn[mesh->materials[t]] = true;
     }
     return worn;
@@ -212,22 +247,19 @@ static bool *worn_materials(const struct scene *scene)
 void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
 {
     memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < scene->light_count; ++i) /* first: tinted shadows need shadows */
+        scan_light(out, &scene->lights[i]);
     bool *worn = worn_materials(scene);
     for (uint32_t i = 0; i < scene->material_count; ++i) {
         if (!worn || worn[i])
             scan_material(scene, out, &scene->materials[i]);
     }
     free(worn);
-    for (uint32_t i = 0; i < scene->light_count; ++i)
-        scan_light(out, &scene->lights[i]);
     scan_geometry(scene, out);
     const struct scene_environment *sky = &scene->environment;
     if (sky->kind == SCENE_ENVIRONMENT_MAP && sky->rgb)
         call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%.80s`",
              sky->name ? file_name(sky->name) : "");
-    for (uint32_t i = 0; i < scene->camera_count; ++i) {
-        if (scene->cameras[i].kind == SCENE_CAMERA_ORTHOGRAPHIC)
-            call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%.60s`",
-                 scene->cameras[i].name ? scene->cameras[i].name : "");
-    }
+    for (uint32_t i = 0; i < scene->camera_count; ++i)
+        scan_camera(out, &scene->cameras[i]);
 }

@@ -1,0 +1,114 @@
+/* Effects and the specialization constants that they switch: the one list. */
+#include <stddef.h>
+
+#include "render/renderer.h"
+
+/* LIGHT_* of emitters that have an area: every kind but points, suns and spots. */
+#define AREA_LIGHT_BITS (255u & ~(1u << LIGHT_POINT | 1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SPOT))
+
+#define SWITCH(effect, constant, bits)                                                             \
+    {                                                                                              \
+        SCENE_EFFECT_##effect, (uint32_t)offsetof(struct gpu_spec, constant) / 4u, bits            \
+    }
+
+/* A constant is the sum of the bits of those of its effects that are on. */
+static const struct effect_switch {
+    enum scene_effect effect;
+    uint32_t constant; /* its id */
+    uint32_t bits;
+} switches[] = {
+    SWITCH(SHADOWS, SPEC_SHADOWS, 1u),
+    SWITCH(REFLECTION, SPEC_REFLECTION, 1u),
+    SWITCH(REFRACTION, SPEC_REFRACTION, 1u),
+    SWITCH(FRESNEL, SPEC_FRESNEL, FRESNEL_EXACT),
+    SWITCH(ABSORPTION, SPEC_ABSORPTION, 1u),
+    SWITCH(CUTOUTS, SPEC_CUTOUTS, 1u),
+    SWITCH(TEXTURES, SPEC_TEXTURES, 1u),
+    SWITCH(NORMAL_MAPS, SPEC_NORMAL_MAPS, 1u),
+    SWITCH(EMISSION, SPEC_EMISSION, 1u),
+    SWITCH(HIGHLIGHTS, SPEC_HIGHLIGHTS, 1u),
+    SWITCH(POINT_LIGHTS, SPEC_LIGHTS, 1u << LIGHT_POINT),
+    SWITCH(DIRECTIONAL_LIGHTS, SPEC_LIGHTS, 1u << LIGHT_DIRECTIONAL),
+    SWITCH(SPOT_LIGHTS, SPEC_LIGHTS, 1u << LIGHT_SPOT),
+    SWITCH(AREA_LIGHTS, SPEC_LIGHTS, AREA_LIGHT_BITS),
+    SWITCH(ENVIRONMENT_MAP, SPEC_ENVIRONMENT_MAP, 1u),
+    SWITCH(SMOOTH_NORMALS, SPEC_SMOOTH_NORMALS, 1u),
+    SWITCH(VERTEX_COLORS, SPEC_VERTEX_COLORS, 1u),
+    SWITCH(METAL_ROUGH, SPEC_METAL_ROUGH, 1u),
+    SWITCH(MEDIA, SPEC_MEDIA, 1u),
+    SWITCH(SPHERES, SPEC_SPHERES, SPHERES_SOME),
+    SWITCH(TINTED_SHADOWS, SPEC_FILTERS, 1u),
+    SWITCH(CULLING, SPEC_CULLING, 1u),
+    SWITCH(CATCHERS, SPEC_CATCHERS, 1u),
+    SWITCH(TERMINATOR, SPEC_TERMINATOR, 1u),
+};
+enum { SWITCH_COUNT = sizeof switches / sizeof switches[0] };
+
+/* What does nothing without something else. Every effect comes after what it needs. */
+static const struct effect_need {
+    enum scene_effect effect, needs;
+} needs[] = {
+    {SCENE_EFFECT_MEDIA, SCENE_EFFECT_REFRACTION},
+    {SCENE_EFFECT_ABSORPTION, SCENE_EFFECT_MEDIA},
+    {SCENE_EFFECT_TINTED_SHADOWS, SCENE_EFFECT_SHADOWS},
+    {SCENE_EFFECT_TERMINATOR, SCENE_EFFECT_SHADOWS},
+    {SCENE_EFFECT_TERMINATOR, SCENE_EFFECT_SMOOTH_NORMALS},
+};
+enum { NEED_COUNT = sizeof needs / sizeof needs[0] };
+
+bool render_effect_can_add(enum scene_effect effect)
+{
+    for (int i = 0; i < SWITCH_COUNT; ++i) {
+        if (switches[i].effect == effect)
+            return true;
+    }
+    return false;
+}
+
+bool render_effect_can_remove(enum scene_effect effect)
+{
+    return effect == SCENE_EFFECT_LENS ||
+           (effect != SCENE_EFFECT_SPHERES && render_effect_can_add(effect));
+}
+
+void effects_choose(const struct render_params *params, struct scene_effects *effects)
+{
+    uint64_t added = params->effects_added;
+    for (int i = NEED_COUNT - 1; i >= 0; --i) {
+        if (added >> needs[i].effect & 1)
+            added |= UINT64_C(1) << needs[i].needs;
+    }
+    for (int i = 0; i < SWITCH_COUNT; ++i) {
+        enum scene_effect effect = switches[i].effect;
+        if (params->all_effects || (added >> effect & 1))
+            effects->called[effect] = true;
+    }
+    for (int i = 0; i < SCENE_EFFECT_COUNT; ++i) {
+        if (params->effects_removed >> i & 1)
+            effects->called[i] = false;
+    }
+    if (params->no_shadows)
+        effects->called[SCENE_EFFECT_SHADOWS] = false;
+    if (params->opaque_shadows)
+        effects->called[SCENE_EFFECT_TINTED_SHADOWS] = false;
+    for (int i = 0; i < NEED_COUNT; ++i) {
+        if (!effects->called[needs[i].needs])
+            effects->called[needs[i].effect] = false;
+    }
+}
+
+void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec)
+{
+    uint32_t values[GPU_SPEC_COUNT] = {0};
+    bool switched[GPU_SPEC_COUNT] = {false};
+    for (int i = 0; i < SWITCH_COUNT; ++i) {
+        switched[switches[i].constant] = true;
+        if (effects->called[switches[i].effect])
+            values[switches[i].constant] |= switches[i].bits;
+    }
+    uint32_t *constants = (uint32_t *)spec;
+    for (uint32_t i = 0; i < GPU_SPEC_COUNT; ++i) {
+        if (switched[i])
+            constants[i] = values[i];
+    }
+}
