@@ -14,6 +14,13 @@ struct Optics {
     bool thin, unlit, metal_rough;
 };
 
+// Share of light that a smooth face between two media reflects; see fresnel_dielectric().
+float reflected_share(float cos_in, float eta)
+{
+    return SPEC_FRESNEL == FRESNEL_SCHLICK ? schlick_dielectric(cos_in, eta)
+                                           : fresnel_dielectric(cos_in, eta);
+}
+
 // `eta`: index of the side the ray comes from over that of the other.
 Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
 {
@@ -23,7 +30,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.diffuse = m.diffuse * s.color;
     o.ambient = m.ambient;
     o.highlight = m.specular;
-    o.emission = m.emission;
+    o.emission = SPEC_EMISSION != 0u ? m.emission : vec3(0.0);
     o.shininess = m.shininess;
     o.straight = 0.0;
     float opacity = m.opacity * s.color_alpha;
@@ -37,7 +44,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
         o.ambient *= texel.rgb;
         if (m.tex_specular != TEXTURE_NONE)
             o.highlight *= sample_use(s, m.tex_specular).rgb;
-        if (m.tex_emission != TEXTURE_NONE)
+        if (SPEC_EMISSION != 0u && m.tex_emission != TEXTURE_NONE)
             o.emission *= sample_use(s, m.tex_emission).rgb;
         if (SPEC_METAL_ROUGH != 0u && m.tex_metal_rough != TEXTURE_NONE) {
             vec2 gb = sample_use(s, m.tex_metal_rough).gb;
@@ -62,7 +69,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.thin = (m.flags & MATERIAL_THIN) != 0u;
     o.reflected = SPEC_REFLECTION != 0u ? m.reflection : vec3(0.0);
     o.alpha = 1.0;
-    bool fresnel = (m.flags & MATERIAL_FRESNEL) != 0u;
+    bool fresnel = SPEC_FRESNEL != FRESNEL_NONE && (m.flags & MATERIAL_FRESNEL) != 0u;
     float gloss = 1.0; // share of the mirror ray that roughness leaves
     if (o.metal_rough) {
         float r0 = (m.ior - 1.0) / (m.ior + 1.0);
@@ -85,11 +92,13 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.refracted = vec3(0.0);
     if (SPEC_REFRACTION != 0u) {
         bool glass = max(transmission.r, max(transmission.g, transmission.b)) > 0.0;
-        float share = o.thin ? fresnel_dielectric(cos_view, 1.0 / m.ior)
-                             : fresnel_dielectric(cos_view, o.eta);
-        if (o.thin) // both faces of a sheet, without interference
-            share = 2.0 * share / (1.0 + share);
-        bool total = !o.thin && o.eta * o.eta * (1.0 - cos_view * cos_view) >= 1.0;
+        float share = 0.0;
+        if (SPEC_FRESNEL != FRESNEL_NONE) {
+            share = reflected_share(cos_view, o.thin ? 1.0 / m.ior : o.eta);
+            if (o.thin) // both faces of a sheet, without interference
+                share = 2.0 * share / (1.0 + share);
+        }
+        bool total = !o.thin && !(refracted_cos2(cos_view, o.eta) > 0.0);
         if (glass) {
             o.refracted = fresnel ? transmission * (1.0 - share) : transmission;
             if (total)

@@ -1,0 +1,442 @@
+/* shaders/lib/optics.glsl as the device computes it, against double precision. Oracles are other
+   formulas than the shader's, of the angle itself and not of its rounded cosine. */
+#include <math.h>
+
+#include "device_fixture.h"
+#include "random_fixture.h"
+
+#include "device_optics.h"
+
+#define PI     3.14159265358979323846
+#define DEGREE (PI / 180.0)
+
+/* As in device_optics.comp. */
+struct optics_case {
+    float dir[3], eta;
+    float n[3], cos_in;
+    float cos_half, cos_light, cos_view, alpha;
+    float shininess, pad[3];
+};
+struct optics_answer {
+    float refracted[3], passes;
+    float exact, schlick, blinn, ggx;
+};
+
+enum { CASES_MOST = 40000 };
+
+static struct device *device;
+static struct messages messages;
+static struct optics_case cases[CASES_MOST];
+static struct optics_answer answers[CASES_MOST];
+static double angles[CASES_MOST]; /* of incidence, of each case */
+static uint32_t count;
+
+static const double indices[] = {1.33, 1.5, 2.42};
+
+static int open_device(void **state)
+{
+    (void)state;
+    device = device_open(&messages, false);
+    return 0;
+}
+
+static int close_device(void **state)
+{
+    (void)state;
+    device_close(device, &messages);
+    return 0;
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    memset(cases, 0, sizeof cases);
+    count = 0;
+    return 0;
+}
+
+/* The case of a ray in the xy plane that falls at `angle` to the normal on a face y = 0. */
+static struct optics_case *add_angle(double angle, double eta)
+{
+    assert_true(count < CASES_MOST);
+    struct optics_case *c = &cases[count];
+    angles[count++] = angle;
+    c->dir[0] = (float)sin(angle);
+    c->dir[1] = -(float)cos(angle);
+    c->n[1] = 1.0f;
+    c->cos_in = (float)cos(angle);
+    c->eta = (float)eta;
+    c->alpha = 1.0f;
+    return c;
+}
+
+static void run_cases(void)
+{
+    static const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_STORAGE};
+    assert_true(count > 0);
+    struct buffer *in = buffer_make(device, count * sizeof *cases, BUFFER_STORAGE, "cases");
+    struct buffer *out = buffer_make(device, count * sizeof *answers, BUFFER_STORAGE, "answers");
+    assert_int_equal(buffer_write(in, 0, cases, count * sizeof *cases), WHIT_OK);
+    const struct pipeline_params params = {.spirv = device_optics,
+                                           .spirv_bytes = sizeof device_optics,
+                                           .bindings = bindings,
+                                           .binding_count = 2,
+                                           .name = "optics"};
+    struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_bind(commands, run.pipeline, run.set);
+    commands_dispatch(commands, (count + 63) / 64, 1, 1);
+    commands_finish(commands);
+    assert_int_equal(buffer_read(out, 0, answers, count * sizeof *answers), WHIT_OK);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(in);
+    buffer_destroy(out);
+}
+
+/* --- oracles -------------------------------------------------------------------------------- */
+
+/* Fresnel (1823) in sines and tangents of the two angles. */
+static double fresnel(double angle, double eta)
+{
+    double sine = eta * sin(angle);
+    if (eta == 1.0)
+        return 0.0;
+    if (sine >= 1.0)
+        return 1.0;
+    if (angle < 1e-8)
+        return (1 - eta) / (1 + eta) * ((1 - eta) / (1 + eta));
+    double out = asin(sine);
+    double s = sin(angle - out) / sin(angle + out), p = tan(angle - out) / tan(angle + out);
+    return 0.5 * (s * s + p * p);
+}
+
+static double schlick(double angle, double eta)
+{
+    double sine = eta * sin(angle), f0 = (1 - eta) / (1 + eta) * ((1 - eta) / (1 + eta));
+    if (sine >= 1.0)
+        return 1.0;
+    double cosine = cos(eta > 1.0 ? asin(sine) : angle);
+    return f0 + (1 - f0) * pow(1 - cosine, 5);
+}
+
+static void assert_within(double value, double expected, double most)
+{
+    if (!(fabs(value - expected) <= most))
+        fail_msg("%.9g is not %.9g within %g", value, expected, most);
+}
+
+/* --- Fresnel -------------------------------------------------------------------------------- */
+
+static void fresnel_at_known_angles(void **state)
+{
+    (void)state;
+    static const double degrees[] = {0, 45, 89};
+    /* From the thin side, by hand: 45 degrees into 1.5 refracts to 28.1255 degrees. */
+    add_angle(45 * DEGREE, 1 / 1.5);
+    add_angle(0, 1.5);
+    for (int n = 0; n < 3; n++)
+        for (int a = 0; a < 3; a++) {
+            add_angle(degrees[a] * DEGREE, 1 / indices[n]);
+            add_angle(degrees[a] * DEGREE, indices[n]);
+        }
+    run_cases();
+    assert_within((double)answers[0].exact, 0.0502399, 1e-6);
+    assert_within((double)answers[1].exact, 0.04, 1e-7);
+    uint32_t at = 2;
+    for (int n = 0; n < 3; n++)
+        for (int a = 0; a < 3; a++, at += 2) {
+            double outside = fresnel(degrees[a] * DEGREE, 1 / indices[n]);
+            double inside = fresnel(degrees[a] * DEGREE, indices[n]);
+            assert_within((double)answers[at].exact, outside, 1e-6);
+            assert_within((double)answers[at + 1].exact, inside, 1e-6);
+            print_message("  n %.2f, %2.0f degrees: %.6f from outside, %.6f from inside\n",
+                          indices[n], degrees[a], (double)answers[at].exact,
+                          (double)answers[at + 1].exact);
+        }
+}
+
+/* Steps of 1e-7 across the critical angle, then wider ones. Near it F falls as the square root of
+   the angle, so that the rounding of the cosine alone moves it by sqrt(6e-8) times a few. */
+static void critical_angle_is_met(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        double critical = asin(1 / indices[n]);
+        begin(NULL);
+        for (int i = -2000; i <= 2000; i++)
+            add_angle(critical + i * 1e-7, indices[n]);
+        for (int i = -8000; i <= 4000; i++)
+            add_angle(critical + i * 5e-5, indices[n]);
+        run_cases();
+        double near = 0, far = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            double off = fabs((double)answers[i].exact - fresnel(angles[i], indices[n]));
+            bool is_near = fabs(angles[i] - critical) <= 1e-3;
+            near = fmax(near, is_near ? off : 0);
+            far = fmax(far, is_near ? 0 : off);
+            assert_true(isfinite(answers[i].exact));
+            /* Both decide alike: what does not pass is reflected whole. */
+            assert_true((answers[i].passes == 0.0f) == (answers[i].exact == 1.0f));
+        }
+        print_message("  n %.2f: off by %.2g at the critical angle, %.2g elsewhere\n", indices[n],
+                      near, far);
+        assert_true(near <= 5e-3);
+        assert_true(far <= 1e-5);
+    }
+}
+
+/* What passes, from the two directions alone (Born and Wolf, 1.5.3), makes up one with what is
+   reflected. The direction's cosine near the critical angle is left out. */
+static void nothing_is_lost(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++)
+        for (int i = 0; i < 900; i++) {
+            double angle = i * 0.1 * DEGREE, critical = asin(1 / indices[n]);
+            add_angle(angle, 1 / indices[n]);
+            if (angle < critical - 0.02)
+                add_angle(angle, indices[n]);
+        }
+    run_cases();
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double in = cos(angles[i]), out = -(double)answers[i].refracted[1];
+        double eta = (double)cases[i].eta;
+        double s = 2 * eta * in / (eta * in + out), p = 2 * eta * in / (in + eta * out);
+        double passed = out / (eta * in) * 0.5 * (s * s + p * p);
+        most = fmax(most, fabs(passed + (double)answers[i].exact - 1));
+    }
+    print_message("  R + T = 1 within %.2g\n", most);
+    assert_true(most <= 1e-6);
+}
+
+static void grazing_rays_are_reflected(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++)
+        for (int side = 0; side < 2; side++)
+            for (int i = 0; i <= 1000; i++) {
+                struct optics_case *c = add_angle(PI / 2, side ? indices[n] : 1 / indices[n]);
+                c->cos_in = i == 1 ? 1e-42f : (float)i * 1e-9f;
+                c->dir[1] = -c->cos_in;
+            }
+    run_cases();
+    for (uint32_t i = 0; i < count; i++) {
+        double angle = PI / 2 - (double)cases[i].cos_in;
+        assert_within((double)answers[i].exact, fresnel(angle, (double)cases[i].eta), 1e-6);
+        assert_true(answers[i].exact <= 1.0f);
+        assert_within((double)answers[i].schlick, 1.0, 6e-6);
+        double length = 0;
+        for (int k = 0; k < 3; k++)
+            length += (double)answers[i].refracted[k] * (double)answers[i].refracted[k];
+        assert_within(sqrt(length), cases[i].eta < 1 ? 1 : 0, 2e-6);
+    }
+}
+
+static void equal_indices_leave_rays_alone(void **state)
+{
+    (void)state;
+    for (int i = 0; i <= 9000; i++)
+        add_angle(i * 0.01 * DEGREE, 1.0);
+    cases[count - 1].cos_in = 0.0f;
+    run_cases();
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(answers[i].exact == 0.0f);
+        assert_true(answers[i].schlick == 0.0f);
+        for (int k = 0; k < 3 && i + 1 < count; k++)
+            assert_within((double)answers[i].refracted[k], (double)cases[i].dir[k], 2.5e-7);
+    }
+}
+
+static void schlick_is_off_as_stated(void **state)
+{
+    (void)state;
+    static const double stated[] = {0.0599, 0.0357, 0.0757};
+    for (int n = 0; n < 3; n++) {
+        begin(NULL);
+        for (int i = 0; i < 9000; i++) {
+            double angle = i * 0.01 * DEGREE;
+            add_angle(angle, 1 / indices[n]);
+            if (fabs(angle - asin(1 / indices[n])) > 1e-3)
+                add_angle(angle, indices[n]);
+        }
+        run_cases();
+        double own = 0, off = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            /* The index itself, not its rounding. */
+            double eta = cases[i].eta > 1 ? indices[n] : 1 / indices[n];
+            own = fmax(own, fabs((double)answers[i].schlick - schlick(angles[i], eta)));
+            off = fmax(off, fabs((double)answers[i].schlick - fresnel(angles[i], eta)));
+        }
+        print_message("  n %.2f: Schlick is off by %.4f; its rounding %.2g\n", indices[n], off,
+                      own);
+        assert_true(own <= 1e-5);
+        assert_within(off, stated[n], 1e-4);
+    }
+}
+
+/* --- refraction ----------------------------------------------------------------------------- */
+
+static void snell_at_known_angles(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++)
+        for (int i = 0; i < 900; i++) {
+            add_angle(i * 0.1 * DEGREE, 1 / indices[n]);
+            add_angle(i * 0.1 * DEGREE, indices[n]);
+        }
+    run_cases();
+    double bent = 0, length = 0;
+    uint32_t passed = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double eta = indices[i / 1800];
+        eta = i % 2 ? eta : 1 / eta;
+        double sine = eta * sin(angles[i]);
+        const float *t = answers[i].refracted;
+        if (answers[i].passes == 0.0f) {
+            assert_true(sine >= 1 - 1e-6);
+            continue;
+        }
+        passed++;
+        double size = sqrt((double)t[0] * (double)t[0] + (double)t[1] * (double)t[1]);
+        length = fmax(length, fabs(size - 1));
+        bent = fmax(bent, fabs((double)t[0] / size - sine));
+        assert_true(t[2] == 0.0f);
+        assert_true(t[1] <= 0.0f);
+    }
+    print_message("  sine off by %.2g, length by %.2g\n", bent, length);
+    assert_true(passed > 2700 + 1000);
+    assert_true(bent <= 5e-7);
+    assert_true(length <= 2e-6);
+}
+
+static void unit(float *out)
+{
+    double v[3], length;
+    do {
+        length = 0;
+        for (int k = 0; k < 3; k++) {
+            v[k] = 2.0 * (double)random_float() - 1.0;
+            length += v[k] * v[k];
+        }
+    } while (length < 0.01 || length > 1);
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)(v[k] / sqrt(length));
+}
+
+/* Any frame: unit length, in the plane of ray and normal, on the far side. */
+static void refraction_in_any_frame(void **state)
+{
+    (void)state;
+    random_state = 7;
+    for (int i = 0; i < 30000; i++) {
+        struct optics_case *c = add_angle(0, i % 2 ? indices[i % 3] : 1 / indices[i % 3]);
+        unit(c->n);
+        unit(c->dir);
+        float side = 0;
+        for (int k = 0; k < 3; k++)
+            side += c->n[k] * c->dir[k];
+        for (int k = 0; k < 3; k++)
+            c->dir[k] = side > 0 ? -c->dir[k] : c->dir[k];
+    }
+    run_cases();
+    double length = 0, sine = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const float *d = cases[i].dir, *n = cases[i].n, *t = answers[i].refracted;
+        double in[3], out[3], size = 0, across = 0, off = 0;
+        if (answers[i].passes == 0.0f)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            int p = (k + 1) % 3, q = (k + 2) % 3;
+            in[k] = (double)d[p] * (double)n[q] - (double)d[q] * (double)n[p];
+            out[k] = (double)t[p] * (double)n[q] - (double)t[q] * (double)n[p];
+            size += (double)t[k] * (double)t[k];
+            across += (double)t[k] * (double)n[k];
+            off = fmax(off, fabs(out[k] - (double)cases[i].eta * in[k]));
+        }
+        length = fmax(length, fabs(sqrt(size) - 1));
+        sine = fmax(sine, off);
+        assert_true(across <= 0);
+    }
+    print_message("  length off by %.2g, n x t by %.2g\n", length, sine);
+    assert_true(length <= 2e-6);
+    assert_true(sine <= 1e-6);
+}
+
+/* --- highlights ----------------------------------------------------------------------------- */
+
+/* pow(x, y) is exp2(y log2 x): Vulkan grants log2 an error of 2^-21 between 1/2 and 2 and of 3 ulp
+   elsewhere, exp2 one of 3 + 2 |x| ulp. */
+static void blinn_is_a_power(void **state)
+{
+    (void)state;
+    static const double exponents[] = {0, 1, 10, 60, 1000};
+    for (int e = 0; e < 5; e++)
+        for (int i = 0; i <= 1000; i++) {
+            struct optics_case *c = add_angle(0, 1);
+            c->cos_half = (float)i / 1000.0f;
+            c->shininess = (float)exponents[e];
+        }
+    run_cases();
+    for (uint32_t i = 0; i < count; i++) {
+        double x = (double)cases[i].cos_half, y = (double)cases[i].shininess;
+        double expected = x > 0 ? pow(x, y) : 0, power = x > 0 ? fabs(y * log2(x)) : 0;
+        double most =
+            log(2) * (y / 2097152.0 + 3 * power / 8388608.0) + (3 + 2 * power) / 8388608.0;
+        if (expected > 1e-30)
+            assert_within((double)answers[i].blinn, expected, most * expected);
+        else
+            assert_within((double)answers[i].blinn, 0, 2e-30);
+    }
+}
+
+/* The lobe times pi: Walter 2007, eq. 33, with Heitz 2014's visibility as Hammon (2017) fits it. */
+static double ggx(double half, double light, double view, double alpha)
+{
+    double tangent2 = (1 - half * half) / (half * half), a2 = alpha * alpha;
+    double spread = (1 - alpha) * 2 * light * view + alpha * (light + view);
+    return a2 / (pow(half, 4) * (a2 + tangent2) * (a2 + tangent2)) * 0.5 / spread;
+}
+
+static void ggx_keeps_its_tip(void **state)
+{
+    (void)state;
+    static const float alphas[] = {0.02f, 0.1f, 0.5f, 1.0f};
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 2000; i++) {
+            struct optics_case *c = add_angle(0, 1);
+            c->cos_half = i < 1000 ? 1.0f - (float)i * 1e-6f : 1.0f - (float)(i - 1000) * 9e-4f;
+            c->cos_light = 0.1f + 0.9f * (float)(i % 97) / 96.0f;
+            c->cos_view = 0.1f + 0.9f * (float)(i % 89) / 88.0f;
+            c->alpha = alphas[a];
+        }
+    run_cases();
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct optics_case *c = &cases[i];
+        double expected =
+            ggx((double)c->cos_half, (double)c->cos_light, (double)c->cos_view, (double)c->alpha);
+        most = fmax(most, fabs((double)answers[i].ggx / expected - 1));
+    }
+    print_message("  GGX within %.2g of itself\n", most);
+    assert_true(most <= 2e-6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(fresnel_at_known_angles, begin),
+        cmocka_unit_test_setup(critical_angle_is_met, begin),
+        cmocka_unit_test_setup(nothing_is_lost, begin),
+        cmocka_unit_test_setup(grazing_rays_are_reflected, begin),
+        cmocka_unit_test_setup(equal_indices_leave_rays_alone, begin),
+        cmocka_unit_test_setup(schlick_is_off_as_stated, begin),
+        cmocka_unit_test_setup(snell_at_known_angles, begin),
+        cmocka_unit_test_setup(refraction_in_any_frame, begin),
+        cmocka_unit_test_setup(blinn_is_a_power, begin),
+        cmocka_unit_test_setup(ggx_keeps_its_tip, begin),
+    };
+    return cmocka_run_group_tests(tests, open_device, close_device);
+}
