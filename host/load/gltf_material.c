@@ -241,6 +241,8 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
         if (result != WHIT_OK)
             return result;
     }
+    /* What refracts is entered and left through the same faces. */
+    out->one_sided = !out->two_sided && !(out->transmission[0] > 0);
     note_ignored(&reading);
     return WHIT_OK;
 }

@@ -92,6 +92,7 @@ struct reader {
     struct mtl_library *library;
     char **noted; /* keywords already spoken of */
     uint32_t noted_count, noted_capacity;
+    bool failed; /* no memory for a note */
 };
 
 static bool note_keyword(struct reader *reader, const char *keyword, const char *what)
@@ -162,8 +163,41 @@ static int option_arguments(const char *option)
     return -1;
 }
 
-/* Reads the option at *at and its arguments; false when there is none. */
-static bool read_option(char **at, struct mtl_texture *map)
+/* The numbers of an option that takes some. */
+static void read_option_numbers(struct reader *reader, const char *option, char **at,
+                                struct mtl_texture *map)
+{
+    float v[3] = {0, 0, 0};
+    uint32_t count = parse_numbers(at, v, 3);
+    for (uint32_t i = 0; i < 2 && i < count; i++) {
+        if (option[1] == 's')
+            map->scale[i] = v[i];
+        else if (option[1] == 'o')
+            map->offset[i] = v[i];
+    }
+    if (option[1] == 't' && (v[0] != 0 || v[1] != 0) && reader)
+        reader->failed |= !note_keyword(reader, "-t", "(turbulence) was ignored");
+}
+
+static void read_option_word(struct reader *reader, const char *option, const char *word,
+                             struct mtl_texture *map)
+{
+    if (strcmp(option, "-clamp") == 0) {
+        map->clamp = strcmp(word, "on") == 0;
+    } else if (strcmp(option, "-imfchan") == 0) {
+        bool known = *word && strchr("rgbml", *word) && word[1] == 0;
+        map->channel = known ? *word : 0;
+        if (!known && reader)
+            reader->failed |= !note_keyword(reader, "-imfchan", "of that channel was ignored");
+    } else if (strcmp(option, "-cc") == 0 && strcmp(word, "on") == 0 && reader) {
+        reader->failed |= !note_keyword(reader, "-cc", "(colour correction) was ignored");
+    }
+}
+
+/* Reads the option at *at and its arguments; false when there is none. `reader`: where to note what
+   is ignored, or NULL. What is left over, -blendu, -boost, -texres and -type, chooses between
+   filters and sizes of textures, which whit does in one way. */
+static bool read_option(struct reader *reader, char **at, struct mtl_texture *map)
 {
     char *start = skip_blanks(*at), *end = start;
     char option[16] = "";
@@ -176,41 +210,37 @@ static bool read_option(char **at, struct mtl_texture *map)
     if (arguments < 0)
         return false;
     *at = end;
+    float range[2] = {map->base, map->gain};
     if (arguments == 3) {
-        float v[3] = {0, 0, 0};
-        uint32_t count = parse_numbers(at, v, 3);
-        for (uint32_t i = 0; i < 2; i++) {
-            if (option[1] == 's')
-                map->scale[i] = i < count ? v[i] : map->scale[i];
-            else
-                map->offset[i] += v[i];
-        }
+        read_option_numbers(reader, option, at, map);
     } else if (strcmp(option, "-bm") == 0) {
         (void)parse_numbers(at, &map->bump, 1);
+    } else if (strcmp(option, "-mm") == 0) {
+        (void)parse_numbers(at, range, 2);
+        map->base = range[0];
+        map->gain = range[1];
     } else {
-        for (int i = 0; i < arguments; i++) {
-            char *word = next_word(at);
-            if (strcmp(option, "-clamp") == 0)
-                map->clamp = strcmp(word, "on") == 0;
-        }
+        for (int i = 0; i < arguments; i++)
+            read_option_word(reader, option, next_word(at), map);
     }
     return true;
 }
 
 /* Some writers put options behind the file's name. */
-static void cut_trailing_options(char *name, struct mtl_texture *map)
+static void cut_trailing_options(struct reader *reader, char *name, struct mtl_texture *map)
 {
     for (char *at = strstr(name, " -"); at; at = strstr(at + 1, " -")) {
         char *options = at + 1;
         struct mtl_texture trial = *map;
         char *copy = string_copy(options), *rest = copy;
-        while (rest && read_option(&rest, &trial))
+        while (rest && read_option(NULL, &rest, &trial))
             continue;
         bool all = rest && *skip_blanks(rest) == 0;
         free(copy);
         if (!all)
             continue;
-        *map = trial;
+        while (read_option(reader, &options, map))
+            continue;
         *at = 0;
         return;
     }
@@ -226,13 +256,15 @@ static void trim_end(char *text)
 static bool read_map(struct reader *reader, struct mtl_entry *entry, enum mtl_map kind,
                      const char *keyword, char *rest)
 {
-    struct mtl_texture map = {.scale = {1, 1}, .bump = 1, .line = reader->line};
-    while (read_option(&rest, &map))
+    struct mtl_texture map = {.scale = {1, 1}, .bump = 1, .gain = 1, .line = reader->line};
+    while (read_option(reader, &rest, &map))
         continue;
     char *name = skip_blanks(rest);
     trim_end(name);
-    cut_trailing_options(name, &map);
+    cut_trailing_options(reader, name, &map);
     trim_end(name);
+    if (reader->failed)
+        return false;
     if (!*name)
         return note_keyword(reader, keyword, "without a file is ignored");
     free(entry->maps[kind].file);
@@ -261,9 +293,11 @@ static bool read_property(struct reader *reader, struct mtl_entry *entry, const 
         {"Pr", 'n', MTL_PR},
         {"Pm", 'n', MTL_PM},
         {"illum", 'n', MTL_ILLUM},
+        {"map_Ka", 'm', MTL_MAP_KA},
         {"map_Kd", 'm', MTL_MAP_KD},
         {"map_Ks", 'm', MTL_MAP_KS},
         {"map_Ke", 'm', MTL_MAP_KE},
+        {"map_Ns", 'm', MTL_MAP_NS},
         {"map_d", 'm', MTL_MAP_D},
         {"map_Tr", 'm', MTL_MAP_D},
         {"map_Bump", 'm', MTL_MAP_BUMP},
@@ -272,7 +306,6 @@ static bool read_property(struct reader *reader, struct mtl_entry *entry, const 
         {"map_kS", 'm', MTL_MAP_KS},
         {"norm", 'm', MTL_MAP_NORMAL},
         {"map_Kn", 'm', MTL_MAP_NORMAL},
-        {"map_Ka", 'i', 0},
         {"sharpness", 'i', 0},
         {"map_aat", 'i', 0},
     };

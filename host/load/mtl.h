@@ -8,9 +8,11 @@
 enum mtl_color { MTL_KA, MTL_KD, MTL_KS, MTL_KE, MTL_TF, MTL_COLOR_COUNT };
 enum mtl_number { MTL_NS, MTL_NI, MTL_D, MTL_PR, MTL_PM, MTL_ILLUM, MTL_NUMBER_COUNT };
 enum mtl_map {
+    MTL_MAP_KA, /* only to say what becomes of it */
     MTL_MAP_KD,
     MTL_MAP_KS,
     MTL_MAP_KE,
+    MTL_MAP_NS,
     MTL_MAP_D,
     MTL_MAP_BUMP,
     MTL_MAP_NORMAL,
@@ -20,8 +22,10 @@ enum mtl_map {
 struct mtl_texture {
     char *file; /* as written; NULL: no such map */
     uint32_t line;
-    float scale[2], offset[2]; /* -s, -o and -t, v upwards */
+    float scale[2], offset[2]; /* -s and -o, v upwards */
     float bump;                /* -bm */
+    float base, gain;          /* -mm: base + gain * texel */
+    char channel;              /* -imfchan: r g b m l, or 0 */
     bool clamp;
 };
 

@@ -6,6 +6,8 @@
      3  mirror reflection by Ks       8  as 3 without ray tracing: taken as 2
      4  glass: light passes straight  9  as 4 without ray tracing: blends by d
         through, and Ks reflects     10  catches shadows, is invisible itself
+   6 refracts (1 - Ks) Tf of the light, as the format has it; 7 shares it out by Fresnel from Ni,
+   for which the format gives no formula.
 
    How much a refracting class (4, 6, 7) lets through:
      d < 1      1 - d, tinted by Tf where Tf has a hue
@@ -58,6 +60,58 @@ static void set_transform(const struct mtl_texture *map, struct scene_texture_us
     use->wrap_u = use->wrap_v = map->clamp ? SCENE_WRAP_CLAMP : SCENE_WRAP_REPEAT;
 }
 
+/* Texels by -imfchan and -mm, in the picture's own codes. */
+static void derive_texels(const struct mtl_texture *map, size_t count, const uint8_t *from,
+                          uint8_t *to)
+{
+    for (size_t i = 0; i < count; i++, from += 4, to += 4) {
+        /* Rec. 709, of codes: scalars are not colours. */
+        float luminance = 0.2126f * from[0] + 0.7152f * from[1] + 0.0722f * from[2];
+        memcpy(to, from, 4);
+        for (int k = 0; k < 3; k++) {
+            float code = map->channel == 0     ? (float)from[k]
+                         : map->channel == 'l' ? luminance
+                         : map->channel == 'm' ? (float)from[3]
+                         : map->channel == 'b' ? (float)from[2]
+                                               : (float)from[map->channel == 'g'];
+            code = 255.0f * map->base + map->gain * code;
+            to[k] = (uint8_t)lrintf(fminf(fmaxf(code, 0.0f), 255.0f));
+        }
+        if (map->channel)
+            to[3] = 255;
+    }
+}
+
+/* Puts a texture made from *index in its place where the options of the map ask for one. */
+static whit_result derive_texture(struct scene *scene, const struct mtl_texture *map,
+                                  uint32_t *index)
+{
+    if (map->channel == 0 && map->base == 0 && map->gain == 1)
+        return WHIT_OK;
+    const struct scene_texture *from = &scene->textures[*index];
+    size_t count = (size_t)from->width * from->height;
+    struct scene_texture made = {.width = from->width, .height = from->height};
+    made.name =
+        string_format("%s -imfchan %c -mm %g %g", from->name, map->channel ? map->channel : '-',
+                      (double)map->base, (double)map->gain);
+    for (uint32_t i = 0; made.name && i < scene->texture_count; i++) {
+        if (strcmp(scene->textures[i].name, made.name) == 0) {
+            free(made.name);
+            *index = i;
+            return WHIT_OK;
+        }
+    }
+    made.rgba = array_alloc(count, 4);
+    if (!made.name || !made.rgba) {
+        free(made.name);
+        free(made.rgba);
+        return WHIT_ERROR_MEMORY;
+    }
+    derive_texels(map, count, from->rgba, made.rgba);
+    *index = scene_add_texture(scene, made);
+    return *index == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
 static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, enum mtl_map kind,
                            enum scene_slot slot, const struct load_params *params,
                            struct scene_material *out)
@@ -77,6 +131,8 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
         struct scene_texture_use *use = &out->textures[slot];
         set_transform(map, use);
         result = load_texture(scene, path, NULL, 0, params, &use->texture, NULL);
+        if (result == WHIT_OK)
+            result = derive_texture(scene, map, &use->texture);
     }
     free(path);
     return result;
@@ -185,7 +241,8 @@ static void set_transmission(struct scene *scene, const struct mtl_entry *entry,
         float pass = filtered ? fminf(inverted ? 1 - tf[i] : tf[i], 1.0f) : 1.0f;
         if (d < 1)
             pass = filtered && largest(tf) > 0 ? (1 - d) * tf[i] / largest(tf) : 1 - d;
-        out->transmission[i] = pass;
+        /* Class 6 refracts what Ks does not reflect; with Fresnel the angle shares them out. */
+        out->transmission[i] = out->illum == 6 ? pass * fmaxf(1 - out->specular[i], 0) : pass;
     }
     if (inverted)
         scene_note(scene, SCENE_NOTE_INFO,
@@ -282,6 +339,17 @@ static void set_metal_rough(const struct mtl_entry *entry, struct scene_material
         out->specular[i] = 1;
 }
 
+/* map_Kd tints ambient light too. */
+static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
+{
+    const struct mtl_texture *ambient = &entry->maps[MTL_MAP_KA];
+    const char *diffuse = entry->maps[MTL_MAP_KD].file;
+    if (ambient->file && (!diffuse || strcmp(ambient->file, diffuse) != 0))
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "%s:%u: `%s` of map_Ka was ignored: ambient light takes map_Kd",
+                   path_name(entry->file), ambient->line, ambient->file);
+}
+
 whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, bool ambient_known,
                          const struct load_params *params, struct scene_material *out)
 {
@@ -289,9 +357,10 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, boo
         enum mtl_map map;
         enum scene_slot slot;
     } slots[] = {
-        {MTL_MAP_KD, SCENE_SLOT_DIFFUSE},  {MTL_MAP_KS, SCENE_SLOT_SPECULAR},
-        {MTL_MAP_KE, SCENE_SLOT_EMISSION}, {MTL_MAP_D, SCENE_SLOT_OPACITY},
-        {MTL_MAP_BUMP, SCENE_SLOT_BUMP},   {MTL_MAP_NORMAL, SCENE_SLOT_NORMAL},
+        {MTL_MAP_KD, SCENE_SLOT_DIFFUSE},     {MTL_MAP_KS, SCENE_SLOT_SPECULAR},
+        {MTL_MAP_KE, SCENE_SLOT_EMISSION},    {MTL_MAP_D, SCENE_SLOT_OPACITY},
+        {MTL_MAP_BUMP, SCENE_SLOT_BUMP},      {MTL_MAP_NORMAL, SCENE_SLOT_NORMAL},
+        {MTL_MAP_NS, SCENE_SLOT_METAL_ROUGH},
     };
     scene_material_init(out, entry->name);
     out->origin.file = string_copy(entry->file);
@@ -303,6 +372,8 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, boo
     set_class(scene, entry, out);
     set_metal_rough(entry, out);
     for (size_t i = 0; i < sizeof slots / sizeof *slots; i++) {
+        if (slots[i].map == MTL_MAP_NS && out->model != SCENE_MODEL_PHONG)
+            continue; /* no exponent */
         whit_result result = add_map(scene, entry, slots[i].map, slots[i].slot, params, out);
         if (result != WHIT_OK)
             return result;
@@ -311,6 +382,7 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, boo
         out->normal_scale = entry->maps[MTL_MAP_NORMAL].bump;
     else if (entry->maps[MTL_MAP_BUMP].file)
         out->normal_scale = entry->maps[MTL_MAP_BUMP].bump;
+    note_ambient_map(scene, entry);
     set_cutouts(scene, entry, out);
     return WHIT_OK;
 }

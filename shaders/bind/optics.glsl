@@ -35,21 +35,26 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.straight = 0.0;
     float opacity = m.opacity * s.color_alpha;
     float metallic = m.metallic, roughness = m.roughness, specular_level = m.specular_level;
-    vec3 transmission = m.transmission;
+    vec3 transmission = m.transmission, mirror = m.reflection;
     if (SPEC_TEXTURES != 0u) {
         vec4 texel = vec4(1.0);
         if (m.tex_diffuse != TEXTURE_NONE)
             texel = sample_use(s, m.tex_diffuse);
         o.diffuse *= texel.rgb;
         o.ambient *= texel.rgb;
-        if (m.tex_specular != TEXTURE_NONE)
-            o.highlight *= sample_use(s, m.tex_specular).rgb;
+        if (m.tex_specular != TEXTURE_NONE) {
+            vec3 specular = sample_use(s, m.tex_specular).rgb;
+            o.highlight *= specular;
+            mirror *= specular;
+        }
         if (SPEC_EMISSION != 0u && m.tex_emission != TEXTURE_NONE)
             o.emission *= sample_use(s, m.tex_emission).rgb;
-        if (SPEC_METAL_ROUGH != 0u && m.tex_metal_rough != TEXTURE_NONE) {
-            vec2 gb = sample_use(s, m.tex_metal_rough).gb;
-            roughness *= gb.x;
-            metallic *= gb.y;
+        if ((SPEC_METAL_ROUGH != 0u || SPEC_HIGHLIGHTS != 0u) &&
+            m.tex_metal_rough != TEXTURE_NONE) {
+            vec3 rgb = sample_use(s, m.tex_metal_rough).rgb;
+            o.shininess *= rgb.r;
+            roughness *= rgb.g;
+            metallic *= rgb.b;
         }
         if (SPEC_METAL_ROUGH != 0u && m.tex_specular_level != TEXTURE_NONE)
             specular_level *= sample_use(s, m.tex_specular_level).a;
@@ -67,7 +72,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     float cos_view = clamp(abs(dot(dir, s.ns)), 0.0, 1.0);
     o.eta = eta;
     o.thin = (m.flags & MATERIAL_THIN) != 0u;
-    o.reflected = SPEC_REFLECTION != 0u ? m.reflection : vec3(0.0);
+    o.reflected = SPEC_REFLECTION != 0u ? mirror : vec3(0.0);
     o.alpha = 1.0;
     bool fresnel = SPEC_FRESNEL != FRESNEL_NONE && (m.flags & MATERIAL_FRESNEL) != 0u;
     float gloss = 1.0; // share of the mirror ray that roughness leaves

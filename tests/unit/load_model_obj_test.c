@@ -222,6 +222,16 @@ static void class_of_glass(void **state)
     assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
 }
 
+static void glass_refracts_what_it_does_not_reflect(void **state)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nKs 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n");
+    assert_float_equal(m->transmission[0], 0.75, 0);
+    assert_float_equal(m->transmission[1], 0.25, 0);
+    assert_float_equal(m->transmission[2], 0.5, 0);
+    assert_float_equal(m->reflection[1], 0.5, 0);
+}
+
 static void dissolve_decides_what_glass_passes(void **state)
 {
     const struct scene_material *m =
@@ -282,7 +292,8 @@ static void maps_with_options(void **state)
         load_material(fixture, "newmtl m\nmap_Kd -s 2 4 1 -o 0.25 -clamp on a b.png\n"
                                "map_Bump -imfchan r a b.png -bm 1.5\nmap_Ks gone.png\n");
     const struct scene_texture_use *use = &m->textures[SCENE_SLOT_DIFFUSE];
-    assert_int_equal(fixture->scene->texture_count, 1);
+    /* The picture, and its red channel alone for -imfchan. */
+    assert_int_equal(fixture->scene->texture_count, 2);
     assert_int_equal(use->texture, 0);
     assert_int_equal(use->wrap_u, SCENE_WRAP_CLAMP);
     assert_float_equal(use->transform[0], 2, 0);
@@ -290,10 +301,56 @@ static void maps_with_options(void **state)
     assert_float_equal(use->transform[4], 4, 0);
     assert_float_equal(use->transform[5], 1 - 4, 0); /* v_down = 0 is v = 1, sampled at v = 4 */
     assert_float_equal(m->diffuse[0], 1, 0);
-    assert_int_equal(m->textures[SCENE_SLOT_BUMP].texture, 0);
+    assert_int_equal(m->textures[SCENE_SLOT_BUMP].texture, 1);
     assert_float_equal(m->normal_scale, 1.5, 0);
     assert_int_equal(m->textures[SCENE_SLOT_SPECULAR].texture, SCENE_NONE);
     assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png` is missing"));
+}
+
+/* The code of a map's first texel, red. */
+static int first_texel(const struct fixture *fixture, const struct scene_material *m,
+                       enum scene_slot slot)
+{
+    assert_true(m->textures[slot].texture < fixture->scene->texture_count);
+    return fixture->scene->textures[m->textures[slot].texture].rgba[0];
+}
+
+static void channels_and_ranges_of_maps(void **state)
+{
+    struct fixture *fixture = *state;
+    struct image image;
+    const char *path = fixture_write(fixture, "t.png", "", 0);
+    assert_int_equal(image_init(&image, 1, 1, 4, false), WHIT_OK);
+    for (int k = 0; k < 4; k++)
+        image.pixels[k] = k == 3 ? 0.6f : image_linear_from_srgb((float)(50 * (k + 1)) / 255.0f);
+    assert_int_equal(image_save(&fixture->log, &image, path, NULL, 0), WHIT_OK);
+    image_finish(&image);
+    const struct scene_material *m = load_material(
+        fixture, "newmtl m\nillum 2\nKd 1 1 1\nmap_Kd -mm 0.2 0.5 t.png\n"
+                 "map_Ns -imfchan m t.png\nmap_d -imfchan g t.png\nbump -imfchan l t.png\n"
+                 "map_Ks -t 1 1 1 -cc on -imfchan z -boost 2 t.png\nmap_Ke -imfchan b t.png\n");
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_DIFFUSE), 51 + 25);
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_METAL_ROUGH), 153);
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_OPACITY), 100);
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_BUMP), 93);
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_EMISSION), 150);
+    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_SPECULAR), 50);
+    assert_float_equal(m->textures[SCENE_SLOT_SPECULAR].transform[2], 0, 0);
+    assert_true(fixture_noted(fixture, "`-t` (turbulence) was ignored"));
+    assert_true(fixture_noted(fixture, "`-cc` (colour correction) was ignored"));
+    assert_true(fixture_noted(fixture, "`-imfchan` of that channel was ignored"));
+    assert_false(fixture_noted(fixture, "-boost"));
+}
+
+static void unused_maps_are_named(void **state)
+{
+    struct fixture *fixture = *state;
+    load_material(fixture, "newmtl m\ndisp d.png\ndecal d.png\nrefl -type sphere d.png\n"
+                           "map_Ka a.png\nmap_Kd k.png\n");
+    assert_true(fixture_noted(fixture, "a.mtl:2: `disp` is not used"));
+    assert_true(fixture_noted(fixture, "a.mtl:3: `decal` is not used"));
+    assert_true(fixture_noted(fixture, "a.mtl:4: `refl` is not used"));
+    assert_true(fixture_noted(fixture, "`a.png` of map_Ka"));
 }
 
 static void alpha_cuts_out_once(void **state)
@@ -335,12 +392,15 @@ int main(void)
         TEST(index_out_of_range_is_refused),
         TEST(class_of_mirrors),
         TEST(class_of_glass),
+        TEST(glass_refracts_what_it_does_not_reflect),
         TEST(dissolve_decides_what_glass_passes),
         TEST(dark_filters_are_read_as_held_back),
         TEST(transparency_the_other_way_round),
         TEST(shadow_catchers_are_warned_of),
         TEST(class_of_plain_colors),
         TEST(maps_with_options),
+        TEST(channels_and_ranges_of_maps),
+        TEST(unused_maps_are_named),
         TEST(alpha_cuts_out_once),
         TEST(whole_pictures_cut_out_nothing),
     };
