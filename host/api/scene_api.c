@@ -215,6 +215,8 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
         .kind = kinds[camera->kind],
         .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
         .height = orthographic ? (double)camera->height : 0.0,
+        .lens_radius = (double)camera->lens_radius,
+        .focus_distance = (double)camera->focus_distance,
         .made_by_whit = camera->made_by_whit,
     };
     copy3_double(info->eye, camera->eye);

@@ -99,6 +99,7 @@ typedef struct whit_camera_info {
     const char *kind;                /* "perspective", "orthographic", "panorama" */
     double eye[3], target[3], up[3]; /* world, at time 0 */
     double fov_y_degrees, height;
+    double lens_radius, focus_distance; /* world units; 0: a pinhole; 0: the target's distance */
     bool made_by_whit;
 } whit_camera_info;
 typedef struct whit_instance_info {

@@ -158,6 +158,8 @@ static json_t *camera_document(const whit_scene *scene, uint32_t index)
     document_numbers(object, "up", camera.up, 3);
     document_number(object, "fov_y_degrees", camera.fov_y_degrees);
     document_number(object, "height", camera.height);
+    document_number(object, "lens", camera.lens_radius);
+    document_number(object, "focus", camera.focus_distance);
     document_flag(object, "made_by_whit", camera.made_by_whit);
     return object;
 }
@@ -334,8 +336,12 @@ static void print_camera(const whit_scene *scene, uint32_t index)
            camera.eye[2], camera.target[0], camera.target[1], camera.target[2]);
     if (camera.height > 0.0)
         printf(", height %.6g", camera.height);
-    else
+    else if (camera.fov_y_degrees > 0.0)
         printf(", %.4g degrees", camera.fov_y_degrees);
+    if (camera.lens_radius > 0.0)
+        printf(", lens %.6g", camera.lens_radius);
+    if (camera.lens_radius > 0.0 && camera.focus_distance > 0.0)
+        printf(", focus %.6g", camera.focus_distance);
     puts(camera.made_by_whit ? "  (made by whit)" : "");
 }
 

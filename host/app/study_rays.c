@@ -1,6 +1,7 @@
 /* Rays that are the same on every machine: made on the CPU in double, without a random seed. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/study.h"
 
@@ -60,7 +61,7 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
 
 struct view {
     struct vector eye, right, up, ahead; /* right and up: half the picture, at `ahead` */
-    bool parallel;
+    bool parallel, panorama;
 };
 
 static struct view camera_view(const whit_camera_info *camera, double aspect)
@@ -69,16 +70,30 @@ static struct view camera_view(const whit_camera_info *camera, double aspect)
     view.ahead = unit(add(make(camera->target), view.eye, -1.0));
     view.right = unit(cross(view.ahead, make(camera->up)));
     view.up = cross(view.right, view.ahead);
-    view.parallel = camera->kind[0] == 'o';
+    view.parallel = strcmp(camera->kind, "orthographic") == 0;
+    view.panorama = strcmp(camera->kind, "panorama") == 0;
+    if (view.panorama)
+        return view;
     double half = view.parallel ? 0.5 * camera->height : tan(camera->fov_y_degrees * PI / 360.0);
     view.right = add((struct vector){0, 0, 0}, view.right, half * aspect);
     view.up = add((struct vector){0, 0, 0}, view.up, half);
     return view;
 }
 
-/* x and y from -1 to 1, y upwards. */
+static whit_ray panorama_ray(const struct view *view, double x, double y)
+{
+    double longitude = x * PI, latitude = y * 0.5 * PI;
+    struct vector dir = add((struct vector){0, 0, 0}, view->up, sin(latitude));
+    dir = add(dir, view->ahead, cos(latitude) * cos(longitude));
+    dir = add(dir, view->right, cos(latitude) * sin(longitude));
+    return make_ray(view->eye, dir, 0.0, INFINITY);
+}
+
+/* x and y from -1 to 1, y upwards. A lens has its rays through the middle. */
 static whit_ray camera_ray(const struct view *view, double x, double y)
 {
+    if (view->panorama)
+        return panorama_ray(view, x, y);
     struct vector aside = add(add((struct vector){0, 0, 0}, view->right, x), view->up, y);
     if (view->parallel)
         return make_ray(add(view->eye, aside, 1.0), view->ahead, 0.0, INFINITY);

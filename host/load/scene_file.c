@@ -134,32 +134,55 @@ static bool read_lights(struct reader *reader, const struct place *place, const 
     return true;
 }
 
+/* Which keys go together: fov, height and panorama are three kinds of camera. */
+static bool read_camera_kind(struct reader *reader, const struct place *place, const json_t *object,
+                             struct scene_camera *out)
+{
+    static const char *const foreign[] = {"fov", "height", "lens", "focus"};
+    bool panorama = false, parallel = json_object_get(object, "height") != NULL;
+    if (!reader_bool(reader, place, object, "panorama", &panorama))
+        return false;
+    for (size_t i = 0; panorama && i < sizeof foreign / sizeof *foreign; ++i) {
+        struct place here = {place, foreign[i], 0};
+        if (json_object_get(object, foreign[i]))
+            return reader_fail(reader, &here, "a panorama has no `%s`", foreign[i]);
+    }
+    struct place at_height = {place, "height", 0}, at_lens = {place, "lens", 0},
+                 at_focus = {place, "focus", 0};
+    if (parallel && json_object_get(object, "fov"))
+        return reader_fail(reader, &at_height,
+                           "`height` (a parallel view) and `fov` exclude each other");
+    if (parallel && json_object_get(object, "lens"))
+        return reader_fail(reader, &at_lens, "a parallel view (`height`) has no lens");
+    if (json_object_get(object, "focus") && !json_object_get(object, "lens"))
+        return reader_fail(reader, &at_focus, "`focus` is of a camera with a `lens`");
+    out->kind = panorama   ? SCENE_CAMERA_PANORAMA
+                : parallel ? SCENE_CAMERA_ORTHOGRAPHIC
+                           : SCENE_CAMERA_PERSPECTIVE;
+    return true;
+}
+
 static bool read_camera(struct reader *reader, const struct place *place, const json_t *object)
 {
-    static const char *const keys[] = {"name",   "eye",    "target",    "up", "fov",
-                                       "height", "aspect", "animation", NULL};
+    static const char *const keys[] = {"name", "eye",   "target",   "up",     "fov",       "height",
+                                       "lens", "focus", "panorama", "aspect", "animation", NULL};
     const char *name = "camera";
     double fov = 40.0;
-    struct place at_height = {place, "height", 0};
     struct scene_camera camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .node = SCENE_NONE};
     if (!reader_object(reader, place, object, keys) ||
         !reader_string(reader, place, object, "name", &name) ||
         !reader_numbers(reader, place, object, "eye", 3, camera.eye) ||
         !reader_numbers(reader, place, object, "target", 3, camera.target) ||
         !reader_numbers(reader, place, object, "up", 3, camera.up) ||
-        !reader_number(reader, place, object, "fov", 0.01, 179.0, &fov) ||
+        !reader_number(reader, place, object, "fov", 0.001, 179.9, &fov) ||
         !reader_float(reader, place, object, "height", 1e-15, 1e15, &camera.height) ||
-        !reader_float(reader, place, object, "aspect", 0.01, 100.0, &camera.aspect))
+        !reader_float(reader, place, object, "lens", 0.0, 1e15, &camera.lens_radius) ||
+        !reader_float(reader, place, object, "focus", 1e-15, 1e15, &camera.focus_distance) ||
+        !reader_float(reader, place, object, "aspect", 0.01, 100.0, &camera.aspect) ||
+        !read_camera_kind(reader, place, object, &camera))
         return false;
     if (!(distance(camera.eye, camera.target) > 0.0))
         return reader_fail(reader, place, "`eye` and `target` are the same point");
-    if (json_object_get(object, "height")) {
-        if (json_object_get(object, "fov"))
-            return reader_fail(reader, &at_height,
-                               "`height` (a parallel view) and `fov` exclude "
-                               "each other");
-        camera.kind = SCENE_CAMERA_ORTHOGRAPHIC;
-    }
     camera.fov_y = (float)(fov * RADIANS);
     if (!moving_node(reader, place, object, name, &camera.node))
         return false;

@@ -133,7 +133,8 @@ struct submission {
     uint32_t turns; /* recorded so far */
 };
 
-static whit_result submission_begin(struct submission *s)
+/* `chunk`: whose camera rays begin; NULL: none do. */
+static whit_result submission_begin(struct submission *s, const struct gpu_chunk *chunk)
 {
     struct commands *commands = s->renderer->commands;
     s->start_ms = clock_ms();
@@ -142,6 +143,8 @@ static whit_result submission_begin(struct submission *s)
     if (result != WHIT_OK)
         return result;
     commands_fill(commands, s->renderer->pixel_buffers.status, 0, 4, 0);
+    if (chunk)
+        render_take_list(s->renderer, chunk);
     commands_barrier(commands);
     commands_span_begin(commands, "without trees");
     return WHIT_OK;
@@ -160,7 +163,7 @@ static whit_result submission_next(struct submission *s)
     whit_result result = submission_end(s);
     if (result == WHIT_OK)
         result = render_stop_asked(s->renderer, s->progress);
-    return result == WHIT_OK ? submission_begin(s) : result;
+    return result == WHIT_OK ? submission_begin(s, NULL) : result;
 }
 
 /* A dispatch of `pass` over all pixels of the chunk, or over those of the work list. */
@@ -179,8 +182,7 @@ static whit_result record(struct submission *s, const struct pass *pass,
     if (chunk->stacked)
         commands_dispatch_indirect(commands, s->renderer->pixel_buffers.work[list], 0);
     else
-        commands_dispatch(commands, chunk->block_count * RENDER_BLOCK_PIXELS / RENDER_GROUP_SIZE, 1,
-                          1);
+        commands_dispatch(commands, render_groups(chunk), 1, 1);
     commands_barrier(commands);
     ++s->renderer->stats.dispatches;
     return WHIT_OK;
@@ -228,7 +230,7 @@ whit_result brute_sample(struct renderer *renderer, const struct gpu_chunk *chun
     for (uint32_t bounce = 0; result == WHIT_OK && head.count > 0; ++bounce) {
         uint32_t list = bounce % 2;
         ray.stacked = bounce > 0;
-        result = submission_begin(&s);
+        result = submission_begin(&s, bounce == 0 ? chunk : NULL);
         if (result == WHIT_OK)
             result = record_ray(&s, &ray, list);
         if (result == WHIT_OK)

@@ -115,52 +115,205 @@ static bool make_basis(const struct scene_camera *camera, double forward[3], dou
     return normalize(up);
 }
 
+static double length3(const float v[3])
+{
+    double x = (double)v[0], y = (double)v[1], z = (double)v[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+static whit_result refuse(const struct log *log, const char *selector,
+                          const struct scene_camera *camera, const char *reason)
+{
+    const char *name = selector ? selector : camera->name ? camera->name : "";
+    log_error(log, "camera \"%s\": %s", name, reason);
+    return WHIT_ERROR_USAGE;
+}
+
+/* Half the height of the picture: in the picture plane at distance 1, or in the world. */
+static double half_height(const struct scene_camera *camera)
+{
+    switch (camera->kind) {
+    case SCENE_CAMERA_PERSPECTIVE:
+        return (double)camera->fov_y < PI ? tan(0.5 * (double)camera->fov_y) : 0.0;
+    case SCENE_CAMERA_ORTHOGRAPHIC:
+        return 0.5 * (double)camera->height;
+    case SCENE_CAMERA_PANORAMA:
+        break;
+    }
+    return 1.0;
+}
+
+static uint32_t kind_code(const struct scene_camera *camera)
+{
+    switch (camera->kind) {
+    case SCENE_CAMERA_PERSPECTIVE:
+        return camera->lens_radius > 0.0f ? CAMERA_LENS : CAMERA_PERSPECTIVE;
+    case SCENE_CAMERA_ORTHOGRAPHIC:
+        return CAMERA_ORTHOGRAPHIC;
+    case SCENE_CAMERA_PANORAMA:
+        break;
+    }
+    return CAMERA_PANORAMA;
+}
+
+static double focus_distance(const struct scene_camera *camera)
+{
+    double view[3];
+    subtract(camera->target, camera->eye, view);
+    return camera->focus_distance > 0.0f
+               ? (double)camera->focus_distance
+               : sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+}
+
 whit_result camera_frame(const struct log *log, const struct scene_pose *pose, const char *selector,
-                         uint32_t width, uint32_t height, struct gpu_frame *frame,
-                         bool *orthographic)
+                         uint32_t width, uint32_t height, struct gpu_frame *frame, uint32_t *kind)
 {
     struct scene_camera camera;
     whit_result result = find_camera(log, pose, selector, &camera);
     if (result != WHIT_OK)
         return result;
-    double forward[3], right[3], up[3];
-    if (!make_basis(&camera, forward, right, up)) {
-        log_error(log, "camera \"%s\": eye and target are the same point or not finite",
-                  selector      ? selector
-                  : camera.name ? camera.name
-                                : "");
-        return WHIT_ERROR_USAGE;
-    }
-    *orthographic = camera.kind == SCENE_CAMERA_ORTHOGRAPHIC;
-    double half = *orthographic ? 0.5 * (double)camera.height : tan(0.5 * (double)camera.fov_y);
-    if (!(half > 0.0) || !isfinite(half) || (!*orthographic && !((double)camera.fov_y < PI))) {
-        log_error(log, "camera \"%s\": the field of view is not between 0 and 180 degrees",
-                  selector      ? selector
-                  : camera.name ? camera.name
-                                : "");
-        return WHIT_ERROR_USAGE;
-    }
-    double aspect = (double)width / (double)height;
+    double forward[3], right[3], up[3], half = half_height(&camera);
+    if (!make_basis(&camera, forward, right, up))
+        return refuse(log, selector, &camera, "eye and target are the same point or not finite");
+    if (!(half > 0.0) || !isfinite(half))
+        return refuse(log, selector, &camera, "the field of view is not between 0 and 180 degrees");
+    *kind = kind_code(&camera);
+    double focus = focus_distance(&camera);
+    if (*kind == CAMERA_LENS && !(isfinite(focus) && isfinite(camera.lens_radius)))
+        return refuse(log, selector, &camera, "the lens or its focus is not finite");
+    double aspect = *kind == CAMERA_PANORAMA ? 1.0 : (double)width / (double)height;
     scale_to_float(camera.eye, 1.0, frame->eye);
     scale_to_float(forward, 1.0, frame->forward);
     scale_to_float(right, half * aspect, frame->right);
     scale_to_float(up, half, frame->up);
     frame->width = width;
     frame->height = height;
+    frame->lens_radius = *kind == CAMERA_LENS ? camera.lens_radius : 0.0f;
+    frame->focus_distance = (float)focus;
     return WHIT_OK;
 }
 
-void camera_ray(const struct gpu_frame *frame, bool orthographic, float x, float y,
-                struct gpu_ray *ray)
+/* A square onto the disk, keeping areas and neighbours (Shirley and Chiu 1997, A Low Distortion Map
+   Between Disk and Square). Both -1..1. */
+static void square_to_disk(const double square[2], double disk[2])
 {
-    float at_x = x / (float)frame->width * 2.0f - 1.0f;
-    float at_y = y / (float)frame->height * 2.0f - 1.0f;
-    float dir[3];
-    for (int i = 0; i < 3; ++i) {
-        float in_plane = frame->right[i] * at_x - frame->up[i] * at_y;
-        ray->origin[i] = orthographic ? frame->eye[i] + in_plane : frame->eye[i];
-        dir[i] = orthographic ? frame->forward[i] : frame->forward[i] + in_plane;
+    double a = square[0], b = square[1], radius, angle;
+    if (a == 0.0 && b == 0.0) {
+        radius = angle = 0.0;
+    } else if (fabs(a) > fabs(b)) {
+        radius = a;
+        angle = PI / 4.0 * (b / a);
+    } else {
+        radius = b;
+        angle = PI / 2.0 - PI / 4.0 * (a / b);
     }
+    disk[0] = radius * cos(angle);
+    disk[1] = radius * sin(angle);
+}
+
+static uint32_t bit_count(uint32_t count)
+{
+    uint32_t bits = 0;
+    while (count >> (bits + 1))
+        ++bits;
+    return bits;
+}
+
+static uint32_t reverse_bits(uint32_t value, uint32_t bits)
+{
+    uint32_t reversed = 0;
+    for (uint32_t i = 0; i < bits; ++i)
+        reversed |= (value >> i & 1u) << (bits - 1 - i);
+    return reversed;
+}
+
+/* Point `index` of a Hammersley set of `count`, a power of 4: one in every column, one in every
+   row, one in every square of the grid of `count` squares. */
+static void hammersley(uint32_t index, uint32_t count, double xy[2])
+{
+    xy[0] = (index + 0.5) / count;
+    xy[1] = (reverse_bits(index, bit_count(count)) + 0.5) / count;
+}
+
+void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
+                   struct gpu_chunk *chunk)
+{
+    double pixel[2], square[2], disk[2];
+    hammersley(index, count, pixel);
+    /* The same set on the lens, in another order: with the bits of each half of the index reversed,
+       those that decide the quarter of the pixel are not those that decide the quarter of the lens,
+       so that samples from 16 on have every pair of quarters equally often. */
+    uint32_t half = bit_count(count) / 2, low = index & ((1u << half) - 1u);
+    hammersley(reverse_bits(index >> half, half) << half | reverse_bits(low, half), count, square);
+    for (int i = 0; i < 2; ++i)
+        square[i] = 2.0 * square[i] - 1.0;
+    square_to_disk(square, disk);
+    chunk->sample_xy[0] = (float)pixel[0];
+    chunk->sample_xy[1] = (float)pixel[1];
+    chunk->lens_xy[0] = chunk->lens_xy[1] = 0.0f;
+    if (!(frame->lens_radius > 0.0f))
+        return;
+    double scale = (double)frame->lens_radius / (double)frame->focus_distance;
+    chunk->lens_xy[0] = (float)(disk[0] * scale / length3(frame->right));
+    chunk->lens_xy[1] = (float)(disk[1] * scale / length3(frame->up));
+}
+
+void sine_cosine_pi(float a, float *sine, float *cosine)
+{
+    float size = fabsf(a);
+    uint32_t quarters = size > 0.75f ? 2 : size > 0.25f ? 1 : 0;
+    float rest = size - 0.5f * (float)quarters, r2 = rest * rest;
+    float s = ((((0.0821458866f * r2 - 0.599264529f) * r2 + 2.55016404f) * r2 - 5.16771278f) * r2 +
+               3.14159265f) *
+              rest;
+    float c = ((((-0.0258068913f * r2 + 0.235330630f) * r2 - 1.33526277f) * r2 + 4.05871213f) * r2 -
+               4.93480220f) *
+                  r2 +
+              1.0f;
+    float turned = quarters == 0 ? s : quarters == 1 ? c : -s;
+    *sine = a < 0.0f ? -turned : turned;
+    *cosine = quarters == 0 ? c : quarters == 1 ? -s : -c;
+}
+
+/* As camera_line of the kernel. */
+static void camera_line(const struct gpu_frame *frame, uint32_t kind, const float lens_xy[2],
+                        const float at[2], float origin[3], float dir[3])
+{
+    float turn_sine, turn_cosine, rise_sine, rise_cosine;
+    sine_cosine_pi(at[0], &turn_sine, &turn_cosine);
+    sine_cosine_pi(at[1] * -0.5f, &rise_sine, &rise_cosine);
+    for (int i = 0; i < 3; ++i) {
+        float in_plane = frame->right[i] * at[0] - frame->up[i] * at[1];
+        float aimed = frame->forward[i] + in_plane;
+        float aside = frame->right[i] * lens_xy[0] + frame->up[i] * lens_xy[1];
+        float level = frame->forward[i] * turn_cosine + frame->right[i] * turn_sine;
+        origin[i] = frame->eye[i];
+        dir[i] = aimed;
+        switch (kind) {
+        case CAMERA_ORTHOGRAPHIC:
+            origin[i] = frame->eye[i] + in_plane;
+            dir[i] = frame->forward[i];
+            break;
+        case CAMERA_LENS:
+            origin[i] = frame->eye[i] + aside * frame->focus_distance;
+            dir[i] = aimed - aside;
+            break;
+        case CAMERA_PANORAMA:
+            dir[i] = level * rise_cosine + frame->up[i] * rise_sine;
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
+                const struct gpu_chunk *sample, struct gpu_ray *ray)
+{
+    const float at[2] = {((float)x + sample->sample_xy[0]) / (float)frame->width * 2.0f - 1.0f,
+                         ((float)y + sample->sample_xy[1]) / (float)frame->height * 2.0f - 1.0f};
+    float dir[3];
+    camera_line(frame, kind, sample->lens_xy, at, ray->origin, dir);
     float size = sqrtf((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
     for (int i = 0; i < 3; ++i)
         ray->dir[i] = dir[i] / size;

@@ -41,17 +41,14 @@ whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk)
 {
     struct gpu_cost costs[RENDER_BLOCK_PIXELS][RAY_KIND_COUNT];
     const struct render_params *params = &renderer->params;
-    uint32_t across = (params->width + 7) / 8;
     whit_result result = WHIT_OK;
     for (uint32_t b = 0; params->count && result == WHIT_OK && b < chunk->block_count; ++b) {
         uint32_t block = chunk->first_block + b;
         result = buffer_read(renderer->pixel_buffers.costs, b * sizeof costs, costs, sizeof costs);
         for (uint32_t i = 0; result == WHIT_OK && i < RENDER_BLOCK_PIXELS; ++i) {
-            /* slot_pixel() of the kernel */
-            uint32_t x = block % across * 8 + ((i & 3) | (i >> 1 & 4));
-            uint32_t y = block / across * 8 + ((i >> 2 & 1) | (i >> 3 & 6));
-            for (uint32_t k = 0; x < params->width && y < params->height && k < RAY_KIND_COUNT;
-                 ++k) {
+            uint32_t x, y;
+            bool inside = render_slot_pixel(renderer, block, i, &x, &y);
+            for (uint32_t k = 0; inside && k < RAY_KIND_COUNT; ++k) {
                 cost_add(&renderer->stats.costs[k], &costs[i][k]);
                 if (result == WHIT_OK && chunk->sample_index == 0 && costs[i][k].rays > 0)
                     result = keep(renderer, k, x, y, &costs[i][k]);

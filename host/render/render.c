@@ -82,6 +82,17 @@ static whit_result check_params(const struct log *log, struct render_params *par
         log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
         return WHIT_ERROR_USAGE;
     }
+    if (!(params->adaptive >= 0.0) || params->adaptive > 1.0) {
+        log_error(log, "adaptive contrast %g: must be 0 (off) up to 1", params->adaptive);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->adaptive > 0.0 && params->count) {
+        log_error(log, "what rays cost is counted with 1, 4, 16 or 64 samples a pixel, not with "
+                       "adaptive ones");
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->adaptive > 0.0)
+        params->samples = 4; /* to begin with */
     if (params->depth > 32) {
         log_error(log, "depth %u: must be 0..32", params->depth);
         return WHIT_ERROR_USAGE;
@@ -95,8 +106,9 @@ whit_result frame_fill(struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     const struct scene_environment *environment = &renderer->scene->environment;
     uint32_t kind;
-    whit_result result = camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
-                                      renderer->params.width, renderer->params.height, frame, &kind);
+    whit_result result =
+        camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
+                     renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
     /* Of all cameras only the one that is drawn counts. */
@@ -192,6 +204,8 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
         {&p->work[1], 16 + (uint64_t)p->chunk_slots * 4,
          BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
         {&p->work_head, 16, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
+        {&p->listed, renderer->params.adaptive > 0.0 ? 16 + (uint64_t)p->chunk_slots * 4 : 0,
+         BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
         {&p->ray_stacks,
          renderer->has_secondary
              ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_stacked_ray)
@@ -204,6 +218,8 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
          BUFFER_STORAGE, "ray media"},
     };
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
+        if (all[i].bytes == 0)
+            continue;
         result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
         if (result == WHIT_OK)
             renderer->scene_buffers.bytes += all[i].bytes;
@@ -218,8 +234,9 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
 
 static void pixel_buffers_finish(struct pixel_buffers *p)
 {
-    struct buffer *all[] = {p->pixels,  p->ids,       p->counts,     p->status, p->work[0],
-                            p->work[1], p->work_head, p->ray_stacks, p->costs,  p->ray_media};
+    struct buffer *all[] = {p->pixels,  p->ids,       p->counts,    p->status,
+                            p->work[0], p->work[1],   p->work_head, p->ray_stacks,
+                            p->costs,   p->ray_media, p->listed};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *p = (struct pixel_buffers){0};
@@ -310,6 +327,13 @@ void renderer_destroy(struct renderer *renderer)
     free(renderer);
 }
 
+/* How much of the picture is done, 0..1. */
+static double picture_share(const struct progress *progress)
+{
+    return progress->before +
+           progress->share * (double)progress->work_done / (double)progress->work_total;
+}
+
 whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
 {
     const struct render_params *params = &renderer->params;
@@ -318,8 +342,7 @@ whit_result render_stop_asked(const struct renderer *renderer, const struct prog
     if (params->time_limit_s > 0.0 &&
         clock_ms() - renderer->create_ms > params->time_limit_s * 1e3) {
         log_error(&renderer->log, "time limit of %g s passed with %.0f %% of the picture done",
-                  params->time_limit_s,
-                  100.0 * (double)progress->work_done / (double)progress->work_total);
+                  params->time_limit_s, 100.0 * picture_share(progress));
         return WHIT_ERROR_TIME_LIMIT;
     }
     return WHIT_OK;
@@ -346,6 +369,29 @@ void render_clear_work(struct renderer *renderer, uint32_t list)
                   renderer->pixel_buffers.work[list], 0, sizeof(struct gpu_work));
 }
 
+void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk)
+{
+    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    if (chunk->listed > 0)
+        commands_copy(renderer->commands, p->listed, 0, p->work[0], 0,
+                      sizeof(struct gpu_work) + (uint64_t)chunk->listed * sizeof(uint32_t));
+}
+
+uint32_t render_groups(const struct gpu_chunk *chunk)
+{
+    uint32_t slots = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
+    return (slots + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE;
+}
+
+bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
+                       uint32_t *y)
+{
+    uint32_t across = blocks_across(renderer->params.width);
+    *x = block % across * 8 + ((i & 3) | (i >> 1 & 4));
+    *y = block / across * 8 + ((i >> 2 & 1) | (i >> 3 & 6));
+    return *x < renderer->params.width && *y < renderer->params.height;
+}
+
 /* Camera rays; pixels with rays left go to list 1. */
 static whit_result record_primary(struct renderer *renderer, const struct gpu_chunk *chunk)
 {
@@ -355,11 +401,12 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
         return result;
     commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
     render_clear_work(renderer, 1);
+    render_take_list(renderer, chunk);
     commands_barrier(commands);
     commands_span_begin(commands, "sample");
     commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[0]);
     commands_push(commands, chunk, sizeof *chunk);
-    commands_dispatch(commands, chunk->block_count * RENDER_BLOCK_PIXELS / RENDER_GROUP_SIZE, 1, 1);
+    commands_dispatch(commands, render_groups(chunk), 1, 1);
     ++renderer->stats.dispatches;
     return WHIT_OK;
 }
@@ -444,7 +491,7 @@ static void adapt_tile(const struct renderer *renderer, struct progress *progres
 static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
                                 struct progress *progress)
 {
-    uint32_t samples = renderer->params.samples;
+    uint32_t samples = progress->samples;
     double longest_ms = 0.0;
     for (uint32_t s = 0; s < samples; ++s) {
         whit_result result = render_stop_asked(renderer, progress);
@@ -461,18 +508,31 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
             return result;
         progress->work_done += chunk->block_count;
         if (renderer->params.progress)
-            renderer->params.progress(renderer->params.progress_user,
-                                      (double)progress->work_done / (double)progress->work_total);
+            renderer->params.progress(renderer->params.progress_user, picture_share(progress));
     }
     ++renderer->stats.tiles;
     adapt_tile(renderer, progress, longest_ms);
     return WHIT_OK;
 }
 
-/* Sums what the kernel counted for the first `count` pixels of the band, slice by slice. */
-static whit_result add_counts(struct renderer *renderer, size_t count)
+static void add_count(struct render_stats *stats, const struct gpu_counts *count)
 {
-    enum { SLICE = 4096 };
+    stats->rays_shadow += count->shadow;
+    stats->rays_reflected += count->reflected;
+    stats->rays_refracted += count->refracted;
+    stats->rays_cut_depth += count->cut_depth;
+    stats->rays_cut_bailout += count->cut_bailout;
+    stats->weight_cut_depth = fmax(stats->weight_cut_depth, (double)count->cut_depth_weight);
+    stats->weight_cut_bailout = fmax(stats->weight_cut_bailout, (double)count->cut_bailout_weight);
+}
+
+enum { SLICE = 4096 }; /* pixels that are read at once */
+
+/* Sums what the kernel counted for `count` pixels of the band, of which `first` is the first one's
+   index in the picture, slice by slice. */
+static whit_result add_counts(struct renderer *renderer, const struct progress *progress,
+                              size_t first, size_t count)
+{
     struct gpu_counts counts[SLICE];
     for (size_t at = 0; at < count; at += SLICE) {
         size_t n = count - at < SLICE ? count - at : SLICE;
@@ -481,18 +541,18 @@ static whit_result add_counts(struct renderer *renderer, size_t count)
         if (result != WHIT_OK)
             return result;
         for (size_t i = 0; i < n; ++i) {
-            renderer->stats.rays_shadow += counts[i].shadow;
-            renderer->stats.rays_reflected += counts[i].reflected;
-            renderer->stats.rays_refracted += counts[i].refracted;
+            if (adaptive_draws(progress, first + at + i))
+                add_count(&renderer->stats, &counts[i]);
         }
     }
     return WHIT_OK;
 }
 
-/* A picture of one band stays on the device until it is asked for. */
-static bool one_band(const struct renderer *renderer)
+/* A picture of one band and one pass stays on the device until it is asked for. */
+static bool stays_on_device(const struct renderer *renderer)
 {
-    return renderer->pixel_buffers.band_rows >= renderer->params.height;
+    return renderer->pixel_buffers.band_rows >= renderer->params.height &&
+           !(renderer->params.adaptive > 0.0);
 }
 
 static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)
@@ -507,18 +567,57 @@ static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint
                        (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
 }
 
-/* What the device holds of a finished band, into the picture and the statistics. */
-static whit_result read_band(struct renderer *renderer, uint32_t band_y, uint32_t rows)
+/* Those that the pass drew, of `count` pixels of the band, into the picture from pixel `first` on.
+ */
+static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
+                               size_t first, size_t count)
+{
+    float pixels[SLICE][4];
+    for (size_t at = 0; at < count; at += SLICE) {
+        size_t n = count - at < SLICE ? count - at : SLICE;
+        whit_result result = buffer_read(renderer->pixel_buffers.pixels, at * sizeof *pixels,
+                                         pixels, n * sizeof *pixels);
+        if (result != WHIT_OK)
+            return result;
+        for (size_t i = 0; i < n; ++i) {
+            if (adaptive_draws(progress, first + at + i))
+                memcpy(&renderer->color.pixels[4 * (first + at + i)], pixels[i], sizeof pixels[i]);
+        }
+    }
+    return WHIT_OK;
+}
+
+/* What the device holds of a finished band, into the picture and the statistics. Ids are those of
+   the first pass. */
+static whit_result read_band(struct renderer *renderer, const struct progress *progress,
+                             uint32_t band_y, uint32_t rows)
 {
     size_t first = (size_t)renderer->params.width * band_y;
+    size_t count = (size_t)renderer->params.width * rows;
     whit_result result = WHIT_OK;
-    if (!one_band(renderer))
+    if (progress->listed) {
+        result = read_listed(renderer, progress, first, count);
+    } else if (!stays_on_device(renderer)) {
         result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
-    if (result == WHIT_OK && !one_band(renderer))
-        result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
-    if (result == WHIT_OK)
-        result = add_counts(renderer, (size_t)renderer->params.width * rows);
-    return result;
+        if (result == WHIT_OK)
+            result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
+    }
+    return result == WHIT_OK ? add_counts(renderer, progress, first, count) : result;
+}
+
+/* All samples of a chunk in this pass; of the pixels that it lists, when it does. */
+static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
+                              struct progress *progress)
+{
+    whit_result result = WHIT_OK;
+    if (progress->listed)
+        result = adaptive_list(renderer, progress, chunk);
+    if (result != WHIT_OK)
+        return result;
+    if (!progress->listed || chunk->listed > 0)
+        return render_chunk(renderer, chunk, progress);
+    progress->work_done += (uint64_t)chunk->block_count * progress->samples;
+    return render_stop_asked(renderer, progress);
 }
 
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,
@@ -538,13 +637,73 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                   .block_count = end - block < blocks ? end - block : blocks,
                                   .band_y = band_y,
                                   .band_rows = rows};
-        whit_result result = render_chunk(renderer, &chunk, progress);
+        whit_result result = pass_chunk(renderer, &chunk, progress);
         if (result != WHIT_OK)
             return result;
         block += chunk.block_count;
         renderer->stats.tile_size = progress->tile;
     }
-    return read_band(renderer, band_y, rows);
+    return read_band(renderer, progress, band_y, rows);
+}
+
+/* `samples` for all pixels, or for those that progress->levels gives so many. */
+static whit_result render_pass(struct renderer *renderer, uint32_t samples,
+                               struct progress *progress)
+{
+    const struct render_params *params = &renderer->params;
+    whit_result result = WHIT_OK;
+    progress->samples = samples;
+    progress->work_done = 0;
+    progress->work_total =
+        (uint64_t)blocks_across(params->width) * blocks_across(params->height) * samples;
+    for (uint32_t y = 0; result == WHIT_OK && y < params->height;
+         y += renderer->pixel_buffers.band_rows)
+        result = render_band(renderer, y, progress);
+    progress->before += progress->share;
+    return result;
+}
+
+/* 4 samples for all pixels; 16 for those that then differ from a neighbour; 64 for those that still
+   do. Only pictures as a whole tell who differs, so passes are over all bands. */
+static whit_result render_adaptive(struct renderer *renderer, struct progress *progress)
+{
+    const struct render_params *params = &renderer->params;
+    size_t pixels = (size_t)params->width * params->height;
+    progress->levels = array_alloc(pixels, sizeof *progress->levels);
+    if (!progress->levels) {
+        log_error(&renderer->log, "out of memory for the samples of pixels");
+        return WHIT_ERROR_MEMORY;
+    }
+    memset(progress->levels, 1, pixels);
+    progress->share = 1.0 / 3.0;
+    whit_result result = render_pass(renderer, 4, progress);
+    for (uint8_t level = 2; result == WHIT_OK && level <= 3; ++level) {
+        uint64_t marked =
+            adaptive_mark(&renderer->color, params->adaptive, level, progress->levels);
+        renderer->stats.rays_primary += marked << (2 * level);
+        progress->listed = true;
+        if (marked > 0)
+            result = render_pass(renderer, 1u << (2 * level), progress);
+    }
+    for (size_t i = 0; i < pixels; ++i)
+        ++renderer->stats.pixels_by_samples[progress->levels[i]];
+    free(progress->levels);
+    progress->levels = NULL;
+    return result;
+}
+
+static whit_result render_picture(struct renderer *renderer, struct progress *progress)
+{
+    const struct render_params *params = &renderer->params;
+    uint64_t pixels = (uint64_t)params->width * params->height;
+    renderer->stats.rays_primary = pixels * params->samples;
+    if (params->adaptive > 0.0)
+        return render_adaptive(renderer, progress);
+    uint32_t level = 0;
+    while (1u << (2 * level) < params->samples)
+        ++level;
+    renderer->stats.pixels_by_samples[level] = pixels;
+    return render_pass(renderer, params->samples, progress);
 }
 
 static void clear_stats(struct render_stats *stats)
@@ -582,9 +741,9 @@ whit_result renderer_render(struct renderer *renderer)
     whit_result result = compile(renderer);
     if (result == WHIT_OK)
         result = brute_check_time(renderer);
-    if (result == WHIT_OK && !one_band(renderer))
+    if (result == WHIT_OK && !stays_on_device(renderer))
         result = image_init(&renderer->color, params->width, params->height, 4, false);
-    if (result == WHIT_OK && !one_band(renderer))
+    if (result == WHIT_OK && !stays_on_device(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
     clear_stats(&renderer->stats);
     uint32_t largest = (uint32_t)sqrt((double)renderer->pixel_buffers.chunk_slots);
@@ -594,14 +753,11 @@ whit_result renderer_render(struct renderer *renderer)
                 : renderer->accel->no_trees                   ? TILE_MIN
                 : largest < TILE_FIRST && largest >= TILE_MIN ? largest
                                                               : TILE_FIRST,
-        .work_total = (uint64_t)blocks_across(params->width) * blocks_across(params->height) *
-                      params->samples,
+        .share = 1.0,
     };
-    for (uint32_t y = 0; result == WHIT_OK && y < params->height;
-         y += renderer->pixel_buffers.band_rows)
-        result = render_band(renderer, y, &progress);
+    if (result == WHIT_OK)
+        result = render_picture(renderer, &progress);
     renderer->stats.render_ms = clock_ms() - progress.start_ms;
-    renderer->stats.rays_primary = (uint64_t)params->width * params->height * params->samples;
     renderer->rendered = result == WHIT_OK;
     return result;
 }
@@ -621,7 +777,7 @@ whit_result renderer_read_color(struct renderer *renderer, struct image *out)
     whit_result result = begin_read(renderer, 4, false, out);
     if (result != WHIT_OK)
         return result;
-    if (one_band(renderer))
+    if (stays_on_device(renderer))
         return read_pixels(renderer, out->height, out->pixels);
     memcpy(out->pixels, renderer->color.pixels,
            (size_t)out->width * out->height * 4 * sizeof(float));
@@ -633,7 +789,7 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
     whit_result result = begin_read(renderer, 2, true, out);
     if (result != WHIT_OK)
         return result;
-    if (one_band(renderer))
+    if (stays_on_device(renderer))
         return read_ids(renderer, out->height, out->words);
     memcpy(out->words, renderer->ids.words,
            (size_t)out->width * out->height * 2 * sizeof(uint32_t));

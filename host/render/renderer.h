@@ -25,6 +25,7 @@ struct pixel_buffers {
     struct buffer *ray_stacks, *work[2], *work_head;
     struct buffer *ray_media; /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
     struct buffer *costs;     /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
+    struct buffer *listed;    /* work list of camera rays; NULL when not adaptive */
     struct buffer *status;
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
@@ -59,11 +60,15 @@ struct brute_state {
     bool time_checked;
 };
 
-/* What one picture in the making knows. */
+/* What one picture in the making knows. An adaptive one is made in several passes. */
 struct progress {
     double start_ms;
     uint32_t tile;
-    uint64_t work_done, work_total; /* block samples */
+    uint64_t work_done, work_total; /* block samples of the pass */
+    double before, share;           /* of the picture: of passes before, of this one */
+    uint32_t samples;               /* a pixel, in this pass */
+    bool listed;                    /* it draws only pixels that `levels` gives these samples */
+    uint8_t *levels; /* of each pixel: 1: 4 samples, 2: 16, 3: 64; NULL when not adaptive */
 };
 
 struct renderer {
@@ -179,10 +184,27 @@ void trace_finish(struct trace_state *trace);
 /* render.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
 
+/* adaptive.c: everything around the passes of an adaptive picture, which render.c makes. */
+/* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`, in
+   some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
+uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels);
+/* Lists the pixels of the chunk that the pass draws: their number is chunk->listed. */
+WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct progress *progress,
+                                     struct gpu_chunk *chunk);
+/* Whether pixel `index` of the picture is drawn by the pass. */
+bool adaptive_draws(const struct progress *progress, size_t index);
+
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 void render_clear_work(struct renderer *renderer, uint32_t list);
+/* For a listed chunk, before its camera rays: the list into work list 0. */
+void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk);
+/* Workgroups of the camera rays of a chunk. */
+uint32_t render_groups(const struct gpu_chunk *chunk);
+/* Pixel `i` of block `block`, as slot_pixel() of the kernel. False when outside of the picture. */
+bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
+                       uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct renderer *renderer);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */

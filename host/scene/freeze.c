@@ -396,6 +396,11 @@ static void mend_camera(struct scene_camera *camera)
         camera->aspect = 0.0f;
 }
 
+    if (camera->kind != SCENE_CAMERA_PERSPECTIVE ||
+        !(camera->lens_radius > 0.0f && isfinite(camera->lens_radius)))
+        camera->lens_radius = 0.0f;
+    if (!(camera->focus_distance > 0.0f && isfinite(camera->focus_distance)))
+        camera->focus_distance = 0.0f;
 static whit_result check_cameras(struct scene *scene)
 {
     uint32_t kept = 0;

@@ -95,7 +95,7 @@ static void hash_light(struct hash *hash, const struct scene_light *l)
 static void hash_camera(struct hash *hash, const struct scene_camera *c)
 {
     const uint32_t words[] = {(uint32_t)c->kind, c->node};
-    const float values[] = {c->fov_y, c->height, c->aspect};
+    const float values[] = {c->fov_y, c->height, c->aspect, c->lens_radius, c->focus_distance};
     HASH_FIELD(hash, words);
     HASH_FIELD(hash, values);
     HASH_FIELD(hash, c->eye);

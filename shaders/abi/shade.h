@@ -110,7 +110,8 @@ GPU_ASSERT_SIZE(gpu_light, 64)
 GPU_ASSERT_AT(gpu_light, cos_inner, 48)
 
 /* What all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
-   picture plane) and goes along forward + x * right + y * up, x and y in -1..1. */
+   picture plane) and goes along forward + x * right + y * up, x and y in -1..1. All three are of
+   unit length for a panorama, where x is pi of longitude and y pi / 2 of latitude. */
 struct gpu_frame {
     gpu_vec3 eye;
     gpu_uint width;
@@ -138,7 +139,7 @@ struct gpu_frame {
     gpu_float contact;  /* surfaces of two media within this distance along a ray are one */
     gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
     gpu_uint eye_media2, eye_media3;
-    gpu_float lens_radius;    /* CAMERA_LENS, world units */
+    gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is made from it */
     gpu_float focus_distance; /* along `forward` */
     gpu_uint light_samples;   /* of an area light: 1, 4, 16 or 64 */
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
@@ -179,9 +180,10 @@ struct gpu_chunk {
     gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
     gpu_uint begin;     /* without trees: 1: the first range of runs */
     gpu_uint first_run; /* of the range */
-    gpu_uint light;     /* BRUTE_SHADOW: which turn of the loop over lights and their samples */
-    gpu_vec2 lens_xy;   /* CAMERA_LENS: on the unit disk */
-    gpu_uint listed;    /* 1: camera rays of the pixels in the work list alone */
+    gpu_uint light;     /* BRUTE_SHADOW: turn of the loop over lights: light * light_samples + sample */
+    gpu_vec2 lens_xy;   /* CAMERA_LENS: a point of the lens, in units of right and up times the
+                           distance of the focus */
+    gpu_uint listed;    /* camera rays of so many pixels, in the work list; 0: of all */
     gpu_uint pad;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 64)

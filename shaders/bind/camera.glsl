@@ -2,7 +2,38 @@
 #ifndef BIND_CAMERA_GLSL
 #define BIND_CAMERA_GLSL
 
+#include "../lib/angles.glsl"
 #include "ray_stack.glsl"
+
+// Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to right
+// and from top to bottom.
+void camera_line(vec2 at, out vec3 origin, out vec3 dir)
+{
+    origin = frame.eye;
+    dir = frame.forward;
+    if (SPEC_CAMERA == CAMERA_PANORAMA) {
+        float turn = at.y * -0.5; // exact
+        vec2 longitude = sine_cosine_pi(at.x), latitude = sine_cosine_pi(turn);
+        precise vec3 level = frame.forward * longitude.y + frame.right * longitude.x;
+        precise vec3 turned = level * latitude.y + frame.up * latitude.x;
+        dir = turned;
+        return;
+    }
+    precise vec3 in_plane = frame.right * at.x - frame.up * at.y;
+    precise vec3 moved = frame.eye + in_plane, aimed = frame.forward + in_plane;
+    if (SPEC_CAMERA == CAMERA_ORTHOGRAPHIC)
+        origin = moved;
+    else
+        dir = aimed;
+    if (SPEC_CAMERA == CAMERA_LENS) {
+        // All rays of a pixel's sample meet in the focus plane, at eye + focus_distance * aimed.
+        precise vec3 aside = frame.right * chunk.lens_xy.x + frame.up * chunk.lens_xy.y;
+        precise vec3 on_lens = frame.eye + aside * frame.focus_distance;
+        precise vec3 focused = aimed - aside;
+        origin = on_lens;
+        dir = focused;
+    }
+}
 
 // camera_ray of render/camera.c is this in C, bit for bit: so no normalize(), whose bits are the
 // driver's choice.
@@ -10,13 +41,8 @@ Ray camera_ray(uvec2 pixel)
 {
     precise vec2 at =
         (vec2(pixel) + chunk.sample_xy) / vec2(frame.width, frame.height) * 2.0 - 1.0;
-    precise vec3 in_plane = frame.right * at.x - frame.up * at.y;
-    precise vec3 origin = frame.eye + in_plane;
-    precise vec3 dir = frame.forward + in_plane;
-    if (SPEC_CAMERA == CAMERA_ORTHOGRAPHIC)
-        dir = frame.forward;
-    else
-        origin = frame.eye;
+    vec3 origin, dir;
+    camera_line(at, origin, dir);
     precise float size = sqrt((dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z);
     precise vec3 unit = dir / size;
     Ray ray;

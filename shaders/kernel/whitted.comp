@@ -121,9 +121,12 @@ void main()
 {
     bool stacked = SPEC_SECONDARY != 0u && chunk.stacked != 0u;
     uint slot = own_slot();
-    if (slot >= (stacked ? work_in.count : chunk.block_count * BLOCK_PIXELS))
+    bool listed = chunk.listed != 0u;
+    if (slot >= (stacked  ? work_in.count
+                 : listed ? chunk.listed
+                          : chunk.block_count * BLOCK_PIXELS))
         return;
-    if (stacked)
+    if (stacked || listed)
         slot = slots_in[slot];
     uvec2 at = slot_pixel(slot);
     if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
@@ -167,7 +170,7 @@ void main()
         sum.rgb += pixels[pixel].rgb;
     pixels[pixel] = sum;
     counts[pixel] = count;
-    if (!stacked && chunk.sample_index == 0u)
+    if (!stacked && !listed && chunk.sample_index == 0u)
         ids[pixel] = uvec2(hit.instance, hit.primitive);
     if (SPEC_SECONDARY != 0u && count.stack != 0u)
         list_for_next(slot);

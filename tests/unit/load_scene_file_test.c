@@ -178,6 +178,38 @@ static void senseless_content_is_refused(void **state)
                  "test.json:1:38: objects[0].repeat.count: more than 4000000 copies");
 }
 
+static void camera_kinds_do_not_mix(void **state)
+{
+    assert_error(state, "{\"camera\":{\"panorama\":true,\n\"fov\":40}}",
+                 "test.json:2:1: camera.fov: a panorama has no `fov`");
+    assert_error(state, "{\"camera\":{\"panorama\":true,\n\"focus\":4}}",
+                 "test.json:2:1: camera.focus: a panorama has no `focus`");
+    assert_error(state, "{\"camera\":{\"height\":2,\n\"lens\":1}}",
+                 "test.json:2:1: camera.lens: a parallel view (`height`) has no lens");
+    assert_error(state, "{\"camera\":{\n\"focus\":1}}",
+                 "test.json:2:1: camera.focus: `focus` is of a camera with a `lens`");
+    assert_error(state, "{\"camera\":{\n\"lens\":-1}}", "test.json:2:1: camera.lens: ");
+    assert_error(state, "{\"camera\":{\"lens\":1,\n\"focus\":0}}", "test.json:2:1: camera.focus: ");
+    assert_error(state, "{\"camera\":{\n\"panorama\":1}}", "test.json:2:1: camera.panorama: ");
+    assert_error(state, "{\"camera\":{\n\"fov\":180}}", "test.json:2:1: camera.fov: ");
+}
+
+static void camera_kinds_are_read(void **state)
+{
+    struct scene *scene =
+        load_fine(state, "{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
+                         "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
+    const struct scene_camera *c = scene->cameras;
+    assert_int_equal(c[0].kind, SCENE_CAMERA_PERSPECTIVE);
+    assert_true(c[0].lens_radius == 0.25f && c[0].focus_distance == 7.0f);
+    assert_true(fabs((double)c[0].fov_y - 3.1398473) < 1e-6);
+    assert_true(c[1].lens_radius == 0.5f && c[1].focus_distance == 0.0f);
+    assert_int_equal(c[2].kind, SCENE_CAMERA_PANORAMA);
+    assert_int_equal(c[3].kind, SCENE_CAMERA_PERSPECTIVE);
+    assert_true(fabs((double)c[3].fov_y - 1.7453293e-5) < 1e-11 && c[3].lens_radius == 0.0f);
+    scene_destroy(scene);
+}
+
 static void nested_repeats_have_a_limit(void **state)
 {
     assert_error(
@@ -514,6 +546,8 @@ int main(void)
         FOLDER_TEST(errors_name_line_and_column),
         FOLDER_TEST(places_survive_odd_strings),
         FOLDER_TEST(senseless_content_is_refused),
+        FOLDER_TEST(camera_kinds_do_not_mix),
+        FOLDER_TEST(camera_kinds_are_read),
         FOLDER_TEST(nested_repeats_have_a_limit),
         FOLDER_TEST(deep_children_are_refused),
         FOLDER_TEST(shapes_are_placed),

@@ -353,16 +353,17 @@ static void picture_finish(struct picture *picture)
 
 /* Every camera ray costs what the C traversal of the same ray costs. */
 static void check_primary(const struct fixture *f, uint32_t order, const struct picture *picture,
-                          bool orthographic)
+                          uint32_t kind)
 {
     const struct gpu_cost *costs = (const struct gpu_cost *)picture->costs[RAY_PRIMARY].words;
     uint32_t bad = 0, ids_bad = 0, status = 0, width = picture->color.width;
+    struct gpu_chunk first;
+    camera_sample(&f->renderer->frame, 0, f->renderer->params.samples, &first);
     for (uint32_t i = 0; i < width * picture->color.height; ++i) {
         struct gpu_ray ray;
         struct gpu_hit hit;
         struct gpu_cost cost = {0};
-        camera_ray(&f->renderer->frame, orthographic, (float)(i % width) + 0.5f,
-                   (float)(i / width) + 0.5f, &ray);
+        camera_ray(&f->renderer->frame, kind, i % width, i / width, &first, &ray);
         traverse_float(f->accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
         bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
         ids_bad += hit.primitive != picture->ids.words[2 * i + 1] ||
@@ -411,7 +412,7 @@ static void pictures_cost_the_same(void **state)
         struct fixture f = fixture_open(glass_scene(), NULL, &params);
         struct picture counted, plain;
         render_picture(f.renderer, true, &counted);
-        check_primary(&f, order, &counted, false);
+        check_primary(&f, order, &counted, CAMERA_PERSPECTIVE);
         check_sums(&counted);
         renderer_destroy(f.renderer);
         params.count = false;
@@ -426,29 +427,48 @@ static void pictures_cost_the_same(void **state)
     }
 }
 
-/* From so far away that the last bit of a camera ray is a tenth of a triangle. */
+static struct scene *seen_by(struct scene *scene, const struct scene_camera *camera)
+{
+    struct scene_camera own = *camera;
+    own.name = string_copy("camera");
+    own.node = SCENE_NONE;
+    own.up[1] = 1.0;
+    assert_int_not_equal(scene_add_camera(scene, own), SCENE_NONE);
+    return scene;
+}
+
+/* From so far away that the last bit of a camera ray is a tenth of a triangle; the panorama, which
+   cannot look closer, over a terrain of that much smaller triangles. The first sample of several is
+   off the middles of pixel and lens. */
 static void camera_rays_are_those_of_c(void **state)
 {
     (void)state;
-    for (int orthographic = 0; orthographic < 2; ++orthographic) {
-        struct scene *scene = terrain_scene();
-        struct scene_camera camera = {.name = string_copy("far"),
-                                      .kind = orthographic ? SCENE_CAMERA_ORTHOGRAPHIC
-                                                           : SCENE_CAMERA_PERSPECTIVE,
-                                      .node = SCENE_NONE,
-                                      .eye = {30011, 70003, 50021},
-                                      .up = {0, 1, 0},
-                                      .fov_y = 1.1e-4f,
-                                      .height = 10.0f};
-        assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
-        const struct render_params params = {.width = 90, .height = 70, .count = true};
-        struct fixture f = fixture_open(scene, NULL, &params);
-        struct picture picture;
-        render_picture(f.renderer, true, &picture);
-        check_primary(&f, ORDER_DISTANCE, &picture, orthographic);
-        assert_true(picture.stats.costs[RAY_PRIMARY].leaves > 90 * 70 / 2);
-        picture_finish(&picture);
-        fixture_close(&f);
+    static const struct scene_camera cameras[] = {
+        [CAMERA_PERSPECTIVE] = {.eye = {30011, 70003, 50021}, .fov_y = 1.1e-4f},
+        [CAMERA_ORTHOGRAPHIC] = {.kind = SCENE_CAMERA_ORTHOGRAPHIC,
+                                 .eye = {30011, 70003, 50021},
+                                 .height = 10.0f},
+        [CAMERA_LENS] = {.eye = {30011, 70003, 50021},
+                         .fov_y = 1.1e-4f,
+                         .lens_radius = 1.0f,
+                         .focus_distance = 60000.0f},
+        [CAMERA_PANORAMA] = {.kind = SCENE_CAMERA_PANORAMA,
+                             .eye = {0.1, 2.1, 0.2},
+                             .target = {3, 1, 2}},
+    };
+    for (uint32_t kind = 0; kind < 4; ++kind) {
+        for (uint32_t samples = 1; samples <= 64; samples *= kind == CAMERA_LENS ? 4 : 64) {
+            struct render_params params = {
+                .width = 90, .height = 70, .samples = samples, .count = true};
+            struct fixture f =
+                fixture_open(seen_by(terrain_scene(), &cameras[kind]), NULL, &params);
+            struct picture picture;
+            render_picture(f.renderer, true, &picture);
+            check_primary(&f, ORDER_DISTANCE, &picture, kind);
+            assert_true(picture.stats.costs[RAY_PRIMARY].leaves > 90 * 70 / 4 * samples);
+            picture_finish(&picture);
+            fixture_close(&f);
+        }
     }
 }
 

@@ -1,0 +1,84 @@
+/* Adaptive anti-aliasing: which pixels get more samples. That follows from the picture so far as a
+   whole, so that bands, tiles and devices cannot change it. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "render/renderer.h"
+
+static float displayed(float value)
+{
+    return value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
+}
+
+static bool differ(const float *a, const float *b, float contrast)
+{
+    for (int c = 0; c < 3; ++c) {
+        if (fabsf(displayed(a[c]) - displayed(b[c])) > contrast)
+            return true;
+    }
+    return false;
+}
+
+/* Both pixels of every pair of neighbours that differ. Each pair is looked at once, from the pixel
+   that is left of or above the other. */
+static void mark_around(const struct image *color, uint32_t x, uint32_t y, float contrast,
+                        uint8_t level, uint8_t *levels)
+{
+    static const int dx[] = {1, -1, 0, 1}, dy[] = {0, 1, 1, 1};
+    size_t width = color->width, own = (size_t)y * width + x;
+    for (int i = 0; i < 4; ++i) {
+        if ((dx[i] < 0 && x == 0) || (dx[i] > 0 && x + 1 == color->width) ||
+            (dy[i] > 0 && y + 1 == color->height))
+            continue;
+        size_t other = own + (size_t)dy[i] * width + (dx[i] > 0 ? 1 : 0) - (dx[i] < 0 ? 1 : 0);
+        if (differ(&color->pixels[4 * own], &color->pixels[4 * other], contrast))
+            levels[own] = levels[other] = level;
+    }
+}
+
+uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels)
+{
+    for (uint32_t y = 0; y < color->height; ++y) {
+        for (uint32_t x = 0; x < color->width; ++x)
+            mark_around(color, x, y, (float)contrast, level, levels);
+    }
+    uint64_t count = 0;
+    for (size_t i = 0; i < (size_t)color->width * color->height; ++i)
+        count += levels[i] == level;
+    return count;
+}
+
+bool adaptive_draws(const struct progress *progress, size_t index)
+{
+    if (!progress->listed)
+        return true;
+    return 1u << (2 * progress->levels[index]) == progress->samples;
+}
+
+whit_result adaptive_list(struct renderer *renderer, const struct progress *progress,
+                          struct gpu_chunk *chunk)
+{
+    chunk->listed = 0;
+    uint32_t slots = chunk->block_count * RENDER_BLOCK_PIXELS;
+    uint32_t *list = array_alloc(slots, sizeof *list);
+    if (!list)
+        return WHIT_ERROR_MEMORY;
+    for (uint32_t slot = 0; slot < slots; ++slot) {
+        uint32_t x, y;
+        if (render_slot_pixel(renderer, chunk->first_block + slot / RENDER_BLOCK_PIXELS,
+                              slot % RENDER_BLOCK_PIXELS, &x, &y) &&
+            adaptive_draws(progress, (size_t)y * renderer->params.width + x))
+            list[chunk->listed++] = slot;
+    }
+    const struct gpu_work head = {
+        .groups_x = render_groups(chunk), .groups_y = 1, .groups_z = 1, .count = chunk->listed};
+    struct buffer *buffer = renderer->pixel_buffers.listed;
+    whit_result result = WHIT_OK;
+    if (chunk->listed > 0)
+        result = buffer_write(buffer, 0, &head, sizeof head);
+    if (result == WHIT_OK && chunk->listed > 0)
+        result = buffer_write(buffer, sizeof head, list, (uint64_t)chunk->listed * sizeof *list);
+    free(list);
+    return result;
+}
