@@ -33,17 +33,83 @@ static whit_result load_path_from_name(const struct log *log, const char *name,
     return WHIT_OK;
 }
 
+static uint32_t effect_by_name(const char *name, size_t length)
+{
+    for (uint32_t i = 0; i < SCENE_EFFECT_COUNT; ++i) {
+        const char *own = scene_effect_name((enum scene_effect)i);
+        if (strlen(own) == length && strncmp(own, name, length) == 0)
+            return i;
+    }
+    return SCENE_EFFECT_COUNT;
+}
+
+/* One "+name" or "-name" of `length` characters. */
+static whit_result switch_effect(const struct log *log, const char *text, size_t length,
+                                 struct render_params *out)
+{
+    bool adds = text[0] == '+';
+    if (!adds && text[0] != '-') {
+        log_error(log, "effects: `%.*s`: after auto or all, every name has a + or a - in front",
+                  (int)length, text);
+        return WHIT_ERROR_USAGE;
+    }
+    uint32_t effect = effect_by_name(text + 1, length - 1);
+    if (effect == SCENE_EFFECT_COUNT) {
+        log_error(log, "effects: there is no effect `%.*s`", (int)length - 1, text + 1);
+        return WHIT_ERROR_USAGE;
+    }
+    if (adds ? !render_effect_can_add(effect) : !render_effect_can_remove(effect)) {
+        log_error(log, "effects: `%s` cannot be %s: the scene's %s decides",
+                  scene_effect_name(effect), adds ? "added" : "left out",
+                  effect == SCENE_EFFECT_INSTANCES || effect == SCENE_EFFECT_SPHERES ? "geometry"
+                                                                                     : "camera");
+        return WHIT_ERROR_USAGE;
+    }
+    uint64_t bit = UINT64_C(1) << effect;
+    if ((adds ? out->effects_removed : out->effects_added) & bit) {
+        log_error(log, "effects: `%s` is both added and left out", scene_effect_name(effect));
+        return WHIT_ERROR_USAGE;
+    }
+    *(adds ? &out->effects_added : &out->effects_removed) |= bit;
+    return WHIT_OK;
+}
+
+/* "auto", "all", "+a,-b", "all,-b". */
 static whit_result effects_from_text(const struct log *log, const char *text,
                                      struct render_params *out)
 {
-    if (!text || strcmp(text, "auto") == 0)
-        return WHIT_OK;
-    if (strcmp(text, "all") == 0) {
-        out->all_effects = true;
-        return WHIT_OK;
+    whit_result result = WHIT_OK;
+    const char *at = text ? text : "auto";
+    for (bool first = true; result == WHIT_OK && at; first = false) {
+        size_t length = strcspn(at, ",");
+        if (first && length == 3 && strncmp(at, "all", length) == 0)
+            out->all_effects = true;
+        else if (!first || length != 4 || strncmp(at, "auto", length) != 0)
+            result = switch_effect(log, at, length, out);
+        at = at[length] ? at + length + 1 : NULL;
     }
-    log_error(log, "effects `%s`: auto or all", text);
-    return WHIT_ERROR_USAGE;
+    return result;
+}
+
+const char *whit_effect_name(uint32_t index)
+{
+    return index < SCENE_EFFECT_COUNT ? scene_effect_name((enum scene_effect)index) : NULL;
+}
+
+bool whit_effect_can_add(uint32_t index)
+{
+    return index < SCENE_EFFECT_COUNT && render_effect_can_add((enum scene_effect)index);
+}
+
+bool whit_effect_can_remove(uint32_t index)
+{
+    return index < SCENE_EFFECT_COUNT && render_effect_can_remove((enum scene_effect)index);
+}
+
+bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect)
+{
+    return renderer->renderer && effect < SCENE_EFFECT_COUNT &&
+           renderer_compiles(renderer->renderer, (enum scene_effect)effect);
 }
 
 static whit_result render_params_from_public(const struct log *log,
@@ -153,6 +219,23 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
     }
     return renderer->renderer ? renderer_set_time(renderer->renderer, time_s)
                               : pose_on_cpu(renderer->accel, time_s);
+}
+
+whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_info *info)
+{
+    struct render_kernel_info inner;
+    *info = (whit_kernel_info){0};
+    whit_result result = need_device(renderer);
+    if (result == WHIT_OK)
+        result = renderer_get_kernel(renderer->renderer, &inner);
+    if (result == WHIT_OK)
+        *info = (whit_kernel_info){
+            .instructions = inner.instructions,
+            .general_instructions = inner.general_instructions,
+            .bindings = inner.bindings,
+            .general_bindings = inner.general_bindings,
+        };
+    return result;
 }
 
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
@@ -265,7 +348,7 @@ static whit_cost cost_to_public(const struct cost_sum *cost)
 
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
 {
-    *stats = (whit_stats){.render_device_ms = -1.0, .load_path = "storage"};
+    *stats = (whit_stats){.render_device_ms = -1.0, .bailout_bound = -1.0, .load_path = "storage"};
     if (!renderer->renderer)
         return;
     struct render_stats inner = {0};
@@ -279,12 +362,20 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .rays_shadow = inner.rays_shadow,
         .rays_reflected = inner.rays_reflected,
         .rays_refracted = inner.rays_refracted,
+        .rays_cut_depth = inner.rays_cut_depth,
+        .rays_cut_bailout = inner.rays_cut_bailout,
+        .weight_cut_depth = inner.weight_cut_depth,
+        .weight_cut_bailout = inner.weight_cut_bailout,
+        .bailout_bound = inner.bailout_bound,
+        .kernel_instructions = inner.kernel_instructions,
+        .general = inner.general,
         .device_bytes = inner.device_bytes,
         .dispatches = inner.dispatches,
         .tiles = inner.tiles,
         .tile_size = inner.tile_size,
         .load_path = inner.texel_loads ? "texel" : "storage",
     };
+    memcpy(stats->pixels_by_samples, inner.pixels_by_samples, sizeof stats->pixels_by_samples);
     for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
         stats->costs[kind] = cost_to_public(&inner.costs[kind]);
     uint64_t rays =

@@ -253,7 +253,8 @@ typedef struct whit_renderer_params {
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     bool opaque_shadows;    /* glass and blended surfaces cast full shadows */
     /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
-       for with some effects (whit_effect_info) more, or less. Less changes the picture. */
+       for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
+       changes the picture. */
     const char *effects;
     bool compile_beside; /* draw with the general kernel while that of the scene is compiled */
     uint32_t tile_size;  /* pixels on a side, 16..512; 0: by measured time */
@@ -280,6 +281,25 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 /* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
    pipelines. The picture is that of a renderer made at that time, byte for byte. */
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
+
+/* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
+const char *whit_effect_name(uint32_t index);
+/* Whether whit_renderer_params.effects may say "+NAME" and "-NAME" of it: what geometry or camera
+   decide cannot be switched. */
+bool whit_effect_can_add(uint32_t index);
+bool whit_effect_can_remove(uint32_t index);
+/* Whether the kernel of a renderer has an effect in it. */
+bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect);
+
+/* What is left of the kernel for this renderer, and of the same with every effect. */
+typedef struct whit_kernel_info {
+    uint32_t instructions, general_instructions; /* SPIR-V, in functions */
+    uint32_t bindings, general_bindings;         /* descriptors */
+} whit_kernel_info;
+/* Takes some 50 ms. WHIT_ERROR_USAGE without a device, WHIT_ERROR_DEVICE when the kernel cannot be
+   specialized. */
+WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
+                                                whit_kernel_info *info);
 
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
@@ -332,7 +352,7 @@ typedef struct whit_stats {
     /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
     double bailout_bound;
     uint64_t pixels_by_samples[4];                      /* of 1, 4, 16 and 64 samples */
-    uint32_t kernel_instructions, general_instructions; /* SPIR-V: of this kernel; of all effects */
+    uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
     bool general; /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;
     const char *load_path;           /* "storage" or "texel" */

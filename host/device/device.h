@@ -100,11 +100,24 @@ struct pipeline_params {
     const char *name;
 };
 
+struct pipeline_info {
+    bool specialized;      /* constants were filled in before the driver saw the kernel */
+    uint32_t instructions; /* of its functions; specialized: of what is left of them */
+    uint64_t bindings;     /* bit i: binding i is in its descriptor set layout */
+};
+
+/* Bindings that the kernel does not use once its constants are filled in get no descriptor. A
+   kernel that cannot be specialized, or WHIT_NO_SPECIALIZE=1 in the environment, keeps all of them,
+   and the driver fills its constants in; the former is logged. */
 WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipeline_params *params,
                                        struct pipeline **out);
 void pipeline_destroy(struct pipeline *pipeline);
+void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info);
+/* The same without a pipeline or a device. False when the kernel cannot be specialized. */
+bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info);
 
-/* buffers[i] goes to binding i, NULL where the pipeline has NONE. The buffers are borrowed until
+/* buffers[i] goes to binding i, NULL where the params have NONE, and at will where the kernel does
+   not use it. The buffers are borrowed until
    the set is destroyed. The pipeline may not be destroyed before its sets. */
 WHIT_CHECK whit_result binding_set_create(struct pipeline *pipeline, struct buffer *const *buffers,
                                           uint32_t count, struct binding_set **out);

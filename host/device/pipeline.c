@@ -13,25 +13,29 @@ static VkDescriptorType descriptor_type(enum binding_kind kind)
                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-static whit_result check_params(const struct pipeline *pipeline,
+static whit_result check_kernel(const struct pipeline *pipeline,
                                 const struct pipeline_params *params)
+{
+    if (params->spirv && params->spirv_bytes > 0 && params->spirv_bytes % 4 == 0 &&
+        params->push_bytes % 4 == 0)
+        return WHIT_OK;
+    log_error(&pipeline->device->log, "pipeline \"%s\": SPIR-V or push constants of a broken size",
+              pipeline->name);
+    return WHIT_ERROR_USAGE;
+}
+
+static whit_result check_limits(const struct pipeline *pipeline)
 {
     const struct device *device = pipeline->device;
     const VkPhysicalDeviceLimits *limits = &device->properties.limits;
-    if (!params->spirv || params->spirv_bytes == 0 || params->spirv_bytes % 4 != 0 ||
-        params->push_bytes % 4 != 0) {
-        log_error(&device->log, "pipeline \"%s\": SPIR-V or push constants of a broken size",
-                  pipeline->name);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->push_bytes > limits->maxPushConstantsSize ||
+    if (pipeline->push_bytes > limits->maxPushConstantsSize ||
         pipeline->storage_count > limits->maxPerStageDescriptorStorageBuffers ||
         pipeline->texels_count > limits->maxPerStageDescriptorSampledImages) {
         log_error(&device->log,
                   "pipeline \"%s\": %u storage buffers, %u texel buffers and %u bytes of push "
                   "constants; the device's limits are %u, %u and %u",
                   pipeline->name, pipeline->storage_count, pipeline->texels_count,
-                  params->push_bytes, limits->maxPerStageDescriptorStorageBuffers,
+                  pipeline->push_bytes, limits->maxPerStageDescriptorStorageBuffers,
                   limits->maxPerStageDescriptorSampledImages, limits->maxPushConstantsSize);
         return WHIT_ERROR_DEVICE;
     }
@@ -92,35 +96,100 @@ fail:
     return result;
 }
 
-/* The module with its constants filled in; *specialized where the optimizer did that. */
+/* A kernel as the driver gets it. */
+struct kernel_words {
+    uint32_t *specialized; /* NULL: as it came */
+    size_t word_count;
+    struct spirv_info info;
+};
+
+static bool specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
+{
+    size_t word_count = params->spirv_bytes / sizeof *out->specialized;
+    *out = (struct kernel_words){.word_count = word_count};
+    if (spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
+                         &out->specialized, &out->word_count) &&
+        spirv_inspect(out->specialized, out->word_count, &out->info))
+        return true;
+    free(out->specialized);
+    *out = (struct kernel_words){.word_count = word_count};
+    return false;
+}
+
+static bool specializing_is_off(void)
+{
+    const char *value = getenv("WHIT_NO_SPECIALIZE");
+    return value && *value && strcmp(value, "0") != 0;
+}
+
+/* Fills constants in, and leaves of the pipeline's bindings those that are used then. */
+static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_params *params,
+                           struct kernel_words *kernel)
+{
+    struct pipeline_info *info = &pipeline->info;
+    info->specialized = !specializing_is_off() && specialize_kernel(params, kernel);
+    if (!info->specialized) {
+        *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
+        if (!specializing_is_off())
+            log_warning(&pipeline->device->log,
+                        "pipeline \"%s\": SPIRV-Tools cannot specialize its kernel, which goes to "
+                        "the driver whole: slower to compile, no slower to run",
+                        pipeline->name);
+        kernel->info.bindings = UINT64_MAX;
+        struct spirv_info whole;
+        if (spirv_inspect(params->spirv, kernel->word_count, &whole))
+            kernel->info.instructions = whole.instructions;
+    }
+    info->instructions = kernel->info.instructions;
+    for (uint32_t i = 0; i < pipeline->binding_count; ++i) {
+        bool used = i >= 64 || (kernel->info.bindings >> i & 1);
+        if (!used)
+            pipeline->bindings[i] = BINDING_NONE;
+        pipeline->storage_count += pipeline->bindings[i] == BINDING_STORAGE;
+        pipeline->texels_count += pipeline->bindings[i] == BINDING_TEXELS;
+        if (i < 64 && pipeline->bindings[i] != BINDING_NONE)
+            info->bindings |= UINT64_C(1) << i;
+    }
+}
+
+bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info)
+{
+    struct kernel_words kernel;
+    *info = (struct pipeline_info){0};
+    if (!specialize_kernel(params, &kernel))
+        return false;
+    free(kernel.specialized);
+    *info = (struct pipeline_info){
+        .specialized = true,
+        .instructions = kernel.info.instructions,
+        .bindings = kernel.info.bindings,
+    };
+    return true;
+}
+
 static whit_result make_module(const struct pipeline *pipeline,
-                               const struct pipeline_params *params, bool *specialized,
-                               VkShaderModule *module)
+                               const struct pipeline_params *params,
+                               const struct kernel_words *kernel, VkShaderModule *module)
 {
     struct device *device = pipeline->device;
     whit_result result = WHIT_OK;
-    uint32_t *words = NULL;
-    size_t word_count = params->spirv_bytes / sizeof *words;
-    *specialized = spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
-                                    &words, &word_count);
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = word_count * sizeof *words,
-        .pCode = *specialized ? words : params->spirv,
+        .codeSize = kernel->word_count * sizeof(uint32_t),
+        .pCode = kernel->specialized ? kernel->specialized : params->spirv,
     };
     VK_TRY(device, vkCreateShaderModule(device->vk, &info, NULL, module));
     device_name_object(device, VK_OBJECT_TYPE_SHADER_MODULE, (uint64_t)*module, pipeline->name);
 fail:
-    free(words);
     return result;
 }
 
-static whit_result make_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+static whit_result make_pipeline(struct pipeline *pipeline, const struct pipeline_params *params,
+                                 const struct kernel_words *kernel)
 {
     struct device *device = pipeline->device;
     VkShaderModule module = VK_NULL_HANDLE;
-    bool specialized;
-    whit_result result = make_module(pipeline, params, &specialized, &module);
+    whit_result result = make_module(pipeline, params, kernel, &module);
     if (result != WHIT_OK)
         return result;
     VkSpecializationMapEntry *entries = array_alloc_zeroed(params->spec_count, sizeof *entries);
@@ -144,7 +213,8 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
                   .pName = "main",
-                  .pSpecializationInfo = params->spec_count > 0 && !specialized ? &spec : NULL},
+                  .pSpecializationInfo =
+                      params->spec_count > 0 && !kernel->specialized ? &spec : NULL},
         .layout = pipeline->layout,
     };
     VK_TRY(device,
@@ -160,15 +230,33 @@ fail:
 static bool copy_bindings(struct pipeline *pipeline, const struct pipeline_params *params)
 {
     pipeline->bindings = array_alloc_zeroed(params->binding_count, sizeof *pipeline->bindings);
-    if (!pipeline->bindings)
+    pipeline->offered = array_alloc_zeroed(params->binding_count, sizeof *pipeline->offered);
+    if (!pipeline->bindings || !pipeline->offered)
         return false;
     pipeline->binding_count = params->binding_count;
     for (uint32_t i = 0; i < params->binding_count; ++i) {
         pipeline->bindings[i] = params->bindings[i];
-        pipeline->storage_count += params->bindings[i] == BINDING_STORAGE;
-        pipeline->texels_count += params->bindings[i] == BINDING_TEXELS;
+        pipeline->offered[i] = params->bindings[i] != BINDING_NONE;
     }
     return true;
+}
+
+static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+{
+    struct kernel_words kernel;
+    whit_result result = check_kernel(pipeline, params);
+    if (result != WHIT_OK)
+        return result;
+    prepare_kernel(pipeline, params, &kernel);
+    result = check_limits(pipeline);
+    if (result == WHIT_OK)
+        result = make_set_layout(pipeline);
+    if (result == WHIT_OK)
+        result = make_layout(pipeline);
+    if (result == WHIT_OK)
+        result = make_pipeline(pipeline, params, &kernel);
+    free(kernel.specialized);
+    return result;
 }
 
 whit_result pipeline_create(struct device *device, const struct pipeline_params *params,
@@ -187,19 +275,18 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
     if (result != WHIT_OK)
         log_error(&device->log, "out of memory for a pipeline");
     if (result == WHIT_OK)
-        result = check_params(pipeline, params);
-    if (result == WHIT_OK)
-        result = make_set_layout(pipeline);
-    if (result == WHIT_OK)
-        result = make_layout(pipeline);
-    if (result == WHIT_OK)
-        result = make_pipeline(pipeline, params);
+        result = fill_pipeline(pipeline, params);
     if (result != WHIT_OK) {
         pipeline_destroy(pipeline);
         return result;
     }
     *out = pipeline;
     return WHIT_OK;
+}
+
+void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info)
+{
+    *info = pipeline->info;
 }
 
 void pipeline_destroy(struct pipeline *pipeline)
@@ -211,6 +298,7 @@ void pipeline_destroy(struct pipeline *pipeline)
     vkDestroyPipelineLayout(vk, pipeline->layout, NULL);
     vkDestroyDescriptorSetLayout(vk, pipeline->set_layout, NULL);
     free(pipeline->bindings);
+    free(pipeline->offered);
     free(pipeline);
 }
 
@@ -226,7 +314,8 @@ static whit_result check_buffers(const struct pipeline *pipeline, struct buffer 
     for (uint32_t i = 0; i < count; ++i) {
         enum binding_kind kind = pipeline->bindings[i];
         uint32_t use = kind == BINDING_TEXELS ? BUFFER_TEXELS : BUFFER_STORAGE;
-        if (kind == BINDING_NONE ? buffers[i] == NULL : buffers[i] && (buffers[i]->uses & use))
+        if (kind == BINDING_NONE ? pipeline->offered[i] || !buffers[i]
+                                 : buffers[i] && (buffers[i]->uses & use))
             continue;
         log_error(log, "pipeline \"%s\": binding %u cannot take buffer \"%s\"", pipeline->name, i,
                   buffers[i] ? buffers[i]->name : "(none)");

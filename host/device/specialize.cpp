@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <spirv-tools/libspirv.h>
 #include <spirv-tools/optimizer.hpp>
 
 namespace
@@ -36,7 +37,51 @@ std::vector<uint32_t> run(const uint32_t *words, size_t word_count, const uint32
     return result;
 }
 
+// Words of the specification (SPIR-V 1.5, 3.32 and 3.20).
+enum { OP_FUNCTION = 54, OP_FUNCTION_END = 56, OP_DECORATE = 71, DECORATION_BINDING = 33 };
+
+struct inspection {
+    std::unordered_map<uint32_t, uint32_t> bindings; // of variables
+    spirv_info info;
+    bool in_function;
+};
+
+spv_result_t inspect_instruction(void *user, const spv_parsed_instruction_t *instruction)
+{
+    inspection &seen = *static_cast<inspection *>(user);
+    const uint32_t *words = instruction->words;
+    if (instruction->opcode == OP_DECORATE && words[2] == DECORATION_BINDING)
+        seen.bindings[words[1]] = words[3];
+    seen.in_function = seen.in_function || instruction->opcode == OP_FUNCTION;
+    if (!seen.in_function)
+        return SPV_SUCCESS;
+    ++seen.info.instructions;
+    for (uint16_t i = 0; i < instruction->num_operands; ++i) {
+        const spv_parsed_operand_t &operand = instruction->operands[i];
+        const auto binding = operand.type == SPV_OPERAND_TYPE_ID
+                                 ? seen.bindings.find(words[operand.offset])
+                                 : seen.bindings.end();
+        if (binding != seen.bindings.end() && binding->second < 64)
+            seen.info.bindings |= UINT64_C(1) << binding->second;
+    }
+    seen.in_function = instruction->opcode != OP_FUNCTION_END;
+    return SPV_SUCCESS;
+}
+
 } // namespace
+
+bool spirv_inspect(const uint32_t *words, size_t word_count, struct spirv_info *out)
+try {
+    inspection seen = {};
+    const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_2);
+    const spv_result_t result =
+        spvBinaryParse(context, &seen, words, word_count, nullptr, inspect_instruction, nullptr);
+    spvContextDestroy(context);
+    *out = seen.info;
+    return result == SPV_SUCCESS;
+} catch (const std::exception &) {
+    return false;
+}
 
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words)

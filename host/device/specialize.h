@@ -18,6 +18,15 @@ extern "C" {
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words);
 
+/* What a module has in its functions. */
+struct spirv_info {
+    uint32_t instructions;
+    uint64_t bindings; /* bit i: a function names a variable bound to binding i of set 0 */
+};
+
+/* False when it is no SPIR-V, or memory runs out. */
+bool spirv_inspect(const uint32_t *words, size_t word_count, struct spirv_info *out);
+
 #ifdef __cplusplus
 }
 #endif

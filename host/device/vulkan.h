@@ -71,8 +71,10 @@ struct pipeline {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkPipeline vk;
-    enum binding_kind *bindings;
+    enum binding_kind *bindings; /* NONE: the caller's gaps, and what the kernel does not use */
+    bool *offered;               /* not one of the caller's gaps */
     uint32_t binding_count, storage_count, texels_count;
+    struct pipeline_info info;
     uint32_t push_bytes;
     char name[OBJECT_NAME_BYTES];
 };

@@ -711,6 +711,7 @@ static void clear_stats(struct render_stats *stats)
     *stats = (struct render_stats){.upload_ms = stats->upload_ms,
                                    .compile_ms = stats->compile_ms,
                                    .device_bytes = stats->device_bytes,
+                                   .kernel_instructions = stats->kernel_instructions,
                                    .texel_loads = stats->texel_loads};
 }
 
@@ -721,8 +722,13 @@ static whit_result compile(struct renderer *renderer)
         return WHIT_OK;
     double start_ms = clock_ms();
     whit_result result = variant_create_whitted(renderer);
-    if (result != WHIT_OK)
+    if (result == WHIT_OK) {
+        struct pipeline_info info;
+        pipeline_get_info(renderer->whitted.pipeline, &info);
+        renderer->stats.kernel_instructions = info.instructions;
+    } else {
         passes_finish(renderer);
+    }
     renderer->stats.compile_ms = clock_ms() - start_ms;
     return result;
 }

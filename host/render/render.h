@@ -50,7 +50,7 @@ struct render_stats {
     double weight_cut_depth, weight_cut_bailout; /* largest sum of one pixel */
     double bailout_bound;                        /* < 0: not known */
     uint64_t pixels_by_samples[4];
-    uint32_t kernel_instructions, general_instructions;
+    uint32_t kernel_instructions;
     bool general;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
@@ -72,6 +72,17 @@ WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
+
+/* Whether kernels are made with an effect. */
+bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
+/* What is left of the kernel for this renderer, and of the same with every effect. */
+struct render_kernel_info {
+    uint32_t instructions, general_instructions;
+    uint32_t bindings, general_bindings; /* counts */
+};
+/* WHIT_ERROR_DEVICE when the kernel cannot be specialized. */
+WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer,
+                                           struct render_kernel_info *info);
 
 /* With params.count: the costs of rays of `kind` (RAY_*) of each pixel's first sample, as 8 integer
    channels in the order of struct gpu_cost. */

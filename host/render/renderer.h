@@ -173,6 +173,8 @@ void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */
 struct gpu_spec variant_spec(const struct renderer *renderer);
+/* The same with every effect. */
+struct gpu_spec variant_general_spec(const struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 void pass_finish(struct pass *pass);

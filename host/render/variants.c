@@ -23,20 +23,19 @@ static bool only_spheres(const struct scene *scene)
 }
 
 /* Where one effect has a say in the constant of another. */
-static void refine_effects(const struct renderer *renderer, struct gpu_spec *spec)
+static void refine_effects(const struct renderer *renderer, const struct scene_effects *effects,
+                           struct gpu_spec *spec)
 {
-    const bool *called = renderer->effects.called;
-    bool all = renderer->params.all_effects;
+    const bool *called = effects->called;
     if (spec->SPEC_FRESNEL != FRESNEL_NONE && renderer->params.schlick)
         spec->SPEC_FRESNEL = FRESNEL_SCHLICK;
-    if (spec->SPEC_SPHERES != SPHERES_NONE && !all && only_spheres(renderer->scene))
-        spec->SPEC_SPHERES = SPHERES_ONLY;
     spec->SPEC_FILTER_DETAIL = called[SCENE_EFFECT_TINTED_SHADOWS] &&
                                (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_ABSORPTION] ||
                                 called[SCENE_EFFECT_VERTEX_COLORS] || called[SCENE_EFFECT_CUTOUTS]);
 }
 
-struct gpu_spec variant_spec(const struct renderer *renderer)
+static struct gpu_spec make_spec(const struct renderer *renderer,
+                                 const struct scene_effects *effects, bool secondary)
 {
     const struct accel *accel = renderer->accel;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
@@ -48,15 +47,32 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     spec.SPEC_CLIPPED = accel->clipped;
     spec.SPEC_ORDER = renderer->params.order;
     spec.SPEC_COUNT = renderer->params.count;
-    spec.SPEC_SECONDARY = renderer->has_secondary;
+    spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = camera_code(renderer);
-    effects_switch(&renderer->effects, &spec);
-    refine_effects(renderer, &spec);
+    effects_switch(effects, &spec);
+    refine_effects(renderer, effects, &spec);
     return spec;
+}
+
+struct gpu_spec variant_spec(const struct renderer *renderer)
+{
+    struct gpu_spec spec = make_spec(renderer, &renderer->effects, renderer->has_secondary);
+    if (spec.SPEC_SPHERES != SPHERES_NONE && !renderer->params.all_effects &&
+        only_spheres(renderer->scene))
+        spec.SPEC_SPHERES = SPHERES_ONLY;
+    return spec;
+}
+
+struct gpu_spec variant_general_spec(const struct renderer *renderer)
+{
+    struct scene_effects effects = renderer->effects;
+    const struct render_params all = {.all_effects = true};
+    effects_choose(&all, &effects);
+    return make_spec(renderer, &effects, true);
 }
 
 /* What a kernel is bound to, while it is put together. */
@@ -93,26 +109,30 @@ static struct bindings bind_trees(const struct renderer *renderer)
     return bindings;
 }
 
-static whit_result create_pass(struct renderer *renderer, enum kernel kernel,
-                               const struct gpu_spec *spec, const enum binding_kind *kinds,
-                               uint32_t binding_count, uint32_t push_bytes, const char *name,
-                               struct pass *pass)
+static struct pipeline_params pass_params(enum kernel kernel, const struct gpu_spec *spec,
+                                          const struct bindings *bindings, uint32_t binding_count,
+                                          uint32_t push_bytes, const char *name)
 {
-    const struct pipeline_params params = {
+    return (struct pipeline_params){
         .spirv = kernels[kernel].words,
         .spirv_bytes = kernels[kernel].bytes,
         .spec = (const uint32_t *)spec,
         .spec_count = GPU_SPEC_COUNT,
-        .bindings = kinds,
+        .bindings = bindings->kinds,
         .binding_count = binding_count,
         .push_bytes = push_bytes,
         .name = name,
     };
-    return pipeline_create(renderer->device, &params, &pass->pipeline);
 }
 
-/* `brute`: BRUTE_*. */
-static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
+static struct pipeline_params whitted_params(const struct gpu_spec *spec,
+                                             const struct bindings *bindings)
+{
+    return pass_params(KERNEL_WHITTED, spec, bindings, BIND_WHITTED_COUNT, sizeof(struct gpu_chunk),
+                       "whitted");
+}
+
+static struct bindings bind_whitted(const struct renderer *renderer)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
@@ -133,13 +153,23 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
     bind(&bindings, BIND_FOUND, BINDING_STORAGE, renderer->brute.found);
     bind(&bindings, BIND_PASSED, BINDING_STORAGE, renderer->brute.passed);
     bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, pixels->ray_media);
+    return bindings;
+}
+
+/* `brute`: BRUTE_*. */
+static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
+{
+    const struct pixel_buffers *pixels = &renderer->pixel_buffers;
+    struct bindings bindings = bind_whitted(renderer);
     struct gpu_spec spec = variant_spec(renderer);
     spec.SPEC_BRUTE = brute;
-    whit_result result = create_pass(renderer, KERNEL_WHITTED, &spec, bindings.kinds,
-                                     BIND_WHITTED_COUNT, sizeof(struct gpu_chunk), "whitted", pass);
+    const struct pipeline_params params = whitted_params(&spec, &bindings);
+    whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
-        bindings.buffers[BIND_WORK_IN] = pixels->work[i];
-        bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
+        if (pixels->work[i]) {
+            bindings.buffers[BIND_WORK_IN] = pixels->work[i];
+            bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
+        }
         result = binding_set_create(pass->pipeline, bindings.buffers, BIND_WHITTED_COUNT,
                                     &pass->sets[i]);
     }
@@ -171,13 +201,50 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     spec.SPEC_FILTERS = 0;
     spec.SPEC_FILTER_DETAIL = 0;
     spec.SPEC_CULLING = 0;
-    whit_result result =
-        create_pass(renderer, KERNEL_TRACE, &spec, bindings.kinds, BIND_TRACE_COUNT,
-                    sizeof(struct gpu_batch), any ? "trace any" : "trace closest", pass);
+    const struct pipeline_params params =
+        pass_params(KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
+                    any ? "trace any" : "trace closest");
+    whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
     if (result == WHIT_OK)
         result =
             binding_set_create(pass->pipeline, bindings.buffers, BIND_TRACE_COUNT, &pass->sets[0]);
     return result;
+}
+
+static uint32_t count_bits(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (; bits; bits &= bits - 1)
+        ++count;
+    return count;
+}
+
+bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect)
+{
+    return (unsigned)effect < SCENE_EFFECT_COUNT && renderer->effects.called[effect];
+}
+
+whit_result renderer_get_kernel(const struct renderer *renderer, struct render_kernel_info *info)
+{
+    struct bindings bindings = bind_whitted(renderer);
+    struct gpu_spec own = variant_spec(renderer), general = variant_general_spec(renderer);
+    own.SPEC_BRUTE = general.SPEC_BRUTE = renderer->accel->no_trees ? BRUTE_SHADE : BRUTE_OFF;
+    const struct pipeline_params own_params = whitted_params(&own, &bindings);
+    const struct pipeline_params general_params = whitted_params(&general, &bindings);
+    struct pipeline_info own_info, general_info;
+    *info = (struct render_kernel_info){0};
+    if (!pipeline_count(&own_params, &own_info) ||
+        !pipeline_count(&general_params, &general_info)) {
+        log_error(&renderer->log, "SPIRV-Tools cannot specialize the kernel");
+        return WHIT_ERROR_DEVICE;
+    }
+    *info = (struct render_kernel_info){
+        .instructions = own_info.instructions,
+        .general_instructions = general_info.instructions,
+        .bindings = count_bits(own_info.bindings),
+        .general_bindings = count_bits(general_info.bindings),
+    };
+    return WHIT_OK;
 }
 
 void pass_finish(struct pass *pass)
