@@ -210,9 +210,12 @@ static whit_result record_ray(struct submission *s, const struct gpu_chunk *chun
     whit_result result = record_ranges(s, &brute->closest, chunk, list);
     uint32_t lights =
         renderer->effects.called[SCENE_EFFECT_SHADOWS] ? renderer->pose.light_count : 0;
+    uint32_t turns = lights * renderer->frame.light_samples;
     struct gpu_chunk lit = *chunk;
-    for (lit.light = 0; result == WHIT_OK && lit.light < lights; ++lit.light)
-        result = record_ranges(s, &brute->shadow, &lit, list);
+    for (lit.light = 0; result == WHIT_OK && lit.light < turns; ++lit.light) {
+        if (lights_take_turn(renderer, lit.light))
+            result = record_ranges(s, &brute->shadow, &lit, list);
+    }
     if (result != WHIT_OK)
         return result;
     render_clear_work(renderer, 1 - list);

@@ -8,7 +8,7 @@
 /* Rows of 16 bytes. */
 #define MATERIAL_ROWS 10u
 #define TEXTURE_ROWS  3u
-#define LIGHT_ROWS    4u
+#define LIGHT_ROWS    6u
 /* Three normals of three floats, zeros where the mesh is flat, with the material in each w; where
    all meshes are flat only one row, for its w. */
 #define TRIANGLE_SHADE_ROWS 3u
@@ -92,6 +92,11 @@ GPU_ASSERT_AT(gpu_texture, offset, 16)
 #define LIGHT_DIRECTIONAL 1u
 #define LIGHT_SPOT        2u
 #define LIGHT_AREA_SAMPLE 3u /* Lambertian emitter around `direction` */
+/* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`, unit normal
+   `direction`. They take as many turns of the loop over lights as the frame has light_samples. */
+#define LIGHT_RECTANGLE 4u
+#define LIGHT_TRIANGLE  5u
+#define LIGHT_FLAT_BITS (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
 
 /* World space. */
 struct gpu_light {
@@ -103,11 +108,16 @@ struct gpu_light {
     gpu_uint falloff; /* 1: 1 / distance^2 */
     gpu_float cos_inner;
     gpu_float cos_outer;
-    gpu_uint two_sided; /* LIGHT_AREA_SAMPLE */
-    gpu_uint pad;
+    gpu_uint two_sided; /* emitters */
+    gpu_float area_share; /* of a flat emitter: area / (pi * light_samples) */
+    gpu_vec3 edge_u;
+    gpu_uint pad0;
+    gpu_vec3 edge_v;
+    gpu_uint pad1;
 };
-GPU_ASSERT_SIZE(gpu_light, 64)
+GPU_ASSERT_SIZE(gpu_light, 96)
 GPU_ASSERT_AT(gpu_light, cos_inner, 48)
+GPU_ASSERT_AT(gpu_light, edge_u, 64)
 
 /* What all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
    picture plane) and goes along forward + x * right + y * up, x and y in -1..1. All three are of
@@ -141,7 +151,7 @@ struct gpu_frame {
     gpu_uint eye_media2, eye_media3;
     gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is made from it */
     gpu_float focus_distance; /* along `forward` */
-    gpu_uint light_samples;   /* of an area light: 1, 4, 16 or 64 */
+    gpu_uint light_samples;   /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
 };
 GPU_ASSERT_SIZE(gpu_frame, 192)

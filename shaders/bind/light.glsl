@@ -3,7 +3,8 @@
 #define BIND_LIGHT_GLSL
 
 #include "../lib/octahedron.glsl"
-#include "shading.glsl"
+#include "../lib/polygon.glsl"
+#include "picture.glsl"
 
 layout(set = 0, binding = BIND_ENVIRONMENT, std430) readonly buffer EnvironmentBuffer
 {
@@ -32,39 +33,113 @@ vec3 environment_radiance(vec3 dir)
     return mix(frame.horizon, dir.y >= 0.0 ? frame.zenith : frame.ground, min(abs(dir.y), 1.0));
 }
 
-// Direction to a light (unit), its distance, and what arrives there over pi, before shadows.
-// False: nothing arrives.
-bool light_at(uint index, vec3 p, out vec3 to_light, out float distance, out vec3 arriving)
+const float LIGHT_MOST = 1e24; // so that sums of what arrives cannot overflow
+
+// One turn of the loop over lights: a light, or one point of a flat emitter.
+struct LightTurn {
+    gpu_light light;
+    vec3 to_light; // unit
+    float distance;
+    vec3 arriving;  // irradiance over pi, facing the light, before shadows
+    float strength; // flat emitters: arriving = color * area_share * strength
+    bool flat_emitter;
+};
+
+bool is_flat(gpu_light light)
 {
-    gpu_light light = fetch_light(index);
-    arriving = light.color;
-    if (light.kind == LIGHT_DIRECTIONAL) {
-        to_light = -light.direction;
-        distance = uintBitsToFloat(0x7f7fffffu);
+    return (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && ((LIGHT_FLAT_BITS >> light.kind) & 1u) != 0u;
+}
+
+// Turns of each light. Only flat emitters take more than the first of them.
+uint turns_each()
+{
+    return (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u ? frame.light_samples : 1u;
+}
+
+// Point `index` of a flat emitter: a Hammersley set (the centre for one point), the same for all
+// pixels. For each sample of the pixel it is moved as a whole and wraps around (Cranley and Patterson
+// 1976), by the additive sequence of the plastic number (Roberts 2018). In units of 2^-32, where
+// wrapping is what integers do.
+vec3 emitter_point(gpu_light light, uint index)
+{
+    uint bits = uint(findMSB(frame.light_samples));
+    uint x = ((index << (31u - bits)) << 1) + (0x80000000u >> bits);
+    uint y = bitfieldReverse(index) + (0x80000000u >> bits);
+    x += chunk.sample_index * 0xc13fa9a9u;
+    y += chunk.sample_index * 0x91e10da6u;
+    float u = float(x >> 8) * (1.0 / 16777216.0);
+    float v = float(y >> 8) * (1.0 / 16777216.0);
+    if (light.kind == LIGHT_TRIANGLE) { // keeps areas (Turk 1990)
+        float root = sqrt(u);
+        u = root * (1.0 - v);
+        v = root * v;
+    }
+    return light.position + light.edge_u * u + light.edge_v * v;
+}
+
+// Form factor of a flat emitter at `p` with shading normal `n`, without shadows.
+float emitter_form_factor(gpu_light light, vec3 p, vec3 n)
+{
+    vec3 c0 = light.position - p;
+    vec3 c1 = c0 + light.edge_u, c3 = c0 + light.edge_v;
+    vec3 c2 = light.kind == LIGHT_TRIANGLE ? c3 : c1 + light.edge_v;
+    float height = -dot(c0, light.direction);
+    // In the emitter's own plane, but for rounding.
+    if (abs(height) <= rounding_bound(4.0) * dot(abs(c0), abs(light.direction)))
+        return 0.0;
+    float factor = polygon_form_factor(n, c0, c1, c2, c3);
+    bool front = height > 0.0;
+    return front ? max(factor, 0.0) : light.two_sided != 0u ? max(-factor, 0.0) : 0.0;
+}
+
+// Turn `index` of a light towards `p`. False: nothing arrives.
+bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
+{
+    turn.light = light;
+    turn.flat_emitter = is_flat(light);
+    turn.arriving = light.color;
+    turn.strength = 0.0;
+    if (((SPEC_LIGHTS >> light.kind) & 1u) == 0u)
+        return false;
+    if ((SPEC_LIGHTS & (1u << LIGHT_DIRECTIONAL)) != 0u && light.kind == LIGHT_DIRECTIONAL) {
+        turn.to_light = -light.direction;
+        turn.distance = uintBitsToFloat(0x7f7fffffu);
         return true;
     }
     vec3 way = light.position - p;
+    if (turn.flat_emitter)
+        way = emitter_point(light, index) - p;
     float largest = max(abs(way.x), max(abs(way.y), abs(way.z)));
     if (!(largest > 0.0)) {
-        to_light = vec3(0.0);
-        distance = 0.0;
+        turn.to_light = vec3(0.0);
+        turn.distance = 0.0;
         return false;
     }
-    distance = length(way / largest) * largest;
-    to_light = way / distance;
+    turn.distance = length(way / largest) * largest;
+    turn.to_light = way / turn.distance;
+    float square = max(turn.distance * turn.distance, 1.17549435e-38);
     if (light.falloff != 0u)
-        arriving /= distance * distance;
-    float cos_away = -dot(to_light, light.direction);
-    if (light.kind == LIGHT_SPOT) {
+        turn.arriving /= square;
+    float cos_away = -dot(turn.to_light, light.direction);
+    float cos_emitter = light.two_sided != 0u ? abs(cos_away) : max(cos_away, 0.0);
+    if ((SPEC_LIGHTS & (1u << LIGHT_SPOT)) != 0u && light.kind == LIGHT_SPOT) {
         float part = (cos_away - light.cos_outer) / max(light.cos_inner - light.cos_outer, 1e-6);
         float soft = clamp(part, 0.0, 1.0);
-        arriving *= soft * soft;
-    } else if (light.kind == LIGHT_AREA_SAMPLE) {
-        arriving *= light.two_sided != 0u ? abs(cos_away) : max(cos_away, 0.0);
+        turn.arriving *= soft * soft;
     }
-    if (distance > light.range)
+    if ((SPEC_LIGHTS & (1u << LIGHT_AREA_SAMPLE)) != 0u && light.kind == LIGHT_AREA_SAMPLE)
+        turn.arriving *= cos_emitter;
+    if (turn.flat_emitter) {
+        turn.strength = min(cos_emitter / square, LIGHT_MOST);
+        turn.arriving = light.color * (light.area_share * turn.strength);
+    }
+    turn.arriving = min(turn.arriving, vec3(LIGHT_MOST));
+    if (turn.distance > light.range)
         return false;
-    return max(arriving.r, max(arriving.g, arriving.b)) > 0.0;
+    // What lies in one plane with an emitter, as a ceiling may, casts no shadow of its light.
+    if (turn.flat_emitter)
+        turn.distance *= 1.0 - 1.0 / 4096.0;
+    return max(turn.arriving.r, max(turn.arriving.g, turn.arriving.b)) > 0.0;
 }
 
 #endif

@@ -1,0 +1,110 @@
+/* Lights as the kernel reads them, and the turns of its loop over them. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "render/renderer.h"
+
+enum { ROW_BYTES = 16, SAMPLES_DEFAULT = 16 };
+static const double PI = 3.14159265358979323846;
+
+static uint32_t light_code(enum scene_light_kind kind)
+{
+    switch (kind) {
+    case SCENE_LIGHT_POINT:
+        return LIGHT_POINT;
+    case SCENE_LIGHT_DIRECTIONAL:
+        return LIGHT_DIRECTIONAL;
+    case SCENE_LIGHT_SPOT:
+        return LIGHT_SPOT;
+    case SCENE_LIGHT_AREA_SAMPLE:
+        return LIGHT_AREA_SAMPLE;
+    case SCENE_LIGHT_RECTANGLE:
+        return LIGHT_RECTANGLE;
+    case SCENE_LIGHT_TRIANGLE:
+        return LIGHT_TRIANGLE;
+    }
+    return LIGHT_POINT;
+}
+
+static bool is_flat(const struct scene_light *light)
+{
+    return light->kind == SCENE_LIGHT_RECTANGLE || light->kind == SCENE_LIGHT_TRIANGLE;
+}
+
+static double emitter_area(const struct scene_light *light)
+{
+    const double *u = light->edge_u, *v = light->edge_v;
+    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
+           z = u[0] * v[1] - u[1] * v[0];
+    double parallelogram = sqrt(x * x + y * y + z * z);
+    return light->kind == SCENE_LIGHT_TRIANGLE ? 0.5 * parallelogram : parallelogram;
+}
+
+static struct gpu_light make_light(const struct scene_light *light, uint32_t samples)
+{
+    struct gpu_light out = {
+        .kind = light_code(light->kind),
+        .range = light->range > 0.0f ? light->range : INFINITY,
+        .falloff = light->falloff || light->kind == SCENE_LIGHT_AREA_SAMPLE,
+        .cos_inner = light->cos_inner,
+        .cos_outer = light->cos_outer,
+        .two_sided = light->two_sided,
+    };
+    for (int i = 0; i < 3; ++i) {
+        out.position[i] = (float)light->position[i];
+        out.direction[i] = (float)light->direction[i];
+        out.color[i] = light->color[i];
+    }
+    if (is_flat(light)) {
+        out.falloff = true;
+        out.area_share = (float)(emitter_area(light) / (PI * samples));
+        for (int i = 0; i < 3; ++i) {
+            out.edge_u[i] = (float)light->edge_u[i];
+            out.edge_v[i] = (float)light->edge_v[i];
+        }
+    }
+    return out;
+}
+
+whit_result lights_write(struct renderer *renderer)
+{
+    const struct scene_pose *pose = &renderer->pose;
+    struct gpu_light *lights = array_alloc(pose->light_count, sizeof *lights);
+    if (!lights)
+        return WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < pose->light_count; ++i)
+        lights[i] = make_light(&pose->lights[i], lights_samples(renderer));
+    whit_result result = buffer_write(renderer->scene_buffers.shading,
+                                      (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,
+                                      (uint64_t)pose->light_count * sizeof *lights);
+    free(lights);
+    return result;
+}
+
+uint32_t lights_kinds(const struct scene_pose *pose)
+{
+    uint32_t kinds = 0;
+    for (uint32_t i = 0; i < pose->light_count; ++i)
+        kinds |= 1u << light_code(pose->lights[i].kind);
+    return kinds;
+}
+
+uint32_t lights_samples(const struct renderer *renderer)
+{
+    uint32_t asked = renderer->params.light_samples;
+    bool flat = renderer->effects.called[SCENE_EFFECT_AREA_LIGHTS] &&
+                (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) != 0;
+    return !flat ? 1 : asked ? asked : SAMPLES_DEFAULT;
+}
+
+uint64_t lights_turns(const struct renderer *renderer)
+{
+    return (uint64_t)renderer->pose.light_count * lights_samples(renderer);
+}
+
+bool lights_take_turn(const struct renderer *renderer, uint32_t turn)
+{
+    uint32_t samples = lights_samples(renderer);
+    return turn % samples == 0 || is_flat(&renderer->pose.lights[turn / samples]);
+}
