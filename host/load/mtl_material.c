@@ -10,7 +10,7 @@
    for which the format gives no formula.
 
    How much a refracting class (4, 6, 7) lets through:
-     d < 1      1 - d, tinted by Tf where Tf has a hue
+     d < 1      1 - d; in classes 6 and 7 tinted by Tf where Tf has a hue
      else Tf    the filter, as the format says: 1 lets everything pass; but as 1 - Tf where Tf can
                 only be the share held back, see filter_is_inverted()
      neither    everything
@@ -239,10 +239,14 @@ static void set_transmission(struct scene *scene, const struct mtl_entry *entry,
     bool inverted = d >= 1 && filtered && filter_is_inverted(entry);
     for (int i = 0; i < 3; i++) {
         float pass = filtered ? fminf(inverted ? 1 - tf[i] : tf[i], 1.0f) : 1.0f;
+        bool tinted = filtered && largest(tf) > 0 && out->illum != 4;
         if (d < 1)
-            pass = filtered && largest(tf) > 0 ? (1 - d) * tf[i] / largest(tf) : 1 - d;
+            pass = tinted ? (1 - d) * tf[i] / largest(tf) : 1 - d;
         /* Class 6 refracts what Ks does not reflect; with Fresnel the angle shares them out. */
         out->transmission[i] = out->illum == 6 ? pass * fmaxf(1 - out->specular[i], 0) : pass;
+        /* What is dissolved has no colour of its own either. */
+        out->diffuse[i] *= fminf(fmaxf(d, 0.0f), 1.0f);
+        out->ambient[i] *= fminf(fmaxf(d, 0.0f), 1.0f);
     }
     if (inverted)
         scene_note(scene, SCENE_NOTE_INFO,

@@ -1,0 +1,252 @@
+/* What each class of an MTL draws, by the format's formulas: one strip for each material, from the
+   file to the pixel. */
+#include <unistd.h>
+
+#include "load/load.h"
+#include "render_fixture.h"
+
+/* The eye looks down on the strips at 60 degrees to their normal; the light comes in at 30. */
+#define COS_VIEW   0.5
+#define COS_LIGHT  0.86602540378443865
+#define COS_HALF   0.70710678118654752
+#define COS_INSIDE 0.81649658092772603 /* behind a surface of index 1.5 */
+
+static const double zenith[3] = {0.2, 0.4, 0.9}, horizon[3] = {0.8, 0.7, 0.6},
+                    ground[3] = {0.1, 0.3, 0.2};
+static const double sun[3] = {0.9, 1.0, 0.8}, air[3] = {0.4, 0.3, 0.2};
+
+/* The material that all strips vary. */
+static const double ka[3] = {0.3, 0.2, 0.1}, kd[3] = {0.3, 0.35, 0.4}, ks[3] = {0.25, 0.5, 0},
+                    tf[3] = {0.5, 1, 0.25};
+#define COMMON           "Ka 0.3 0.2 0.1\nKd 0.3 0.35 0.4\nKs 0.25 0.5 0\nNs 4\nNi 1.5\nTf 0.5 1 0.25\n"
+/* Shares: of codes 188 as sRGB, 51 and 128 as numbers. */
+#define PICTURE_COLOR    0.50288646
+#define PICTURE_SPECULAR (51.0 / 255.0)
+#define PICTURE_EXPONENT (128.0 / 255.0)
+#define FRESNEL_60       0.08919
+
+struct strip {
+    const char *name, *text;
+    double ambient, diffuse; /* shares of these that are seen */
+    double exponent;         /* of the highlight; 0: no highlight */
+    double mirrored;         /* Ks times this of what is reflected */
+    double fresnel;          /* of what is reflected, beside Ks */
+    double straight;         /* of what is behind, straight on */
+    double refracted;        /* Tf times this of what is behind, bent */
+    double less_ks;          /* the last times 1 - this Ks */
+    double plain, emitted;
+};
+
+static const struct strip strips[] = {
+    {.name = "0", .text = "illum 0", .plain = 1},
+    {.name = "1", .text = "illum 1", .ambient = 1, .diffuse = 1},
+    {.name = "2", .text = "illum 2", .ambient = 1, .diffuse = 1, .exponent = 4},
+    {.name = "3", .text = "illum 3", .ambient = 1, .diffuse = 1, .exponent = 4, .mirrored = 1},
+    {.name = "4",
+     .text = "illum 4\nd 0.25",
+     .ambient = 0.25,
+     .diffuse = 0.25,
+     .exponent = 4,
+     .mirrored = 1,
+     .straight = 0.75},
+    /* (1 - 0.5)^5 of what is missing to 1 */
+    {.name = "5",
+     .text = "illum 5",
+     .ambient = 1,
+     .diffuse = 1,
+     .exponent = 4,
+     .mirrored = 1 - 0.03125,
+     .fresnel = 0.03125},
+    {.name = "6",
+     .text = "illum 6",
+     .ambient = 1,
+     .diffuse = 1,
+     .exponent = 4,
+     .mirrored = 1,
+     .refracted = 1,
+     .less_ks = 1},
+    {.name = "7",
+     .text = "illum 7",
+     .ambient = 1,
+     .diffuse = 1,
+     .exponent = 4,
+     .fresnel = FRESNEL_60,
+     .refracted = 1 - FRESNEL_60},
+    {.name = "8", .text = "illum 8", .ambient = 1, .diffuse = 1, .exponent = 4},
+    {.name = "9",
+     .text = "illum 9\nTr 0.25",
+     .ambient = 0.75,
+     .diffuse = 0.75,
+     .exponent = -4,
+     .straight = 0.25},
+    {.name = "map_Kd",
+     .text = "illum 1\nmap_Kd color.png",
+     .ambient = PICTURE_COLOR,
+     .diffuse = PICTURE_COLOR},
+    {.name = "map_Ks",
+     .text = "illum 3\nmap_Ks fifth.png",
+     .ambient = 1,
+     .diffuse = 1,
+     .exponent = 4,
+     .mirrored = PICTURE_SPECULAR},
+    {.name = "map_Ns",
+     .text = "illum 2\nmap_Ns half.png",
+     .ambient = 1,
+     .diffuse = 1,
+     .exponent = 4 * PICTURE_EXPONENT},
+    {.name = "Ke", .text = "illum 1\nKe 0.1 0.1 0.1", .ambient = 1, .diffuse = 1, .emitted = 0.1},
+    {.name = "map_Ke",
+     .text = "illum 1\nKe 0.1 0.1 0.1\nmap_Ke color.png",
+     .ambient = 1,
+     .diffuse = 1,
+     .emitted = 0.1 * PICTURE_COLOR},
+    {.name = "map_d clear", .text = "illum 1\nmap_d fifth.png", .straight = 1},
+    {.name = "map_d solid", .text = "illum 1\nmap_d half.png", .ambient = 1, .diffuse = 1},
+    {.name = "map_d -mm", .text = "illum 1\nmap_d -mm 0.4 1 fifth.png", .ambient = 1, .diffuse = 1},
+};
+enum { STRIPS = sizeof strips / sizeof *strips };
+
+/* What a ray that misses sees, at this cosine to the way up. */
+static double sky(double up, int c)
+{
+    double far = up > 0 ? zenith[c] : ground[c];
+    return horizon[c] + (far - horizon[c]) * fabs(up);
+}
+
+static double expected(const struct strip *s, int c)
+{
+    double seen = s->plain * kd[c] + s->emitted + s->ambient * ka[c] * air[c] +
+                  s->diffuse * kd[c] * COS_LIGHT * sun[c];
+    double exponent = fabs(s->exponent), share = s->exponent < 0 ? 1 - s->straight : 1;
+    bool mapped = strcmp(s->name, "map_Ks") == 0;
+    if (exponent > 0)
+        seen += share * ks[c] * (mapped ? PICTURE_SPECULAR : 1) * pow(COS_HALF, exponent) * sun[c];
+    seen += (s->mirrored * ks[c] + s->fresnel) * sky(COS_VIEW, c);
+    seen += s->straight * sky(-COS_VIEW, c);
+    return seen + s->refracted * tf[c] * (1 - s->less_ks * ks[c]) * sky(-COS_INSIDE, c);
+}
+
+static void write_text(const char *folder, const char *name, const char *text)
+{
+    char *path = string_format("%s/%s", folder, name);
+    assert_non_null(path);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    free(path);
+}
+
+static void write_picture(const char *folder, const char *name, int code)
+{
+    struct image image;
+    char *path = string_format("%s/%s", folder, name);
+    assert_non_null(path);
+    assert_int_equal(image_init(&image, 1, 1, 3, false), WHIT_OK);
+    for (int k = 0; k < 3; k++)
+        image.pixels[k] = image_linear_from_srgb((float)code / 255.0f);
+    assert_int_equal(image_save(&fixture_log, &image, path, NULL, 0), WHIT_OK);
+    image_finish(&image);
+    free(path);
+}
+
+/* Strip i lies at y = 0 from x = i to i + 1. */
+static struct scene *load_strips(void)
+{
+    static const char *const files[] = {"a.obj", "a.mtl", "color.png", "fifth.png", "half.png"};
+    static char obj[16384], mtl[16384];
+    char folder[] = "/tmp/whit-mtl-XXXXXX";
+    size_t to = (size_t)snprintf(obj, sizeof obj, "mtllib a.mtl\nvt 0.5 0.5\n"), at = 0;
+    for (int i = 0; i < STRIPS; i++) {
+        to += (size_t)snprintf(obj + to, sizeof obj - to,
+                               "v %d 0 1\nv %d 0 1\nv %d 0 -1\nv %d 0 -1\nusemtl m%d\n"
+                               "f -4/1 -3/1 -2/1 -1/1\n",
+                               i, i + 1, i + 1, i, i);
+        at += (size_t)snprintf(mtl + at, sizeof mtl - at, "newmtl m%d\n" COMMON "%s\n", i,
+                               strips[i].text);
+    }
+    assert_true(to < sizeof obj && at < sizeof mtl);
+    assert_non_null(mkdtemp(folder));
+    write_text(folder, "a.obj", obj);
+    write_text(folder, "a.mtl", mtl);
+    write_picture(folder, "color.png", 188);
+    write_picture(folder, "fifth.png", 51);
+    write_picture(folder, "half.png", 128);
+    struct scene *scene = scene_create(&fixture_log, "classes");
+    assert_non_null(scene);
+    char *path = string_format("%s/a.obj", folder);
+    assert_int_equal(load_model(scene, path, SCENE_NONE, false, false, NULL), WHIT_OK);
+    free(path);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        path = string_format("%s/%s", folder, files[i]);
+        assert_int_equal(unlink(path), 0);
+        free(path);
+    }
+    assert_int_equal(rmdir(folder), 0);
+    return scene;
+}
+
+static void set_rgb(float *out, const double *rgb)
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)rgb[k];
+}
+
+static void light_and_look(struct scene *scene)
+{
+    scene->has_environment = true;
+    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
+    set_rgb(scene->environment.scale, (double[]){1, 1, 1});
+    set_rgb(scene->environment.zenith, zenith);
+    set_rgb(scene->environment.horizon, horizon);
+    set_rgb(scene->environment.ground, ground);
+    scene->has_ambient = true;
+    set_rgb(scene->ambient, air);
+    struct scene_light light = {.name = string_copy("sun"),
+                                .kind = SCENE_LIGHT_DIRECTIONAL,
+                                .node = SCENE_NONE,
+                                .direction = {0, -COS_LIGHT, -0.5}};
+    set_rgb(light.color, sun);
+    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    /* One pixel a strip, through its middle. */
+    struct scene_camera camera = {.name = string_copy("camera"),
+                                  .kind = SCENE_CAMERA_ORTHOGRAPHIC,
+                                  .node = SCENE_NONE,
+                                  .eye = {0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
+                                  .target = {0.5 * STRIPS, 0, 0},
+                                  .up = {0, 1, 0},
+                                  .height = 1};
+    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+}
+
+static void classes_mean_what_the_format_says(void **state)
+{
+    (void)state;
+    struct scene *scene = load_strips();
+    light_and_look(scene);
+    const struct render_params params = {.width = STRIPS, .height = 1, .depth = 8, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = {0};
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
+    int bad = 0;
+    for (int i = 0; i < STRIPS; i++)
+        for (int c = 0; c < 3; c++) {
+            double value = (double)image.pixels[4 * i + c], right = expected(&strips[i], c);
+            if (fabs(value - right) <= 1e-5)
+                continue;
+            print_message("  %s, channel %d: %.6f is not %.6f\n", strips[i].name, c, value, right);
+            bad++;
+        }
+    assert_int_equal(bad, 0);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(classes_mean_what_the_format_says),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
