@@ -43,15 +43,10 @@ static void make_boxes(void *user, uint32_t index)
     const struct box_context *context = user;
     const struct scene_mesh *mesh = context->mesh;
     uint32_t begin = index * SPAN_RECORDS;
-    uint32_t left = mesh->triangle_count - begin;
+    uint32_t left = scene_mesh_primitives(mesh) - begin;
     uint32_t end = begin + (left < SPAN_RECORDS ? left : SPAN_RECORDS);
-    for (uint32_t i = begin; i < end; ++i) {
-        const uint32_t *corner = &mesh->indices[3 * (size_t)i];
-        const float *a = &mesh->positions[3 * (size_t)corner[0]];
-        const float *b = &mesh->positions[3 * (size_t)corner[1]];
-        const float *c = &mesh->positions[3 * (size_t)corner[2]];
-        context->boxes[i] = accel_triangle_box(a, b, c);
-    }
+    for (uint32_t i = begin; i < end; ++i)
+        context->boxes[i] = accel_primitive_box(mesh, i);
 }
 
 static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_t thread_count)
@@ -60,23 +55,23 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     const struct scene_mesh *mesh = &accel->scene->meshes[index];
     struct bvh_params params = accel->params.mesh;
     params.thread_count = thread_count;
+    uint32_t count = scene_mesh_primitives(mesh);
     whit_result result = WHIT_ERROR_MEMORY;
-    struct bvh_box *boxes = array_alloc(mesh->triangle_count, sizeof *boxes);
+    struct bvh_box *boxes = array_alloc(count, sizeof *boxes);
     bool split = params.builder == BVH_SPATIAL;
-    uint8_t *whole = split ? array_alloc(mesh->triangle_count, 1) : NULL;
+    uint8_t *whole = split ? array_alloc(count, 1) : NULL;
     if (!boxes || (split && !whole)) {
         log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
                   mesh->name);
         goto done;
     }
     struct box_context context = {mesh, boxes};
-    threads_for(thread_count, (mesh->triangle_count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes,
-                &context);
+    threads_for(thread_count, (count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes, &context);
     if (split)
         material_bits_whole(accel->scene, creation->materials, mesh, whole);
     const struct bvh_triangles triangles = {mesh->positions, mesh->indices, whole};
     params.triangles = &triangles;
-    result = bvh_build(&accel->log, boxes, mesh->triangle_count, &params, &creation->trees[index]);
+    result = bvh_build(&accel->log, boxes, count, &params, &creation->trees[index]);
 done:
     free(whole);
     free(boxes);
@@ -99,14 +94,15 @@ static whit_result check_whole(const struct creation *creation, uint32_t index)
     whit_result result = WHIT_OK;
     if (tree->reference_count == tree->primitive_count)
         return WHIT_OK;
-    uint8_t *whole = array_alloc(mesh->triangle_count, 1);
+    uint8_t *whole = array_alloc(scene_mesh_primitives(mesh), 1);
     if (!whole)
         return WHIT_ERROR_MEMORY;
     material_bits_whole(accel->scene, creation->materials, mesh, whole);
     for (uint32_t i = 0; result == WHIT_OK && i < tree->reference_count; ++i) {
         uint8_t *once = &whole[tree->order[i]];
         if (*once == 2) {
-            log_error(&accel->log, "%s: mesh %s: it splits a triangle that filters light (%u)",
+            log_error(&accel->log,
+                      "%s: mesh %s: it splits a triangle that filters light, or a sphere (%u)",
                       accel->params.tree_file, mesh->name, tree->order[i]);
             result = WHIT_ERROR_INPUT;
         }
@@ -134,7 +130,7 @@ static whit_result meshes_build(struct creation *creation)
     if (accel->params.tree_file)
         return trees_read(creation);
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
-        if (accel->scene->meshes[i].triangle_count < MESH_LARGE)
+        if (scene_mesh_primitives(&accel->scene->meshes[i]) < MESH_LARGE)
             creation->small[creation->small_count++] = i;
         else
             creation->results[i] = mesh_build(creation, i, threads);
@@ -174,11 +170,11 @@ static struct bvh_box node_box(const struct gpu_bvh_node *node)
 static struct bvh_box mesh_box(const struct scene_mesh *mesh)
 {
     struct bvh_box box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-    for (size_t i = 0; i < 3 * (size_t)mesh->triangle_count; ++i) {
-        const float *p = &mesh->positions[3 * (size_t)mesh->indices[i]];
+    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i) {
+        struct bvh_box own = accel_primitive_box(mesh, i);
         for (int k = 0; k < 3; ++k) {
-            box.lo[k] = p[k] < box.lo[k] ? p[k] : box.lo[k];
-            box.hi[k] = p[k] > box.hi[k] ? p[k] : box.hi[k];
+            box.lo[k] = own.lo[k] < box.lo[k] ? own.lo[k] : box.lo[k];
+            box.hi[k] = own.hi[k] > box.hi[k] ? own.hi[k] : box.hi[k];
         }
     }
     return box;

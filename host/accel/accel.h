@@ -168,6 +168,11 @@ uint32_t accel_stack_size(const struct accel *accel);
 void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
                     uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
                     struct gpu_cost *cost, uint32_t *status);
+/* All hits of a ray one after the other, in the order of (t, instance, primitive): the first one
+   where `before` is NULL, else the one behind *before, a hit of the same ray. `hit` may be
+   `before`. */
+void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
+                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status);
 /* The same answer without any tree: every triangle of every instance. */
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
                           struct gpu_hit *hit);

@@ -84,6 +84,34 @@ double epo_clipped_area(const float a[3], const float b[3], const float c[3],
     return polygon_area(&polygon);
 }
 
+/* Of a sphere, from points that are spread evenly over it: turns of the golden angle on circles of
+   equal area. To a few percent. */
+static double epo_sphere_area(const float center[3], float radius, const struct bvh_box *box)
+{
+    enum { POINTS = 256 };
+    const double golden_angle = 2.399963229728653, pi = 3.141592653589793;
+    double r = (double)radius;
+    uint32_t inside = 0;
+    for (int i = 0; i < POINTS; ++i) {
+        double height = 1.0 - (2.0 * i + 1.0) / POINTS, ring = sqrt(1.0 - height * height);
+        const double dir[3] = {ring * cos(golden_angle * i), height, ring * sin(golden_angle * i)};
+        bool in = true;
+        for (int k = 0; k < 3; ++k) {
+            double at = (double)center[k] + r * dir[k];
+            in &= at >= (double)box->lo[k] && at <= (double)box->hi[k];
+        }
+        inside += in;
+    }
+    return 4.0 * pi * r * r * inside / POINTS;
+}
+
+static double epo_area(const struct gpu_triangle *record, const struct bvh_box *box)
+{
+    if (record->flags & TRIANGLE_SPHERE)
+        return epo_sphere_area(record->v0, record->v1[0], box);
+    return epo_clipped_area(record->v0, record->v1, record->v2, box);
+}
+
 /* ---- One tree ---- */
 
 /* A triangle in a leaf. Sorted, the places of one triangle are side by side. */
@@ -165,7 +193,7 @@ static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t nod
     struct bvh_box box;
     memcpy(box.lo, at->lo, sizeof box.lo);
     memcpy(box.hi, at->hi, sizeof box.hi);
-    double area = epo_clipped_area(t->v0, t->v1, t->v2, &box);
+    double area = epo_area(t, &box);
     if (area == 0.0)
         return;
     uint32_t count = bvh_count(at);
@@ -188,7 +216,7 @@ static void run_task(void *context, uint32_t index)
     struct bvh_epo sum = {0};
     for (uint32_t i = begin; i < end; ++i) {
         const struct gpu_triangle *t = &walk->triangles[walk->places[walk->firsts[i]].record];
-        sum.surface += epo_clipped_area(t->v0, t->v1, t->v2, &everything);
+        sum.surface += epo_area(t, &everything);
         add_overlap(walk, i, walk->first_node, &sum.overlap);
     }
     walk->sums[index] = sum;

@@ -45,6 +45,7 @@ static uint64_t geometry_hash(const struct scene *scene)
         const struct scene_mesh *mesh = &scene->meshes[i];
         value = hash_bytes(value, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
         value = hash_bytes(value, mesh->indices, 3 * sizeof(uint32_t) * mesh->triangle_count);
+        value = hash_bytes(value, mesh->spheres, 4 * sizeof(float) * mesh->sphere_count);
     }
     return value;
 }
@@ -258,7 +259,7 @@ static whit_result read_arrays(struct reader *reader, const struct scene_mesh *m
         order_bytes = (uint64_t)header.reference_count * sizeof *tree->order;
         fits = node_bytes + order_bytes <= reader->size_bytes - reader->offset;
     }
-    if (!fits || header.primitive_count != mesh->triangle_count ||
+    if (!fits || header.primitive_count != scene_mesh_primitives(mesh) ||
         header.reference_count < header.primitive_count ||
         (header.primitive_count == 0 && header.reference_count != 0))
         REFUSE(reader, "%s: mesh %s: its counts do not fit the file", reader->path, reader->mesh);
@@ -295,12 +296,8 @@ static void on_violation(void *user, whit_log_level level, const char *message)
 
 static void make_boxes(const struct scene_mesh *mesh, struct bvh_box *boxes)
 {
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
-        const uint32_t *corner = &mesh->indices[3 * (size_t)i];
-        boxes[i] = accel_triangle_box(&mesh->positions[3 * (size_t)corner[0]],
-                                      &mesh->positions[3 * (size_t)corner[1]],
-                                      &mesh->positions[3 * (size_t)corner[2]]);
-    }
+    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i)
+        boxes[i] = accel_primitive_box(mesh, i);
 }
 
 static uint32_t primitive_at(const void *user, uint32_t slot)
@@ -334,7 +331,7 @@ static whit_result check_tree(struct reader *reader, const struct scene_mesh *me
 {
     const struct log log = {.fn = on_violation, .user = reader, .level = WHIT_LOG_ERROR};
     uint32_t limit = reader->params->leaf_limit ? reader->params->leaf_limit : 4;
-    struct bvh_box *boxes = array_alloc(mesh->triangle_count, sizeof *boxes);
+    struct bvh_box *boxes = array_alloc(scene_mesh_primitives(mesh), sizeof *boxes);
     if (!boxes) {
         log_error(reader->log, "%s: out of memory", reader->path);
         return WHIT_ERROR_MEMORY;
@@ -342,7 +339,8 @@ static whit_result check_tree(struct reader *reader, const struct scene_mesh *me
     make_boxes(mesh, boxes);
     whit_result result = bvh_validate(&log, tree, boxes, limit);
     free(boxes);
-    if (result == WHIT_OK && tree->reference_count > tree->primitive_count)
+    /* Spheres in parts are refused later on, by name. */
+    if (result == WHIT_OK && tree->reference_count > tree->primitive_count && !mesh->sphere_count)
         result = check_parts(&log, mesh, tree);
     if (result != WHIT_OK) {
         log_error(reader->log, "%s: mesh %s: %s", reader->path, reader->mesh, reader->violation);

@@ -340,21 +340,33 @@ static uint32_t mesh_primitive(const void *user, uint32_t slot)
 static bool mesh_primitive_box(const void *user, uint32_t slot, struct bvh_box *box)
 {
     const struct gpu_triangle *t = &((const struct mesh_user *)user)->accel->triangles[slot];
-    *box = accel_triangle_box(t->v0, t->v1, t->v2);
+    *box = accel_record_box(t);
     return true;
+}
+
+static bool record_matches(const struct scene_mesh *mesh, const struct gpu_triangle *t)
+{
+    const float *v[3] = {t->v0, t->v1, t->v2};
+    bool same = true;
+    if (!(t->flags & TRIANGLE_SPHERE) != !mesh->sphere_count)
+        return false;
+    if (mesh->sphere_count) {
+        const float *sphere = &mesh->spheres[4 * (size_t)t->primitive];
+        return memcmp(t->v0, sphere, sizeof t->v0) == 0 && t->v1[0] == sphere[3];
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        uint32_t corner = mesh->indices[3 * (size_t)t->primitive + k];
+        same &= memcmp(v[k], &mesh->positions[3 * (size_t)corner], 3 * sizeof(float)) == 0;
+    }
+    return same;
 }
 
 static bool triangles_match(const struct view *view, const struct mesh_user *user)
 {
     for (uint32_t i = 0; i < view->slot_count; ++i) {
         const struct gpu_triangle *t = &user->accel->triangles[view->first_slot + i];
-        const uint32_t *corner = &user->mesh->indices[3 * (size_t)t->primitive];
-        const float *v[3] = {t->v0, t->v1, t->v2};
-        for (int k = 0; k < 3; ++k) {
-            const float *p = &user->mesh->positions[3 * (size_t)corner[k]];
-            if (memcmp(v[k], p, 3 * sizeof *p) != 0)
-                REFUSE(view, "a record is not its triangle", view->first_slot + i);
-        }
+        if (!record_matches(user->mesh, t))
+            REFUSE(view, "a record is not its triangle", view->first_slot + i);
     }
     return true;
 }
@@ -392,7 +404,7 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
                   m->node_count <= accel->node_count - m->first_node &&
                   m->first_triangle <= accel->record_count &&
                   m->record_count <= accel->record_count - m->first_triangle &&
-                  m->triangle_count == user.mesh->triangle_count;
+                  m->triangle_count == scene_mesh_primitives(user.mesh);
     if (!placed) {
         refuse(&view, "its nodes or triangles are out of range, mesh", index);
         return WHIT_ERROR_FAILED;
@@ -423,7 +435,7 @@ static uint32_t flat_primitive(const void *user, uint32_t slot)
     if (instance >= accel->instance_count)
         return UINT32_MAX;
     uint32_t mesh = accel->scene->instances[instance].mesh;
-    if (t->primitive >= accel->scene->meshes[mesh].triangle_count)
+    if (t->primitive >= scene_mesh_primitives(&accel->scene->meshes[mesh]))
         return UINT32_MAX;
     return accel_flat_first(accel->world, instance) + t->primitive;
 }
@@ -446,6 +458,22 @@ static bool is_placed(const struct gpu_instance *in, const float *p, const float
     return placed;
 }
 
+static bool record_is_placed(const struct gpu_instance *in, const struct scene_mesh *mesh,
+                             const struct gpu_triangle *t)
+{
+    if (!(t->flags & TRIANGLE_SPHERE) != !mesh->sphere_count)
+        return false;
+    if (mesh->sphere_count) {
+        const float *sphere = &mesh->spheres[4 * (size_t)t->primitive];
+        double radius = (double)sphere[3] * (double)in->forward0[0];
+        return is_placed(in, sphere, t->v0) && fabs(radius - (double)t->v1[0]) <= radius * 0x1p-21;
+    }
+    const uint32_t *corner = &mesh->indices[3 * (size_t)t->primitive];
+    return is_placed(in, &mesh->positions[3 * (size_t)corner[0]], t->v0) &&
+           is_placed(in, &mesh->positions[3 * (size_t)corner[1]], t->v1) &&
+           is_placed(in, &mesh->positions[3 * (size_t)corner[2]], t->v2);
+}
+
 static bool flat_records_match(const struct view *view, const struct accel *accel)
 {
     for (uint32_t i = 0; i < accel->record_count; ++i) {
@@ -453,10 +481,7 @@ static bool flat_records_match(const struct view *view, const struct accel *acce
         uint32_t instance = t->flags >> TRIANGLE_INSTANCE_SHIFT;
         const struct gpu_instance *in = &accel->instances[instance];
         const struct scene_mesh *mesh = &accel->scene->meshes[in->mesh];
-        const uint32_t *corner = &mesh->indices[3 * (size_t)t->primitive];
-        if (!is_placed(in, &mesh->positions[3 * (size_t)corner[0]], t->v0) ||
-            !is_placed(in, &mesh->positions[3 * (size_t)corner[1]], t->v1) ||
-            !is_placed(in, &mesh->positions[3 * (size_t)corner[2]], t->v2))
+        if (!record_is_placed(in, mesh, t))
             REFUSE(view, "a record is not its triangle", i);
     }
     return true;

@@ -23,6 +23,13 @@ static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh
 {
     uint32_t inside = 0;
     int point = 0;
+    if (t->flags & TRIANGLE_SPHERE) {
+        struct bvh_box box = accel_record_box(t);
+        bool in = true;
+        for (int axis = 0; axis < 3; ++axis)
+            in &= box.lo[axis] >= node->lo[axis] && box.hi[axis] <= node->hi[axis];
+        return in ? (1u << POINTS) - 1 : 0;
+    }
     for (int i = 0; i <= STEPS; ++i) {
         for (int j = 0; i + j <= STEPS; ++j, ++point) {
             bool in = true;

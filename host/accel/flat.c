@@ -1,5 +1,6 @@
-/* One tree over the triangles of all instances, in world space: the scene without instancing. Each
-   vertex is placed in double and rounded once. */
+/* One tree over the primitives of all instances, in world space: the scene without instancing. Each
+   vertex is placed in double and rounded once, and so are a sphere's centre and radius, where the
+   transform leaves it a sphere that is not turned: moved, and scaled alike along all axes. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -82,6 +83,12 @@ static bool fits_memory(uint64_t triangles)
     return triangles <= (uint64_t)pages * (uint64_t)page_bytes / BYTES_A_TRIANGLE;
 }
 
+/* The centre stands for a sphere's vertices. */
+static uint32_t placed_vertices(const struct scene_mesh *mesh)
+{
+    return mesh->sphere_count ? mesh->sphere_count : mesh->vertex_count;
+}
+
 static whit_result place_instances(const struct accel *accel, struct accel_flat *flat)
 {
     const struct scene *scene = accel->scene;
@@ -90,8 +97,8 @@ static whit_result place_instances(const struct accel *accel, struct accel_flat 
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
         flat->first_triangle[i] = (uint32_t)triangles;
         flat->first_vertex[i] = (uint32_t)vertices;
-        triangles += mesh->triangle_count;
-        vertices += mesh->vertex_count;
+        triangles += scene_mesh_primitives(mesh);
+        vertices += placed_vertices(mesh);
     }
     flat->first_triangle[scene->instance_count] = (uint32_t)triangles;
     flat->first_vertex[scene->instance_count] = (uint32_t)vertices;
@@ -99,8 +106,8 @@ static whit_result place_instances(const struct accel *accel, struct accel_flat 
         return refuse_size(accel, triangles);
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-        uint32_t larger =
-            mesh->triangle_count > mesh->vertex_count ? mesh->triangle_count : mesh->vertex_count;
+        uint32_t primitives = scene_mesh_primitives(mesh), placed = placed_vertices(mesh);
+        uint32_t larger = primitives > placed ? primitives : placed;
         for (uint32_t begin = 0; begin < larger; begin += SPAN) {
             uint32_t end = larger - begin < SPAN ? larger : begin + SPAN;
             if (!ARRAY_PUSH(flat->spans, flat->span_count, flat->span_capacity,
@@ -117,10 +124,10 @@ static void describe_meshes(const struct scene *scene, struct accel_flat *flat)
     for (uint32_t i = 0; i < scene->mesh_count; ++i) {
         flat->meshes[i] = (struct accel_mesh){
             .root = BVH_EMPTY_REF,
-            .triangle_count = scene->meshes[i].triangle_count,
+            .triangle_count = scene_mesh_primitives(&scene->meshes[i]),
             .shade_base = shade_base,
         };
-        shade_base += scene->meshes[i].triangle_count;
+        shade_base += scene_mesh_primitives(&scene->meshes[i]);
     }
 }
 
@@ -167,17 +174,42 @@ static void place_vertices(void *user, uint32_t index)
     struct flat_span *span = &f->accel->world->spans[index];
     const struct scene_mesh *mesh = mesh_of(f, span->instance);
     const struct affine *forward = &f->pose->instances[span->instance];
-    uint32_t end = span->end < mesh->vertex_count ? span->end : mesh->vertex_count;
+    uint32_t placed = placed_vertices(mesh);
+    uint32_t end = span->end < placed ? span->end : placed;
     float *out = f->positions + 3 * (size_t)f->accel->world->first_vertex[span->instance];
     span->bad = false;
     for (uint32_t v = span->begin; v < end; ++v) {
-        const float *p = mesh->positions + 3 * (size_t)v;
+        const float *p =
+            mesh->sphere_count ? mesh->spheres + 4 * (size_t)v : mesh->positions + 3 * (size_t)v;
         double world[3];
         affine_point(forward, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, world);
         for (int i = 0; i < 3; ++i) {
             span->bad |= !(fabs(world[i]) <= COORDINATE_MOST);
             out[3 * (size_t)v + (size_t)i] = (float)world[i];
         }
+    }
+}
+
+/* In world space. */
+static float placed_radius(const struct flattening *f, uint32_t instance, uint32_t sphere)
+{
+    double radius = (double)mesh_of(f, instance)->spheres[4 * (size_t)sphere + 3];
+    return (float)(radius * f->pose->instances[instance].m[0]);
+}
+
+static void place_spheres(struct flattening *f, const struct flat_span *span)
+{
+    const struct accel_flat *flat = f->accel->world;
+    uint32_t count = mesh_of(f, span->instance)->sphere_count;
+    uint32_t end = span->end < count ? span->end : count;
+    uint32_t first = flat->first_triangle[span->instance];
+    uint32_t first_vertex = flat->first_vertex[span->instance];
+    for (uint32_t s = span->begin; s < end; ++s) {
+        uint32_t *corner = &f->indices[3 * ((size_t)first + s)];
+        corner[0] = corner[1] = corner[2] = first_vertex + s;
+        f->boxes[first + s] = accel_sphere_box(&f->positions[3 * (size_t)corner[0]],
+                                               placed_radius(f, span->instance, s));
+        f->owners[first + s] = span->instance;
     }
 }
 
@@ -198,6 +230,8 @@ static void place_triangles(void *user, uint32_t index)
                                                  &f->positions[3 * (size_t)corner[2]]);
         f->owners[first + t] = span->instance;
     }
+    if (mesh->sphere_count)
+        place_spheres(f, span);
     if (f->whole && span->begin == 0)
         material_bits_whole(f->accel->scene, flat->materials, mesh, f->whole + first);
 }
@@ -217,6 +251,29 @@ static whit_result refuse_range(const struct flattening *f)
     return WHIT_OK;
 }
 
+static bool keeps_spheres(const struct affine *forward)
+{
+    const double *m = forward->m;
+    return m[0] > 0.0 && m[5] == m[0] && m[10] == m[0] && m[1] == 0.0 && m[2] == 0.0 &&
+           m[4] == 0.0 && m[6] == 0.0 && m[8] == 0.0 && m[9] == 0.0;
+}
+
+static whit_result refuse_spheres(const struct flattening *f)
+{
+    const struct accel *accel = f->accel;
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        if (!mesh_of(f, i)->sphere_count || keeps_spheres(&f->pose->instances[i]))
+            continue;
+        const char *name = accel->scene->instances[i].name;
+        log_error(&accel->log,
+                  "%s: instance %u `%s`: spheres that are turned, mirrored or stretched need "
+                  "instances",
+                  accel->scene->name, i, name ? name : "");
+        return WHIT_ERROR_INPUT;
+    }
+    return WHIT_OK;
+}
+
 static whit_result world_build(struct flattening *f)
 {
     struct accel *accel = f->accel;
@@ -225,6 +282,9 @@ static whit_result world_build(struct flattening *f)
     uint32_t count = flat->first_triangle[accel->instance_count];
     uint32_t vertices = flat->first_vertex[accel->instance_count];
     bool split = accel->params.mesh.builder == BVH_SPATIAL;
+    whit_result result = refuse_spheres(f);
+    if (result != WHIT_OK)
+        return result;
     f->positions = array_alloc(vertices, 3 * sizeof *f->positions);
     f->indices = array_alloc(count, 3 * sizeof *f->indices);
     f->owners = array_alloc(count, sizeof *f->owners);
@@ -233,7 +293,7 @@ static whit_result world_build(struct flattening *f)
     if (!f->positions || !f->indices || !f->owners || !f->boxes || (split && !f->whole))
         return WHIT_ERROR_MEMORY;
     threads_for(threads, flat->span_count, place_vertices, f);
-    whit_result result = refuse_range(f);
+    result = refuse_range(f);
     if (result != WHIT_OK)
         return result;
     threads_for(threads, flat->span_count, place_triangles, f);
@@ -256,8 +316,12 @@ static void write_records(void *user, uint32_t index)
             material_bits_record(accel->scene, accel->world->materials, mesh_of(f, instance),
                                  triangle - accel->world->first_triangle[instance]);
         memcpy(record.v0, &f->positions[3 * (size_t)corner[0]], sizeof record.v0);
-        memcpy(record.v1, &f->positions[3 * (size_t)corner[1]], sizeof record.v1);
-        memcpy(record.v2, &f->positions[3 * (size_t)corner[2]], sizeof record.v2);
+        if (record.flags & TRIANGLE_SPHERE) {
+            record.v1[0] = record.v2[0] = placed_radius(f, instance, record.primitive);
+        } else {
+            memcpy(record.v1, &f->positions[3 * (size_t)corner[1]], sizeof record.v1);
+            memcpy(record.v2, &f->positions[3 * (size_t)corner[2]], sizeof record.v2);
+        }
         record.flags |= instance << TRIANGLE_INSTANCE_SHIFT;
         if (affine_determinant(&f->pose->instances[instance]) < 0.0)
             record.flags |= TRIANGLE_MIRRORED;

@@ -30,6 +30,9 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
         filters |= kept > 0.0;
         bits.shadow |= optical_depth(kept) << (10 * c);
     }
+    bool glassy = m->transmission[0] > 0 || m->transmission[1] > 0 || m->transmission[2] > 0;
+    if (m->one_sided && !glassy)
+        bits.flags |= TRIANGLE_ONE_SIDED;
     if (filters)
         bits.flags |= TRIANGLE_FILTER;
     else
@@ -41,7 +44,8 @@ void material_bits_scan(const struct scene *scene, struct material_bits *out)
 {
     bool area_lights = false;
     for (uint32_t i = 0; i < scene->light_count; ++i)
-        area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE;
+        area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE ||
+                       (scene->lights[i].made_by_whit && scene_light_is_flat(&scene->lights[i]));
     for (uint32_t i = 0; i < scene->material_count; ++i)
         out[i] = material_bits(&scene->materials[i], area_lights);
 }
@@ -49,10 +53,11 @@ void material_bits_scan(const struct scene *scene, struct material_bits *out)
 void material_bits_whole(const struct scene *scene, const struct material_bits *materials,
                          const struct scene_mesh *mesh, uint8_t *whole)
 {
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i) {
         uint32_t material = mesh->materials ? mesh->materials[i] : 0;
-        whole[i] =
+        bool filters =
             material < scene->material_count && (materials[material].flags & TRIANGLE_FILTER) != 0;
+        whole[i] = mesh->sphere_count || filters;
     }
 }
 
@@ -61,14 +66,21 @@ struct gpu_triangle material_bits_record(const struct scene *scene,
                                          const struct scene_mesh *mesh, uint32_t primitive)
 {
     struct gpu_triangle out = {.primitive = primitive};
-    const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
-    memcpy(out.v0, &mesh->positions[3 * (size_t)corner[0]], sizeof out.v0);
-    memcpy(out.v1, &mesh->positions[3 * (size_t)corner[1]], sizeof out.v1);
-    memcpy(out.v2, &mesh->positions[3 * (size_t)corner[2]], sizeof out.v2);
+    if (mesh->sphere_count) {
+        const float *sphere = &mesh->spheres[4 * (size_t)primitive];
+        memcpy(out.v0, sphere, sizeof out.v0);
+        out.v1[0] = out.v2[0] = sphere[3];
+        out.flags = TRIANGLE_SPHERE;
+    } else {
+        const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
+        memcpy(out.v0, &mesh->positions[3 * (size_t)corner[0]], sizeof out.v0);
+        memcpy(out.v1, &mesh->positions[3 * (size_t)corner[1]], sizeof out.v1);
+        memcpy(out.v2, &mesh->positions[3 * (size_t)corner[2]], sizeof out.v2);
+    }
     uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
     if (material < scene->material_count) {
         const struct material_bits *bits = &materials[material];
-        out.flags = bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
+        out.flags |= bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
         out.shadow = bits->shadow;
     }
     return out;

@@ -4,6 +4,7 @@
 #include <float.h>
 
 #include "accel/intersect.h"
+#include "accel/sphere.h"
 
 #define REF_DONE                  0xffffffffu
 #define REF_ONE_PRIMITIVE         (1u << BVH_COUNT_SHIFT)
@@ -15,7 +16,8 @@ struct walk {
     const struct accel *accel;
     uint32_t order;
     bool any;
-    float t_min;
+    bool next; /* TRAVERSE_NEXT */
+    float t_min, hit_before;
     uint32_t skip_instance, skip_primitive;
     struct gpu_hit *hit; /* t is the largest that still counts */
     uint32_t triangle;   /* record of the hit */
@@ -90,34 +92,96 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     return b_first ? ref_b : ref_a;
 }
 
-static bool test_triangle(struct walk *walk, const struct ray_setup *ray, uint32_t record,
-                          uint32_t instance)
+/* Where a ray meets a primitive, if it does. */
+struct meeting {
+    bool met;
+    float t, u, v;
+};
+
+static struct meeting meet_triangle(const struct walk *walk, const struct ray_setup *ray,
+                                    const struct gpu_triangle *triangle)
+{
+    struct meeting m;
+    m.met = intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
+                               vec3_sub(vec3_load(triangle->v1), ray->origin),
+                               vec3_sub(vec3_load(triangle->v2), ray->origin), walk->t_min, &m.t,
+                               &m.u, &m.v);
+    return m;
+}
+
+static struct meeting meet_sphere(const struct walk *walk, const struct ray_setup *ray,
+                                  const struct chord *chord, bool at_exit, bool own)
+{
+    struct meeting m;
+    float at = at_exit ? chord->t_far : chord->t_near;
+    m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
+    m.t = at > chord->t_box ? at : chord->t_box;
+    square_from_dir(chord_end(ray, chord, at_exit), &m.u, &m.v);
+    return m;
+}
+
+static bool is_nearer(const struct gpu_hit *hit, const struct meeting *m, uint32_t instance,
+                      uint32_t primitive)
+{
+    return m->t < hit->t ||
+           (m->t == hit->t && (instance < hit->instance ||
+                               (instance == hit->instance && primitive < hit->primitive)));
+}
+
+/* TRAVERSE_NEXT: whether a hit comes after the known one. */
+static bool is_behind(const struct walk *walk, float t, uint32_t instance, uint32_t primitive)
+{
+    return t > walk->hit_before ||
+           (t == walk->hit_before &&
+            (instance > walk->skip_instance ||
+             (instance == walk->skip_instance && primitive > walk->skip_primitive)));
+}
+
+static bool accept_meeting(struct walk *walk, const struct meeting *m, uint32_t record,
+                           uint32_t instance)
+{
+    uint32_t primitive = walk->accel->triangles[record].primitive;
+    if (!m->met || !is_nearer(walk->hit, m, instance, primitive) ||
+        (walk->next && !is_behind(walk, m->t, instance, primitive)))
+        return false;
+    walk->hit->t = m->t;
+    walk->hit->u = m->u;
+    walk->hit->v = m->v;
+    walk->hit->primitive = primitive;
+    walk->hit->instance = instance;
+    walk->triangle = record;
+    return true;
+}
+
+static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                        uint32_t instance, bool own)
+{
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
+    bool at_exit = own || !(chord.t_near >= walk->t_min);
+    struct meeting m = meet_sphere(walk, ray, &chord, at_exit, own);
+    bool accepted = accept_meeting(walk, &m, record, instance);
+    if (walk->next && !accepted && !at_exit) {
+        m = meet_sphere(walk, ray, &chord, true, own);
+        accepted = accept_meeting(walk, &m, record, instance);
+    }
+    return accepted;
+}
+
+static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                        uint32_t instance)
 {
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     ++walk->cost.triangles;
     if (walk->accel->flat)
         instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
-    float t, u, v;
-    if (!intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
-                            vec3_sub(vec3_load(triangle->v1), ray->origin),
-                            vec3_sub(vec3_load(triangle->v2), ray->origin), walk->t_min, &t, &u,
-                            &v))
-        return false;
-    struct gpu_hit *hit = walk->hit;
-    uint32_t primitive = triangle->primitive;
-    bool nearer =
-        t < hit->t || (t == hit->t && (instance < hit->instance ||
-                                       (instance == hit->instance && primitive < hit->primitive)));
-    bool skipped = primitive == walk->skip_primitive && instance == walk->skip_instance;
-    if (!nearer || skipped)
-        return false;
-    hit->t = t;
-    hit->u = u;
-    hit->v = v;
-    hit->primitive = primitive;
-    hit->instance = instance;
-    walk->triangle = record;
-    return walk->any;
+    bool own = !walk->next && triangle->primitive == walk->skip_primitive &&
+               instance == walk->skip_instance;
+    if (triangle->flags & TRIANGLE_SPHERE)
+        return test_sphere(walk, ray, record, instance, own) && walk->any;
+    struct meeting m = meet_triangle(walk, ray, triangle);
+    m.met &= !own;
+    return accept_meeting(walk, &m, record, instance) && walk->any;
 }
 
 static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32_t root,
@@ -128,7 +192,7 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
         while (is_inner(ref))
             ref = step_pair(walk, ray, 1.0f, ref, base, &top);
         while (is_leaf(ref)) {
-            bool done = test_triangle(walk, ray, ref & BVH_FIRST_MASK, instance);
+            bool done = test_record(walk, ray, ref & BVH_FIRST_MASK, instance);
             ref += 1u - REF_ONE_PRIMITIVE;
             if (is_inner(ref) || done)
                 ++walk->cost.leaves;
@@ -185,13 +249,15 @@ static void traverse_instances(struct walk *walk, const struct gpu_ray *ray, uin
     }
 }
 
-/* (v1 - v0) x (v2 - v0), taken to world space by the inverse transpose. */
+/* (v1 - v0) x (v2 - v0), or that of a sphere, taken to world space by the inverse transpose. */
 static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t record)
 {
     const struct gpu_triangle *triangle = &accel->triangles[record];
     struct vec3 v0 = vec3_load(triangle->v0);
     struct vec3 n =
         vec3_cross(vec3_sub(vec3_load(triangle->v1), v0), vec3_sub(vec3_load(triangle->v2), v0));
+    if (triangle->flags & TRIANGLE_SPHERE)
+        n = dir_from_square(hit->u, hit->v);
     if (triangle->flags & TRIANGLE_MIRRORED && accel->flat)
         n = vec3_make(-n.x, -n.y, -n.z);
     if (!accel->single_identity && !accel->flat) {
@@ -270,7 +336,7 @@ static void traverse_records(struct walk *walk, const struct gpu_ray *ray)
                                      : local_ray(&accel->instances[i], ray);
         walk->cost.instances += !one_tree(accel) && mesh->record_count > 0;
         for (uint32_t k = 0; !done && k < mesh->record_count; ++k)
-            done = test_triangle(walk, &setup, mesh->first_triangle + k, i);
+            done = test_record(walk, &setup, mesh->first_triangle + k, i);
     }
 }
 
@@ -280,6 +346,7 @@ static void begin_walk(struct walk *walk, const struct accel *accel, const struc
     walk->accel = accel;
     walk->order = ORDER_DISTANCE;
     walk->any = false;
+    walk->next = false;
     walk->t_min = ray->t_min;
     walk->skip_instance = HIT_NONE;
     walk->skip_primitive = HIT_NONE;
@@ -310,6 +377,29 @@ void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_
     end_hit(hit, accel, walk.triangle);
     if (cost)
         add_cost(&walk.cost, cost);
+    *status |= walk.status;
+}
+
+void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
+                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
+{
+    struct walk walk;
+    struct gpu_hit found;
+    begin_walk(&walk, accel, ray, &found);
+    if (before) {
+        walk.next = true;
+        walk.hit_before = before->t;
+        walk.skip_instance = before->instance;
+        walk.skip_primitive = before->primitive;
+    }
+    if (ray_is_usable(ray)) {
+        if (accel->no_trees)
+            traverse_records(&walk, ray);
+        else
+            traverse_trees(&walk, ray);
+    }
+    end_hit(&found, accel, walk.triangle);
+    *hit = found;
     *status |= walk.status;
 }
 

@@ -61,6 +61,7 @@ typedef struct whit_scene_info {
         camera_count, note_count, effect_count;
     uint64_t mesh_triangle_count; /* each mesh once */
     uint64_t triangle_count;      /* over all instances */
+    uint64_t sphere_count;        /* likewise */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
     uint32_t channel_count;  /* animated properties of nodes */

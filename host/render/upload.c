@@ -114,7 +114,7 @@ static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint
     whit_result result = WHIT_OK;
     for (uint32_t m = 0; result == WHIT_OK && m < scene->mesh_count; ++m) {
         const struct scene_mesh *mesh = &scene->meshes[m];
-        for (uint32_t t = 0; result == WHIT_OK && t < mesh->triangle_count; ++t) {
+        for (uint32_t t = 0; result == WHIT_OK && t < scene_mesh_primitives(mesh); ++t) {
             memset(&slice[used], 0, words * sizeof *slice);
             fill(mesh, t, &slice[used]);
             used += words;
@@ -136,23 +136,27 @@ static void fill_material(const struct scene_mesh *mesh, uint32_t triangle, uint
     out[3] = mesh->materials[triangle];
 }
 
-/* Zeros for flat meshes: shading then takes the geometric normal. */
+/* Zeros for flat meshes and spheres: shading then takes the geometric normal. */
 static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
-    const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
     for (size_t k = 0; k < 3; ++k) {
         if (mesh->normals)
-            memcpy(&out[4 * k], &mesh->normals[3 * (size_t)corners[k]], 3 * sizeof(float));
+            memcpy(&out[4 * k], &mesh->normals[3 * (size_t)mesh->indices[3 * (size_t)triangle + k]],
+                   3 * sizeof(float));
         out[4 * k + 3] = mesh->materials[triangle];
     }
 }
 
 static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out, int set)
 {
+    /* Surfaces on spheres come with u and v in place of weights (shaders/bind/surface.glsl). */
+    static const float unit[6] = {0, 0, 1, 0, 0, 1};
     const float *uvs = mesh->uvs[set] ? mesh->uvs[set] : mesh->uvs[0];
-    const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
+    if (mesh->sphere_count)
+        memcpy(out, unit, sizeof unit);
     for (size_t k = 0; uvs && k < 3; ++k)
-        memcpy(&out[2 * k], &uvs[2 * (size_t)corners[k]], 2 * sizeof(float));
+        memcpy(&out[2 * k], &uvs[2 * (size_t)mesh->indices[3 * (size_t)triangle + k]],
+               2 * sizeof(float));
 }
 
 static void fill_first_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
@@ -174,9 +178,10 @@ static uint32_t pack_unorm2x16(float x, float y)
 static void fill_colors(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
     static const float white[4] = {1, 1, 1, 1};
-    const uint32_t *corners = &mesh->indices[3 * (size_t)triangle];
     for (size_t k = 0; k < 3; ++k) {
-        const float *color = mesh->colors ? &mesh->colors[4 * (size_t)corners[k]] : white;
+        const float *color =
+            mesh->colors ? &mesh->colors[4 * (size_t)mesh->indices[3 * (size_t)triangle + k]]
+                         : white;
         out[2 * k] = pack_unorm2x16(color[0], color[1]);
         out[2 * k + 1] = pack_unorm2x16(color[2], color[3]);
     }
@@ -205,7 +210,7 @@ static uint64_t lay_out_rows(struct renderer *renderer, uint32_t use_count)
     const bool *called = renderer->effects.called;
     uint64_t triangles = 0;
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
-        triangles += scene->meshes[i].triangle_count;
+        triangles += scene_mesh_primitives(&scene->meshes[i]);
     buffers->smooth_normals = called[SCENE_EFFECT_SMOOTH_NORMALS];
     buffers->uv_sets = use_count == 0 ? 0 : any_mesh(scene, has_second_uvs) ? 2 : 1;
     buffers->colors = called[SCENE_EFFECT_VERTEX_COLORS];

@@ -10,6 +10,7 @@
 
 struct cleaned {
     uint32_t out_of_range, not_finite, zero_area;
+    uint32_t spheres;
 };
 
 static bool usable_vertex(const float *p)
@@ -94,6 +95,26 @@ static whit_result drop_triangles(struct scene *scene, struct scene_mesh *mesh,
     return WHIT_OK;
 }
 
+static bool usable_sphere(const float *sphere)
+{
+    return usable_vertex(sphere) && sphere[3] > 0.0f && sphere[3] <= LARGEST_COORDINATE;
+}
+
+static void drop_spheres(struct scene_mesh *mesh, struct cleaned *count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < mesh->sphere_count; ++i) {
+        if (!usable_sphere(mesh->spheres + 4 * (size_t)i)) {
+            ++count->spheres;
+            continue;
+        }
+        memmove(mesh->spheres + 4 * (size_t)kept, mesh->spheres + 4 * (size_t)i,
+                4 * sizeof *mesh->spheres);
+        mesh->materials[kept++] = mesh->materials[i];
+    }
+    mesh->sphere_count = kept;
+}
+
 /* Vertices that only dropped triangles used; nothing may meet their values later. */
 static void zero_unusable_vertices(struct scene_mesh *mesh)
 {
@@ -115,6 +136,13 @@ static void set_bounds(struct scene_mesh *mesh)
         for (int k = 0; k < 3; ++k) {
             mesh->lo[k] = fminf(mesh->lo[k], p[k]);
             mesh->hi[k] = fmaxf(mesh->hi[k], p[k]);
+        }
+    }
+    for (uint32_t i = 0; i < mesh->sphere_count; ++i) {
+        const float *sphere = mesh->spheres + 4 * (size_t)i;
+        for (int k = 0; k < 3; ++k) {
+            mesh->lo[k] = fminf(mesh->lo[k], nextafterf(sphere[k] - sphere[3], -INFINITY));
+            mesh->hi[k] = fmaxf(mesh->hi[k], nextafterf(sphere[k] + sphere[3], INFINITY));
         }
     }
 }
@@ -260,6 +288,8 @@ static void report_dropped(struct scene *scene, const struct scene_mesh *mesh,
             mesh->name ? mesh->name : "",
             count->out_of_range + count->not_finite + count->zero_area, count->out_of_range,
             count->not_finite, count->zero_area);
+    report(scene, mesh, count->spheres,
+           "spheres dropped: centre or radius not finite or beyond 1e18, or no radius over 0");
 }
 
 whit_result freeze_clean_mesh(struct scene *scene, uint32_t index)
@@ -270,6 +300,7 @@ whit_result freeze_clean_mesh(struct scene *scene, uint32_t index)
     whit_result result = drop_triangles(scene, mesh, &dropped);
     if (result != WHIT_OK)
         return result;
+    drop_spheres(mesh, &dropped);
     zero_unusable_vertices(mesh);
     set_bounds(mesh);
     result = mend_normals(scene, mesh, &normals);

@@ -175,12 +175,16 @@ static whit_result check_mesh(struct scene *scene, uint32_t index)
     struct scene_mesh *mesh = &scene->meshes[index];
     if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->indices))
         return refuse(scene, "mesh", index, "it has no positions or no indices");
-    if (mesh->triangle_count && !mesh->materials) {
-        mesh->materials = array_alloc_zeroed(mesh->triangle_count, sizeof *mesh->materials);
+    if (mesh->sphere_count &&
+        (!mesh->spheres || mesh->triangle_count || mesh->vertex_count || mesh->group_count))
+        return refuse(scene, "mesh", index, "it has spheres and triangles, or none of its spheres");
+    uint32_t primitives = scene_mesh_primitives(mesh);
+    if (primitives && !mesh->materials) {
+        mesh->materials = array_alloc_zeroed(primitives, sizeof *mesh->materials);
         if (!mesh->materials)
             return WHIT_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+    for (uint32_t i = 0; i < primitives; ++i) {
         if (mesh->materials[i] >= scene->material_count)
             return refuse(scene, "mesh", index, "a triangle's material is not there");
     }
@@ -236,7 +240,7 @@ static bool keep_instance(struct scene *scene, uint32_t index, const struct stil
                           uint32_t *empty)
 {
     const struct scene_instance *instance = &scene->instances[index];
-    if (!scene->meshes[instance->mesh].triangle_count) {
+    if (!scene_mesh_primitives(&scene->meshes[instance->mesh])) {
         ++*empty;
         return false;
     }
@@ -309,19 +313,37 @@ static whit_result drop_unused_meshes(struct scene *scene)
     return WHIT_OK;
 }
 
+/* A flat emitter shines along the normal of its edges. */
+static void set_emitter_direction(struct scene_light *light)
+{
+    const double *u = light->edge_u, *v = light->edge_v;
+    if (!scene_light_is_flat(light))
+        return;
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        light->direction[i] = u[j] * v[k] - u[k] * v[j];
+    }
+}
+
+static double length_of(const double d[3])
+{
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
 static bool usable_light(const struct scene_light *light)
 {
     bool finite = true;
     for (int i = 0; i < 3; ++i)
         finite = finite && isfinite(light->position[i]) && isfinite(light->direction[i]) &&
                  isfinite(light->color[i]);
-    return finite;
+    double area = length_of(light->direction);
+    return finite && (!scene_light_is_flat(light) || (area > 0.0 && isfinite(area)));
 }
 
 static void mend_light(struct scene_light *light)
 {
     double *d = light->direction;
-    double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    double length = length_of(d);
     for (int i = 0; i < 3; ++i) {
         d[i] = length > 0.0 && isfinite(length) ? d[i] / length : -(double)(i == 1);
         light->color[i] = fmaxf(light->color[i], 0.0f);
@@ -342,12 +364,14 @@ static whit_result check_lights(struct scene *scene)
     }
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         struct scene_light *light = &scene->lights[i];
+        set_emitter_direction(light);
         if (usable_light(light)) {
             mend_light(light);
             scene->lights[kept++] = *light;
             continue;
         }
-        scene_note(scene, SCENE_NOTE_WARNING, "light %u `%s` dropped: its values are not finite", i,
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "light %u `%s` dropped: its values are not finite, or it has no area", i,
                    text_of(light->name));
         free(light->name);
         free(light->origin.file);
@@ -392,15 +416,15 @@ static void mend_camera(struct scene_camera *camera)
     }
     if (!(camera->fov_y > 0.0f && camera->fov_y < 3.1415f))
         camera->fov_y = 0.6981317f;
-    if (!(camera->aspect > 0.0f && isfinite(camera->aspect)))
-        camera->aspect = 0.0f;
-}
-
     if (camera->kind != SCENE_CAMERA_PERSPECTIVE ||
         !(camera->lens_radius > 0.0f && isfinite(camera->lens_radius)))
         camera->lens_radius = 0.0f;
     if (!(camera->focus_distance > 0.0f && isfinite(camera->focus_distance)))
         camera->focus_distance = 0.0f;
+    if (!(camera->aspect > 0.0f && isfinite(camera->aspect)))
+        camera->aspect = 0.0f;
+}
+
 static whit_result check_cameras(struct scene *scene)
 {
     uint32_t kept = 0;
@@ -476,10 +500,12 @@ whit_result scene_freeze(struct scene *scene)
             log_error(&scene->log, "%s: out of memory checking the scene", scene->name);
         return result;
     }
-    scene->triangle_total = 0;
-    for (uint32_t i = 0; i < scene->instance_count; ++i)
+    scene->triangle_total = scene->sphere_total = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
         scene->triangle_total += scene->meshes[scene->instances[i].mesh].triangle_count;
-    if (!scene->triangle_total)
+        scene->sphere_total += scene->meshes[scene->instances[i].mesh].sphere_count;
+    }
+    if (!scene->triangle_total && !scene->sphere_total)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "nothing to draw: no triangle is left, the picture shows the background");
     scene->hash = freeze_hash(scene);

@@ -24,7 +24,8 @@ static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
     HASH_ARRAY(hash, m->colors, 4 * (size_t)m->vertex_count);
     HASH_ARRAY(hash, m->tangents, 4 * (size_t)m->vertex_count);
     HASH_ARRAY(hash, m->indices, 3 * (size_t)m->triangle_count);
-    HASH_ARRAY(hash, m->materials, m->triangle_count);
+    HASH_ARRAY(hash, m->spheres, 4 * (size_t)m->sphere_count);
+    HASH_ARRAY(hash, m->materials, scene_mesh_primitives(m));
 }
 
 /* Field by field: padding and names must not count. */
@@ -90,6 +91,10 @@ static void hash_light(struct hash *hash, const struct scene_light *l)
     HASH_FIELD(hash, l->position);
     HASH_FIELD(hash, l->direction);
     HASH_FIELD(hash, l->color);
+    if (scene_light_is_flat(l)) {
+        HASH_FIELD(hash, l->edge_u);
+        HASH_FIELD(hash, l->edge_v);
+    }
 }
 
 static void hash_camera(struct hash *hash, const struct scene_camera *c)

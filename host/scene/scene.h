@@ -38,11 +38,11 @@ struct scene_texture_use {
 
 enum scene_slot {
     SCENE_SLOT_DIFFUSE,        /* RGB sRGB, times diffuse; alpha times opacity */
-    SCENE_SLOT_SPECULAR,       /* RGB linear (METAL_ROUGH: sRGB), times specular */
+    SCENE_SLOT_SPECULAR,       /* RGB linear (METAL_ROUGH: sRGB), times specular and reflection */
     SCENE_SLOT_EMISSION,       /* RGB sRGB, times emission */
     SCENE_SLOT_NORMAL,         /* tangent-space normal, OpenGL orientation (green up) */
     SCENE_SLOT_BUMP,           /* height in red */
-    SCENE_SLOT_METAL_ROUGH,    /* green roughness, blue metallic */
+    SCENE_SLOT_METAL_ROUGH,    /* green roughness, blue metallic; PHONG: red, times shininess */
     SCENE_SLOT_OPACITY,        /* red, or alpha where the picture has one, times opacity */
     SCENE_SLOT_TRANSMISSION,   /* red, times transmission */
     SCENE_SLOT_SPECULAR_LEVEL, /* METAL_ROUGH: alpha, times specular_level */
@@ -114,6 +114,11 @@ struct scene_mesh {
     float lo[3], hi[3]; /* bounds, set by scene_freeze; lo > hi when empty */
 };
 
+static inline uint32_t scene_mesh_primitives(const struct scene_mesh *mesh)
+{
+    return mesh->sphere_count ? mesh->sphere_count : mesh->triangle_count;
+}
+
 /* One node of the tree. The parent's index is smaller than its own. */
 struct scene_node {
     char *name;
@@ -160,7 +165,8 @@ enum scene_light_kind {
     SCENE_LIGHT_TRIANGLE,
 };
 
-/* `position` and `direction` are in the space of `node`. */
+/* `position` and `direction` are in the space of `node`. Of flat emitters scene_freeze sets
+   `direction`: the normal edge_u x edge_v. */
 struct scene_light {
     char *name;
     struct scene_origin origin;
@@ -176,6 +182,12 @@ struct scene_light {
     bool two_sided;              /* flat emitters: |cosine|, else nothing behind the surface */
     bool made_by_whit;
 };
+
+/* RECTANGLE or TRIANGLE. */
+static inline bool scene_light_is_flat(const struct scene_light *light)
+{
+    return light->kind == SCENE_LIGHT_RECTANGLE || light->kind == SCENE_LIGHT_TRIANGLE;
+}
 
 enum scene_camera_kind {
     SCENE_CAMERA_PERSPECTIVE,
@@ -243,7 +255,7 @@ struct scene {
     bool has_ambient;
     float contact; /* surfaces of two media within this distance, world units, along a ray are one;
                       0: only where they touch but for rounding */
-    uint64_t triangle_total; /* over instances; set by scene_freeze */
+    uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
     float time_end_s;        /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;     /* of all files read */
     uint64_t hash;           /* of everything above; set by scene_freeze */

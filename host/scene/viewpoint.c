@@ -132,7 +132,7 @@ static void add_boxes(const struct scene *scene, const struct scene_pose *pose, 
 {
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-        if (mesh->triangle_count)
+        if (scene_mesh_primitives(mesh))
             add_box(soup, mesh, &pose->instances[i]);
     }
 }
@@ -235,9 +235,12 @@ static whit_result gather(const struct scene *scene, const struct scene_pose *po
     if (result != WHIT_OK)
         return result;
     measure(moments.lo, moments.hi, soup);
-    for (uint32_t i = 0; i < scene->instance_count; ++i)
+    bool spheres = false;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
         total += scene->meshes[scene->instances[i].mesh].triangle_count;
-    soup->whole = total <= TRIANGLES_MOST;
+        spheres |= scene->meshes[scene->instances[i].mesh].sphere_count > 0;
+    }
+    soup->whole = total <= TRIANGLES_MOST && !spheres;
     uint64_t room = (soup->whole ? total : 0) + 3ull * moments.count * scene->instance_count;
     soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
     if (!soup->corners) {

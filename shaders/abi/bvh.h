@@ -59,7 +59,9 @@ GPU_ASSERT_AT(gpu_triangle, shadow, 44)
    so that the order in which a ray meets its filters cannot change the sum. */
 #define TRIANGLE_FILTER    4u
 #define TRIANGLE_MIRRORED  8u /* flat: its instance turns it inside out, its normal is reversed */
-#define TRIANGLE_SPHERE        16u  /* no triangle: centre in v0, radius in v1.x; v1.yz and v2 are 0 */
+/* No triangle: centre in v0, radius in v1.x. v1.yz are 0 and v2 is v1: as a triangle it would be met
+   by no ray. */
+#define TRIANGLE_SPHERE        16u
 #define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, but by shadow rays */
 #define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth is a matter of the point met */
 #define TRIANGLE_INSTANCE_SHIFT 7u /* flat: its instance is in the bits from here up */

@@ -10,12 +10,12 @@ struct Surface {
     vec3 p, error; // world; bound of the error of p
     vec3 ng;       // unit geometric normal, to the outside of closed meshes
     vec3 ns;       // unit shading normal, on the side of ng
-    vec3 e1, e2; // edges from the first vertex, world; only with SPEC_NORMAL_MAPS
+    vec3 e1, e2; // edges from the first vertex, world; with SPEC_NORMAL_MAPS or SPEC_MEDIA
     vec3 color;              // of the vertices
     float color_alpha;
     uint shade_index; // index among the triangles of all meshes
     uint material;
-    float u, v;
+    float u, v; // of the triangle's second and third vertex; of a sphere: texture coordinates
 };
 
 uint shade_index_of(uint instance, uint primitive)
@@ -83,9 +83,9 @@ vec3 place_normal(InstanceFrame inverse, vec3 n)
     return rotate_rows(c0, c1, c2, n);
 }
 
-Surface fetch_surface(Hit hit)
+// In the space of the record; normals not of unit length.
+void fetch_on_triangle(Hit hit, inout Surface s)
 {
-    Surface s;
     uint row = hit.triangle * TRIANGLE_ROWS;
     vec3 v0 = row_vec3(fetch_triangle_row(row));
     vec3 v1 = row_vec3(fetch_triangle_row(row + 1u));
@@ -93,19 +93,62 @@ Surface fetch_surface(Hit hit)
     s.u = clamp(hit.u, 0.0, 1.0);
     s.v = clamp(hit.v, 0.0, 1.0 - s.u);
     float w = 1.0 - s.u - s.v;
-    vec3 e1 = v1 - v0;
-    vec3 e2 = v2 - v0;
+    s.e1 = v1 - v0;
+    s.e2 = v2 - v0;
     vec3 p0 = v0 * w, p1 = v1 * s.u, p2 = v2 * s.v;
     s.p = p0 + p1 + p2;
     s.error = rounding_bound(7.0) * (abs(p0) + abs(p1) + abs(p2));
+    float scale = max(max(abs(s.e1.x), max(abs(s.e1.y), abs(s.e1.z))),
+                      max(abs(s.e2.x), max(abs(s.e2.y), abs(s.e2.z))));
+    s.ng = cross(s.e1 / scale, s.e2 / scale);
+    s.ns = SPEC_SMOOTH_NORMALS != 0u ? smooth_normal(s.shade_index, s.u, s.v) : s.ng;
+}
+
+// The point is put on the sphere along its normal n, not where the ray's t says: p = c + r n. The
+// normal of a length that rounding left (three products and sums, of which the root halves the
+// error, then root and division: 13 roundings with Vulkan's precision for the last two) and the
+// product put p off by at most gamma(14) r |n|, the sum by one rounding of p.
+// u and v are texture coordinates, and the edges are the point's derivatives by them: rows of
+// texture coordinates of spheres are (0, 0), (1, 0), (0, 1).
+void fetch_on_sphere(Hit hit, inout Surface s)
+{
+    const float pi = 3.14159265;
+    uint row = hit.triangle * TRIANGLE_ROWS;
+    vec3 center = row_vec3(fetch_triangle_row(row));
+    float radius = uintBitsToFloat(fetch_triangle_row(row + 1u).x);
+    vec3 n = dir_from_square(vec2(hit.u, hit.v));
+    n /= sqrt(dot(n, n));
+    vec3 arm = n * radius;
+    s.p = center + arm;
+    s.error = rounding_bound(14.0) * abs(arm) + rounding_bound(1.0) * abs(s.p);
+    s.ng = n;
+    s.ns = n;
+    float ring = sqrt(n.x * n.x + n.z * n.z);
+    vec3 around = ring > 0.0 ? vec3(n.z, 0.0, -n.x) / ring : vec3(0.0);
+    s.e1 = around * (2.0 * pi * radius * ring);
+    s.e2 = cross(around, n) * (pi * radius);
+    vec2 uv = sphere_uv(n);
+    s.u = uv.x;
+    s.v = uv.y;
+}
+
+bool is_on_sphere(Hit hit)
+{
+    return SPEC_SPHERES != SPHERES_NONE &&
+           (fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
+}
+
+Surface fetch_surface(Hit hit)
+{
+    Surface s;
+    uint row = hit.triangle * TRIANGLE_ROWS;
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
     s.material = fetch_material_index(s.shade_index);
-    float scale = max(max(abs(e1.x), max(abs(e1.y), abs(e1.z))),
-                      max(abs(e2.x), max(abs(e2.y), abs(e2.z))));
-    vec3 ng = cross(e1 / scale, e2 / scale);
-    vec3 ns = SPEC_SMOOTH_NORMALS != 0u ? smooth_normal(s.shade_index, s.u, s.v) : ng;
-    s.e1 = e1;
-    s.e2 = e2;
+    if (SPEC_SPHERES != SPHERES_ONLY)
+        fetch_on_triangle(hit, s);
+    if (SPEC_SPHERES == SPHERES_ONLY || is_on_sphere(hit))
+        fetch_on_sphere(hit, s);
+    vec3 ng = s.ng, ns = s.ns;
     if (SPEC_INSTANCED != 0u) {
         InstanceFrame inverse = fetch_instance_frame(hit.instance);
         vec3 f0 = row_vec3(fetch_instance_row(hit.instance * INSTANCE_ROWS + 4u));
@@ -114,9 +157,9 @@ Surface fetch_surface(Hit hit)
         place_point(inverse, f0, f1, f2, s.p, s.error);
         ng = place_normal(inverse, ng);
         ns = place_normal(inverse, ns);
-        if (SPEC_NORMAL_MAPS != 0u) {
-            s.e1 = rotate_rows(f0, f1, f2, e1);
-            s.e2 = rotate_rows(f0, f1, f2, e2);
+        if (SPEC_NORMAL_MAPS != 0u || SPEC_MEDIA != 0u) {
+            s.e1 = rotate_rows(f0, f1, f2, s.e1);
+            s.e2 = rotate_rows(f0, f1, f2, s.e2);
         }
     }
     // Vertices are in world space already; normals of vertices are not.

@@ -1,14 +1,16 @@
 // Stackful traversal: the one traversal source for every order of children (SPEC_ORDER). Two loops
-// side by side, one over nodes and one over triangles, both do-while: on lavapipe an `if` costs both
+// side by side, one over nodes and one over records, both do-while: on lavapipe an `if` costs both
 // its sides and only the end of a loop branches (docs/benchmarks.md). accel/traverse.c is this file
 // in C.
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
 
 #include "../lib/intersect.glsl"
+#include "../lib/sphere.glsl"
 #include "trees.glsl"
 
-// Defined by the kernel: whether a cut-out triangle is solid at a point.
+// Defined by the kernel: whether a cut-out primitive is solid at a point. `u` and `v` of a sphere are
+// its texture coordinates (sphere_uv), here and below.
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // Defined by the kernel: the optical depth that a filter with TRIANGLE_FILTER_DETAIL adds to a shadow
@@ -21,6 +23,24 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bo
 const uint TRAVERSE_CLOSEST = 0u;
 const uint TRAVERSE_ANY = 1u;    // any hit will do
 const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
+// The closest hit behind one that is known, in the order of (t, instance, primitive): the ray's own
+// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was.
+const uint TRAVERSE_NEXT = 3u;
+
+float hit_before;
+
+// Whether a hit comes behind the one that is known.
+bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint known_primitive)
+{
+    return t > hit_before ||
+           (t == hit_before && (instance > known_instance || (instance == known_instance &&
+                                                              primitive > known_primitive)));
+}
+
+bool finds_closest(const uint mode)
+{
+    return mode == TRAVERSE_CLOSEST || mode == TRAVERSE_NEXT;
+}
 
 const uint REF_DONE = 0xffffffffu;
 const uint REF_ONE_PRIMITIVE = 1u << BVH_COUNT_SHIFT;
@@ -28,7 +48,7 @@ const float FLOAT_LARGEST = 3.402823466e+38;
 
 struct Hit {
     float t; // largest t that still counts, then that of the hit
-    float u, v;
+    float u, v;     // of a sphere: square_from_dir of the normal, object space
     uint triangle;  // record
     uint primitive; // of its mesh, or HIT_NONE
     uint instance;
@@ -220,57 +240,141 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
-// With SPEC_FLAT the record names its instance. Tests one triangle record and keeps it when it is nearer, or as near with smaller ids.
-// True: the traversal may end.
-bool test_triangle(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
-                   uint skip_instance, uint skip_primitive, inout Hit hit)
+// Where a ray meets a primitive.
+struct Meeting {
+    bool met;
+    float t, u, v;
+    bool front; // met from outside
+};
+
+Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
 {
+    Meeting m;
+    precise vec3 a = row_vec3(r0) - ray.origin;
+    precise vec3 b = row_vec3(r1) - ray.origin;
+    precise vec3 c = row_vec3(r2) - ray.origin;
+    m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
+    if (SPEC_FLAT != 0u)
+        m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+    return m;
+}
+
+// Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
+// end is there to be met, and only on the way inwards. No distance needs to be small for that.
+Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
+{
+    Meeting m;
+    float at = at_exit ? chord.t_far : chord.t_near;
+    // False for NaN.
+    m.met = chord.met && at >= t_min && (!own || chord.inward);
+    m.t = at > chord.t_box ? at : chord.t_box;
+    vec2 square = square_from_dir(chord_end(ray, chord, at_exit));
+    m.u = square.x;
+    m.v = square.y;
+    m.front = !at_exit;
+    return m;
+}
+
+// What has been met, unless something about it says no; filters add up and are not hits. `uv`: where
+// textures are read. `refused`: the ray goes on through the point.
+bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow, uint instance,
+                    uint primitive, uint skip_instance, uint skip_primitive, inout Hit hit,
+                    out bool refused)
+{
+    bool nearer = m.t < hit.t ||
+                  (m.t == hit.t && (instance < hit.instance ||
+                                    (instance == hit.instance && primitive < hit.primitive)));
+    bool reached = m.met && nearer;
+    bool accepted = reached;
+    if (mode == TRAVERSE_NEXT)
+        accepted = accepted && is_behind(m.t, instance, primitive, skip_instance, skip_primitive);
+    if (mode == TRAVERSE_SHADOW)
+        accepted = accepted && (flags & TRIANGLE_NO_SHADOW) == 0u;
+    // Light comes through what the eye sees not.
+    if (finds_closest(mode) && SPEC_CULLING != 0u)
+        accepted = accepted && (m.front || (flags & TRIANGLE_ONE_SIDED) == 0u);
+    if (SPEC_CUTOUTS != 0u && accepted && (flags & TRIANGLE_CUTOUT) != 0u)
+        accepted = cutout_is_solid(instance, primitive, uv.x, uv.y);
+    if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
+        (flags & TRIANGLE_FILTER) != 0u) {
+        ivec3 depth =
+            ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
+        if (SPEC_FILTER_DETAIL != 0u && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
+            depth = filter_detail(instance, primitive, uv.x, uv.y, m.t, m.front, depth);
+        hit.filter_depth += depth;
+        accepted = false;
+    }
+    refused = reached && !accepted;
+    return accepted;
+}
+
+// Tests one record, a triangle's or a sphere's, and keeps it when it is nearer, or as near with
+// smaller ids. With SPEC_FLAT the record names its instance. True: the traversal may end.
+bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
+                 uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    // Both ends of a sphere's chord are met where a ray goes on through the first one.
+    const bool passes = SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+                        mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
     uvec4 r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
-    uvec4 r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    uvec4 r2 = uvec4(0u);
+    if (SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u)
+        r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
     uint primitive = r0.w;
     uint flags = r1.w;
     if (SPEC_FLAT != 0u)
         instance = flags >> TRIANGLE_INSTANCE_SHIFT;
     if (SPEC_COUNT != 0u)
         traversal_cost.triangles++;
-    precise vec3 a = row_vec3(r0) - ray.origin;
-    precise vec3 b = row_vec3(r1) - ray.origin;
-    precise vec3 c = row_vec3(r2) - ray.origin;
-    float t, u, v;
-    bool front;
-    bool met = intersect_triangle(ray, a, b, c, t_min, t, u, v, front);
-    if (SPEC_FLAT != 0u)
-        front = front == ((flags & TRIANGLE_MIRRORED) == 0u);
-    bool nearer = t < hit.t ||
-                  (t == hit.t && (instance < hit.instance ||
-                                  (instance == hit.instance && primitive < hit.primitive)));
-    bool skipped = primitive == skip_primitive && instance == skip_instance;
-    if (mode == TRAVERSE_SHADOW)
-        skipped = skipped || (flags & TRIANGLE_NO_SHADOW) != 0u;
-    // Light comes through what the eye sees not.
-    if (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u)
-        skipped = skipped || (!front && (flags & TRIANGLE_ONE_SIDED) != 0u);
-    bool accepted = met && nearer && !skipped;
-    if (SPEC_CUTOUTS != 0u && accepted && (flags & TRIANGLE_CUTOUT) != 0u)
-        accepted = cutout_is_solid(instance, primitive, u, v);
-    if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
-        (flags & TRIANGLE_FILTER) != 0u) {
-        ivec3 depth = ivec3(uvec3(r2.w & 1023u, (r2.w >> 10) & 1023u, (r2.w >> 20) & 1023u));
-        if (SPEC_FILTER_DETAIL != 0u && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
-            depth = filter_detail(instance, primitive, u, v, t, front, depth);
-        hit.filter_depth += depth;
-        accepted = false;
+    bool own = mode != TRAVERSE_NEXT && primitive == skip_primitive && instance == skip_instance;
+    bool is_sphere = SPEC_SPHERES != SPHERES_NONE && (flags & TRIANGLE_SPHERE) != 0u;
+    Meeting on_triangle;
+    Chord chord;
+    if (SPEC_SPHERES != SPHERES_ONLY) {
+        on_triangle = meet_triangle(ray, t_min, r0, r1, r2);
+        on_triangle.met = on_triangle.met && !own;
     }
-    if (accepted) {
-        hit.t = t;
-        hit.u = u;
-        hit.v = v;
-        hit.triangle = record;
-        hit.primitive = primitive;
-        hit.instance = instance;
-    }
-    return mode != TRAVERSE_CLOSEST && accepted;
+    if (SPEC_SPHERES != SPHERES_NONE)
+        chord = intersect_sphere(ray, row_vec3(r0), uintBitsToFloat(r1.x), t_min);
+    bool at_exit = false;
+    if (SPEC_SPHERES != SPHERES_NONE)
+        at_exit = own || !(chord.t_near >= t_min);
+    bool accepted, again;
+    do {
+        Meeting m;
+        if (SPEC_SPHERES != SPHERES_ONLY)
+            m = on_triangle;
+        if (SPEC_SPHERES != SPHERES_NONE) {
+            Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, own);
+            if (SPEC_SPHERES == SPHERES_ONLY)
+                m = on_sphere;
+            m.met = is_sphere ? on_sphere.met : m.met;
+            m.t = is_sphere ? on_sphere.t : m.t;
+            m.u = is_sphere ? on_sphere.u : m.u;
+            m.v = is_sphere ? on_sphere.v : m.v;
+            m.front = is_sphere ? on_sphere.front : m.front;
+        }
+        vec2 uv = vec2(m.u, m.v);
+        if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
+            is_sphere)
+            uv = sphere_uv(dir_from_square(uv));
+        bool refused;
+        accepted =
+            accept_meeting(mode, m, uv, flags, r2.w, instance, primitive, skip_instance,
+                           skip_primitive, hit, refused);
+        if (accepted) {
+            hit.t = m.t;
+            hit.u = m.u;
+            hit.v = m.v;
+            hit.triangle = record;
+            hit.primitive = primitive;
+            hit.instance = instance;
+        }
+        again = SPEC_SPHERES != SPHERES_NONE && passes && is_sphere && refused && !at_exit;
+        at_exit = true;
+    } while (again);
+    return !finds_closest(mode) && accepted;
 }
 
 // A mesh tree, whose root is at `level`, with its stack in memory from `base` up.
@@ -286,8 +390,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint b
         } while (is_inner(ref) && has_room(stack));
         do {
             if (is_leaf(ref)) {
-                bool done = test_triangle(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
-                                          skip_instance, skip_primitive, hit);
+                bool done = test_record(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
+                                        skip_instance, skip_primitive, hit);
                 ref += 1u - REF_ONE_PRIMITIVE;
                 if (SPEC_COUNT != 0u && (is_inner(ref) || done))
                     traversal_cost.leaves++;
@@ -333,7 +437,7 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
             traverse_mesh(mode, make_local_setup(instance, origin, dir), t_min, mesh_root,
                           stack.in_memory, stack.level, instance, skip_instance, skip_primitive,
                           hit);
-            bool done = mode != TRAVERSE_CLOSEST && hit.primitive != HIT_NONE;
+            bool done = !finds_closest(mode) && hit.primitive != HIT_NONE;
             ref = done ? REF_DONE : pop_ref(true, ref, stack);
         }
         ref = refill_stack(ref, stack, hit.status);
@@ -355,9 +459,11 @@ gpu_cost add_up(gpu_cost a, gpu_cost b)
                     max(a.depth, b.depth), 0u);
 }
 
-// Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`.
+// Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`, where
+// the ray starts: a sphere is met again by rays that go inwards, at its far side.
 // Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or
-// without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene). Not finite rays hit nothing.
+// without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene). Not
+// finite rays hit nothing.
 Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, uint root,
              uint skip_instance, uint skip_primitive)
 {

@@ -33,10 +33,9 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bo
     return own;
 }
 
-// (v1 - v0) x (v2 - v0), taken to world space by the inverse transpose.
-vec3 geometric_normal(Hit hit)
+// (v1 - v0) x (v2 - v0)
+vec3 triangle_normal(uint row)
 {
-    uint row = hit.triangle * TRIANGLE_ROWS;
     vec3 v0 = row_vec3(fetch_triangle_row(row));
     precise vec3 e1 = row_vec3(fetch_triangle_row(row + 1u)) - v0;
     precise vec3 e2 = row_vec3(fetch_triangle_row(row + 2u)) - v0;
@@ -46,6 +45,19 @@ vec3 geometric_normal(Hit hit)
     n.z = e1.x * e2.y - e1.y * e2.x;
     if (SPEC_FLAT != 0u && (fetch_triangle_row(row + 1u).w & TRIANGLE_MIRRORED) != 0u)
         n = -n;
+    return n;
+}
+
+// That of the triangle or the sphere, taken to world space by the inverse transpose.
+vec3 geometric_normal(Hit hit)
+{
+    uint row = hit.triangle * TRIANGLE_ROWS;
+    vec3 n = vec3(0.0);
+    if (SPEC_SPHERES != SPHERES_ONLY)
+        n = triangle_normal(row);
+    if (SPEC_SPHERES != SPHERES_NONE &&
+        (fetch_triangle_row(row + 1u).w & TRIANGLE_SPHERE) != 0u)
+        n = dir_from_square(vec2(hit.u, hit.v));
     if (SPEC_INSTANCED == 0u)
         return n;
     InstanceFrame frame = fetch_instance_frame(hit.instance);

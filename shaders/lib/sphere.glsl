@@ -1,0 +1,143 @@
+// Spheres against a ray, and points on them. Every product and sum is `precise`, one rounding each:
+// accel/sphere.h is this file in C, and gives the same bits (docs/numerics.md).
+#ifndef LIB_SPHERE_GLSL
+#define LIB_SPHERE_GLSL
+
+#include "intersect.glsl"
+
+// Where a ray's line goes through a sphere.
+struct Chord {
+    bool met;             // the line meets the sphere, the ray its box
+    bool inward;          // from the ray's origin it goes nearer to the centre first
+    float t_near, t_far;  // where it enters and leaves, not before t_box
+    float t_box;          // where the ray enters the sphere's box, or t_min
+    vec3 middle, to_exit; // from the centre to the chord's middle; from there to its end
+};
+
+// The box of a sphere, wider than what rounding takes from it: four roundings of `|center| + radius`
+// where c +- r carries one. Trees are built over this very box.
+void sphere_box(vec3 center, float radius, out vec3 lo, out vec3 hi)
+{
+    precise vec3 margin = (abs(center) + radius) * (1.0 / 4194304.0);
+    precise vec3 below = (center - radius) - margin;
+    precise vec3 above = (center + radius) + margin;
+    lo = below;
+    hi = above;
+}
+
+// Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection" (Ray
+// Tracing Gems, chapter 7): the discriminant from the perpendicular dropped on the ray, not from a
+// difference of squares of distances; the end of the chord that is farther from the origin from the
+// sum, the nearer one from the product of both. Along the dominant axis, in the units of which the
+// direction is (shear.x, shear.y, 1), no direction is too long or too short to square.
+// The sphere's own box must be met too, and t is not allowed before it, as with triangles.
+Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
+{
+    Chord chord;
+    vec3 lo, hi;
+    sphere_box(center, radius, lo, hi);
+    precise vec3 box_lo = lo - ray.origin;
+    precise vec3 box_hi = hi - ray.origin;
+    float box_near, box_far;
+    slab_interval(ray, box_lo, box_hi, t_min, box_near, box_far);
+
+    precise vec3 relative = center - ray.origin;
+    vec3 c = turn_dominant(ray.dominant, relative);
+    vec3 d = vec3(ray.shear.x, ray.shear.y, 1.0);
+    precise float dd = (d.x * d.x + d.y * d.y) + 1.0;
+    precise float cd = (c.x * d.x + c.y * d.y) + c.z;
+    precise float mid = cd / dd;
+    precise vec3 off = c - d * mid;
+    precise float rr = radius * radius;
+    precise float room = rr - ((off.x * off.x + off.y * off.y) + off.z * off.z);
+    precise float part = (room > 0.0 ? room : 0.0) / dd;
+    precise float half_length = sqrt(part);
+    precise float farther = mid < 0.0 ? mid - half_length : mid + half_length;
+    precise float product = ((c.x * c.x + c.y * c.y) + c.z * c.z) - rr;
+    precise float nearer = product / (dd * farther);
+    bool down = ray.shear.z < 0.0;
+    bool ends_nearer = (mid < 0.0) != down;
+    precise float t_near = (ends_nearer ? farther : nearer) * ray.shear.z;
+    precise float t_far = (ends_nearer ? nearer : farther) * ray.shear.z;
+    chord.t_box = box_near;
+    chord.t_near = t_near;
+    chord.t_far = t_far;
+    chord.met = room >= 0.0 && box_near <= box_far;
+    chord.inward = mid != 0.0 && (mid < 0.0) == down;
+    float forward = down ? -half_length : half_length;
+    precise vec3 to_exit = d * forward;
+    chord.middle = -off;
+    chord.to_exit = to_exit;
+    return chord;
+}
+
+// Back from turn_dominant.
+vec3 turn_back(bvec2 dominant, vec3 p)
+{
+    return dominant.x ? p.zxy : dominant.y ? p.yzx : p;
+}
+
+// From the centre to where the chord ends or begins: of the sphere's radius but for roundings, however
+// far the ray's origin is.
+vec3 chord_end(RaySetup ray, Chord chord, bool at_exit)
+{
+    precise vec3 begin = chord.middle - chord.to_exit;
+    precise vec3 end = chord.middle + chord.to_exit;
+    return turn_back(ray.dominant, at_exit ? end : begin);
+}
+
+// A direction on the unit square (Meyer et al. 2010); +y is in its middle, as is what has no length.
+vec2 square_from_dir(vec3 dir)
+{
+    precise float size = (abs(dir.x) + abs(dir.y)) + abs(dir.z);
+    precise vec2 p = dir.xz / size;
+    precise vec2 folded = vec2(1.0) - abs(p.yx);
+    folded.x = p.x >= 0.0 ? folded.x : -folded.x;
+    folded.y = p.y >= 0.0 ? folded.y : -folded.y;
+    precise vec2 at = (dir.y < 0.0 ? folded : p) * 0.5 + 0.5;
+    return size > 0.0 ? at : vec2(0.5);
+}
+
+// And back; not of unit length: |x| + |y| + |z| is 1.
+vec3 dir_from_square(vec2 at)
+{
+    precise vec2 p = at * 2.0 - 1.0;
+    precise float y = (1.0 - abs(p.x)) - abs(p.y);
+    precise vec2 folded = vec2(1.0) - abs(p.yx);
+    folded.x = p.x >= 0.0 ? folded.x : -folded.x;
+    folded.y = p.y >= 0.0 ? folded.y : -folded.y;
+    vec2 xz = y < 0.0 ? folded : p;
+    return vec3(xz.x, y, xz.y);
+}
+
+// Angle of (x, y) from the x axis, -pi..pi, to 2e-7; the polynomial on |a| <= tan(pi / 8) is that of
+// Moshier's Cephes library. GLSL's atan() may be off by 4096 ulp, and in another way on each device.
+float angle_of(float x, float y)
+{
+    const float pi = 3.14159265;
+    float ax = abs(x), ay = abs(y);
+    float larger = ax > ay ? ax : ay, smaller = ax > ay ? ay : ax;
+    float ratio = larger > 0.0 ? smaller / larger : 0.0;
+    bool steep = ratio > 0.41421356;
+    float a = steep ? (ratio - 1.0) / (ratio + 1.0) : ratio;
+    float z = a * a;
+    float angle =
+        (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) *
+            z * a +
+        a;
+    angle += steep ? 0.25 * pi : 0.0;
+    angle = ay > ax ? 0.5 * pi - angle : angle;
+    angle = x < 0.0 ? pi - angle : angle;
+    return y < 0.0 ? -angle : angle;
+}
+
+// Texture coordinates, 0..1: u once around y from +x towards -z, v from the top (+y) down.
+vec2 sphere_uv(vec3 dir)
+{
+    const float pi = 3.14159265;
+    float around = angle_of(dir.x, -dir.z) * (0.5 / pi);
+    float down = angle_of(dir.y, sqrt(dir.x * dir.x + dir.z * dir.z)) * (1.0 / pi);
+    return vec2(around < 0.0 ? around + 1.0 : around, down);
+}
+
+#endif
