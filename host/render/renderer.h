@@ -115,7 +115,7 @@ void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
                 const struct gpu_chunk *sample, struct gpu_ray *ray);
 
-/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1. */
+/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1, within 1.2e-7. */
 void sine_cosine_pi(float a, float *sine, float *cosine);
 
 /* costs.c: all of it does nothing without params.count. */

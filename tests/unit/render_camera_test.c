@@ -1,0 +1,463 @@
+/* Cameras: where their rays go, what a lens blurs, what a panorama sees, odd sizes and odd views.
+ */
+#include "picture_fixture.h"
+#include "render/renderer.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* A ball that shows 1 everywhere. */
+static void add_marker(struct scene *scene, double radius, double x, double y, double z)
+{
+    struct scene_mesh ball = {0};
+    struct scene_material m = material("marker");
+    assert_int_equal(shape_sphere(radius, 16, 8, &ball), WHIT_OK);
+    m.model = SCENE_MODEL_UNLIT;
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_object(scene, ball, m, x, y, z);
+}
+
+static double red(const struct image *image, uint32_t x, uint32_t y)
+{
+    return (double)image->pixels[4 * ((size_t)y * image->width + x)];
+}
+
+static void assert_finite(const struct image *image)
+{
+    for (size_t i = 0; i < (size_t)image->width * image->height * 4; ++i)
+        assert_true(isfinite(image->pixels[i]));
+}
+
+/* ---- Sine and cosine ---- */
+
+static void sines_are_those_of_libm(void **state)
+{
+    (void)state;
+    enum { STEPS = 1 << 20 };
+    double worst = 0.0;
+    for (int i = -STEPS; i <= STEPS; ++i) {
+        float a = (float)i / STEPS, s, c;
+        if (i % 3 == 0)
+            a = nextafterf(a, 0.0f);
+        sine_cosine_pi(a, &s, &c);
+        worst = fmax(worst, fabs((double)s - sin(PI * (double)a)));
+        worst = fmax(worst, fabs((double)c - cos(PI * (double)a)));
+    }
+    print_message("  off by %.3g\n", worst);
+    assert_true(worst <= 1.2e-7);
+    float s, c;
+    sine_cosine_pi(1.0f, &s, &c);
+    assert_true(s == 0.0f && c == -1.0f);
+    sine_cosine_pi(-0.5f, &s, &c);
+    assert_true(s == -1.0f && c == 0.0f);
+}
+
+/* ---- The lens ---- */
+
+/* A bright ball `z` in front of a camera whose lens is focused at 5, seen as a patch. */
+static struct image lens_picture(double z, float lens_radius, uint32_t samples, double size)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
+    scene->cameras[0].lens_radius = lens_radius;
+    scene->cameras[0].focus_distance = 5.0f;
+    add_marker(scene, size * z, 0, 0, -z);
+    const struct render_params params = {.width = 75, .height = 75, .samples = samples};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+/* Of the patch: centre of gravity, mean square and largest distance from the middle, in pixels. */
+static void measure(const struct image *image, double center[2], double *mean2, double *farthest)
+{
+    double sum = 0.0, x_sum = 0.0, y_sum = 0.0, r2_sum = 0.0;
+    *farthest = 0.0;
+    for (uint32_t y = 0; y < image->height; ++y) {
+        for (uint32_t x = 0; x < image->width; ++x) {
+            double v = red(image, x, y), dx = x + 0.5 - 37.5, dy = y + 0.5 - 37.5;
+            sum += v;
+            x_sum += v * dx;
+            y_sum += v * dy;
+            r2_sum += v * (dx * dx + dy * dy);
+            if (v > 0.0)
+                *farthest = fmax(*farthest, sqrt(dx * dx + dy * dy));
+        }
+    }
+    assert_true(sum > 0.0);
+    center[0] = x_sum / sum;
+    center[1] = y_sum / sum;
+    *mean2 = r2_sum / sum;
+}
+
+/* Behind, before and in the focus: the circle of confusion in a plane at distance 1 has the radius
+   lens * |1 / z - 1 / focus|. A disk of even brightness has a mean square distance of half its
+   radius squared; 64 points in place of it are within 2 % of that. */
+static void blur_has_its_size(void **state)
+{
+    (void)state;
+    const double pixel = 2.0 * tan(0.3) / 75.0, ball = 1.5; /* radius of the ball, in pixels */
+    const double depths[] = {10.0, 3.5, 5.0};
+    for (int i = 0; i < 3; ++i) {
+        double blur = 2.0 * fabs(1.0 / depths[i] - 0.2) / pixel, center[2], mean2, farthest;
+        struct image image = lens_picture(depths[i], 2.0f, 64, ball * pixel);
+        measure(&image, center, &mean2, &farthest);
+        double expected = sqrt(0.5 * (blur * blur + ball * ball));
+        print_message("  at %g: radius %.2f of %.2f pixels, rms %.2f of %.2f, centre %.3f %.3f\n",
+                      depths[i], farthest, blur + ball, sqrt(mean2), expected, center[0],
+                      center[1]);
+        assert_true(fabs(farthest - (blur + ball)) <= 1.0);
+        assert_true(fabs(sqrt(mean2) - expected) <= 0.02 * expected + 0.05);
+        assert_true(hypot(center[0], center[1]) < 0.05);
+        image_finish(&image);
+    }
+}
+
+static void one_sample_is_a_pinhole(void **state)
+{
+    (void)state;
+    struct image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);
+    assert_memory_equal(lens.pixels, hole.pixels, 75 * 75 * 16);
+    image_finish(&lens);
+    image_finish(&hole);
+}
+
+/* All rays of a sample's pixel meet in one point of the focus plane, whatever the lens point; and
+   the lens points fill the disk evenly, around its middle. */
+static void lens_rays_meet_in_focus(void **state)
+{
+    (void)state;
+    struct gpu_frame frame = {.eye = {1, 2, 3},
+                              .width = 30,
+                              .height = 20,
+                              .right = {0.9f, 0, 0},
+                              .up = {0, 0.6f, 0},
+                              .forward = {0, 0, -1},
+                              .lens_radius = 0.5f,
+                              .focus_distance = 4.0f};
+    for (uint32_t count = 4; count <= 64; count *= 4) {
+        double sum[2] = {0, 0}, square = 0.0;
+        for (uint32_t i = 0; i < count; ++i) {
+            struct gpu_chunk sample;
+            struct gpu_ray ray;
+            camera_sample(&frame, i, count, &sample);
+            camera_ray(&frame, CAMERA_LENS, 11, 7, &sample, &ray);
+            double t = (3.0 - 4.0 - (double)ray.origin[2]) / (double)ray.dir[2];
+            double x = (double)ray.origin[0] + t * (double)ray.dir[0];
+            double y = (double)ray.origin[1] + t * (double)ray.dir[1];
+            double at_x = (11.0 + (double)sample.sample_xy[0]) / 15.0 - 1.0;
+            double at_y = (7.0 + (double)sample.sample_xy[1]) / 10.0 - 1.0;
+            assert_true(fabs(x - (1.0 + 4.0 * 0.9 * at_x)) < 2e-6);
+            assert_true(fabs(y - (2.0 - 4.0 * 0.6 * at_y)) < 2e-6);
+            double aside[2] = {(double)ray.origin[0] - 1.0, (double)ray.origin[1] - 2.0};
+            double r2 = (aside[0] * aside[0] + aside[1] * aside[1]) / 0.25;
+            assert_true(r2 <= 1.0);
+            sum[0] += aside[0], sum[1] += aside[1];
+            square += r2;
+        }
+        assert_true(fabs(sum[0]) < 1e-5 && fabs(sum[1]) < 1e-5);
+        /* Half for the whole disk; the middles of 4 quarters have 0.25. */
+        assert_true(fabs(square / count - 0.5) <= 1.0 / count);
+    }
+}
+
+/* ---- The panorama ---- */
+
+static struct scene *panorama_scene(const double eye[3], const double target[3])
+{
+    struct scene *scene = dark_scene(eye, target);
+    scene->cameras[0].kind = SCENE_CAMERA_PANORAMA;
+    scene->cameras[0].up[0] = 0.2;
+    return scene;
+}
+
+static void cross_of(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void unit_of(double v[3])
+{
+    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; ++i)
+        v[i] /= length;
+}
+
+static void markers_are_where_they_should(void **state)
+{
+    (void)state;
+    enum { WIDTH = 180, HEIGHT = 90 };
+    const double places[][2] = {{0, 0}, {90, 0}, {-135, 45}, {60, -70}, {179, 10}, {-30, 80}};
+    const double eye[3] = {3, -1, 2}, target[3] = {-4, 2, 5}, up[3] = {0.2, 1, 0};
+    double forward[3], right[3], above[3];
+    for (int i = 0; i < 3; ++i)
+        forward[i] = target[i] - eye[i];
+    unit_of(forward);
+    cross_of(forward, up, right);
+    unit_of(right);
+    cross_of(right, forward, above);
+    for (size_t p = 0; p < sizeof places / sizeof *places; ++p) {
+        double longitude = places[p][0] * PI / 180.0, latitude = places[p][1] * PI / 180.0, at[3];
+        for (int i = 0; i < 3; ++i)
+            at[i] = eye[i] + 10.0 * (cos(latitude) *
+                                         (cos(longitude) * forward[i] + sin(longitude) * right[i]) +
+                                     sin(latitude) * above[i]);
+        struct scene *scene = panorama_scene(eye, target);
+        add_marker(scene, 0.5, at[0], at[1], at[2]); /* less than 3 degrees: no seam in between */
+        const struct render_params params = {.width = WIDTH, .height = HEIGHT, .samples = 4};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        double sum = 0.0, x_sum = 0.0, y_sum = 0.0;
+        for (uint32_t y = 0; y < HEIGHT; ++y) {
+            for (uint32_t x = 0; x < WIDTH; ++x) {
+                double v = red(&image, x, y);
+                /* Across the seam the picture goes on. */
+                double place = x + 0.5 - (places[p][0] > 170.0 && x < WIDTH / 2 ? -WIDTH : 0);
+                sum += v;
+                x_sum += v * place;
+                y_sum += v * (y + 0.5);
+            }
+        }
+        assert_true(sum > 0.0);
+        double x = (places[p][0] / 360.0 + 0.5) * WIDTH, y = (0.5 - places[p][1] / 180.0) * HEIGHT;
+        print_message("  %g %g: %.2f %.2f, expected %.2f %.2f\n", places[p][0], places[p][1],
+                      x_sum / sum, y_sum / sum, x, y);
+        assert_true(fabs(x_sum / sum - x) < 0.5 && fabs(y_sum / sum - y) < 0.5);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+/* From the middle of a box each face takes a sixth of the sphere. */
+static void panorama_sees_all_around(void **state)
+{
+    (void)state;
+    struct scene *scene = panorama_scene((double[]){0, 0, 0}, (double[]){1, 2, 3});
+    struct scene_material m = material("wall");
+    m.model = SCENE_MODEL_UNLIT;
+    add_object(scene, box(2, 2, 2), m, 0, 0, 0);
+    for (uint32_t face = 0; face < 6; ++face) {
+        struct scene_material own = material("face");
+        own.model = SCENE_MODEL_UNLIT;
+        own.name = string_copy("face");
+        set_rgb(own.diffuse, (float)(1 << face), 1, 1);
+        uint32_t index = scene_add_material(scene, own);
+        scene->meshes[0].materials[2 * face] = scene->meshes[0].materials[2 * face + 1] = index;
+    }
+    const struct render_params params = {.width = 128, .height = 64};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double shares[6] = {0}, all = 0.0;
+    for (uint32_t y = 0; y < 64; ++y) {
+        for (uint32_t x = 0; x < 128; ++x) {
+            double weight = cos(((y + 0.5) / 64.0 - 0.5) * PI);
+            int face = (int)lround(log2(red(&image, x, y)));
+            assert_true(face >= 0 && face < 6);
+            shares[face] += weight;
+            all += weight;
+        }
+    }
+    for (int face = 0; face < 6; ++face)
+        assert_true(fabs(shares[face] / all - 1.0 / 6.0) < 0.005);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* ---- Odd views ---- */
+
+static void view_along_up_has_a_picture(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("floor");
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_object(scene, plane(1), m, 0, 0, 0);
+    add_sun(scene, 0, -1, 0, 1.0f);
+    struct render_params params = picture_params;
+    const char *views[] = {NULL, "0,5,0,0,0,0,0,1,0,40", "0,5,0,0,0,0,0,-7,0,40",
+                           "0,5,0,0,0,0,0,0,0,40", "0,5,0,0,0,0,1e-30,1e30,0,40"};
+    for (size_t i = 0; i < sizeof views / sizeof *views; ++i) {
+        params.camera = views[i];
+        struct fixture f = {0};
+        if (i == 0) {
+            scene->cameras[0].up[1] = 1.0; /* as it came from a file: along the view */
+            scene->cameras[0].up[2] = 0.0;
+            f = fixture_open(scene, NULL, &params);
+        } else {
+            f.scene = scene;
+            assert_int_equal(accel_create(&fixture_log, scene, NULL, &f.accel), WHIT_OK);
+            assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+            assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
+                             WHIT_OK);
+        }
+        struct image image = render(&f);
+        assert_finite(&image);
+        assert_near(middle(&image)[0], 1.0, 2e-6);
+        /* The floor is seen upright or turned by a quarter: as wide as high. */
+        uint32_t lit = 0;
+        for (uint32_t y = 0; y < 33; ++y)
+            for (uint32_t x = 0; x < 33; ++x)
+                lit += red(&image, x, y) > 0.5;
+        uint32_t side = (uint32_t)lround(sqrt((double)lit));
+        assert_int_equal(side * side, lit);
+        image_finish(&image);
+        renderer_destroy(f.renderer);
+        assert_int_equal(device_validation_messages(f.device), 0);
+        device_destroy(f.device);
+        accel_destroy(f.accel);
+    }
+    scene_destroy(scene);
+}
+
+/* The ray through the middle of the top row is half the angle off the view, but for half a pixel.
+ */
+static void angles_of_view_are_kept(void **state)
+{
+    (void)state;
+    const double angles[] = {1e-3, 0.01, 1.0, 90.0, 179.0, 179.9};
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; ++i) {
+        char view[64];
+        snprintf(view, sizeof view, "0,0,0,0,0,-1,0,1,0,%.17g", angles[i]);
+        struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
+        set_rgb(scene->environment.zenith, 1, 1, 1);
+        add_marker(scene, 0.5, 0, 0, -1e5);
+        const struct render_params params = {.width = 9, .height = 101, .camera = view};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        assert_finite(&image);
+        float angle = (float)(angles[i] * PI / 180.0); /* as the camera holds it */
+        double half = tan(0.5 * (double)angle) * 100.0 / 101.0;
+        struct gpu_chunk sample;
+        struct gpu_ray ray;
+        camera_sample(&f.renderer->frame, 0, 1, &sample);
+        camera_ray(&f.renderer->frame, CAMERA_PERSPECTIVE, 4, 0, &sample, &ray);
+        assert_near(ray.dir[1], half / sqrt(1.0 + half * half), 1e-6);
+        assert_near(ray.dir[2], -1.0 / sqrt(1.0 + half * half), 1e-6);
+        /* The sky's gradient is the height of the direction. */
+        assert_near(image.pixels[4 * 4], (double)ray.dir[1], 1e-6);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+/* Camera rays that lie in the edge between two triangles, or in the plane of a face. */
+static void rays_along_edges_hit(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].height = 2.0f;
+    struct scene_material m = material("wall");
+    m.model = SCENE_MODEL_UNLIT;
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_object(scene, box(4, 4, 1), m, 0, 0, 0); /* its diagonals go through pixel middles */
+    const struct render_params params = {.width = SIDE, .height = SIDE};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    for (uint32_t y = 0; y < SIDE; ++y)
+        for (uint32_t x = 0; x < SIDE; ++x)
+            assert_true(red(&image, x, y) == 1.0);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static void faces_seen_edge_on_are_finite(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 1, 5}, (double[]){0, 1, 0});
+    struct scene_material m = material("box");
+    set_rgb(m.diffuse, 1, 1, 1);
+    set_rgb(m.specular, 1, 1, 1);
+    add_object(scene, box(1, 2, 1), m, 0, 0, 0); /* its top is in the plane of the middle row */
+    add_sun(scene, 0, 0, -1, 1.0f);              /* and of the light */
+    struct fixture f = fixture_open(scene, NULL, &picture_params);
+    struct image image = render(&f);
+    assert_finite(&image);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* Every pixel of pictures of odd sizes sees what the C traversal of its ray hits. */
+static void sizes_may_be_odd(void **state)
+{
+    (void)state;
+    const uint32_t sizes[][2] = {{1, 1}, {1, 4096}, {4096, 1}, {37, 23}, {8, 9}, {65, 1}};
+    struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
+    struct scene_mesh ground = {0};
+    assert_int_equal(shape_terrain(10.0, 2.0, 40, 3, &ground), WHIT_OK);
+    add_object(scene, ground, material("ground"), 0, 0, 0);
+    struct render_params params = {.width = 1, .height = 1};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
+        renderer_destroy(f.renderer);
+        params.width = sizes[i][0];
+        params.height = sizes[i][1];
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
+                         WHIT_OK);
+        struct image image = render(&f), ids = {0};
+        assert_int_equal(renderer_read_ids(f.renderer, &ids), WHIT_OK);
+        assert_finite(&image);
+        uint32_t bad = 0, hits = 0, status = 0;
+        struct gpu_chunk sample;
+        camera_sample(&f.renderer->frame, 0, 1, &sample);
+        for (uint32_t p = 0; p < params.width * params.height; ++p) {
+            struct gpu_ray ray;
+            struct gpu_hit hit;
+            struct gpu_cost cost = {0};
+            camera_ray(&f.renderer->frame, CAMERA_PERSPECTIVE, p % params.width, p / params.width,
+                       &sample, &ray);
+            traverse_float(f.accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost,
+                           &status);
+            bad += hit.primitive != ids.words[2 * p + 1];
+            hits += hit.primitive != HIT_NONE;
+        }
+        assert_int_equal(bad, 0);
+        assert_true(hits > 0);
+        image_finish(&image);
+        image_finish(&ids);
+    }
+    fixture_close(&f);
+}
+
+/* Walls a millionth and a million away, each to the edge of the other. */
+static void near_and_far_share_a_picture(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
+    struct scene_material near = material("near"), far = material("far");
+    near.model = far.model = SCENE_MODEL_UNLIT;
+    set_rgb(near.diffuse, 0.25f, 0.25f, 0.25f);
+    set_rgb(far.diffuse, 0.75f, 0.75f, 0.75f);
+    /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
+    add_object(scene, box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
+    add_object(scene, box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
+    struct render_params params = {.width = 40, .height = 20, .samples = 4};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    for (uint32_t y = 0; y < 20; ++y)
+        for (uint32_t x = 0; x < 40; ++x)
+            assert_near((float)red(&image, x, y), x < 20 ? 0.25 : 0.75, 0.0);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sines_are_those_of_libm),
+        cmocka_unit_test(blur_has_its_size),
+        cmocka_unit_test(one_sample_is_a_pinhole),
+        cmocka_unit_test(lens_rays_meet_in_focus),
+        cmocka_unit_test(markers_are_where_they_should),
+        cmocka_unit_test(panorama_sees_all_around),
+        cmocka_unit_test(view_along_up_has_a_picture),
+        cmocka_unit_test(angles_of_view_are_kept),
+        cmocka_unit_test(rays_along_edges_hit),
+        cmocka_unit_test(faces_seen_edge_on_are_finite),
+        cmocka_unit_test(sizes_may_be_odd),
+        cmocka_unit_test(near_and_far_share_a_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
