@@ -142,7 +142,7 @@ static whit_result read_transmission(struct reading *r)
         return WHIT_ERROR_INPUT;
     if (out->ior < 1) /* 0 is the extension's word for a mirror at every angle */
         out->ior = out->ior > 0 ? 1.0f : 1e3f;
-    if (!object || factor <= 0)
+    if (!object || factor <= 0 || out->model == SCENE_MODEL_UNLIT)
         return WHIT_OK;
     for (int i = 0; i < 3; i++)
         out->transmission[i] = factor;
@@ -189,12 +189,20 @@ static whit_result read_other_models(struct reading *r)
         extension(r, "KHR_materials_unlit", &unlit) != WHIT_OK)
         return WHIT_ERROR_INPUT;
     whit_result result = glossy ? read_specular_glossiness(r, glossy) : WHIT_OK;
-    if (unlit)
+    if (unlit) { /* the base colour is all there is */
         r->out->model = SCENE_MODEL_UNLIT;
+        memset(r->out->emission, 0, sizeof r->out->emission);
+        scene_texture_use_init(&r->out->textures[SCENE_SLOT_EMISSION]);
+    }
     return result;
 }
 
-static void note_ignored(const struct reading *r)
+static bool has_extension(const json_t *material, const char *name)
+{
+    return json_object_get(json_object_get(material, "extensions"), name) != NULL;
+}
+
+static bool is_read(const char *extension)
 {
     static const char *const read[] = {"KHR_materials_emissive_strength",
                                        "KHR_materials_ior",
@@ -203,16 +211,30 @@ static void note_ignored(const struct reading *r)
                                        "KHR_materials_transmission",
                                        "KHR_materials_unlit",
                                        "KHR_materials_volume"};
+    for (size_t i = 0; i < sizeof read / sizeof *read; i++)
+        if (strcmp(extension, read[i]) == 0)
+            return true;
+    return false;
+}
+
+/* Once for each extension, at the first material that has it. */
+static void note_ignored(const struct reading *r, uint32_t index)
+{
+    const json_t *materials = json_object_get(r->gltf->root, "materials");
     const char *name;
     json_t *value;
     json_object_foreach(json_object_get(r->object, "extensions"), name, value)
     {
-        bool known = false;
-        for (size_t i = 0; i < sizeof read / sizeof *read; i++)
-            known |= strcmp(name, read[i]) == 0;
-        if (!known)
-            scene_note(r->gltf->scene, SCENE_NOTE_INFO, "%s: material `%s`: %.60s is not drawn",
-                       path_name(r->gltf->request->path), r->out->name, name);
+        uint32_t before = 0, all = 0;
+        for (uint32_t i = 0; i < r->gltf->material_count; i++) {
+            bool has = has_extension(json_array_get(materials, i), name);
+            before += has && i < index;
+            all += has;
+        }
+        if (!is_read(name) && before == 0)
+            scene_note(r->gltf->scene, SCENE_NOTE_INFO,
+                       "%s: %.60s is not drawn: %u materials, the first is `%s`",
+                       path_name(r->gltf->request->path), name, all, r->out->name);
     }
 }
 
@@ -243,7 +265,7 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
     }
     /* What refracts is entered and left through the same faces. */
     out->one_sided = !out->two_sided && !(out->transmission[0] > 0);
-    note_ignored(&reading);
+    note_ignored(&reading, index);
     return WHIT_OK;
 }
 

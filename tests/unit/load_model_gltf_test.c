@@ -261,6 +261,40 @@ static void materials_and_extensions(void **state)
     assert_true(fixture_noted(*state, "KHR_materials_clearcoat is not drawn"));
 }
 
+static void faces_have_one_side_unless_said(void **state)
+{
+    const struct scene *scene =
+        load(state, ONE_NODE ",\"materials\":[{\"name\":\"plain\"},{\"doubleSided\":true},"
+                             "{\"extensions\":{\"KHR_materials_transmission\":"
+                             "{\"transmissionFactor\":0.5}}}]");
+    assert_true(scene->materials[0].one_sided);
+    assert_false(scene->materials[1].one_sided);
+    /* It is left through the same faces that it is entered through. */
+    assert_false(scene->materials[2].one_sided);
+}
+
+static void unlit_is_the_base_color_alone(void **state)
+{
+    const struct scene *scene =
+        load(state, ONE_NODE ",\"materials\":[{\"emissiveFactor\":[1,1,1],"
+                             "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]},"
+                             "\"extensions\":{\"KHR_materials_unlit\":{},"
+                             "\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}]");
+    const struct scene_material *m = &scene->materials[0];
+    assert_int_equal(m->model, SCENE_MODEL_UNLIT);
+    assert_float_equal(m->diffuse[1], 0.25, 0);
+    assert_float_equal(m->emission[0], 0, 0);
+    assert_float_equal(m->transmission[0], 0, 0);
+}
+
+static void what_is_not_drawn_is_noted_once(void **state)
+{
+    load(state, ONE_NODE ",\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
+                         "{\"name\":\"b\",\"extensions\":{\"KHR_x\":{}}}]");
+    assert_true(fixture_noted(*state, "KHR_x is not drawn: 2 materials, the first is `a`"));
+    assert_false(fixture_noted(*state, "`b`"));
+}
+
 static void glass_without_a_volume_is_thin(void **state)
 {
     const struct scene *scene =
@@ -398,6 +432,9 @@ int main(void)
         TEST(camera_angles_are_exact),
         TEST(lights_keep_their_numbers),
         TEST(materials_and_extensions),
+        TEST(faces_have_one_side_unless_said),
+        TEST(unlit_is_the_base_color_alone),
+        TEST(what_is_not_drawn_is_noted_once),
         TEST(glass_without_a_volume_is_thin),
         TEST(texture_transforms),
         TEST(texture_coordinates_grow_downwards),
