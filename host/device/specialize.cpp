@@ -20,11 +20,25 @@ std::vector<uint32_t> run(const uint32_t *words, size_t word_count, const uint32
     for (uint32_t i = 0; i < spec_count; ++i)
         values[i] = {spec[i]};
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    // Without a consumer its remarks would be exceptions; a failure is the caller's to report.
+    optimizer.SetMessageConsumer(
+        [](spv_message_level_t, const char *, const spv_position_t &, const char *) {});
     // Nothing that moves or merges arithmetic: branches that constants decide, and what then is
     // never reached or used.
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateBlockMergePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+    // The same for branches on what variables hold, such as `bool stacked = SPEC_SECONDARY != 0u &&
+    // ...`: variables become values, of which some are constants now. Operations with NoContraction
+    // are not folded.
+    optimizer.RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass())
+        .RegisterPass(spvtools::CreateSSARewritePass())
+        .RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateBlockMergePass())
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())

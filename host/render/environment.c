@@ -71,7 +71,8 @@ whit_result upload_environment(struct renderer *renderer)
     const struct scene_environment *environment = &renderer->scene->environment;
     struct scene_buffers *buffers = &renderer->scene_buffers;
     buffers->environment_size = 0;
-    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb)
+    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb ||
+        !renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
         return WHIT_OK;
     /* As many texels as the map has. */
     double texels = (double)environment->width * (double)environment->height;

@@ -188,6 +188,11 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
     uint64_t slots = (uint64_t)tile * tile;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
+    /* What nothing is bound to has no bytes, and is not created. */
+    bool adaptive = renderer->params.adaptive > 0.0;
+    bool lists = renderer->has_secondary || adaptive || renderer->accel->no_trees;
+    uint64_t list_bytes = lists ? 16 + (uint64_t)p->chunk_slots * 4 : 0;
+    uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;
     whit_result result = WHIT_OK;
     const struct {
         struct buffer **buffer;
@@ -199,22 +204,13 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
         {&p->counts, pixels * sizeof(struct gpu_counts), BUFFER_STORAGE | BUFFER_HOST, "counts"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
-        {&p->work[0], 16 + (uint64_t)p->chunk_slots * 4,
-         BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
-        {&p->work[1], 16 + (uint64_t)p->chunk_slots * 4,
-         BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
-        {&p->work_head, 16, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
-        {&p->listed, renderer->params.adaptive > 0.0 ? 16 + (uint64_t)p->chunk_slots * 4 : 0,
-         BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
-        {&p->ray_stacks,
-         renderer->has_secondary
-             ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_stacked_ray)
-             : 16,
-         BUFFER_STORAGE, "ray stacks"},
+        {&p->work[0], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
+        {&p->work[1], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
+        {&p->work_head, lists ? 16 : 0, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
+        {&p->listed, adaptive ? list_bytes : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
+        {&p->ray_stacks, stacked * sizeof(struct gpu_stacked_ray), BUFFER_STORAGE, "ray stacks"},
         {&p->ray_media,
-         renderer->has_secondary
-             ? (uint64_t)p->chunk_slots * p->stack_size * sizeof(struct gpu_media)
-             : 16,
+         renderer->effects.called[SCENE_EFFECT_MEDIA] ? stacked * sizeof(struct gpu_media) : 0,
          BUFFER_STORAGE, "ray media"},
     };
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
@@ -227,7 +223,7 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
     if (result == WHIT_OK)
         result = costs_create(renderer);
     const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
-    if (result == WHIT_OK)
+    if (result == WHIT_OK && lists)
         result = buffer_write(p->work_head, 0, &head, sizeof head);
     return result;
 }
@@ -365,8 +361,10 @@ static whit_result submit(struct renderer *renderer)
 
 void render_clear_work(struct renderer *renderer, uint32_t list)
 {
-    commands_copy(renderer->commands, renderer->pixel_buffers.work_head, 0,
-                  renderer->pixel_buffers.work[list], 0, sizeof(struct gpu_work));
+    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    if (p->work[list])
+        commands_copy(renderer->commands, p->work_head, 0, p->work[list], 0,
+                      sizeof(struct gpu_work));
 }
 
 void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk)

@@ -22,8 +22,9 @@ struct scene_buffers {
 /* The state of the pixels of one band of rows, and of the ray trees of one chunk. */
 struct pixel_buffers {
     struct buffer *pixels, *ids, *counts;
-    struct buffer *ray_stacks, *work[2], *work_head;
-    struct buffer *ray_media; /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
+    struct buffer *ray_stacks; /* NULL: surfaces leave no rays */
+    struct buffer *ray_media;  /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
+    struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
     struct buffer *costs;     /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed;    /* work list of camera rays; NULL when not adaptive */
     struct buffer *status;

@@ -103,7 +103,7 @@ static whit_result add_opacity(struct material_upload *up, const struct scene_ma
 {
     const struct scene *scene = up->renderer->scene;
     out->tex_opacity = TEXTURE_NONE;
-    if (m->alpha == SCENE_ALPHA_OPAQUE)
+    if (m->alpha == SCENE_ALPHA_OPAQUE || !up->renderer->effects.called[SCENE_EFFECT_CUTOUTS])
         return WHIT_OK;
     const struct scene_texture_use *own = &m->textures[SCENE_SLOT_OPACITY];
     if (own->texture != SCENE_NONE) {
@@ -116,6 +116,13 @@ static whit_result add_opacity(struct material_upload *up, const struct scene_ma
         return WHIT_OK;
     out->flags |= MATERIAL_OPACITY_ALPHA;
     return add_use(up, diffuse, true, &out->tex_opacity);
+}
+
+/* Whether the kernel reads the pictures of a slot. */
+static bool reads_slot(const struct renderer *renderer, enum scene_slot slot)
+{
+    bool bends = slot == SCENE_SLOT_NORMAL || slot == SCENE_SLOT_BUMP;
+    return renderer->effects.called[bends ? SCENE_EFFECT_NORMAL_MAPS : SCENE_EFFECT_TEXTURES];
 }
 
 static whit_result add_material(struct material_upload *up, uint32_t index)
@@ -154,6 +161,9 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
         {SCENE_SLOT_SPECULAR_LEVEL, false, &out->tex_specular_level},
     };
     for (size_t i = 0; i < sizeof slots / sizeof *slots; ++i) {
+        *slots[i].use = TEXTURE_NONE;
+        if (!reads_slot(up->renderer, slots[i].slot))
+            continue;
         whit_result result = add_use(up, &m->textures[slots[i].slot], slots[i].srgb, slots[i].use);
         if (result != WHIT_OK)
             return result;

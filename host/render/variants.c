@@ -165,8 +165,9 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
     spec.SPEC_BRUTE = brute;
     const struct pipeline_params params = whitted_params(&spec, &bindings);
     whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
-    for (int i = 0; result == WHIT_OK && i < 2; ++i) {
-        if (pixels->work[i]) {
+    int set_count = pixels->work[0] ? 2 : 1;
+    for (int i = 0; result == WHIT_OK && i < set_count; ++i) {
+        if (pixels->work[0]) {
             bindings.buffers[BIND_WORK_IN] = pixels->work[i];
             bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
         }
