@@ -33,9 +33,64 @@ static bool moving_node(struct reader *reader, const struct place *place, const 
     return reader_animation(reader, place, object, *index);
 }
 
+/* `position` is the centre, `u` and `v` are the sides. */
+static bool read_rectangle(struct reader *reader, const struct place *place, const json_t *object,
+                           struct scene_light *out)
+{
+    static const char *const needed[] = {"position", "u", "v"};
+    double *const values[] = {out->position, out->edge_u, out->edge_v};
+    for (int i = 0; i < 3; ++i) {
+        if (!json_object_get(object, needed[i]))
+            return reader_fail(reader, place, "a rectangle light needs a `%s`", needed[i]);
+        if (!reader_numbers(reader, place, object, needed[i], 3, values[i]))
+            return false;
+    }
+    for (int i = 0; i < 3; ++i)
+        out->position[i] -= 0.5 * (out->edge_u[i] + out->edge_v[i]);
+    return true;
+}
+
+static bool read_triangle(struct reader *reader, const struct place *place, const json_t *object,
+                          struct scene_light *out)
+{
+    const json_t *points = json_object_get(object, "points");
+    double corners[3][3];
+    struct place at_points = {place, "points", 0};
+    if (!json_is_array(points) || json_array_size(points) != 3)
+        return reader_fail(reader, place, "a triangle light needs three `points`");
+    for (size_t i = 0; i < 3; ++i) {
+        struct place here = {&at_points, NULL, i};
+        if (!reader_vector(reader, &here, json_array_get(points, i), 3, corners[i]))
+            return false;
+    }
+    for (int i = 0; i < 3; ++i) {
+        out->position[i] = corners[0][i];
+        out->edge_u[i] = corners[1][i] - corners[0][i];
+        out->edge_v[i] = corners[2][i] - corners[0][i];
+    }
+    return true;
+}
+
+static bool read_emitter(struct reader *reader, const struct place *place, const json_t *object,
+                         struct scene_light *out)
+{
+    bool rectangle = out->kind == SCENE_LIGHT_RECTANGLE;
+    if (!(rectangle ? read_rectangle : read_triangle)(reader, place, object, out) ||
+        !reader_bool(reader, place, object, "two_sided", &out->two_sided))
+        return false;
+    const double *u = out->edge_u, *v = out->edge_v;
+    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
+           z = u[0] * v[1] - u[1] * v[0];
+    if (!(x * x + y * y + z * z > 0.0))
+        return reader_fail(reader, place, "the light has no area");
+    return true;
+}
+
 static bool read_light_place(struct reader *reader, const struct place *place, const json_t *object,
                              struct scene_light *out)
 {
+    if (scene_light_is_flat(out))
+        return read_emitter(reader, place, object, out);
     double target[3];
     struct place here = {place, "target", 0};
     bool points = out->kind == SCENE_LIGHT_POINT;
@@ -87,13 +142,19 @@ static bool read_light_values(struct reader *reader, const struct place *place,
 
 static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
 {
-    static const char *const kinds[] = {"point", "directional", "spot", NULL};
+    static const char *const kinds[] = {"point",     "directional", "spot",
+                                        "rectangle", "triangle",    NULL};
+    static const enum scene_light_kind codes[] = {SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL,
+                                                  SCENE_LIGHT_SPOT, SCENE_LIGHT_RECTANGLE,
+                                                  SCENE_LIGHT_TRIANGLE};
     static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
     static const char *const point[] = {"position", "falloff", "range", NULL};
     static const char *const directional[] = {"direction", "target", NULL};
     static const char *const spot[] = {"position", "direction", "target", "falloff",
                                        "range",    "inner",     "outer",  NULL};
-    static const char *const *const own[] = {point, directional, spot};
+    static const char *const rectangle[] = {"position", "u", "v", "two_sided", NULL};
+    static const char *const triangle[] = {"points", "two_sided", NULL};
+    static const char *const *const own[] = {point, directional, spot, rectangle, triangle};
     uint32_t kind = SCENE_LIGHT_POINT;
     const char *name = "light";
     struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
@@ -102,11 +163,11 @@ static bool read_light(struct reader *reader, const struct place *place, const j
     if (!reader_choice(reader, place, object, "kind", kinds, &kind))
         return false;
     const char *const *lists[] = {common, own[kind]};
-    const char *foreign = reader_foreign_key(object, lists, 2, own, 3);
+    const char *foreign = reader_foreign_key(object, lists, 2, own, 5);
     struct place at_foreign = {place, foreign, 0};
     if (foreign)
         return reader_fail(reader, &at_foreign, "a %s light has no `%s`", kinds[kind], foreign);
-    light.kind = (enum scene_light_kind)kind;
+    light.kind = codes[kind];
     light.falloff = light.kind != SCENE_LIGHT_DIRECTIONAL;
     if (!reader_object_lists(reader, place, object, lists, 2) ||
         !reader_string(reader, place, object, "name", &name) ||

@@ -64,6 +64,8 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     if (spec.SPEC_SPHERES != SPHERES_NONE && !renderer->params.all_effects &&
         only_spheres(renderer->scene))
         spec.SPEC_SPHERES = SPHERES_ONLY;
+    if (!renderer->params.all_effects)
+        spec.SPEC_LIGHTS &= lights_kinds(&renderer->pose);
     return spec;
 }
 

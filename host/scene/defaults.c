@@ -172,11 +172,11 @@ static whit_result add_emitters(struct scene *scene, const struct scene_pose *po
     char strength[64];
     snprintf(strength, sizeof strength, "%.3g", factor);
     bool stated = strcmp(strength, "1") == 0;
+    bool flat = scene_light_is_flat(&scene->lights[scene->light_count - 1]);
     snprintf(strength, sizeof strength, ", %.3g times as strongly as stated", factor);
     scene_note(scene, SCENE_NOTE_INFO,
-               "no light in the file: its emissive surfaces light it, as %u points (area lights "
-               "are not sampled more finely yet)%s",
-               samples, stated ? "" : strength);
+               "no light in the file: its emissive surfaces light it, as %u %s%s%s", samples,
+               flat ? "flat light" : "point", samples == 1 ? "" : "s", stated ? "" : strength);
     return WHIT_OK;
 }
 

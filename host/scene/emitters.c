@@ -1,5 +1,6 @@
-/* Emissive surfaces as a handful of points. Whitted's model has no area lights, so each emissive
-   surface is replaced by deterministic samples spread evenly over its area. */
+/* Emissive surfaces as lights. A few flat ones become triangle and rectangle lights, of which the
+   kernel takes as many points as it is asked for. Lamps of many triangles become a handful of
+   points, spread evenly over their area. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,12 @@
 #include "scene/freeze.h"
 
 #define SAMPLES_MOST   16
+/* Of these at most are flat lights: each costs every lit point as many shadow rays as it has
+   points, 16 by default. */
+#define FLAT_MOST      8
+/* How far the corners of two triangles may be off those of a parallelogram, per length of a side.
+ */
+#define CORNER_SLACK   1e-5
 #define TRIANGLES_MOST (4u << 20)
 /* Emitted power per area of the scene's great circle, below which emission decorates but does not
    light: the lamps of a car do not make its daylight. */
@@ -109,16 +116,13 @@ static void point_in(double corners[3][3], double u, double v, double out[3])
                  corners[2][i] * root * v;
 }
 
-static bool add_sample(struct scene *scene, const struct emitter *emitter, double u, double v,
-                       double power)
+/* What all lights of an emitter's material have in common. */
+static struct scene_light light_of(const struct scene *scene, const struct emitter *emitter)
 {
-    const struct scene_instance *instance = &scene->instances[emitter->instance];
     const struct scene_material *material = &scene->materials[emitter->material];
-    struct affine local = instance->has_local ? instance->local : affine_identity();
-    struct scene_light light = {
+    return (struct scene_light){
         .name = string_format("emission of `%s`", material->name ? material->name : ""),
-        .kind = SCENE_LIGHT_AREA_SAMPLE,
-        .node = instance->node,
+        .node = scene->instances[emitter->instance].node,
         .falloff = true,
         .cos_inner = 1.0f,
         .cos_outer = 0.0f,
@@ -126,6 +130,21 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
         .two_sided = material->two_sided || material->model != SCENE_MODEL_METAL_ROUGH,
         .made_by_whit = true,
     };
+}
+
+static struct affine local_of(const struct scene_instance *instance)
+{
+    return instance->has_local ? instance->local : affine_identity();
+}
+
+static bool add_sample(struct scene *scene, const struct emitter *emitter, double u, double v,
+                       double power)
+{
+    const struct scene_instance *instance = &scene->instances[emitter->instance];
+    const struct scene_material *material = &scene->materials[emitter->material];
+    struct affine local = local_of(instance);
+    struct scene_light light = light_of(scene, emitter);
+    light.kind = SCENE_LIGHT_AREA_SAMPLE;
     double corners[3][3], normal[3];
     triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     double twice_area = normal_of(corners, normal);
@@ -198,6 +217,126 @@ static bool sample_all(struct scene *scene, const struct emitter_list *list)
     return true;
 }
 
+/* ---- Flat lights ---- */
+
+/* A triangle, or the parallelogram of a corner and two sides. */
+struct flat {
+    const struct emitter *emitter;
+    double corner[3], sides[2][3];
+    bool rectangle;
+};
+
+static void make_flat(const struct scene *scene, const struct emitter *emitter, struct flat *out)
+{
+    const struct scene_instance *instance = &scene->instances[emitter->instance];
+    struct affine local = local_of(instance);
+    double corners[3][3];
+    triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
+    bool mirrored = affine_determinant(&local) < 0.0;
+    *out = (struct flat){.emitter = emitter};
+    for (int i = 0; i < 3; ++i) {
+        out->corner[i] = corners[0][i];
+        out->sides[mirrored][i] = corners[1][i] - corners[0][i];
+        out->sides[!mirrored][i] = corners[2][i] - corners[0][i];
+    }
+}
+
+/* Corner `k` of a triangle. */
+static void flat_corner(const struct flat *flat, int k, double out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = flat->corner[i] + (k ? flat->sides[k - 1][i] : 0.0);
+}
+
+static double distance_between(const double a[3], const double b[3])
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
+/* Whether triangle `b`, its corners taken from `turn` on, is `a` turned by half about the middle of
+   the side that faces corner `k` of `a`: corner k is then that of a parallelogram. */
+static bool is_other_half(const struct flat *a, int k, const struct flat *b, int turn)
+{
+    double at[3][3], other[3][3], far[3];
+    for (int i = 0; i < 3; ++i) {
+        flat_corner(a, (k + i) % 3, at[i]);
+        flat_corner(b, (turn + i) % 3, other[i]);
+    }
+    for (int i = 0; i < 3; ++i)
+        far[i] = at[1][i] + at[2][i] - at[0][i];
+    double slack = CORNER_SLACK * distance_between(at[1], at[2]);
+    return distance_between(other[0], far) <= slack && distance_between(other[1], at[2]) <= slack &&
+           distance_between(other[2], at[1]) <= slack;
+}
+
+/* Makes `a` the parallelogram of both, if that is what they are. */
+static bool merge_flats(struct flat *a, const struct flat *b)
+{
+    if (a->rectangle || a->emitter->instance != b->emitter->instance ||
+        a->emitter->material != b->emitter->material)
+        return false;
+    for (int k = 0; k < 9; ++k) {
+        double corners[3][3];
+        if (!is_other_half(a, k / 3, b, k % 3))
+            continue;
+        for (int i = 0; i < 3; ++i)
+            flat_corner(a, (k / 3 + i) % 3, corners[i]);
+        for (int i = 0; i < 3; ++i) {
+            a->corner[i] = corners[0][i];
+            a->sides[0][i] = corners[1][i] - corners[0][i];
+            a->sides[1][i] = corners[2][i] - corners[0][i];
+        }
+        a->rectangle = true;
+        return true;
+    }
+    return false;
+}
+
+/* False: there are more than FLAT_MOST. */
+static bool gather_flats(const struct scene *scene, const struct emitter_list *list,
+                         struct flat *flats, uint32_t *count)
+{
+    *count = 0;
+    for (uint32_t i = 0; i < list->count; ++i) {
+        struct flat flat;
+        make_flat(scene, &list->items[i], &flat);
+        bool merged = false;
+        for (uint32_t k = 0; !merged && k < *count; ++k)
+            merged = merge_flats(&flats[k], &flat);
+        /* Twice as many on the way: their other halves may follow. */
+        if (!merged && *count == 2 * FLAT_MOST)
+            return false;
+        if (!merged)
+            flats[(*count)++] = flat;
+    }
+    return *count <= FLAT_MOST;
+}
+
+static bool add_flats(struct scene *scene, const struct flat *flats, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        struct scene_light light = light_of(scene, flats[i].emitter);
+        light.kind = flats[i].rectangle ? SCENE_LIGHT_RECTANGLE : SCENE_LIGHT_TRIANGLE;
+        double corners[3][3] = {{0}}, normal[3];
+        memcpy(light.position, flats[i].corner, sizeof light.position);
+        memcpy(light.edge_u, flats[i].sides[0], sizeof light.edge_u);
+        memcpy(light.edge_v, flats[i].sides[1], sizeof light.edge_v);
+        memcpy(corners[1], light.edge_u, sizeof corners[1]);
+        memcpy(corners[2], light.edge_v, sizeof corners[2]);
+        double length = normal_of(corners, normal);
+        for (int k = 0; k < 3; ++k)
+            light.direction[k] = length > 0.0 ? normal[k] / length : -(double)(k == 1);
+        memcpy(light.color, scene->materials[flats[i].emitter->material].emission,
+               sizeof light.color);
+        if (scene_add_light(scene, light) == SCENE_NONE)
+            return false;
+    }
+    return true;
+}
+
 static bool power_suffices(const struct emitter_list *list, const struct scene_pose *pose)
 {
     double diagonal2 = 0.0;
@@ -228,7 +367,10 @@ whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose 
     if (!list.count || !power_suffices(&list, pose))
         goto done;
     qsort(list.items, list.count, sizeof *list.items, compare_emitters);
-    if (!sample_all(scene, &list))
+    struct flat flats[2 * FLAT_MOST];
+    uint32_t flat_count;
+    bool flat = gather_flats(scene, &list, flats, &flat_count);
+    if (flat ? !add_flats(scene, flats, flat_count) : !sample_all(scene, &list))
         result = WHIT_ERROR_MEMORY;
     *added = scene->light_count - before;
 done:

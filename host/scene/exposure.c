@@ -16,6 +16,8 @@
 #define LEAST      0.02
 #define MOST       2.0
 
+static const double PI = 3.14159265358979323846;
+
 struct probe_list {
     double values[PROBES];
     uint32_t count;
@@ -75,6 +77,34 @@ static double arriving(const struct scene_light *light, const double way[3], dou
     return light->range > 0.0f && distance > (double)light->range ? 0.0 : value;
 }
 
+/* Light of a flat emitter, with the surface's cosine and without shadows: from the middles of a
+   grid over its parallelogram, of which a triangle fills a half. */
+static double brightness_of_emitter(const struct scene_light *light, const double point[3],
+                                    const double normal[3])
+{
+    enum { GRID = 4 };
+    bool triangle = light->kind == SCENE_LIGHT_TRIANGLE;
+    double product[3], sum = 0.0;
+    const double *u = light->edge_u, *v = light->edge_v;
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        product[i] = u[j] * v[k] - u[k] * v[j];
+    }
+    double area = sqrt(dot(product, product)) / (GRID * GRID);
+    for (int cell = 0; cell < GRID * GRID; ++cell) {
+        double s = (cell % GRID + 0.5) / GRID, t = (cell / GRID + 0.5) / GRID, way[3];
+        double share = !triangle || s + t < 1.0 ? 1.0 : s + t > 1.0 ? 0.0 : 0.5;
+        for (int i = 0; i < 3; ++i)
+            way[i] = point[i] - light->position[i] - s * u[i] - t * v[i];
+        double square = dot(way, way), distance = sqrt(square);
+        double away = distance > 0.0 ? dot(way, light->direction) / distance : 0.0;
+        away = light->two_sided ? fabs(away) : fmax(away, 0.0);
+        if (distance > 0.0)
+            sum += share * away * fabs(dot(way, normal)) / (distance * square);
+    }
+    return luminance(light->color) * area / PI * sum;
+}
+
 /* What a white surface shows at `point`. */
 static double brightness_at(const struct scene_pose *pose, const double point[3],
                             const double normal[3])
@@ -83,6 +113,10 @@ static double brightness_at(const struct scene_pose *pose, const double point[3]
     for (uint32_t i = 0; i < pose->light_count; ++i) {
         const struct scene_light *light = &pose->lights[i];
         double way[3], distance = 1.0;
+        if (scene_light_is_flat(light)) {
+            sum += brightness_of_emitter(light, point, normal);
+            continue;
+        }
         for (int k = 0; k < 3; ++k)
             way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
                                                             : point[k] - light->position[k];

@@ -195,16 +195,35 @@ static void move_normal(const struct affine *world, const double in[3], double o
     memcpy(out, moved, sizeof moved);
 }
 
+static double volume_of(const double a[3], const double b[3], const double c[3])
+{
+    return (a[1] * b[2] - a[2] * b[1]) * c[0] + (a[2] * b[0] - a[0] * b[2]) * c[1] +
+           (a[0] * b[1] - a[1] * b[0]) * c[2];
+}
+
+/* The edges of a flat emitter go round its direction against the clock, in a mirrored node too. */
+static void move_edges(const struct affine *world, struct scene_light *light)
+{
+    double u[3], v[3];
+    affine_vector(world, light->edge_u, u);
+    affine_vector(world, light->edge_v, v);
+    bool swapped = volume_of(u, v, light->direction) < 0.0;
+    memcpy(light->edge_u, swapped ? v : u, sizeof u);
+    memcpy(light->edge_v, swapped ? u : v, sizeof v);
+}
+
 static struct scene_light pose_light(const struct scene_light *light, const struct affine *nodes)
 {
     struct scene_light out = *light;
     if (light->node != SCENE_NONE) {
         const struct affine *world = &nodes[light->node];
         affine_point(world, light->position, out.position);
-        if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+        if (light->kind == SCENE_LIGHT_AREA_SAMPLE || scene_light_is_flat(light))
             move_normal(world, light->direction, out.direction);
         else
             affine_vector(world, light->direction, out.direction);
+        if (scene_light_is_flat(light))
+            move_edges(world, &out);
         out.node = SCENE_NONE;
     }
     unit(out.direction, (const double[3]){0, -1, 0});

@@ -113,7 +113,7 @@ static inline struct image render(struct fixture *f)
 
 static const struct render_params picture_params = {.width = 33, .height = 33, .depth = 8};
 
-static const float *middle(const struct image *image)
+static inline const float *middle(const struct image *image)
 {
     return &image->pixels[4 * ((size_t)image->height / 2 * image->width + image->width / 2)];
 }

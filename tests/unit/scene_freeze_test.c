@@ -224,10 +224,11 @@ static void own_light_gets_no_company(void **state)
     scene_destroy(scene);
 }
 
-static struct scene *panel_scene(float radiance)
+/* 2 * steps^2 glowing triangles. */
+static struct scene *panel_scene(float radiance, uint32_t steps)
 {
     struct scene_mesh panel;
-    assert_int_equal(shape_plane(2.0, 1.0, 1, 1.0, &panel), WHIT_OK);
+    assert_int_equal(shape_plane(2.0, 1.0, steps, 1.0, &panel), WHIT_OK);
     struct scene *scene = scene_of(box_mesh());
     struct scene_material material;
     scene_material_init(&material, "plain");
@@ -246,11 +247,12 @@ static struct scene *panel_scene(float radiance)
     return scene;
 }
 
-/* The samples' intensities add up to radiance * world area / pi, and lie on the panel. */
-static void emissive_surfaces_become_lights(void **state)
+/* Of many triangles: the samples' intensities add up to radiance * world area / pi, and lie on the
+   panel. */
+static void tessellated_lamps_become_points(void **state)
 {
     (void)state;
-    struct scene *scene = panel_scene(10.0f);
+    struct scene *scene = panel_scene(10.0f, 6);
     struct scene_pose pose;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
@@ -272,10 +274,54 @@ static void emissive_surfaces_become_lights(void **state)
     scene_destroy(scene);
 }
 
+static void flat_lamps_become_rectangles(void **state)
+{
+    (void)state;
+    struct scene *scene = panel_scene(10.0f, 1);
+    struct scene_pose pose;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(pose.light_count, 1);
+    const struct scene_light *light = &pose.lights[0];
+    assert_int_equal(light->kind, SCENE_LIGHT_RECTANGLE);
+    assert_true(light->made_by_whit && light->color[0] == 10.0f);
+    assert_true(fabs(light->direction[1] - 1.0) < 1e-12);
+    /* From one corner of the panel, -3..3 by -0.5..0.5, to the opposite one. */
+    const double *p = light->position, *u = light->edge_u, *v = light->edge_v;
+    assert_true(fabs(fabs(p[0]) - 3.0) < 1e-9 && fabs(fabs(p[2]) - 0.5) < 1e-9);
+    assert_true(fabs(p[0] + u[0] + v[0] + p[0]) < 1e-9 && fabs(p[2] + u[2] + v[2] + p[2]) < 1e-9);
+    assert_true(fabs(p[1] - 5.0) < 1e-9 && fabs(u[1]) + fabs(v[1]) < 1e-9);
+    assert_true(u[2] * v[0] - u[0] * v[2] > 5.999);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+/* Halves that are no parallelogram, in a mirrored node: the front stays above. */
+static void single_triangles_become_lights(void **state)
+{
+    (void)state;
+    struct scene *scene = panel_scene(10.0f, 1);
+    struct scene_pose pose;
+    scene->meshes[1].positions[0] *= 1.5f;
+    scene->nodes[scene->node_count - 1].scale[0] = -3.0;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(pose.light_count, 2);
+    for (uint32_t i = 0; i < 2; ++i) {
+        const struct scene_light *light = &pose.lights[i];
+        const double *u = light->edge_u, *v = light->edge_v;
+        assert_int_equal(light->kind, SCENE_LIGHT_TRIANGLE);
+        assert_true(light->direction[1] > 0.999);
+        assert_true(u[2] * v[0] - u[0] * v[2] > 2.0);
+    }
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
 static void faint_glow_lights_nothing(void **state)
 {
     (void)state;
-    struct scene *scene = panel_scene(0.001f);
+    struct scene *scene = panel_scene(0.001f, 1);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
@@ -315,7 +361,9 @@ int main(void)
         cmocka_unit_test(empty_scene_is_a_background),
         cmocka_unit_test(missing_camera_and_light_are_made),
         cmocka_unit_test(own_light_gets_no_company),
-        cmocka_unit_test(emissive_surfaces_become_lights),
+        cmocka_unit_test(tessellated_lamps_become_points),
+        cmocka_unit_test(flat_lamps_become_rectangles),
+        cmocka_unit_test(single_triangles_become_lights),
         cmocka_unit_test(faint_glow_lights_nothing),
         cmocka_unit_test(hash_follows_content),
     };
