@@ -125,7 +125,8 @@ void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_insta
 void whit_scene_get_effect(const whit_scene *scene, uint32_t index, whit_effect_info *info);
 void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info *info);
 
-/* Every world-space triangle at `time_s`, in the order of instance, then primitive. */
+/* Every world-space triangle at `time_s`, in the order of instance, then primitive. Spheres are not
+   among them. */
 typedef struct whit_triangle {
     float vertices[9];
     uint32_t instance, primitive;

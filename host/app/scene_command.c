@@ -87,6 +87,7 @@ static json_t *mesh_document(const whit_scene *scene, uint32_t index)
     document_text(object, "name", mesh.name);
     document_count(object, "vertices", mesh.vertex_count);
     document_count(object, "triangles", mesh.triangle_count);
+    document_count(object, "spheres", mesh.sphere_count);
     document_count(object, "groups", mesh.group_count);
     document_flag(object, "normals", mesh.has_normals);
     document_flag(object, "uvs", mesh.has_uvs);
@@ -212,6 +213,7 @@ static int print_json(const struct job *job, const whit_scene_info *info)
     document_hash(root, "hash", info->hash);
     document_count(root, "file_bytes", info->file_bytes);
     document_count(root, "triangles", info->triangle_count);
+    document_count(root, "spheres", info->sphere_count);
     document_count(root, "mesh_triangles", info->mesh_triangle_count);
     document_count(root, "nodes", info->node_count);
     document_count(root, "textures", info->texture_count);
@@ -255,9 +257,12 @@ static void print_mesh(const whit_scene *scene, uint32_t index)
     whit_mesh_info mesh;
     whit_scene_get_mesh(scene, index, &mesh);
     print_name(index, mesh.name);
-    printf("%u triangles, %u vertices%s%s%s\n", mesh.triangle_count, mesh.vertex_count,
-           mesh.has_normals ? ", normals" : "", mesh.has_uvs ? ", uvs" : "",
-           mesh.has_colors ? ", colours" : "");
+    if (mesh.sphere_count)
+        printf("%u sphere%s\n", mesh.sphere_count, mesh.sphere_count == 1 ? "" : "s");
+    else
+        printf("%u triangles, %u vertices%s%s%s\n", mesh.triangle_count, mesh.vertex_count,
+               mesh.has_normals ? ", normals" : "", mesh.has_uvs ? ", uvs" : "",
+               mesh.has_colors ? ", colours" : "");
 }
 
 static void print_instance(const whit_scene *scene, uint32_t index)
@@ -389,6 +394,8 @@ static void print_summary(const struct job *job, const whit_scene_info *info)
     print_clean(job->scene_path);
     printf("\n  triangles    %llu (%llu in the meshes)\n", (unsigned long long)info->triangle_count,
            (unsigned long long)info->mesh_triangle_count);
+    if (info->sphere_count)
+        printf("  spheres      %llu\n", (unsigned long long)info->sphere_count);
     print_count("  contents     ", info->mesh_count, "mesh", "meshes");
     print_count(", ", info->instance_count, "instance", "instances");
     print_count(", ", info->node_count, "node", "nodes");

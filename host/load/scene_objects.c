@@ -12,6 +12,7 @@
 #define DEPTH_MOST     64u
 #define INSTANCES_MOST 4000000u
 #define SIZE_MOST      1e15
+#define SPHERES_MOST   10000000u
 
 static const char *const object_keys[] = {"name",     "translation", "rotation", "quaternion",
                                           "scale",    "matrix",      "material", "animation",
@@ -30,7 +31,10 @@ static const char *const terrain_keys[] = {"shape", "size", "height", "steps", "
 static const char *const strands_keys[] = {"shape", "size", "length", "width",
                                            "count", "seed", NULL};
 static const char *const atrium_keys[] = {"shape", "bays", "level", NULL};
-static const char *const flake_keys[] = {"shape", "radius", "level", "segments", "rings", NULL};
+static const char *const flake_keys[] = {"shape",    "radius", "level", "balls",
+                                         "segments", "rings",  NULL};
+static const char *const ball_keys[] = {"shape", "radius", "center", NULL};
+static const char *const balls_keys[] = {"shape", "spheres", NULL};
 
 enum shape {
     SHAPE_BOX,
@@ -44,15 +48,17 @@ enum shape {
     SHAPE_STRANDS,
     SHAPE_ATRIUM,
     SHAPE_SPHEREFLAKE,
+    SHAPE_BALL,
+    SHAPE_BALLS,
     SHAPE_COUNT
 };
 
 static const char *const shape_names[SHAPE_COUNT + 1] = {
-    "box",  "plane",   "sphere",  "icosphere", "torus",       "cylinder",
-    "cone", "terrain", "strands", "atrium",    "sphereflake", NULL};
+    "box",     "plane",   "sphere", "icosphere",   "torus", "cylinder", "cone",
+    "terrain", "strands", "atrium", "sphereflake", "ball",  "balls",    NULL};
 static const char *const *const shape_keys[SHAPE_COUNT] = {
-    box_keys,  plane_keys,   sphere_keys,  icosphere_keys, torus_keys, cylinder_keys,
-    cone_keys, terrain_keys, strands_keys, atrium_keys,    flake_keys};
+    box_keys,     plane_keys,   sphere_keys, icosphere_keys, torus_keys, cylinder_keys, cone_keys,
+    terrain_keys, strands_keys, atrium_keys, flake_keys,     ball_keys,  balls_keys};
 
 /* "size" as one number for all sides, or as one a side. */
 static bool read_size(struct reader *reader, const struct place *place, const json_t *object,
@@ -80,14 +86,15 @@ static bool read_size(struct reader *reader, const struct place *place, const js
 }
 
 struct shape_sizes {
-    double size[3], radius, radius_top, tube, height, length, width, uv_scale;
+    double size[3], center[3], radius, radius_top, tube, height, length, width, uv_scale;
     uint32_t segments, rings, sides, steps, level, seed, count, bays;
+    bool balls;
 };
 
 static bool read_sizes(struct reader *reader, const struct place *place, const json_t *object,
                        enum shape shape, struct shape_sizes *out)
 {
-    bool ball = shape == SHAPE_SPHERE || shape == SHAPE_SPHEREFLAKE;
+    bool ball = shape == SHAPE_SPHERE || shape == SHAPE_SPHEREFLAKE || shape == SHAPE_BALL;
     *out = (struct shape_sizes){
         .size = {shape == SHAPE_TERRAIN   ? 10.0
                  : shape == SHAPE_STRANDS ? 2.0
@@ -115,7 +122,9 @@ static bool read_sizes(struct reader *reader, const struct place *place, const j
     uint32_t level_least = shape == SHAPE_ATRIUM ? 1 : 0;
     uint32_t level_most = shape == SHAPE_SPHEREFLAKE ? 6 : 8;
     if (!read_size(reader, place, object, size_count, out->size) ||
-        !reader_number(reader, place, object, "radius", 1e-15, SIZE_MOST, &out->radius))
+        !reader_number(reader, place, object, "radius", 1e-15, SIZE_MOST, &out->radius) ||
+        !reader_numbers(reader, place, object, "center", 3, out->center) ||
+        !reader_bool(reader, place, object, "balls", &out->balls))
         return false;
     out->radius_top = out->radius;
     return reader_number(reader, place, object, "radius_top", 0.0, SIZE_MOST, &out->radius_top) &&
@@ -134,6 +143,17 @@ static bool read_sizes(struct reader *reader, const struct place *place, const j
            reader_count(reader, place, object, "seed", 0, 1000000000, &out->seed);
 }
 
+static whit_result make_flake_of_balls(const struct shape_sizes *s, struct scene_mesh *out)
+{
+    double *spheres;
+    uint32_t count;
+    whit_result result = shape_sphereflake(s->radius, s->level, &spheres, &count);
+    if (result == WHIT_OK)
+        result = shape_balls(spheres, count, out);
+    free(spheres);
+    return result;
+}
+
 static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, struct scene_mesh *out)
 {
     switch (shape) {
@@ -144,7 +164,11 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
     case SHAPE_SPHERE:
         return shape_sphere(s->radius, s->segments, s->rings, out);
     case SHAPE_SPHEREFLAKE:
-        return shape_sphere(1.0, s->segments, s->rings, out);
+        return s->balls ? make_flake_of_balls(s, out)
+                        : shape_sphere(1.0, s->segments, s->rings, out);
+    case SHAPE_BALL:
+        return shape_balls((const double[]){s->center[0], s->center[1], s->center[2], s->radius}, 1,
+                           out);
     case SHAPE_ICOSPHERE:
         return shape_icosphere(s->radius, s->level, out);
     case SHAPE_TORUS:
@@ -159,6 +183,7 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
         return shape_strands(s->size[0], s->length, s->width, s->count, s->seed, out);
     case SHAPE_ATRIUM:
         return shape_atrium(s->bays, s->level, out);
+    case SHAPE_BALLS: /* read_balls */
     case SHAPE_COUNT:
         break;
     }
@@ -169,11 +194,22 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
 static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t material)
 {
     return string_format("%d %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g "
-                         "%u %u %u %u %u %u %u %u",
+                         "%u %u %u %u %u %u %u %u %d %.17g %.17g %.17g",
                          (int)shape, material, s->size[0], s->size[1], s->size[2], s->radius,
                          s->radius_top, s->tube, s->height, s->length, s->width, s->uv_scale,
                          s->segments, s->rings, s->sides, s->steps, s->level, s->seed, s->count,
-                         s->bays);
+                         s->bays, s->balls, s->center[0], s->center[1], s->center[2]);
+}
+
+/* Takes over what `mesh` owns. */
+static bool add_dressed(struct reader *reader, enum shape shape, struct scene_mesh mesh,
+                        uint32_t material, uint32_t *index)
+{
+    mesh.name = string_copy(shape_names[shape]);
+    for (uint32_t i = 0; i < scene_mesh_primitives(&mesh); ++i)
+        mesh.materials[i] = material;
+    *index = scene_add_mesh(reader->scene, mesh);
+    return *index != SCENE_NONE || reader_no_memory(reader);
 }
 
 static bool add_mesh(struct reader *reader, const struct place *place, enum shape shape,
@@ -185,11 +221,33 @@ static bool add_mesh(struct reader *reader, const struct place *place, enum shap
         return reader_no_memory(reader);
     if (result != WHIT_OK)
         return reader_fail(reader, place, "these sizes make no %s", shape_names[shape]);
-    mesh.name = string_copy(shape_names[shape]);
-    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
-        mesh.materials[i] = material;
-    *index = scene_add_mesh(reader->scene, mesh);
-    return *index != SCENE_NONE || reader_no_memory(reader);
+    return add_dressed(reader, shape, mesh, material, index);
+}
+
+/* "spheres": [[x, y, z, radius], ...] as one mesh of their own. */
+static bool read_balls(struct reader *reader, const struct place *place, const json_t *object,
+                       uint32_t material, uint32_t *index)
+{
+    const json_t *value = json_object_get(object, "spheres");
+    struct place here = {place, "spheres", 0};
+    size_t count = json_is_array(value) ? json_array_size(value) : 0;
+    if (count == 0 || count > SPHERES_MOST)
+        return reader_fail(reader, &here, "1 to %u spheres [x, y, z, radius] are expected",
+                           SPHERES_MOST);
+    double *spheres = array_alloc(count, 4 * sizeof *spheres);
+    bool good = spheres || reader_no_memory(reader);
+    for (size_t i = 0; good && i < count; ++i) {
+        struct place at = {&here, NULL, i};
+        double *sphere = spheres + 4 * i;
+        good = reader_vector(reader, &at, json_array_get(value, i), 4, sphere);
+        if (good && !(sphere[3] >= 1e-15 && sphere[3] <= SIZE_MOST))
+            good = reader_fail(reader, &at, "the radius must be from 1e-15 to %g", SIZE_MOST);
+    }
+    struct scene_mesh mesh = {0};
+    if (good && shape_balls(spheres, (uint32_t)count, &mesh) != WHIT_OK)
+        good = reader_no_memory(reader);
+    free(spheres);
+    return good && add_dressed(reader, SHAPE_BALLS, mesh, material, index);
 }
 
 /* Equal shapes share a mesh, and so one tree. */
@@ -273,10 +331,15 @@ static bool read_shape(struct reader *reader, const struct place *place, const j
     uint32_t material, mesh = SCENE_NONE;
     if (!read_sizes(reader, place, object, shape, &sizes) ||
         !read_material(reader, place, object, &material) ||
-        (material == SCENE_NONE && !plain_material(reader, &material)) ||
-        !shared_mesh(reader, place, shape, &sizes, material, &mesh))
+        (material == SCENE_NONE && !plain_material(reader, &material)))
         return false;
-    if (shape == SHAPE_SPHEREFLAKE)
+    if (shape == SHAPE_BALLS) {
+        if (!read_balls(reader, place, object, material, &mesh))
+            return false;
+    } else if (!shared_mesh(reader, place, shape, &sizes, material, &mesh)) {
+        return false;
+    }
+    if (shape == SHAPE_SPHEREFLAKE && !sizes.balls)
         return add_sphereflake(reader, name, mesh, node, &sizes);
     return add_instance(reader, name, mesh, node, NULL);
 }

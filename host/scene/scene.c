@@ -38,7 +38,6 @@ void scene_mesh_finish(struct scene_mesh *mesh)
     free(mesh->colors);
     free(mesh->tangents);
     free(mesh->indices);
-    free(mesh->spheres);
     free(mesh->materials);
     *mesh = (struct scene_mesh){0};
 }

@@ -439,3 +439,21 @@ whit_result shape_sphereflake(double radius, uint32_t level, double **spheres, u
     *count = total;
     return WHIT_OK;
 }
+
+whit_result shape_balls(const double *spheres, uint32_t count, struct scene_mesh *out)
+{
+    if (count == 0)
+        return WHIT_ERROR_USAGE;
+    struct scene_mesh mesh = {.sphere_count = count};
+    mesh.spheres = array_alloc(count, 4 * sizeof *mesh.spheres);
+    mesh.materials = array_alloc_zeroed(count, sizeof *mesh.materials);
+    if (!mesh.spheres || !mesh.materials) {
+        free(mesh.spheres);
+        free(mesh.materials);
+        return WHIT_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < 4 * (size_t)count; ++i)
+        mesh.spheres[i] = (float)spheres[i];
+    *out = mesh;
+    return WHIT_OK;
+}

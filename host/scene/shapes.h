@@ -36,5 +36,8 @@ WHIT_CHECK whit_result shape_atrium(uint32_t bays, uint32_t level, struct scene_
    nine children at a third of its size. *spheres holds count * 4 doubles; free() it. */
 WHIT_CHECK whit_result shape_sphereflake(double radius, uint32_t level, double **spheres,
                                          uint32_t *count);
+/* Spheres as such, not as triangles: `spheres` holds centre and radius of each. Any below 1e18 are
+   taken; what has no radius scene_freeze drops. */
+WHIT_CHECK whit_result shape_balls(const double *spheres, uint32_t count, struct scene_mesh *out);
 
 #endif

@@ -312,6 +312,42 @@ static void sphereflake_is_instances(void **state)
     scene_destroy(scene);
 }
 
+/* As such, in place of triangles; equal ones share a mesh, and each list is a mesh of its own. */
+static void balls_are_spheres(void **state)
+{
+    struct scene *scene = load_fine(
+        state, "{\"materials\":{\"a\":{\"diffuse\":1},\"b\":{\"diffuse\":0.5}},\"objects\":["
+               "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\"},"
+               "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\","
+               "\"scale\":[1,2,3]},"
+               "{\"shape\":\"ball\",\"radius\":2,\"material\":\"b\"},"
+               "{\"shape\":\"balls\",\"spheres\":[[0,0,0,1],[5,0,-1,0.25]]},"
+               "{\"shape\":\"sphereflake\",\"level\":2,\"balls\":true}]}");
+    assert_int_equal(scene->mesh_count, 4);
+    assert_int_equal(scene->instance_count, 5);
+    assert_int_equal(scene->triangle_total, 0);
+    assert_int_equal(scene->sphere_total, 1 + 1 + 1 + 2 + 91);
+    const float first[4] = {1, 2, 3, 2}, second[4] = {5, 0, -1, 0.25f};
+    assert_memory_equal(scene->meshes[0].spheres, first, sizeof first);
+    assert_memory_equal(scene->meshes[2].spheres + 4, second, sizeof second);
+    assert_string_equal(scene->materials[scene->meshes[0].materials[0]].name, "b");
+    assert_true(scene->meshes[0].lo[1] <= 0.0f && scene->meshes[0].lo[1] > -1e-6f);
+    assert_true(scene->meshes[0].hi[1] >= 4.0f && scene->meshes[0].hi[1] < 4.00001f);
+    assert_int_equal(scene->meshes[3].sphere_count, 91);
+    scene_destroy(scene);
+    assert_error(state, "{\"objects\":[{\"shape\":\"ball\",\"segments\":9}]}",
+                 "test.json:1:29: objects[0].segments: a ball has no `segments`");
+    assert_error(state, "{\"objects\":[{\"shape\":\"ball\",\"radius\":0}]}",
+                 "test.json:1:29: objects[0].radius: 0 is out of range (1e-15 to 1e+15)");
+    assert_error(state, "{\"objects\":[{\"shape\":\"balls\"}]}",
+                 "test.json:1:13: objects[0].spheres: 1 to 10000000 spheres [x, y, z, radius] "
+                 "are expected");
+    assert_error(state, "{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0]]}]}",
+                 "test.json:1:41: objects[0].spheres[0]: 4 numbers in [ ] are expected");
+    assert_error(state, "{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0,-1]]}]}",
+                 "test.json:1:41: objects[0].spheres[0]: the radius must be from 1e-15 to 1e+15");
+}
+
 static const struct scene_material *material_named(const struct scene *scene, const char *name)
 {
     for (uint32_t i = 0; i < scene->material_count; ++i) {
@@ -508,19 +544,13 @@ static void shipped_scenes_have_their_sizes(void **state)
         const char *name;
         uint32_t triangles, instances;
     } scenes[] = {
-        {"cube", 12, 1},
-        {"8k", 8192, 1},
-        {"34k", 34226, 7},
-        {"54k", 54450, 1},
-        {"default", 25934, 6},
-        {"whitted", 32258, 3},
-        {"sphereflake", 787202, 821},
-        {"spin", 9358, 5},
-        {"many", 169986, 1025},
-        {"spotlight", 4356, 5},
-        {"room", 3992, 8},
-        {"layers", 11914, 8},
-        {"strands", 20002, 2},
+        {"cube", 12, 1},        {"balls", 0, 5},
+        {"8k", 8192, 1},        {"34k", 34226, 7},
+        {"54k", 54450, 1},      {"default", 25934, 6},
+        {"whitted", 32258, 3},  {"sphereflake", 787202, 821},
+        {"spin", 9358, 5},      {"many", 169986, 1025},
+        {"spotlight", 4356, 5}, {"room", 3992, 8},
+        {"layers", 11914, 8},   {"strands", 20002, 2},
         {"atrium", 64616, 1},
     };
     struct heard *heard = *state;
@@ -555,6 +585,7 @@ int main(void)
         FOLDER_TEST(repeat_places_copies_around),
         FOLDER_TEST(repeated_animation_moves_every_copy),
         FOLDER_TEST(sphereflake_is_instances),
+        FOLDER_TEST(balls_are_spheres),
         FOLDER_TEST(materials_mean_what_they_say),
         FOLDER_TEST(patterns_become_textures),
         FOLDER_TEST(sky_test),
