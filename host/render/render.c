@@ -139,7 +139,7 @@ whit_result frame_fill(struct renderer *renderer)
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
     frame->stack_size = renderer->pixel_buffers.stack_size;
-    return WHIT_OK;
+    return media_frame(renderer);
 }
 
 /* Rays that wait when one ray leaves up to `children` others, depth first. */

@@ -165,6 +165,10 @@ uint64_t lights_turns(const struct renderer *renderer);
 bool lights_take_turn(const struct renderer *renderer, uint32_t turn);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
+/* media.c: of renderer->frame the media that the camera is in, and whether media meet, for the pose
+   and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told apart,
+   WHIT_ERROR_STATUS where the camera is in too many media. */
+WHIT_CHECK whit_result media_frame(struct renderer *renderer);
 
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */

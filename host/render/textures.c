@@ -94,7 +94,8 @@ static uint32_t material_flags(const struct scene_material *m)
 {
     return (m->fresnel ? MATERIAL_FRESNEL : 0) | (m->thin_walled ? MATERIAL_THIN : 0) |
            (m->alpha == SCENE_ALPHA_MASK ? MATERIAL_MASK : 0) |
-           (m->alpha == SCENE_ALPHA_BLEND ? MATERIAL_BLEND : 0);
+           (m->alpha == SCENE_ALPHA_BLEND ? MATERIAL_BLEND : 0) |
+           m->priority << MATERIAL_PRIORITY_SHIFT;
 }
 
 /* Opacity is a picture of its own, or the alpha of the diffuse one. */

@@ -146,7 +146,7 @@ struct gpu_frame {
     gpu_uint uv0_row;   /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
     gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
     gpu_uint color_row; /* first triangle: TRIANGLE_COLOR_ROWS each */
-    gpu_float contact;  /* surfaces of two media within this distance along a ray are one */
+    gpu_float contact;  /* surfaces of two media within this distance are one */
     gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
     gpu_uint eye_media2, eye_media3;
     gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is made from it */
@@ -157,8 +157,9 @@ struct gpu_frame {
 GPU_ASSERT_SIZE(gpu_frame, 192)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
-/* The media that a ray is in, oldest first, two to a word, low half first: material + 1, 0: none
-   more. Lies beside the ray stacks, one for each ray. */
+/* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
+   priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
+   beside the ray stacks, one for each ray. */
 #define MEDIA_MOST 8u
 struct gpu_media {
     gpu_uint words0, words1, words2, words3;
@@ -166,10 +167,11 @@ struct gpu_media {
 GPU_ASSERT_SIZE(gpu_media, 16)
 
 /* A ray waiting on the ray stack of its pixel. */
-#define STATE_KIND_SHIFT   30u
+#define STATE_BOUNCES_SHIFT 8u
+#define STATE_KIND_SHIFT    30u
 struct gpu_stacked_ray {
     gpu_vec3 origin;
-    gpu_uint state; /* bounces so far (8 bits) | RAY_* << 30 */
+    gpu_uint state; /* surfaces passed unseen | bounces so far << 8 | RAY_* << 30 */
     gpu_vec3 dir;   /* unit */
     gpu_uint skip_primitive;
     gpu_vec3 weight;

@@ -49,7 +49,7 @@ Ray camera_ray(uvec2 pixel)
     ray.origin = origin;
     ray.dir = unit;
     ray.weight = vec3(1.0);
-    ray.bounces = 0u;
+    ray.steps = 0u;
     ray.media = SPEC_MEDIA != 0u ? uvec4(frame.eye_media0, frame.eye_media1, frame.eye_media2,
                                          frame.eye_media3)
                                  : uvec4(0u);

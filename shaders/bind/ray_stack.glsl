@@ -19,9 +19,19 @@ const gpu_counts NO_COUNTS = gpu_counts(0u, 0u, 0u, 0u, 0u, 0u, 0.0, 0.0);
 struct Ray {
     vec3 origin, dir, weight;
     uvec4 media; // struct gpu_media
-    uint bounces, skip_primitive, skip_instance;
+    uint steps;  // ray_bounces() and, below them, surfaces that were passed unseen
+    uint skip_primitive, skip_instance;
     uint kind; // RAY_*; with SPEC_COUNT
 };
+
+// Where a ray passes more surfaces unseen than the steps of one bounce, it counts as one: so every
+// ray tree ends.
+const uint STEPS_OF_BOUNCE = 1u << STATE_BOUNCES_SHIFT;
+
+uint ray_bounces(uint steps)
+{
+    return steps >> STATE_BOUNCES_SHIFT;
+}
 
 Ray stacked_ray(uint index)
 {
@@ -31,15 +41,16 @@ Ray stacked_ray(uint index)
     ray.dir = stacked.dir;
     ray.weight = stacked.weight;
     ray.media = SPEC_MEDIA != 0u ? ray_media[index] : uvec4(0u);
-    ray.bounces = stacked.state & 255u;
+    ray.steps = stacked.state & ((1u << STATE_KIND_SHIFT) - 1u);
     ray.kind = stacked.state >> STATE_KIND_SHIFT;
     ray.skip_primitive = stacked.skip_primitive;
     ray.skip_instance = stacked.skip_instance;
     return ray;
 }
 
-void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uint bounces,
-              uvec4 media, uint kind, Hit hit, inout uint status)
+void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uint steps,
+              uvec4 media, uint kind, uint skip_instance, uint skip_primitive,
+              inout uint status)
 {
     if (top >= frame.stack_size) {
         status |= STATUS_RAY_STACK_OVERFLOW;
@@ -49,20 +60,15 @@ void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uin
     stacked.origin = origin;
     stacked.dir = dir;
     stacked.weight = weight;
-    stacked.state = bounces;
+    stacked.state = steps;
     if (SPEC_COUNT != 0u)
         stacked.state |= kind << STATE_KIND_SHIFT;
-    stacked.skip_primitive = hit.primitive;
-    stacked.skip_instance = hit.instance;
+    stacked.skip_primitive = skip_primitive;
+    stacked.skip_instance = skip_instance;
     ray_stacks[slot * frame.stack_size + top] = stacked;
     if (SPEC_MEDIA != 0u)
         ray_media[slot * frame.stack_size + top] = media;
     top++;
-}
-
-bool worth(vec3 weight)
-{
-    return max(weight.r, max(weight.g, weight.b)) >= frame.bailout;
 }
 
 #endif

@@ -5,49 +5,85 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../bind/camera.glsl"
+#include "../bind/crossing.glsl"
 #include "../bind/lighting.glsl"
-#include "../bind/media.glsl"
 
 layout(local_size_x_id = 0) in;
 
+// Whether a child of this weight is traced; what is cut is counted, with the pixel's average weight.
+bool traced(vec3 weight, bool deep, inout gpu_counts count)
+{
+    float largest = largest_of(weight);
+    bool small = !(largest >= frame.bailout);
+    float share = largest > 0.0 ? largest * chunk.sample_weight : 0.0;
+    count.cut_depth += uint(deep && largest > 0.0);
+    count.cut_depth_weight += deep ? share : 0.0;
+    count.cut_bailout += uint(!deep && small && largest > 0.0);
+    count.cut_bailout_weight += !deep && small ? share : 0.0;
+    return !deep && !small;
+}
+
+// What goes on behind the surface.
+void push_beyond(uint slot, Crossing c, vec3 dir, vec3 weight, uint steps, uvec4 media, uint kind,
+                 inout gpu_counts count, inout uint status)
+{
+    if (SPEC_SECONDARY != 0u)
+        push_ray(slot, count.stack, offset_origin(c.p, c.error, -c.ng), dir, weight, steps, media,
+                 kind, c.instance, c.primitive, status);
+}
+
 // The rays that the surface calls for.
-void push_children(uint slot, Ray ray, Surface s, Optics o, bool inside, Hit hit,
+void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
                    inout gpu_counts count, inout uint status)
 {
-    if (SPEC_SECONDARY == 0u || SPEC_BRUTE == BRUTE_SHADOW || ray.bounces >= frame.depth)
+    if (SPEC_BRUTE == BRUTE_SHADOW)
         return;
-    uint bounces = ray.bounces + 1u;
+    bool deep = SPEC_SECONDARY == 0u || ray_bounces(ray.steps) >= frame.depth;
+    uint steps = ray.steps + STEPS_OF_BOUNCE;
     float solid = 1.0 - o.straight;
     if (SPEC_REFRACTION != 0u) {
         vec3 weight = ray.weight * o.refracted * solid;
         vec3 dir = ray.dir;
         bool passes = o.thin || refract_dir(ray.dir, s.ns, o.eta, dir);
         // A shading normal may bend the ray back to its own side: then straight on.
-        if (dot(dir, s.ng) >= 0.0)
+        if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
-        if (passes && worth(weight)) {
-            uvec4 media = o.thin ? ray.media : uvec4(inside ? 0u : s.material + 1u, 0u, 0u, 0u);
-            push_ray(slot, count.stack, offset_origin(s.p, s.error, -s.ng), dir, weight, bounces,
-                     media, RAY_REFRACTED, hit, status);
+        if (passes && traced(weight, deep, count)) {
+            push_beyond(slot, c, dir, weight, steps, o.thin ? ray.media : c.after, RAY_REFRACTED,
+                        count, status);
             count.refracted++;
         }
     }
     if (SPEC_CUTOUTS != 0u) {
         vec3 weight = ray.weight * o.straight;
-        if (worth(weight))
-            push_ray(slot, count.stack, offset_origin(s.p, s.error, -s.ng), ray.dir, weight,
-                     bounces, ray.media, ray.kind, hit, status);
+        if (traced(weight, deep, count))
+            push_beyond(slot, c, ray.dir, weight, steps, ray.media, ray.kind, count, status);
     }
     if (SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u) {
         vec3 weight = ray.weight * o.reflected * solid;
         vec3 dir = reflect(ray.dir, s.ns);
         if (dot(dir, s.ng) <= 0.0)
             dir = reflect(ray.dir, s.ng);
-        if (worth(weight)) {
-            push_ray(slot, count.stack, offset_origin(s.p, s.error, s.ng), normalize(dir), weight,
-                     bounces, ray.media, RAY_REFLECTED, hit, status);
+        if (traced(weight, deep, count)) {
+            if (SPEC_SECONDARY != 0u)
+                push_ray(slot, count.stack, offset_origin(s.p, s.error, s.ng), normalize(dir),
+                         weight, steps, c.before, RAY_REFLECTED, hit.instance, hit.primitive,
+                         status);
             count.reflected++;
         }
+    }
+}
+
+// Straight on, where both sides of a surface are the same medium. Counted as refracted.
+void push_through(uint slot, Ray ray, Crossing c, inout gpu_counts count, inout uint status)
+{
+    if (SPEC_BRUTE == BRUTE_SHADOW)
+        return;
+    uint steps = ray.steps + 1u;
+    bool deep = SPEC_SECONDARY == 0u || ray_bounces(steps) > frame.depth;
+    if (traced(ray.weight, deep, count)) {
+        push_beyond(slot, c, ray.dir, ray.weight, steps, c.after, RAY_REFRACTED, count, status);
+        count.refracted++;
     }
 }
 
@@ -55,20 +91,16 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
 {
     Surface s = fetch_surface(hit);
     gpu_material m = fetch_material(s.material);
-    ray.weight *= medium_transmittance(ray.media, hit.t);
-    bool inside = dot(ray.dir, s.ng) > 0.0;
-    if (inside) {
-        s.ng = -s.ng;
-        s.ns = -s.ns;
+    bool inside = face_ray(s, ray.dir);
+    Crossing c = cross_surface(slot, ray, hit, s, m, inside, status);
+    if (SPEC_MEDIA != 0u && !c.seen) {
+        push_through(slot, ray, c, count, status);
+        return vec3(0.0);
     }
-    if (dot(s.ns, s.ng) < 0.0)
-        s.ns = -s.ns;
+    Optics o = surface_optics(s, m, ray.dir, c.eta);
     if (dot(s.ns, ray.dir) > 0.0)
         s.ns = s.ng;
-    Optics o = surface_optics(s, m, ray.dir, inside ? m.ior : 1.0 / m.ior);
-    if (dot(s.ns, ray.dir) > 0.0)
-        s.ns = s.ng;
-    push_children(slot, ray, s, o, inside, hit, count, status);
+    push_children(slot, ray, s, o, c, hit, count, status);
     vec3 light = o.unlit ? o.diffuse + o.emission
                          : local_light(slot, s, o, -ray.dir, hit, count.shadow, status);
     return light * ray.weight * (1.0 - o.straight);
@@ -159,6 +191,7 @@ void main()
     }
     uint status = hit.status;
     bool met = hit.primitive != HIT_NONE;
+    ray.weight *= medium_transmittance(ray.media, hit.t); // the largest float for a miss
     vec3 radiance = environment_radiance(ray.dir) * ray.weight;
     if (met)
         radiance = shade_hit(slot, ray, hit, count, status);

@@ -1,0 +1,162 @@
+// What a ray goes from and to at a surface that bounds a medium: nested dielectrics, and surfaces of
+// two media that touch.
+#ifndef BIND_CROSSING_GLSL
+#define BIND_CROSSING_GLSL
+
+#include "media.glsl"
+#include "picture.glsl"
+#include "ray_stack.glsl"
+#include "surface.glsl"
+
+// Surfaces that may be crossed at one place.
+const uint CROSSED_MOST = 4u;
+
+struct Crossing {
+    uvec4 before, after; // media on both sides, struct gpu_media
+    float eta;           // index of the ray's side over that of the other
+    bool seen;           // false: both sides are the same medium, so there is nothing to see
+    // Where what passes goes on: the last of the surfaces that are crossed here.
+    vec3 p, error, ng;
+    uint instance, primitive;
+};
+
+// Turns the normals to the ray's side. True: the ray comes from inside.
+bool face_ray(inout Surface s, vec3 dir)
+{
+    bool inside = dot(dir, s.ng) > 0.0;
+    if (inside) {
+        s.ng = -s.ng;
+        s.ns = -s.ns;
+    }
+    if (dot(s.ns, s.ng) < 0.0)
+        s.ns = -s.ns;
+    if (dot(s.ns, dir) > 0.0)
+        s.ns = s.ng;
+    return inside;
+}
+
+float largest_of(vec3 v)
+{
+    return max(v.x, max(v.y, v.z));
+}
+
+// How far behind a hit, along the ray, another one may be at the same place. Each `t` of the
+// intersection test is off by a few roundings of the coordinates that enter it, across the surface;
+// along the ray that is more by the cosine. frame.contact is meant across the surface too. Cosines
+// are bounded so that rays along a surface do not gather all that is near it.
+float crossing_reach(Surface s, Ray ray, float t)
+{
+    float cosine = abs(dot(ray.dir, s.ng));
+    float size = largest_of(abs(ray.origin)) + largest_of(abs(s.p)) +
+                 largest_of(abs(s.e1)) + largest_of(abs(s.e2)) + t;
+    return rounding_bound(8.0) * size / max(cosine, 1.0 / 1024.0) +
+           frame.contact / max(cosine, 1.0 / 16.0);
+}
+
+// The surfaces that are crossed at one place, in the order of the ray.
+struct Crossed {
+    uvec4 entries; // material + 1
+    uint leaving;  // bit i: entry i is left
+    uint count;
+};
+
+// Enters all that is entered, then leaves: rounding may swap surfaces that touch. What is left
+// without having been entered (an open mesh) was around the ray so far.
+void cross_all(Crossed crossed, inout Crossing c, inout uint status)
+{
+    uint i = 0u;
+    do {
+        uint entry = crossed.entries[i & 3u];
+        if (i < crossed.count && (crossed.leaving >> i & 1u) == 0u)
+            c.after = media_with(c.after, entry, status);
+        i++;
+    } while (i < crossed.count);
+    i = 0u;
+    do {
+        uint entry = crossed.entries[i & 3u];
+        if (i < crossed.count && (crossed.leaving >> i & 1u) != 0u) {
+            if (media_have(c.after, entry))
+                c.after = media_without(c.after, entry);
+            else
+                c.before = media_with(c.before, entry, status);
+        }
+        i++;
+    } while (i < crossed.count);
+}
+
+// Adds the surfaces of other media that the ray crosses at the place of `hit`, and makes `s` and
+// `inside` those of the surface that is seen there: of the material with the highest priority, of
+// equal ones one that is entered.
+void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout Crossing c,
+                     inout Surface s, inout bool inside, inout uint status)
+{
+    float reach = hit.t + crossing_reach(s, ray, hit.t);
+    uint rank = medium_priority(s.material + 1u) * 2u + uint(!inside);
+    bool more = frame.nested != 0u;
+    do {
+        if (more) {
+            hit_before = hit.t;
+            hit = traverse(TRAVERSE_NEXT, ray.origin, ray.dir, 0.0, reach, frame.root,
+                           hit.instance, hit.primitive);
+            if (SPEC_COUNT != 0u)
+                traversal_cost.rays = 0u; // it is no further ray
+            add_cost(slot, RAY_REFRACTED);
+            status |= hit.status;
+            more = hit.primitive != HIT_NONE;
+        }
+        if (more) {
+            Surface other = fetch_surface(hit);
+            more = bounds_medium(fetch_material(other.material));
+            if (more) {
+                bool leaves = face_ray(other, ray.dir);
+                crossed.entries[crossed.count] = other.material + 1u;
+                crossed.leaving |= uint(leaves) << crossed.count;
+                crossed.count++;
+                c.p = other.p;
+                c.error = other.error;
+                c.ng = other.ng;
+                c.instance = hit.instance;
+                c.primitive = hit.primitive;
+                uint other_rank = medium_priority(other.material + 1u) * 2u + uint(!leaves);
+                if (other_rank > rank) {
+                    rank = other_rank;
+                    other.p = s.p; // what is reflected stays before the first surface
+                    other.error = s.error;
+                    s = other;
+                    inside = leaves;
+                }
+                more = crossed.count < CROSSED_MOST;
+            }
+        }
+    } while (more);
+}
+
+// `s` faces the ray; so it does afterwards, when it is another one.
+Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_material m,
+                       bool inside, inout uint status)
+{
+    Crossing c;
+    c.before = ray.media;
+    c.after = ray.media;
+    c.eta = inside ? m.ior : 1.0 / m.ior;
+    c.seen = true;
+    c.p = s.p;
+    c.error = s.error;
+    c.ng = s.ng;
+    c.instance = hit.instance;
+    c.primitive = hit.primitive;
+    if (SPEC_MEDIA == 0u || !bounds_medium(m))
+        return c;
+    Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uint(inside), 1u);
+    if (SPEC_BRUTE == BRUTE_OFF) {
+        gather_touching(slot, ray, hit, crossed, c, s, inside, status);
+        m = fetch_material(s.material);
+    }
+    cross_all(crossed, c, status);
+    uint from = media_top(c.before), to = media_top(c.after);
+    c.eta = medium_ior(from) / medium_ior(to);
+    c.seen = from != to;
+    return c;
+}
+
+#endif
