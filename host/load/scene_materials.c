@@ -21,6 +21,9 @@ static const char *const common_keys[] = {"emission",
                                           "alpha",
                                           "alpha_cutoff",
                                           "two_sided",
+                                          "one_sided",
+                                          "shadow_catcher",
+                                          "priority",
                                           "normal_scale",
                                           "ior",
                                           "transmission",
@@ -330,6 +333,9 @@ static bool read_common(struct reader *reader, const struct place *place, const 
            reader_color(reader, place, value, "absorption", out->absorption) &&
            reader_bool(reader, place, value, "thin_walled", &out->thin_walled) &&
            reader_bool(reader, place, value, "two_sided", &out->two_sided) &&
+           reader_bool(reader, place, value, "one_sided", &out->one_sided) &&
+           reader_bool(reader, place, value, "shadow_catcher", &out->shadow_catcher) &&
+           reader_count(reader, place, value, "priority", 0, 255, &out->priority) &&
            reader_float(reader, place, value, "normal_scale", -1000.0, 1000.0,
                         &out->normal_scale) &&
            read_alpha(reader, place, value, out) && read_textures(reader, place, value, out);

@@ -366,7 +366,9 @@ static void materials_mean_what_they_say(void **state)
                          "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
                          "\"metal\":{\"base_color\":0.5,\"metallic\":1,\"roughness\":0.25},\n"
                          "\"veil\":{\"opacity\":0.5},\n\"grid\":{\"alpha_cutoff\":0.3},\n"
-                         "\"sign\":{\"unlit\":true,\"color\":[0,1,0]}}}");
+                         "\"sign\":{\"unlit\":true,\"color\":[0,1,0]},\n"
+                         "\"wine\":{\"transmission\":1,\"priority\":3,\"one_sided\":true},\n"
+                         "\"stage\":{\"shadow_catcher\":true}}}");
     const struct scene_material *m = material_named(scene, "plain");
     assert_true(m->diffuse[0] == 1.0f && m->diffuse[1] == 0.0f);
     assert_true(fabsf(m->diffuse[2] - 0.21586f) < 1e-4f); /* 0x80 in sRGB */
@@ -384,6 +386,10 @@ static void materials_mean_what_they_say(void **state)
     assert_int_equal(material_named(scene, "veil")->alpha, SCENE_ALPHA_BLEND);
     assert_int_equal(material_named(scene, "grid")->alpha, SCENE_ALPHA_MASK);
     assert_int_equal(material_named(scene, "sign")->model, SCENE_MODEL_UNLIT);
+    assert_int_equal(material_named(scene, "wine")->priority, 3);
+    assert_true(material_named(scene, "wine")->one_sided);
+    assert_true(material_named(scene, "stage")->shadow_catcher);
+    assert_false(m->one_sided || m->shadow_catcher || m->priority);
     scene_destroy(scene);
 }
 
@@ -547,7 +553,7 @@ static void shipped_scenes_have_their_sizes(void **state)
         {"cube", 12, 1},        {"balls", 0, 5},
         {"8k", 8192, 1},        {"34k", 34226, 7},
         {"54k", 54450, 1},      {"default", 25934, 6},
-        {"whitted", 32258, 3},  {"sphereflake", 787202, 821},
+        {"whitted", 2, 4},      {"sphereflake", 787202, 821},
         {"spin", 9358, 5},      {"many", 169986, 1025},
         {"spotlight", 4356, 5}, {"room", 3992, 8},
         {"layers", 11914, 8},   {"strands", 20002, 2},

@@ -62,7 +62,7 @@ function ball(x, y, z, r, id, povmore) {
         if (balls++ < 7)
             material(id)
     }
-    object(sprintf("{\"shape\": \"sphere\", \"segments\": 400, \"rings\": 200, \"scale\": %.9g, \"translation\": [%s], \"material\": \"%s\"}",
+    object(sprintf("{\"shape\": \"ball\", \"radius\": %.9g, \"translation\": [%s], \"material\": \"%s\"}",
         r, rgb(x, y, z), id))
     printf "sphere { <%s>, %.9g texture { M_%s } %s }\n", rgb(x, y, z), r, id, povmore > pov
 }
