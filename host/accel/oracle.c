@@ -17,7 +17,20 @@
    bounds away the other answer is: below 1 it is possible. t = (sum of U z) / (sum of U) errs by
    the same rules; float clamps it to the triangle's box, which moves it by at most 4 r |t|.
    Products of errors are kept; one denormal is added to everything that may underflow. The oracle's
-   own roundings are 2^-29 of all this. */
+   own roundings are 2^-29 of all this.
+
+   The test of a sphere (sphere.h) works on C = centre - origin, off by r |C| on each axis, and on
+   D = (S.x, S.y, 1). With m = C.D / D.D, the perpendicular L = C - m D errs by what C, D and the
+   two roundings of each axis bring, and along D by the error of m. L stands on D, so that the
+   latter enters L.L by its square only:
+
+       error(L.L) = 2 |L| e + (e + error(m) |D|)^2 + 3 r L.L,   e = error(C) + |m| error(D) + 2 r
+   (..)
+
+   The line meets the sphere when R^2 - L.L is not negative; how far that is from 0, in its error
+   bounds, is the margin. t comes from m, from the root of that over D.D, and, at the end of the
+   chord that is nearer to the origin, from C.C - R^2, whose error is 2 |C| error(C) + 4 r (C.C +
+   R^2). */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -48,6 +61,7 @@ struct verdict {
     bool hit; /* edges only, without t_min and t_max */
     double t, u, v, t_error;
     double margin; /* in error bounds, 0 or more */
+    double choice; /* of a sphere: likewise, how far its other end is from being taken */
 };
 
 struct point {
@@ -187,7 +201,8 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
         sum_error += edge[i].error * fabs(z) + (fabs(u) + edge[i].error) * corner[i]->z_error +
                      4.0 * ROUNDING * fabs(u * z) + DENORMAL;
     }
-    struct verdict out = {.hit = !(below && above) && det != 0.0, .t_error = INFINITY};
+    struct verdict out = {
+        .hit = !(below && above) && det != 0.0, .t_error = INFINITY, .choice = INFINITY};
     out.margin = edges_margin(edge, out.hit);
     if (det != 0.0) {
         out.t = sum / det;
@@ -197,6 +212,137 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
     if (fabs(det) > det_error)
         out.t_error = (sum_error + fabs(out.t) * det_error) / (fabs(det) - det_error) +
                       8.0 * ROUNDING * fabs(out.t) + DENORMAL;
+    return out;
+}
+
+/* ---- Spheres ---- */
+
+/* What is computed from a ray and a centre, along the dominant axis. */
+struct chord {
+    double room, room_error; /* squared radius less squared distance of the line */
+    struct number length_squared, middle, half, begin, end;
+};
+
+static struct number number_of_axis(const struct probe *p, int axis)
+{
+    double dz = fabs(p->dir[p->z]), error = 0.0;
+    if (axis == 2)
+        return (struct number){1.0, 0.0};
+    int of = axis == 0 ? p->x : p->y;
+    error = ROUNDING * fabs(p->shear[axis]) +
+            (p->dir_error[of] + fabs(p->shear[axis]) * p->dir_error[p->z]) / dz;
+    return (struct number){p->shear[axis], error};
+}
+
+/* The line: its middle and its distance. */
+static void chord_measure(const struct number c[3], const struct number d[3], double radius,
+                          struct chord *out)
+{
+    double dd = 0.0, dd_error = 0.0, cd = 0.0, cd_error = 0.0, off2 = 0.0, error = 0.0, along = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        dd += d[i].value * d[i].value;
+        dd_error += 2.0 * fabs(d[i].value) * d[i].error;
+        cd += c[i].value * d[i].value;
+        cd_error += fabs(d[i].value) * c[i].error + fabs(c[i].value) * d[i].error +
+                    3.0 * ROUNDING * fabs(c[i].value * d[i].value);
+    }
+    dd_error += 3.0 * ROUNDING * dd;
+    double middle = cd / dd;
+    double middle_error = (cd_error + fabs(middle) * dd_error) / dd + ROUNDING * fabs(middle);
+    for (int i = 0; i < 3; ++i) {
+        double off = c[i].value - middle * d[i].value;
+        double e = c[i].error + fabs(middle) * d[i].error +
+                   ROUNDING * (fabs(middle * d[i].value) + fabs(off));
+        off2 += off * off;
+        error += 2.0 * fabs(off) * e;
+        along += (e + middle_error * fabs(d[i].value)) * (e + middle_error * fabs(d[i].value));
+    }
+    double room = radius * radius - off2;
+    out->room = room;
+    out->room_error = error + along + 3.0 * ROUNDING * off2 +
+                      ROUNDING * (radius * radius + fabs(room)) + DENORMAL;
+    out->length_squared = (struct number){dd, dd_error};
+    out->middle = (struct number){middle, middle_error};
+}
+
+static void chord_ends(const struct number c[3], double radius, struct chord *out)
+{
+    double dd = out->length_squared.value, dd_error = out->length_squared.error;
+    double half = sqrt(fmax(out->room, 0.0) / dd);
+    double most = sqrt(fmax(out->room + out->room_error, 0.0) / (dd - dd_error));
+    double least = sqrt(fmax(out->room - out->room_error, 0.0) / (dd + dd_error));
+    double half_error = fmax(most - half, half - least) + 2.0 * ROUNDING * most;
+    double middle = out->middle.value;
+    struct number farther = {middle < 0.0 ? middle - half : middle + half, 0.0};
+    farther.error = out->middle.error + half_error + ROUNDING * fabs(farther.value);
+    double cc = 0.0, product_error = ROUNDING * radius * radius;
+    for (int i = 0; i < 3; ++i) {
+        cc += c[i].value * c[i].value;
+        product_error += c[i].error * (2.0 * fabs(c[i].value) + c[i].error);
+    }
+    double product = cc - radius * radius;
+    product_error += 3.0 * ROUNDING * cc + ROUNDING * fabs(product) + DENORMAL;
+    double below = dd * fabs(farther.value);
+    double below_error = dd * farther.error + fabs(farther.value) * dd_error + ROUNDING * below;
+    struct number nearer = {below > 0.0 ? product / (dd * farther.value) : 0.0, INFINITY};
+    if (below > below_error)
+        nearer.error = (product_error + fabs(nearer.value) * below_error) / (below - below_error) +
+                       ROUNDING * fabs(nearer.value);
+    out->half = (struct number){half, half_error};
+    out->begin = middle < 0.0 ? farther : nearer;
+    out->end = middle < 0.0 ? nearer : farther;
+}
+
+/* In units of the ray's direction. */
+static struct number chord_t(const struct probe *p, struct number along)
+{
+    double dz = fabs(p->dir[p->z]);
+    struct number t = {along.value / p->dir[p->z], 0.0};
+    t.error =
+        along.error / dz + fabs(t.value) * (8.0 * ROUNDING + p->dir_error[p->z] / dz) + DENORMAL;
+    return t;
+}
+
+/* Of the normal, as square_from_dir has it. */
+static void chord_square(const struct probe *p, const double normal[3], double *u, double *v)
+{
+    double n[3];
+    n[p->x] = normal[0];
+    n[p->y] = normal[1];
+    n[p->z] = normal[2];
+    double size = fabs(n[0]) + fabs(n[1]) + fabs(n[2]);
+    double x = n[0] / size, z = n[2] / size;
+    bool below = n[1] < 0.0;
+    *u = 0.5 + 0.5 * (below ? copysign(1.0 - fabs(z), x) : x);
+    *v = 0.5 + 0.5 * (below ? copysign(1.0 - fabs(x), z) : z);
+}
+
+/* Of the two ends the first one that is not before t_min. */
+static struct verdict probe_sphere(const struct probe *p, const struct gpu_triangle *sphere)
+{
+    const int axes[3] = {p->x, p->y, p->z};
+    double radius = (double)sphere->v1[0];
+    struct number c[3], d[3];
+    for (int i = 0; i < 3; ++i) {
+        c[i].value = (double)sphere->v0[axes[i]] - p->origin[axes[i]];
+        c[i].error = ROUNDING * fabs(c[i].value) + p->origin_error[axes[i]];
+        d[i] = number_of_axis(p, i);
+    }
+    struct chord chord;
+    chord_measure(c, d, radius, &chord);
+    chord_ends(c, radius, &chord);
+    bool down = p->dir[p->z] < 0.0;
+    struct number enter = chord_t(p, down ? chord.end : chord.begin);
+    struct number leave = chord_t(p, down ? chord.begin : chord.end);
+    bool at_exit = !(enter.value >= p->t_min);
+    struct number t = at_exit ? leave : enter;
+    struct verdict out = {.hit = chord.room >= 0.0, .t = t.value, .t_error = t.error};
+    out.margin = fabs(chord.room) / chord.room_error;
+    out.choice = fabs(enter.value - p->t_min) / enter.error;
+    double along = (at_exit != down ? 1.0 : -1.0) * chord.half.value, normal[3];
+    for (int i = 0; i < 3; ++i)
+        normal[i] = d[i].value * (chord.middle.value + along) - c[i].value;
+    chord_square(p, normal, &out.u, &out.v);
     return out;
 }
 
@@ -247,10 +393,12 @@ static void judge(struct search *s, const struct verdict *v, const struct probe 
     if (instance == s->instance && primitive == s->primitive) {
         margin = fmin(margin, (v->t - p->t_min) / v->t_error);
         margin = fmin(margin, (p->t_max - v->t) / v->t_error);
+        margin = fmin(margin, v->choice);
     } else {
         margin = fmax(v->hit ? 0.0 : margin, outside(v->t, v->t_error, p));
         if (s->primitive != HIT_NONE)
             margin = fmax(margin, (v->t - s->best.t) / (v->t_error + s->best.t_error));
+        margin = fmin(margin, v->hit ? v->choice : INFINITY);
     }
     s->margin = fmin(s->margin, margin);
 }
@@ -289,10 +437,11 @@ static void visit_triangle(struct search *s, const struct probe *p, uint32_t rec
     if (s->accel->flat)
         instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
     /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
-    struct bvh_box box = accel_triangle_box(triangle->v0, triangle->v1, triangle->v2);
+    struct bvh_box box = accel_record_box(triangle);
     if (s->judging && box_entry(s, p, box.lo, box.hi) == INFINITY)
         return;
-    struct verdict v = probe_triangle(p, triangle);
+    struct verdict v =
+        triangle->flags & TRIANGLE_SPHERE ? probe_sphere(p, triangle) : probe_triangle(p, triangle);
     if (s->judging)
         judge(s, &v, p, instance, triangle->primitive);
     else if (v.hit && v.t >= p->t_min && v.t <= p->t_max)
