@@ -71,6 +71,9 @@ WHIT_CHECK whit_result bench_render(struct bench *bench, struct bench_case *case
 WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count);
 void bench_case_finish(struct bench_case *cases, uint32_t count);
 
+void bench_add(struct bench_times *times, double ms); /* the first BENCH_RUNS_MOST count */
+/* The value below which `share` of the times are, between neighbours by a straight line. */
+double bench_quantile(const struct bench_times *times, double share);
 double bench_median(const struct bench_times *times);
 double bench_least(const struct bench_times *times);
 /* Half the width of the middle half. */

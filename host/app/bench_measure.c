@@ -88,14 +88,13 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void add_time(struct bench_times *times, double ms)
+void bench_add(struct bench_times *times, double ms)
 {
     if (times->count < BENCH_RUNS_MOST)
         times->ms[times->count++] = ms;
 }
 
-/* The value below which `share` of the times are, between neighbours by a straight line. */
-static double quantile(const struct bench_times *times, double share)
+double bench_quantile(const struct bench_times *times, double share)
 {
     double sorted[BENCH_RUNS_MOST];
     if (times->count == 0)
@@ -110,17 +109,17 @@ static double quantile(const struct bench_times *times, double share)
 
 double bench_median(const struct bench_times *times)
 {
-    return quantile(times, 0.5);
+    return bench_quantile(times, 0.5);
 }
 
 double bench_least(const struct bench_times *times)
 {
-    return quantile(times, 0.0);
+    return bench_quantile(times, 0.0);
 }
 
 double bench_spread(const struct bench_times *times)
 {
-    return 0.5 * (quantile(times, 0.75) - quantile(times, 0.25));
+    return 0.5 * (bench_quantile(times, 0.75) - bench_quantile(times, 0.25));
 }
 
 int bench_compare(const struct bench_times *a, const struct bench_times *b)
@@ -220,7 +219,7 @@ static whit_result build_once(struct bench *bench, struct bench_case *c)
     if (result != WHIT_OK)
         return result;
     whit_accel_get_info(c->accel, &c->accel_info);
-    add_time(&c->build, c->accel_info.build_ms);
+    bench_add(&c->build, c->accel_info.build_ms);
     bench_step(bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
@@ -261,7 +260,7 @@ static whit_result render_once(struct bench *bench, struct bench_case *c, bool t
         return result;
     whit_renderer_get_stats(c->renderer, &stats);
     if (timed)
-        add_time(&c->frame, stats.render_ms);
+        bench_add(&c->frame, stats.render_ms);
     bench_step(bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }

@@ -9,9 +9,6 @@
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench;
 
-/* A quarter of what 8 bits can show. */
-#define BAILOUT_DEFAULT (1.0 / 1024.0)
-
 /* What `whit render` was asked for beside the job. */
 struct render_request {
     const char *output, *ids, *camera; /* ids, camera: NULL when not given */
@@ -29,6 +26,11 @@ struct render_request {
 /* Saves what `request` names of the picture just rendered (render_command.c). */
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats);
+
+/* Options that `render` and `scene --effects` share: --aa and --effects of the current option; on
+   nonsense misuse, and false. */
+bool render_read_aa(struct cli_reader *reader, uint32_t *samples, double *adaptive);
+bool effects_check(struct cli_reader *reader, const char *text);
 
 /* What a picture says about itself: only what decides its pixels, so that the same inputs give the
    same bytes. */
@@ -52,8 +54,10 @@ void recipe_finish(struct recipe *recipe);
 /* The device's driver without the name of the device in front. */
 const char *stats_driver(const whit_device_info *device);
 
-/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL. */
+/* --stats of `whit render`: on standard output. `kernel`: zeroed where it is not known; `sequence`:
+   with --frames, else NULL. */
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, double save_ms, const struct sequence *sequence);
+                const whit_stats *stats, const whit_kernel_info *kernel, double save_ms,
+                const struct sequence *sequence);
 
 #endif

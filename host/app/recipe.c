@@ -111,7 +111,7 @@ static char *command_line(const struct job *job, const struct render_request *re
         fprintf(to, " --aa %u", request->samples);
     }
     fprintf(to, " --depth %u", request->depth);
-    if (request->bailout != BAILOUT_DEFAULT) {
+    if (request->bailout != WHIT_BAILOUT_DEFAULT) {
         fputs(" --bailout", to);
         put_number(to, request->bailout);
     }
@@ -176,8 +176,12 @@ static char *counters_line(const whit_stats *stats)
     document_count(rays, "shadow", stats->rays_shadow);
     document_count(rays, "reflected", stats->rays_reflected);
     document_count(rays, "refracted", stats->rays_refracted);
+    document_count(rays, "cut_by_depth", stats->rays_cut_depth);
+    document_count(rays, "cut_by_bailout", stats->rays_cut_bailout);
     json_t *counters = document_object();
     document_put(counters, "rays", rays);
+    if (stats->bailout_bound >= 0.0)
+        document_number(counters, "bailout_bound", stats->bailout_bound);
     return document_line(counters);
 }
 

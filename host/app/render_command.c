@@ -54,7 +54,8 @@ static const struct cli_option options[] = {
     {ID_EFFECTS, "effects", "auto|all|+NAME,-NAME",
      "compile what the scene calls for, or everything: the\n"
      "picture is the same; or more and less by name: less\n"
-     "changes it. Names: see `whit scene` (auto)"},
+     "changes it. Names and prices: `whit scene --effects`\n"
+     "(auto)"},
     {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     {ID_VIEW, "view", "color|depth|visits|boxes|tris|stack",
      "what traversals cost instead of colours: a heat map\n"
@@ -71,29 +72,31 @@ static const struct cli_option options[] = {
     {0, NULL, NULL, NULL},
 };
 
-static void read_samples(struct cli_reader *reader, uint32_t *samples)
+static bool read_samples(struct cli_reader *reader, uint32_t *samples)
 {
     static const char *const choices[] = {"1", "4", "16", "64", NULL};
     uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        *samples = 1u << (2 * choice);
+    if (!cli_choice(reader, choices, &choice))
+        return false;
+    *samples = 1u << (2 * choice);
+    return true;
 }
 
-static void read_aa(struct cli_reader *reader, struct render_request *request)
+bool render_read_aa(struct cli_reader *reader, uint32_t *samples, double *adaptive)
 {
     static const char prefix[] = "adaptive:";
     size_t length = strlen(prefix);
     if (strncmp(reader->value, prefix, length) != 0) {
-        request->adaptive = 0.0;
-        read_samples(reader, &request->samples);
-        return;
+        *adaptive = 0.0;
+        return read_samples(reader, samples);
     }
     char *end;
     double contrast = strtod(reader->value + length, &end);
     if (end == reader->value + length || *end || !(contrast > 0.0 && contrast <= 1.0))
-        cli_misuse(reader, "--aa `%s`: after adaptive: a number above 0, up to 1, is needed",
-                   reader->value);
-    request->adaptive = contrast;
+        return cli_misuse(reader, "--aa `%s`: after adaptive: a number above 0, up to 1, is needed",
+                          reader->value);
+    *adaptive = contrast;
+    return true;
 }
 
 static void read_option(struct cli_reader *reader, int id, struct job *job,
@@ -117,7 +120,7 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         request->camera = reader->value;
         break;
     case ID_AA:
-        read_aa(reader, request);
+        render_read_aa(reader, &request->samples, &request->adaptive);
         break;
     case ID_OPAQUE_SHADOWS:
         request->opaque_shadows = true;
@@ -139,7 +142,8 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         request->no_shadows = true;
         break;
     case ID_EFFECTS:
-        request->effects = reader->value;
+        if (effects_check(reader, reader->value))
+            request->effects = reader->value;
         break;
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
@@ -418,8 +422,11 @@ static int work(struct job *job, const struct render_request *request)
                                : render_one(job, request, renderer, &progress, &sequence);
     cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
+        whit_kernel_info kernel = {0};
         say_done(job, request, &sequence.stats);
-        status = stats_print(job, request, &sequence.stats, sequence.save_ms,
+        if (job->stats != JOB_STATS_NONE) /* without it zeros, and no line */
+            (void)!whit_renderer_get_kernel(renderer, &kernel);
+        status = stats_print(job, request, &sequence.stats, &kernel, sequence.save_ms,
                              frames->given ? &sequence : NULL);
     } else {
         status = cli_exit_of(result);
@@ -441,7 +448,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
                                      .height = 480,
                                      .samples = 1,
                                      .depth = DEPTH_DEFAULT,
-                                     .bailout = BAILOUT_DEFAULT};
+                                     .bailout = WHIT_BAILOUT_DEFAULT};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

@@ -3,8 +3,20 @@
 
 #include "app/commands.h"
 #include "app/document.h"
+#include "app/receipt.h"
 
-enum scene_id { ID_JSON = JOB_ID_END, ID_TRIANGLES, ID_ALL };
+enum scene_id {
+    ID_JSON = JOB_ID_END,
+    ID_TRIANGLES,
+    ID_ALL,
+    ID_EFFECTS,
+    ID_SIZE,
+    ID_CAMERA,
+    ID_AA,
+    ID_DEPTH,
+};
+
+enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8 };
 
 /* Items of a section that are listed without --all. */
 enum { ITEMS_SHOWN = 12 };
@@ -15,7 +27,17 @@ static const struct cli_option options[] = {
     {ID_TRIANGLES, "triangles", "FILE",
      "write every world-space triangle: little-endian records\n"
      "float v[9]; uint32 instance; uint32 primitive"},
-    {JOB_TIME, "time", "T", "time of the triangles in seconds (0)"},
+    {ID_EFFECTS, "effects", NULL,
+     "what each effect costs, measured on the device: times\n"
+     "with and without it in turns, and what the picture\n"
+     "would lose; --size, --camera, --aa and --depth are those\n"
+     "of `whit render`"},
+    {ID_SIZE, "size", "WxH", "pixels, for --effects (320x240)"},
+    {ID_CAMERA, "camera", "NAME|N|numbers", "for --effects (the scene's first)"},
+    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for --effects (1)"},
+    {ID_DEPTH, "depth", "N", "for --effects (8)"},
+    JOB_OPTION_DEVICE,
+    {JOB_TIME, "time", "T", "time of the triangles, or of the picture, in seconds (0)"},
     {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation"},
     {JOB_FPS, "fps", "F", "frames in a second, for --frame (24)"},
     JOB_OPTION_TEXTURES,
@@ -431,44 +453,85 @@ static int print_text(const struct job *job, const whit_scene_info *info, bool a
 
 /* ---- The command ---- */
 
-static int work(struct job *job, const char *triangles, bool json, bool all)
+struct scene_request {
+    const char *triangles; /* NULL: none */
+    bool json, all, effects;
+    struct receipt_request receipt;
+    bool for_effects; /* an option that needs --effects was given */
+};
+
+static int work(struct job *job, const struct scene_request *request)
 {
     whit_scene_info info;
     whit_result result = job_load(job);
-    if (result == WHIT_OK && triangles)
-        result = write_triangles(job, triangles);
+    if (result == WHIT_OK && request->triangles)
+        result = write_triangles(job, request->triangles);
     if (result != WHIT_OK)
         return cli_exit_of(result);
+    if (request->effects)
+        return receipt_run(job, &request->receipt, request->json);
     whit_scene_get_info(job->scene, &info);
-    if (json)
+    if (request->json)
         return print_json(job, &info);
-    return job->quiet ? EXIT_FINE : print_text(job, &info, all);
+    return job->quiet ? EXIT_FINE : print_text(job, &info, request->all);
+}
+
+static void read_option(struct job *job, struct cli_reader *reader, int id,
+                        struct scene_request *request)
+{
+    struct receipt_request *receipt = &request->receipt;
+    request->for_effects |= id >= ID_SIZE && id <= ID_DEPTH;
+    switch (id) {
+    case ID_JSON:
+        request->json = true;
+        break;
+    case ID_ALL:
+        request->all = true;
+        break;
+    case ID_TRIANGLES:
+        request->triangles = reader->value;
+        break;
+    case ID_EFFECTS:
+        request->effects = true;
+        break;
+    case ID_SIZE:
+        cli_size(reader, &receipt->width, &receipt->height);
+        break;
+    case ID_CAMERA:
+        receipt->camera = reader->value;
+        break;
+    case ID_AA:
+        render_read_aa(reader, &receipt->samples, &receipt->adaptive);
+        break;
+    case ID_DEPTH:
+        cli_unsigned(reader, 0, DEPTH_MOST, &receipt->depth);
+        break;
+    default:
+        job_option(job, reader, id);
+        break;
+    }
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct job job;
-    const char *triangles = NULL;
-    bool json = false, all = false;
+    struct scene_request request = {
+        .receipt = {.width = 320, .height = 240, .samples = 1, .depth = DEPTH_DEFAULT}};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;) {
-        if (id == ID_JSON)
-            json = true;
-        else if (id == ID_ALL)
-            all = true;
-        else if (id == ID_TRIANGLES)
-            triangles = reader.value;
-        else
-            job_option(&job, &reader, id);
-    }
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&job, &reader, id, &request);
     if (!job_options_done(&job, &reader) ||
-        !cli_no_dash(&reader, "--triangles", triangles, "for a pipe give /dev/stdout"))
+        !cli_no_dash(&reader, "--triangles", request.triangles, "for a pipe give /dev/stdout"))
         return reader.status;
-    if (triangles && !cli_can_write(triangles))
+    if (request.for_effects && !request.effects) {
+        cli_misuse(&reader, "--size, --camera, --aa and --depth are for the pictures of --effects");
+        return reader.status;
+    }
+    if (request.triangles && !cli_can_write(request.triangles))
         return EXIT_USAGE;
-    int status = work(&job, triangles, json, all);
+    int status = work(&job, &request);
     job_finish(&job);
     return status;
 }

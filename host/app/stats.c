@@ -7,16 +7,18 @@ struct figures {
     whit_scene_info scene;
     whit_accel_info tree;
     whit_device_info device;
+    whit_kernel_info kernel; /* zeros where it cannot be known */
     const whit_stats *render;
     const struct sequence *sequence; /* or NULL */
     double save_ms, total_ms;
     uint64_t rays;
 };
 
-static void collect(const struct job *job, const whit_stats *stats, double save_ms,
-                    const struct sequence *sequence, struct figures *out)
+static void collect(const struct job *job, const whit_stats *stats, const whit_kernel_info *kernel,
+                    double save_ms, const struct sequence *sequence, struct figures *out)
 {
-    *out = (struct figures){.render = stats, .save_ms = save_ms, .sequence = sequence};
+    *out = (struct figures){
+        .render = stats, .kernel = *kernel, .save_ms = save_ms, .sequence = sequence};
     whit_scene_get_info(job->scene, &out->scene);
     whit_accel_get_info(job->accel, &out->tree);
     whit_device_get_info(job->device, &out->device);
@@ -62,11 +64,24 @@ static json_t *picture_document(const struct job *job, const struct render_reque
     document_text(picture, "ids", request->ids);
     document_count(picture, "width", request->width);
     document_count(picture, "height", request->height);
-    document_count(picture, "samples", request->samples);
+    if (request->adaptive > 0.0)
+        document_number(picture, "adaptive", request->adaptive);
+    else
+        document_count(picture, "samples", request->samples);
+    document_text(picture, "effects", request->effects ? request->effects : "auto");
     document_count(picture, "depth", request->depth);
     document_number(picture, "bailout", request->bailout);
     document_number(picture, "time_s", job->time_s);
     return picture;
+}
+
+/* Rays that were not traced: how many, and what they could have added to a pixel. */
+static json_t *cut_document(uint64_t count, double weight)
+{
+    json_t *cut = document_object();
+    document_count(cut, "rays", count);
+    document_number(cut, "weight_of_a_pixel", weight);
+    return cut;
 }
 
 static json_t *rays_document(const struct figures *figures)
@@ -78,7 +93,36 @@ static json_t *rays_document(const struct figures *figures)
     document_count(rays, "refracted", figures->render->rays_refracted);
     document_count(rays, "total", figures->rays);
     document_number(rays, "mrays_per_s", figures->render->mrays_per_s);
+    document_put(rays, "cut_by_depth",
+                 cut_document(figures->render->rays_cut_depth, figures->render->weight_cut_depth));
+    document_put(
+        rays, "cut_by_bailout",
+        cut_document(figures->render->rays_cut_bailout, figures->render->weight_cut_bailout));
+    if (figures->render->bailout_bound >= 0.0)
+        document_number(rays, "bailout_bound", figures->render->bailout_bound);
+    else
+        document_put(rays, "bailout_bound", json_null());
     return rays;
+}
+
+static json_t *kernel_document(const struct figures *figures)
+{
+    json_t *kernel = document_object();
+    document_count(kernel, "instructions", figures->kernel.instructions);
+    document_count(kernel, "general_instructions", figures->kernel.general_instructions);
+    document_count(kernel, "bindings", figures->kernel.bindings);
+    document_count(kernel, "general_bindings", figures->kernel.general_bindings);
+    document_flag(kernel, "general", figures->render->general);
+    return kernel;
+}
+
+static json_t *pixels_document(const struct figures *figures)
+{
+    static const char *const samples[] = {"1", "4", "16", "64"};
+    json_t *pixels = document_object();
+    for (int i = 0; i < 4; ++i)
+        document_count(pixels, samples[i], figures->render->pixels_by_samples[i]);
+    return pixels;
 }
 
 static json_t *tree_document(const whit_accel_info *info)
@@ -134,6 +178,9 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
+    document_put(root, "kernel", kernel_document(figures));
+    if (request->adaptive > 0.0)
+        document_put(root, "pixels_by_samples", pixels_document(figures));
     if (request->view.given || request->counters)
         document_put(root, "costs", costs_document(figures->render));
     document_put(root, "tree", tree_document(&figures->tree));
@@ -173,6 +220,14 @@ static void print_times(const struct job *job, const struct figures *figures)
     print_time("total", figures->total_ms, "");
 }
 
+/* Nothing where no ray was cut. */
+static void print_cut(const char *name, uint64_t count, double weight)
+{
+    if (count)
+        printf("  %-18s %10llu   of weight %.3g at most in a pixel\n", name,
+               (unsigned long long)count, weight);
+}
+
 static void print_rays(const struct figures *figures)
 {
     puts("rays");
@@ -182,6 +237,32 @@ static void print_rays(const struct figures *figures)
     printf("  %-18s %10llu\n", "refracted", (unsigned long long)figures->render->rays_refracted);
     printf("  %-18s %10llu   %.2f Mray/s\n", "total", (unsigned long long)figures->rays,
            figures->render->mrays_per_s);
+    print_cut("cut by --depth", figures->render->rays_cut_depth, figures->render->weight_cut_depth);
+    print_cut("cut by --bailout", figures->render->rays_cut_bailout,
+              figures->render->weight_cut_bailout);
+    if (figures->render->rays_cut_bailout == 0)
+        return;
+    if (figures->render->bailout_bound >= 0.0)
+        printf("  no pixel is off by more than %.3g because of --bailout\n",
+               figures->render->bailout_bound);
+    else
+        puts("  how far off a pixel can be because of --bailout is not known for this scene");
+}
+
+static void print_samples(const struct figures *figures)
+{
+    const uint64_t *pixels = figures->render->pixels_by_samples;
+    printf("pixels\n  of 4 samples %llu, of 16 %llu, of 64 %llu\n", (unsigned long long)pixels[1],
+           (unsigned long long)pixels[2], (unsigned long long)pixels[3]);
+}
+
+static void print_kernel(const struct figures *figures)
+{
+    const whit_kernel_info *kernel = &figures->kernel;
+    if (kernel->general_instructions)
+        printf("kernel\n  %u of %u instructions, %u of %u bindings%s\n", kernel->instructions,
+               kernel->general_instructions, kernel->bindings, kernel->general_bindings,
+               figures->render->general ? "; drawn by the general one" : "");
 }
 
 static void print_frame(const char *name, const struct frame_times *times)
@@ -216,11 +297,17 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("scene      %s: %llu triangles in %u instance%s\n", job->scene_path,
            (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count,
            figures->scene.instance_count == 1 ? "" : "s");
-    printf("picture    %s: %u x %u, %u samples a pixel, depth %u\n", request->output,
-           request->width, request->height, request->samples, request->depth);
+    char samples[32] = "adaptive";
+    if (!(request->adaptive > 0.0))
+        snprintf(samples, sizeof samples, "%u", request->samples);
+    printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", request->output,
+           request->width, request->height, samples, request->depth);
     printf("device     %s (%s)\n", figures->device.name, stats_driver(&figures->device));
     print_times(job, figures);
     print_rays(figures);
+    if (request->adaptive > 0.0)
+        print_samples(figures);
+    print_kernel(figures);
     if (request->view.given || request->counters)
         costs_print(figures->render);
     printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
@@ -238,10 +325,11 @@ static int print_text(const struct job *job, const struct render_request *reques
 }
 
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, double save_ms, const struct sequence *sequence)
+                const whit_stats *stats, const whit_kernel_info *kernel, double save_ms,
+                const struct sequence *sequence)
 {
     struct figures figures;
-    collect(job, stats, save_ms, sequence, &figures);
+    collect(job, stats, kernel, save_ms, sequence, &figures);
     if (job->stats == JOB_STATS_JSON)
         return print_json(job, request, &figures);
     if (job->stats == JOB_STATS_TEXT)

@@ -14,6 +14,10 @@ extern "C" {
 #define WHIT_PRINTF(f, a)
 #endif
 
+/* Rays that can add less than this to a pixel are not traced, unless asked otherwise: a quarter of
+   what 8 bits can show. */
+#define WHIT_BAILOUT_DEFAULT (1.0 / 1024.0)
+
 /* The one vocabulary of failure, from `base` to the public API. The reason is logged once,
    where it happens; callers pass the code up. */
 typedef enum whit_result {

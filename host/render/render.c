@@ -23,8 +23,6 @@ enum {
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_TARGET_MS = 40.0;
 static const double SUBMISSION_LIMIT_MS = 100.0;
-/* A quarter of what 8 bits can show. */
-static const double BAILOUT_DEFAULT = 1.0 / 1024.0;
 
 whit_result status_check(struct renderer *renderer)
 {
@@ -135,7 +133,7 @@ whit_result frame_fill(struct renderer *renderer)
     }
     frame->depth = renderer->params.depth;
     double bailout = renderer->params.bailout;
-    frame->bailout = bailout == 0.0  ? (float)BAILOUT_DEFAULT
+    frame->bailout = bailout == 0.0  ? (float)WHIT_BAILOUT_DEFAULT
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
     frame->stack_size = renderer->pixel_buffers.stack_size;

@@ -1,0 +1,206 @@
+#include "app/receipt.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+
+/* Rounds follow from the time of a frame: all frames of all effects take about this long, but never
+   fewer rounds than give a median and quartiles. */
+static const double MEASURE_MS = 15e3;
+enum { ROUNDS_LEAST = 5, ROUNDS_MOST = 41 };
+
+static whit_result make_renderer(const struct receipt *receipt, const char *effects,
+                                 whit_renderer **out)
+{
+    const struct receipt_request *request = receipt->request;
+    const struct job *job = receipt->job;
+    const whit_renderer_params params = {
+        .width = request->width,
+        .height = request->height,
+        .camera = request->camera,
+        .time_s = job->time_s,
+        .samples = request->samples,
+        .adaptive = request->adaptive,
+        .depth = request->depth,
+        .no_bounces = request->depth == 0,
+        .effects = effects,
+        .cancel = &cli_cancel,
+        .time_limit_s = cli_time_left_s(),
+    };
+    return whit_renderer_create(job->device, job->accel, &params, out);
+}
+
+static whit_result time_frame(whit_renderer *renderer, double *ms)
+{
+    whit_stats stats;
+    whit_result result = job_still_wanted();
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    whit_renderer_get_stats(renderer, &stats);
+    *ms = stats.render_ms;
+    return result;
+}
+
+static void compare(const whit_image *a, const whit_image *b, struct receipt_row *row)
+{
+    whit_image_info info;
+    whit_image_get_info(a, &info);
+    const float *x = whit_image_floats(a), *y = whit_image_floats(b);
+    size_t count = (size_t)info.width * info.height;
+    for (size_t i = 0; i < count; ++i) {
+        const float *p = x + i * info.channels, *q = y + i * info.channels;
+        row->pixels += memcmp(p, q, info.channels * sizeof *p) != 0;
+        for (uint32_t c = 0; c < info.channels; ++c)
+            row->largest = fmax(row->largest, fabs((double)p[c] - (double)q[c]));
+    }
+}
+
+static whit_result compare_pictures(whit_renderer *a, whit_renderer *b, struct receipt_row *row)
+{
+    whit_image *x = NULL, *y = NULL;
+    whit_result result = whit_renderer_image(a, WHIT_AOV_COLOR, &x);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(b, WHIT_AOV_COLOR, &y);
+    if (result == WHIT_OK)
+        compare(x, y, row);
+    whit_image_destroy(x);
+    whit_image_destroy(y);
+    return result;
+}
+
+static uint32_t rounds_for(const struct receipt *receipt, uint32_t effects)
+{
+    double pair_ms = 2.0 * fmax(bench_median(&receipt->frame), 0.1);
+    double rounds = MEASURE_MS / (effects ? effects : 1) / pair_ms;
+    return rounds < ROUNDS_LEAST  ? ROUNDS_LEAST
+           : rounds > ROUNDS_MOST ? ROUNDS_MOST
+                                  : (uint32_t)rounds;
+}
+
+/* `base` is the renderer for the scene; the other one has the effect more, or less. */
+static whit_result price(const struct receipt *receipt, whit_renderer *base, uint32_t rounds,
+                         struct receipt_row *row)
+{
+    char effects[64];
+    whit_renderer *other = NULL;
+    double ms, base_ms;
+    snprintf(effects, sizeof effects, "%c%s", row->compiled ? '-' : '+', row->name);
+    whit_result result = make_renderer(receipt, effects, &other);
+    if (result == WHIT_OK)
+        result = time_frame(other, &ms); /* compiles, and warms up */
+    if (result == WHIT_OK)
+        result = compare_pictures(base, other, row);
+    for (uint32_t i = 0; result == WHIT_OK && i < rounds; ++i) {
+        /* Each of the two goes first in every other round. */
+        result = time_frame(i % 2 ? other : base, i % 2 ? &ms : &base_ms);
+        if (result == WHIT_OK)
+            result = time_frame(i % 2 ? base : other, i % 2 ? &base_ms : &ms);
+        if (result == WHIT_OK)
+            bench_add(&row->cost, row->compiled ? base_ms - ms : ms - base_ms);
+    }
+    row->priced = result == WHIT_OK;
+    whit_renderer_destroy(other);
+    return result;
+}
+
+static bool can_switch(const struct receipt_row *row, uint32_t index)
+{
+    return row->compiled ? whit_effect_can_remove(index) : whit_effect_can_add(index);
+}
+
+static uint32_t list_effects(struct receipt *receipt, const whit_renderer *base)
+{
+    whit_scene_info scene;
+    uint32_t switched = 0;
+    whit_scene_get_info(receipt->job->scene, &scene);
+    receipt->row_count =
+        scene.effect_count < RECEIPT_ROWS_MOST ? scene.effect_count : RECEIPT_ROWS_MOST;
+    for (uint32_t i = 0; i < receipt->row_count; ++i) {
+        whit_effect_info effect;
+        whit_scene_get_effect(receipt->job->scene, i, &effect);
+        receipt->rows[i] = (struct receipt_row){
+            .name = effect.name,
+            .reason = effect.reason,
+            .called = effect.called,
+            .compiled = whit_renderer_compiles(base, i),
+        };
+        switched += can_switch(&receipt->rows[i], i);
+    }
+    return switched;
+}
+
+static whit_result time_base(struct receipt *receipt, whit_renderer *base)
+{
+    double ms;
+    whit_result result = time_frame(base, &ms); /* compiles, and warms up */
+    for (int i = 0; result == WHIT_OK && i < ROUNDS_LEAST; ++i) {
+        result = time_frame(base, &ms);
+        bench_add(&receipt->frame, ms);
+    }
+    return result;
+}
+
+static whit_result measure(struct receipt *receipt)
+{
+    whit_renderer *base = NULL;
+    struct cli_progress progress;
+    whit_result result = make_renderer(receipt, NULL, &base);
+    if (result == WHIT_OK)
+        result = whit_renderer_get_kernel(base, &receipt->kernel);
+    cli_progress_init(&progress, receipt->job->quiet);
+    if (result == WHIT_OK)
+        result = time_base(receipt, base);
+    uint32_t switched = result == WHIT_OK ? list_effects(receipt, base) : 0, done = 0;
+    for (uint32_t i = 0; result == WHIT_OK && i < receipt->row_count; ++i) {
+        struct receipt_row *row = &receipt->rows[i];
+        if (!can_switch(row, i))
+            continue;
+        result = price(receipt, base, rounds_for(receipt, switched), row);
+        cli_progress_update(&progress, (double)++done / switched);
+    }
+    cli_progress_finish(&progress);
+    whit_renderer_destroy(base);
+    return result;
+}
+
+/* What the scene does not call for may not show. */
+static int check_promises(const struct receipt *receipt)
+{
+    int status = EXIT_FINE;
+    for (uint32_t i = 0; i < receipt->row_count; ++i) {
+        const struct receipt_row *row = &receipt->rows[i];
+        if (row->compiled || !row->priced || row->pixels == 0)
+            continue;
+        cli_error("%s: the scene does not call for it, yet it changes %llu pixels", row->name,
+                  (unsigned long long)row->pixels);
+        status = EXIT_DIFFERS;
+    }
+    return status;
+}
+
+int receipt_run(struct job *job, const struct receipt_request *request, bool json)
+{
+    struct receipt *receipt = calloc(1, sizeof *receipt);
+    if (!receipt) {
+        cli_error("out of memory");
+        return cli_exit_of(WHIT_ERROR_MEMORY);
+    }
+    receipt->job = job;
+    receipt->request = request;
+    whit_result result = job_build(job);
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (result == WHIT_OK)
+        result = measure(receipt);
+    int status = cli_exit_of(result);
+    if (result == WHIT_OK)
+        status = json ? receipt_print_json(receipt) : receipt_print_text(receipt);
+    if (status == EXIT_FINE)
+        status = check_promises(receipt);
+    if (status == EXIT_FINE)
+        status = job_check_validation(job);
+    free(receipt);
+    return status;
+}

@@ -1,0 +1,44 @@
+/* The receipt of `whit scene --effects`: what each effect costs here, and what it gives. */
+#ifndef APP_RECEIPT_H
+#define APP_RECEIPT_H
+
+#include "app/bench.h"
+#include "app/job.h"
+
+struct receipt_request {
+    uint32_t width, height, samples, depth;
+    double adaptive;    /* 0: off; else `samples` is not used */
+    const char *camera; /* NULL: the first */
+};
+
+/* Of one effect. */
+struct receipt_row {
+    const char *name, *reason; /* "" when not called for */
+    bool called, compiled;
+    bool priced; /* what follows was measured */
+    /* Of one frame, pair by pair: with the effect less without it. */
+    struct bench_times cost;
+    /* What the picture has by it: pixels with any difference, largest one of a channel. */
+    uint64_t pixels;
+    double largest;
+};
+
+enum { RECEIPT_ROWS_MOST = 64 };
+struct receipt {
+    const struct job *job;
+    const struct receipt_request *request;
+    whit_kernel_info kernel;
+    struct bench_times frame;
+    uint32_t row_count;
+    struct receipt_row rows[RECEIPT_ROWS_MOST];
+};
+
+/* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that
+   the scene does not call for has to be the same. */
+int receipt_run(struct job *job, const struct receipt_request *request, bool json);
+
+/* receipt_output.c */
+int receipt_print_text(const struct receipt *receipt);
+int receipt_print_json(const struct receipt *receipt);
+
+#endif

@@ -1,0 +1,49 @@
+#!/bin/sh
+# --effects of `whit render` and `whit scene`: names, prices, promises.
+. "$(dirname "$0")/common.sh"
+
+P=$OUT/picture.pfm
+refuse 2 "a misspelt effect" "did you mean .shadows." render "$CUBE" -o "$P" --effects -shadow
+refuse 2 "an unknown effect" "no effect .caustics." render "$CUBE" -o "$P" --effects +caustics
+refuse 2 "geometry cannot be left out" "instances. cannot be left out" \
+    render "$CUBE" -o "$P" --effects -instances
+refuse 2 "a name without a sign" "auto, all, or names" render "$CUBE" -o "$P" --effects shadows
+refuse 2 "added and left out" "both added and left out" \
+    render "$CUBE" -o "$P" --effects +shadows,-shadows
+refuse 2 "--size without --effects" "for the pictures of --effects" scene "$CUBE" --size 64x48
+refuse 3 "no such device" "." scene "$CUBE" --effects --device "no such device"
+
+small="--size 48x36 --quiet"
+expect 0 "auto" render "$CUBE" -o "$OUT/auto.pfm" $small
+expect 0 "all" render "$CUBE" -o "$OUT/all.pfm" $small --effects all
+check "auto is all" cmp "$OUT/auto.pfm" "$OUT/all.pfm"
+expect 0 "one more" render "$CUBE" -o "$OUT/more.pfm" $small --effects +textures,+environment-map
+check "more is the same" cmp "$OUT/auto.pfm" "$OUT/more.pfm"
+expect 0 "one less" render "$CUBE" -o "$OUT/less.pfm" $small --effects -point-lights --stats json
+check "less is another picture" test "$(cmp "$OUT/auto.pfm" "$OUT/less.pfm" | wc -l)" -eq 1
+check "its recipe says so" grep -q '"effects": "-point-lights"' "$OUT/stdout"
+expect 0 "all but one" render "$CUBE" -o "$OUT/less2.pfm" $small --effects all,-point-lights
+check "left out of the general kernel too" cmp "$OUT/less.pfm" "$OUT/less2.pfm"
+expect 0 "--stats" render "$CUBE" -o "$OUT/auto.pfm" --size 48x36 --stats text
+check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ of [0-9]+ bindings" \
+    "$OUT/stdout"
+
+expect 0 "scene --effects" scene "$CUBE" --effects --size 32x24 --quiet
+check "names the device" grep -q "^  device    ." "$OUT/stdout"
+check "names the kernel" grep -Eq "^  kernel +[0-9]+ of [0-9]+ instructions, [0-9]+ of " "$OUT/stdout"
+check "what is compiled has a price and a reason" \
+    grep -Eq "^  point-lights +yes +[-+][0-9.]+ +[-+][0-9.]+ +[-+][0-9.]+ .*pixels, by up to .*lamp" \
+    "$OUT/stdout"
+check "what is not compiled has a price" \
+    grep -Eq "^  refraction +- +[-+][0-9.]+ +[-+][0-9.]+ +[-+][0-9.]+" "$OUT/stdout"
+check "kinds of cameras have none" grep -Eq "^  panorama +- +- *$" "$OUT/stdout"
+expect 0 "scene --effects --json" scene "$CUBE" --effects --size 32x24 --quiet --json
+for key in hash device picture kernel frame_ms effects; do
+    check "JSON has $key" grep -q "^  \"$key\": " "$OUT/stdout"
+done
+for key in name called compiled reason cost_ms difference; do
+    check "JSON has $key of each effect" \
+        test "$(grep -c "^      \"$key\": " "$OUT/stdout")" -eq \
+        "$(grep -c '^      "name": ' "$OUT/stdout")"
+done
+finish
