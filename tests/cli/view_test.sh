@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/pictures"
 P=$OUT/pictures
-SCENE=$SCENES/whitted.json
+SCENE=$SCENES/default.json
 SIZE=96x64
 
 # numbers FILE.pfm: all pixels, one a line (PFM of one channel: three lines of text, then floats).
