@@ -1,0 +1,339 @@
+/* Spheres on the device: hits of their C twin, pictures of triangles as fine as a pixel can tell,
+   and one-sided surfaces. */
+#include "picture_fixture.h"
+#include "sphere_fixture.h"
+
+/* ---- Hits ---- */
+
+static void check_twin(struct scene *scene, const struct accel_params *params, const char *label)
+{
+    enum { RAYS = 100000 };
+    struct fixture f = fixture_open(scene, params, NULL);
+    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    struct gpu_hit *any = array_alloc(RAYS, sizeof *any);
+    assert_true(rays && hits && any);
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        rays[i] = ray_at_spheres(&scene->meshes[0], i, 1000.0);
+        rays[i].t_min = i % 5 == 0 ? 0.5f : 0.0f;
+        rays[i].t_max = i % 7 == 0 ? 1.0f : INFINITY;
+    }
+    assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, hits, NULL), WHIT_OK);
+    assert_int_equal(renderer_trace(f.renderer, rays, RAYS, true, any, NULL), WHIT_OK);
+    uint32_t met = 0, unlike = 0, any_unlike = 0, status = 0;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_hit twin;
+        traverse_float(f.accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL,
+                       &status);
+        met += twin.primitive != HIT_NONE;
+        unlike += memcmp(&twin, &hits[i], sizeof twin) != 0;
+        any_unlike += (any[i].primitive != HIT_NONE) != (twin.primitive != HIT_NONE);
+    }
+    print_message("  %s: %u rays, %u hit; device unlike twin %u, any-hit unlike closest %u\n",
+                  label, RAYS, met, unlike, any_unlike);
+    assert_in_range(met, RAYS / 4, RAYS - 1);
+    assert_int_equal(unlike, 0);
+    assert_int_equal(any_unlike, 0);
+    assert_int_equal(status, 0);
+    free(rays);
+    free(hits);
+    free(any);
+    fixture_close(&f);
+}
+
+static void spheres_equal_twin(void **state)
+{
+    (void)state;
+    random_state = 11;
+    struct scene *scene = fixture_scene(scattered_spheres(300, 1.0, 0.3));
+    fixture_place(scene, NULL);
+    check_twin(scene, NULL, "one mesh");
+    scene = fixture_scene(scattered_spheres(40, 1.0, 0.3));
+    fixture_place(scene, NULL);
+    for (int i = 0; i < 12; ++i) {
+        struct affine placed = random_placement(1.5, i % 3 == 0);
+        fixture_place(scene, &placed);
+    }
+    check_twin(scene, NULL, "instances");
+}
+
+/* Triangles in clipped trees among them. */
+static void mixed_scene_equals_twin(void **state)
+{
+    (void)state;
+    random_state = 12;
+    const struct accel_params spatial = {.mesh = {.builder = BVH_SPATIAL}};
+    struct scene *scene = fixture_scene(scattered_spheres(60, 1.0, 0.3));
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
+    uint32_t ring = scene_add_mesh(scene, mesh);
+    for (int i = 0; i < 8; ++i) {
+        struct affine placed = random_placement(1.0, i % 3 == 0);
+        fixture_place(scene, &placed);
+        scene->instances[i].mesh = i % 2 ? ring : 0;
+    }
+    check_twin(scene, &spatial, "spheres and rings");
+}
+
+/* ---- Pictures ---- */
+
+static void dress(struct scene *scene, struct scene_mesh mesh, struct scene_material m,
+                  const struct affine *local)
+{
+    m.name = string_copy("material");
+    uint32_t index = scene_add_material(scene, m);
+    assert_int_not_equal(index, SCENE_NONE);
+    for (uint32_t i = 0; i < scene_mesh_primitives(&mesh); ++i)
+        mesh.materials[i] = index;
+    struct scene_instance instance = {
+        .name = string_copy("object"), .mesh = scene_add_mesh(scene, mesh), .node = SCENE_NONE};
+    if (local) {
+        instance.has_local = true;
+        instance.local = *local;
+    }
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+}
+
+/* A checker with a stripe across it, so that a picture turned or mirrored is another one. */
+static uint32_t add_checker(struct scene *scene)
+{
+    enum { SIZE = 64 };
+    struct scene_texture texture = {.name = string_copy("checker"), .width = SIZE, .height = SIZE};
+    texture.rgba = array_alloc((size_t)SIZE * SIZE, 4);
+    assert_non_null(texture.rgba);
+    for (uint32_t i = 0; i < SIZE * SIZE; ++i) {
+        uint32_t x = i % SIZE, y = i / SIZE;
+        bool light = ((x / 8 + y / 8) & 1) != 0, stripe = x > 16 && x < 24 && y < 40;
+        texture.rgba[4 * i] = stripe ? 255 : light ? 220 : 60;
+        texture.rgba[4 * i + 1] = stripe ? 30 : light ? 210 : 90;
+        texture.rgba[4 * i + 2] = (uint8_t)(4 * y);
+        /* Holes of a mask, in every other square. */
+        texture.rgba[4 * i + 3] = light ? 255 : 0;
+    }
+    return scene_add_texture(scene, texture);
+}
+
+enum look { LOOK_TEXTURE, LOOK_MASK, LOOK_BUMP, LOOK_GLASS, LOOK_COUNT };
+
+/* `fine`: of triangles; else as such. */
+static struct scene *ball_scene(enum look look, bool fine, bool stretched)
+{
+    const double eye[3] = {0.4, 0.8, 3.6}, target[3] = {0, 0, 0};
+    struct scene *scene = dark_scene(eye, target);
+    struct scene_material m = material("ball"), floor = material("floor");
+    struct scene_mesh mesh = {0};
+    uint32_t checker = add_checker(scene);
+    set_rgb(m.diffuse, 0.8f, 0.8f, 0.8f);
+    set_rgb(floor.diffuse, 0.5f, 0.55f, 0.6f);
+    if (look == LOOK_GLASS) {
+        set_rgb(m.diffuse, 0, 0, 0);
+        set_rgb(m.transmission, 0.9f, 0.95f, 1.0f);
+        m.fresnel = true;
+    } else {
+        m.textures[look == LOOK_BUMP ? SCENE_SLOT_BUMP : SCENE_SLOT_DIFFUSE].texture = checker;
+        m.alpha = look == LOOK_MASK ? SCENE_ALPHA_MASK : SCENE_ALPHA_OPAQUE;
+        m.alpha_cutoff = 0.5f;
+    }
+    if (fine)
+        assert_int_equal(shape_sphere(1.0, 512, 256, &mesh), WHIT_OK);
+    else
+        assert_int_equal(shape_balls((const double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
+    const double t[3] = {0.1, 0.05, 0}, q[4] = {0.2, 0.3, 0.1, 0.9}, s[3] = {1.2, 0.7, 0.9};
+    const double one[3] = {1, 1, 1};
+    struct affine placed = affine_from_trs(t, q, stretched ? s : one);
+    dress(scene, mesh, m, &placed);
+    const double down[3] = {0, -1.3, 0}, straight[4] = {0, 0, 0, 1};
+    struct affine below = affine_from_trs(down, straight, one);
+    dress(scene, plane(20.0), floor, &below);
+    set_rgb(scene->environment.zenith, 0.2f, 0.3f, 0.6f);
+    set_rgb(scene->environment.horizon, 0.8f, 0.8f, 0.8f);
+    set_rgb(scene->environment.ground, 0.2f, 0.2f, 0.2f);
+    add_sun(scene, -0.5, -1.0, -0.6, 1.0f);
+    return scene;
+}
+
+static struct image picture(struct scene *scene, const struct accel_params *accel,
+                            const struct render_params *params)
+{
+    struct fixture f = fixture_open(scene, accel, params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+static const struct render_params small_params = {.width = 64, .height = 48, .depth = 5};
+
+static void check_same(const struct image *a, const struct image *b)
+{
+    assert_memory_equal(a->pixels, b->pixels, (size_t)4 * a->width * a->height * sizeof(float));
+}
+
+/* The triangles lie at most 1 - cos(pi / 256) = 8e-5 within the sphere, a hundredth of a pixel, so
+   pixels whose middle is that near to an edge may differ: edges of the ball, its shadow and squares
+   of the checker cross some 12 times the 64 columns, a hundredth of these makes 8. All others are
+   off by what 8e-5 changes in texture coordinates, times the slope of bilinear texels (64 of up to
+   0.8 in 2 pi: 6e-4), or in a normal (smooth ones: less), which glass multiplies by some 10. */
+static void balls_look_like_fine_triangles(void **state)
+{
+    (void)state;
+    static const char *const names[LOOK_COUNT] = {"texture", "mask", "bump", "glass"};
+    for (int look = 0; look < LOOK_COUNT; ++look) {
+        bool stretched = look != LOOK_TEXTURE;
+        struct image ball =
+            picture(ball_scene((enum look)look, false, stretched), NULL, &small_params);
+        struct image fine =
+            picture(ball_scene((enum look)look, true, stretched), NULL, &small_params);
+        uint32_t far = 0, lit = 0, pixels = ball.width * ball.height;
+        double mean = 0.0;
+        for (uint32_t i = 0; i < pixels; ++i) {
+            double off = 0.0;
+            for (uint32_t k = 0; k < 3; ++k) {
+                off = fmax(off,
+                           fabs((double)ball.pixels[4 * i + k] - (double)fine.pixels[4 * i + k]));
+            }
+            lit += ball.pixels[4 * i] > 0.0f;
+            far += off > 0.004;
+            mean += off / pixels;
+        }
+        print_message("  %s: %u of %u pixels differ by more than 0.004, %.2g on average\n",
+                      names[look], far, pixels, mean);
+        assert_true(lit > pixels / 2);
+        assert_in_range(far, 0, 8);
+        image_finish(&ball);
+        image_finish(&fine);
+    }
+}
+
+/* Specialised or not, without trees, through storage buffers. */
+static void ways_to_draw_balls_agree(void **state)
+{
+    (void)state;
+    for (int look = LOOK_MASK; look < LOOK_COUNT; look += 2) {
+        struct render_params params = small_params;
+        struct image wanted = picture(ball_scene((enum look)look, false, true), NULL, &params);
+        params.all_effects = true;
+        struct image all = picture(ball_scene((enum look)look, false, true), NULL, &params);
+        params.all_effects = false;
+        const struct accel_params bare = {.mesh = {.builder = BVH_NONE}};
+        struct image none = picture(ball_scene((enum look)look, false, true), &bare, &params);
+        check_same(&wanted, &all);
+        check_same(&wanted, &none);
+        image_finish(&wanted);
+        image_finish(&all);
+        image_finish(&none);
+    }
+}
+
+/* Light through a ball of glass is filtered where it enters and where it leaves. */
+static void glass_filters_light_twice(void **state)
+{
+    (void)state;
+    const double eye[3] = {0, 2, 0}, target[3] = {0, 0, 0};
+    float shades[2];
+    for (int balls = 0; balls < 2; ++balls) {
+        struct scene *scene = dark_scene(eye, target);
+        struct scene_material floor = material("floor"), glass = material("glass");
+        struct scene_mesh mesh = {0};
+        set_rgb(floor.diffuse, 1, 1, 1);
+        set_rgb(glass.diffuse, 0, 0, 0);
+        set_rgb(glass.transmission, 0.5f, 0.5f, 0.5f);
+        dress(scene, plane(4.0), floor, NULL);
+        if (balls) {
+            const double sphere[4] = {0, 4, 0, 0.5}; /* above the eye */
+            assert_int_equal(shape_balls(sphere, 1, &mesh), WHIT_OK);
+            dress(scene, mesh, glass, NULL);
+        }
+        add_sun(scene, 0, -1, 0, 1.0f);
+        struct image image = picture(scene, NULL, &picture_params);
+        shades[balls] = middle(&image)[0];
+        image_finish(&image);
+    }
+    assert_near(shades[0], 1.0, 1e-6);
+    assert_near(shades[1], 0.25, 1e-6);
+}
+
+/* ---- One-sided surfaces ---- */
+
+enum { ONE_SIDED_BEHIND = 1, ONE_SIDED_MIRRORED = 2, ONE_SIDED_FLAT = 4 };
+
+/* Looking down on a red leaf, from its front or from behind, over a white floor under a sun that is
+   above both. Gives what is seen in the middle, and of the floor beside the leaf where its shadow
+   would fall. */
+static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float *shadow)
+{
+    const double eye[3] = {0, 4, 0}, target[3] = {0, 0, 0};
+    struct scene *scene = dark_scene(eye, target);
+    struct scene_material floor = material("floor"), leaf = material("leaf");
+    set_rgb(floor.diffuse, 1, 1, 1);
+    set_rgb(leaf.diffuse, 1, 0, 0);
+    leaf.one_sided = one_sided;
+    dress(scene, plane(8.0), floor, NULL);
+    const double up[3] = {0, 1, 0}, over[4] = {1, 0, 0, 0}, straight[4] = {0, 0, 0, 1};
+    const double mirror[3] = {-1, 1, 1}, one[3] = {1, 1, 1};
+    struct affine placed = affine_from_trs(up, how & ONE_SIDED_BEHIND ? over : straight,
+                                           how & ONE_SIDED_MIRRORED ? mirror : one);
+    dress(scene, plane(1.0), leaf, &placed);
+    add_sun(scene, 0.6, -1, 0, 1.0f); /* the shadow is 0.6 aside */
+    const struct accel_params flat = {.flatten = true};
+    struct render_params params = picture_params;
+    params.all_effects = all;
+    struct image image = picture(scene, how & ONE_SIDED_FLAT ? &flat : NULL, &params);
+    memcpy(seen, middle(&image), 3 * sizeof(float));
+    /* 0.9 to the right on the floor, beside the leaf and in its shadow: tan(0.3) * 4 = 1.24 is the
+       edge of the picture. */
+    *shadow = image.pixels[4 * (16 * 33 + 16 + 12)];
+    image_finish(&image);
+}
+
+static void one_sided_leaves_are_not_seen_from_behind(void **state)
+{
+    (void)state;
+    for (int how = 0; how < 8; ++how) {
+        float seen[3], shadow;
+        bool behind = (how & ONE_SIDED_BEHIND) != 0;
+        look_at_leaf(how, true, false, seen, &shadow);
+        /* The white floor through the red leaf; light is stopped on both sides. */
+        assert_true(seen[0] > 0.5f && (seen[1] > 0.5f) == behind);
+        assert_true(shadow == 0.0f);
+    }
+    float seen[3], general[3], shadow;
+    look_at_leaf(ONE_SIDED_BEHIND, true, false, seen, &shadow);
+    look_at_leaf(ONE_SIDED_BEHIND, true, true, general, &shadow);
+    assert_memory_equal(seen, general, sizeof seen);
+    look_at_leaf(ONE_SIDED_BEHIND, false, false, seen, &shadow);
+    assert_true(seen[0] > 0.5f && seen[1] == 0.0f);
+}
+
+/* The near side is its outside; through it one would see the far one. */
+static void one_sided_balls_hide_their_inside(void **state)
+{
+    (void)state;
+    for (int inside = 0; inside < 2; ++inside) {
+        const double eye[3] = {0, 0, inside ? 0.5 : 4}, target[3] = {0, 0, 0};
+        struct scene *scene = dark_scene(eye, target);
+        struct scene_material m = material("ball");
+        struct scene_mesh mesh = {0};
+        m.model = SCENE_MODEL_UNLIT;
+        set_rgb(m.diffuse, 1, 0, 0);
+        m.one_sided = true;
+        assert_int_equal(shape_balls((const double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
+        dress(scene, mesh, m, NULL);
+        struct image image = picture(scene, NULL, &picture_params);
+        assert_true(middle(&image)[0] == (inside ? 0.0f : 1.0f));
+        image_finish(&image);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spheres_equal_twin),
+        cmocka_unit_test(mixed_scene_equals_twin),
+        cmocka_unit_test(balls_look_like_fine_triangles),
+        cmocka_unit_test(ways_to_draw_balls_agree),
+        cmocka_unit_test(glass_filters_light_twice),
+        cmocka_unit_test(one_sided_leaves_are_not_seen_from_behind),
+        cmocka_unit_test(one_sided_balls_hide_their_inside),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
