@@ -116,6 +116,8 @@ static void scan_glass(struct scene_effects *out, const struct scene_material *m
 static void scan_optics(struct scene_effects *out, const struct scene_material *m)
 {
     bool metal_rough = is_glossy_metal_rough(m);
+    /* Roughness 1 leaves nothing of a mirror image, unless a texture makes it less. */
+    bool mirrors = metal_rough && (m->roughness < 1.0f || has(m, SCENE_SLOT_METAL_ROUGH));
     if (any(m->emission))
         call_by_material(out, SCENE_EFFECT_EMISSION, m, "");
     if (m->shadow_catcher)
@@ -124,15 +126,15 @@ static void scan_optics(struct scene_effects *out, const struct scene_material *
         call_by_material(out, SCENE_EFFECT_CULLING, m, "one-sided");
     if (m->model == SCENE_MODEL_UNLIT)
         return;
-    if (any(m->reflection) || metal_rough || (any(m->transmission) && m->fresnel))
+    if (any(m->reflection) || mirrors || (any(m->transmission) && m->fresnel))
         call_by_material(out, SCENE_EFFECT_REFLECTION, m,
                          any(m->reflection) ? ""
-                         : metal_rough      ? "metal-rough"
+                         : mirrors          ? "metal-rough"
                                             : "glass");
     if (any(m->transmission))
         scan_glass(out, m);
-    if (metal_rough || (m->fresnel && (any(m->reflection) || any(m->transmission))))
-        call_by_material(out, SCENE_EFFECT_FRESNEL, m, metal_rough ? "metal-rough" : "");
+    if (mirrors || (m->fresnel && (any(m->reflection) || any(m->transmission))))
+        call_by_material(out, SCENE_EFFECT_FRESNEL, m, mirrors ? "metal-rough" : "");
     if (metal_rough || (m->model == SCENE_MODEL_PHONG && any(m->specular)))
         call_by_material(out, SCENE_EFFECT_HIGHLIGHTS, m, "");
     if (m->model == SCENE_MODEL_METAL_ROUGH)
