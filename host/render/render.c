@@ -328,6 +328,12 @@ static double picture_share(const struct progress *progress)
            progress->share * (double)progress->work_done / (double)progress->work_total;
 }
 
+static void report_progress(const struct renderer *renderer, const struct progress *progress)
+{
+    if (renderer->params.progress)
+        renderer->params.progress(renderer->params.progress_user, picture_share(progress));
+}
+
 whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
 {
     const struct render_params *params = &renderer->params;
@@ -503,8 +509,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         if (result != WHIT_OK)
             return result;
         progress->work_done += chunk->block_count;
-        if (renderer->params.progress)
-            renderer->params.progress(renderer->params.progress_user, picture_share(progress));
+        report_progress(renderer, progress);
     }
     ++renderer->stats.tiles;
     adapt_tile(renderer, progress, longest_ms);
@@ -613,6 +618,7 @@ static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk
     if (!progress->listed || chunk->listed > 0)
         return render_chunk(renderer, chunk, progress);
     progress->work_done += (uint64_t)chunk->block_count * progress->samples;
+    report_progress(renderer, progress);
     return render_stop_asked(renderer, progress);
 }
 
@@ -656,6 +662,7 @@ static whit_result render_pass(struct renderer *renderer, uint32_t samples,
          y += renderer->pixel_buffers.band_rows)
         result = render_band(renderer, y, progress);
     progress->before += progress->share;
+    progress->work_done = 0;
     return result;
 }
 
@@ -680,7 +687,10 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
         progress->listed = true;
         if (marked > 0)
             result = render_pass(renderer, 1u << (2 * level), progress);
+        else
+            progress->before += progress->share;
     }
+    report_progress(renderer, progress);
     for (size_t i = 0; i < pixels; ++i)
         ++renderer->stats.pixels_by_samples[progress->levels[i]];
     free(progress->levels);

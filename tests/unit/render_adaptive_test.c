@@ -1,0 +1,265 @@
+/* Adaptive anti-aliasing: every pixel is that of the picture of 4, 16 or 64 samples, bit for bit,
+   by the rule that docs/effects.md states. The rule is written down here once more, plainly. */
+#include "render/renderer.h"
+#include "render_scenes.h"
+
+enum { WIDTH = 29, HEIGHT = 19, PIXELS = WIDTH * HEIGHT };
+
+/* One picture, with what the kernel counted for each pixel. */
+struct picture {
+    struct image color, ids;
+    struct gpu_counts counts[PIXELS];
+    struct render_stats stats;
+};
+
+static void draw(struct fixture *f, struct picture *out)
+{
+    memset(out, 0, sizeof *out);
+    assert_int_equal(renderer_render(f->renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(f->renderer, &out->color), WHIT_OK);
+    assert_int_equal(renderer_read_ids(f->renderer, &out->ids), WHIT_OK);
+    assert_int_equal(
+        buffer_read(f->renderer->pixel_buffers.counts, 0, out->counts, sizeof out->counts),
+        WHIT_OK);
+    renderer_get_stats(f->renderer, &out->stats);
+}
+
+static void picture_finish(struct picture *picture)
+{
+    image_finish(&picture->color);
+    image_finish(&picture->ids);
+}
+
+static void renew(struct fixture *f, const struct render_params *params)
+{
+    renderer_destroy(f->renderer);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
+                     WHIT_OK);
+}
+
+static float clamped(float x)
+{
+    return fminf(fmaxf(x, 0.0f), 1.0f);
+}
+
+static bool differs(const float *pixels, int x, int y, float contrast)
+{
+    const float *own = &pixels[4 * (y * WIDTH + x)];
+    for (int v = y - 1; v <= y + 1; ++v) {
+        for (int u = x - 1; u <= x + 1; ++u) {
+            if (u < 0 || v < 0 || u >= WIDTH || v >= HEIGHT)
+                continue;
+            const float *other = &pixels[4 * (v * WIDTH + u)];
+            for (int c = 0; c < 3; ++c) {
+                if (fabsf(clamped(own[c]) - clamped(other[c])) > contrast)
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
+struct expected {
+    float pixels[PIXELS][4];
+    uint64_t by_samples[4], primary, shadow, reflected, refracted;
+};
+
+static void count_rays(struct expected *e, const struct gpu_counts *counts, uint32_t samples)
+{
+    e->primary += samples;
+    e->shadow += counts->shadow;
+    e->reflected += counts->reflected;
+    e->refracted += counts->refracted;
+}
+
+/* From the pictures of 4, 16 and 64 samples. */
+static void expect(const struct picture plain[3], float contrast, struct expected *e)
+{
+    bool marked[PIXELS];
+    memset(e, 0, sizeof *e);
+    memcpy(e->pixels, plain[0].color.pixels, sizeof e->pixels);
+    uint32_t level_of[PIXELS];
+    for (int i = 0; i < PIXELS; ++i) {
+        level_of[i] = 0;
+        count_rays(e, &plain[0].counts[i], 4);
+    }
+    for (uint32_t level = 1; level < 3; ++level) {
+        for (int i = 0; i < PIXELS; ++i)
+            marked[i] = differs(&e->pixels[0][0], i % WIDTH, i / WIDTH, contrast);
+        for (int i = 0; i < PIXELS; ++i) {
+            if (!marked[i])
+                continue;
+            level_of[i] = level;
+            memcpy(e->pixels[i], &plain[level].color.pixels[4 * i], sizeof e->pixels[i]);
+            count_rays(e, &plain[level].counts[i], level == 1 ? 16 : 64);
+        }
+    }
+    for (int i = 0; i < PIXELS; ++i)
+        ++e->by_samples[1 + level_of[i]];
+}
+
+static void check(struct fixture *f, const struct picture *first, const struct expected *e)
+{
+    struct picture *p = malloc(sizeof *p);
+    assert_non_null(p);
+    draw(f, p);
+    assert_memory_equal(p->color.pixels, e->pixels, sizeof e->pixels);
+    assert_memory_equal(p->ids.words, first->ids.words, PIXELS * 8);
+    assert_memory_equal(p->stats.pixels_by_samples, e->by_samples, sizeof e->by_samples);
+    assert_true(p->stats.rays_primary == e->primary && p->stats.rays_shadow == e->shadow);
+    assert_true(p->stats.rays_reflected == e->reflected && p->stats.rays_refracted == e->refracted);
+    picture_finish(p);
+    free(p);
+}
+
+/* Pictures of 4, 16 and 64 samples, then adaptive ones in tiles and bands of several sizes. */
+static void check_scene(struct scene *scene, const struct accel_params *accel, const char *camera,
+                        const double *contrasts, int contrast_count)
+{
+    struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = camera};
+    struct picture *plain = calloc(3, sizeof *plain);
+    struct expected *e = malloc(sizeof *e);
+    assert_true(plain && e);
+    struct fixture f = fixture_open(scene, accel, &params);
+    for (int i = 0; i < 3; ++i) {
+        params.samples = 4u << (2 * i);
+        renew(&f, &params);
+        draw(&f, &plain[i]);
+        assert_int_equal(plain[i].stats.pixels_by_samples[i + 1], PIXELS);
+    }
+    for (int i = 0; i < contrast_count; ++i) {
+        params.adaptive = contrasts[i];
+        expect(plain, (float)contrasts[i], e);
+        print_message("  contrast %g: %u, %u and %u pixels of 4, 16 and 64\n", contrasts[i],
+                      (unsigned)e->by_samples[1], (unsigned)e->by_samples[2],
+                      (unsigned)e->by_samples[3]);
+        const uint32_t tiles[] = {0, 16}, bands[] = {0, 8};
+        for (int k = 0; k < (i == 0 ? 2 : 1); ++k) {
+            params.tile_size = tiles[k];
+            renew(&f, &params);
+            if (bands[k])
+                f.renderer->pixel_buffers.band_rows = bands[k];
+            check(&f, &plain[0], e);
+        }
+        params.tile_size = 0;
+    }
+    for (int i = 0; i < 3; ++i)
+        picture_finish(&plain[i]);
+    free(plain);
+    free(e);
+    fixture_close(&f);
+}
+
+/* 1: nothing differs by more, so all pixels keep 4. */
+static const double contrasts[] = {0.05, 1.0};
+
+static void pixels_are_those_of_plain_pictures(void **state)
+{
+    (void)state;
+    check_scene(glass_scene(), NULL, glass_camera, contrasts, 2);
+}
+
+static void so_they_are_without_trees(void **state)
+{
+    (void)state;
+    const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
+    check_scene(glass_scene_over(2), &no_trees, glass_camera, contrasts, 1);
+}
+
+static void lens_and_plain_scenes_too(void **state)
+{
+    (void)state;
+    struct scene *scene = terrain_scene();
+    struct scene_camera camera = {.name = string_copy("lens"),
+                                  .node = SCENE_NONE,
+                                  .eye = {0, 4, 9},
+                                  .up = {0, 1, 0},
+                                  .fov_y = 0.7f,
+                                  .lens_radius = 0.4f};
+    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+    check_scene(scene, NULL, NULL, contrasts, 1);
+}
+
+static void marks_come_in_pairs(void **state)
+{
+    (void)state;
+    struct image image = {0};
+    uint8_t levels[12];
+    assert_int_equal(image_init(&image, 4, 3, 4, false), WHIT_OK);
+    memset(levels, 1, sizeof levels);
+    image.pixels[4 * 5 + 1] = 7.0f; /* green of (1, 1) shows as 1 */
+    image.pixels[4 * 7 + 3] = 9.0f; /* alpha is not looked at */
+    assert_true(adaptive_mark(&image, 1.0, 2, levels) == 0);
+    assert_true(adaptive_mark(&image, 0.999, 2, levels) == 9);
+    const uint8_t expected[12] = {2, 2, 2, 1, 2, 2, 2, 1, 2, 2, 2, 1};
+    assert_memory_equal(levels, expected, sizeof levels);
+    image_finish(&image);
+}
+
+static bool stop_now;
+static double last_done;
+static uint32_t calls, backwards;
+
+static void watch(void *user, double done)
+{
+    backwards += done < last_done;
+    last_done = done;
+    if (user && ++calls == *(const uint32_t *)user)
+        stop_now = true;
+}
+
+static void progress_goes_on_to_the_end(void **state)
+{
+    (void)state;
+    struct render_params params = {.width = WIDTH,
+                                   .height = HEIGHT,
+                                   .depth = 3,
+                                   .camera = glass_camera,
+                                   .adaptive = 0.05,
+                                   .progress = watch,
+                                   .tile_size = 16};
+    last_done = 0.0;
+    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    assert_int_equal(backwards, 0);
+    assert_true(last_done > 0.999 && last_done < 1.001);
+    /* Cancelled in the pass of 16; then the whole picture after all. */
+    uint32_t stop_at = 4 * 3 + 20;
+    params.cancel = &stop_now;
+    params.progress_user = &stop_at;
+    renew(&f, &params);
+    last_done = 0.0;
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
+    assert_true(last_done > 1.0 / 3.0 && last_done < 0.9);
+    stop_now = false;
+    last_done = 0.0;
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    fixture_close(&f);
+}
+
+static void nonsense_is_refused(void **state)
+{
+    (void)state;
+    const struct render_params wrong[] = {
+        {.adaptive = -0.5}, {.adaptive = 1.5}, {.adaptive = NAN}, {.adaptive = 0.1, .count = true}};
+    struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        struct renderer *renderer;
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &wrong[i], &renderer),
+                         WHIT_ERROR_USAGE);
+    }
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pixels_are_those_of_plain_pictures),
+        cmocka_unit_test(so_they_are_without_trees),
+        cmocka_unit_test(lens_and_plain_scenes_too),
+        cmocka_unit_test(marks_come_in_pairs),
+        cmocka_unit_test(progress_goes_on_to_the_end),
+        cmocka_unit_test(nonsense_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
