@@ -1,6 +1,6 @@
 #!/bin/sh
 # whit beside POV-Ray 3.7 on one scene, see scenes.sh for what is set equal:
-#     sh pov_test.sh WHIT COMPARE flake|glass|mesh
+#     sh pov_test.sh WHIT COMPARE flake|glass|hollow|wine|mesh
 # Bounces: POV-Ray counts the eye's ray, and ends rays that add less than adc_bailout.
 set -u
 whit=$1 compare=$2 name=$3

@@ -1,6 +1,6 @@
 #!/bin/sh
 # One scene for both ray tracers: writes NAME.json for whit and NAME.pov for POV-Ray into FOLDER.
-#     sh scenes.sh flake|glass|mesh colors|masks WIDTH HEIGHT FOLDER
+#     sh scenes.sh flake|glass|hollow|wine|mesh colors|masks WIDTH HEIGHT FOLDER
 # colors: lit as the scene says. masks: every object in one flat colour of its own, so that only the
 # geometry and the camera count.
 #
@@ -56,7 +56,7 @@ function material(id, diffuse, jsonmore, povmore) {
 }
 function object(text) { objects = objects (objects == "" ? "\n  " : ",\n  ") text }
 # In masks neighbours differ: seven colours in turn.
-function ball(x, y, z, r, id, povmore) {
+function ball(x, y, z, r, id, povmore, whit_alone) {
     if (mode == "masks") {
         id = "ball" balls % 7
         if (balls++ < 7)
@@ -64,7 +64,8 @@ function ball(x, y, z, r, id, povmore) {
     }
     object(sprintf("{\"shape\": \"ball\", \"radius\": %.9g, \"translation\": [%s], \"material\": \"%s\"}",
         r, rgb(x, y, z), id))
-    printf "sphere { <%s>, %.9g texture { M_%s } %s }\n", rgb(x, y, z), r, id, povmore > pov
+    if (!whit_alone)
+        printf "sphere { <%s>, %.9g texture { M_%s } %s }\n", rgb(x, y, z), r, id, povmore > pov
 }
 function finish() {
     printf "\"lights\": [%s\n],\n\"materials\": {%s\n},\n\"objects\": [%s\n]\n}\n", lights, materials, objects > json
@@ -138,6 +139,42 @@ function glass_scene() {
     finish()
 }
 
+# --- hollow: a hollow ball of glass, before one of clay ---
+
+function clear(id, ior, more) {
+    materials = materials sprintf(",\n  \"%s\": {\"diffuse\": 0, \"ambient\": 0, \"transmission\": 1, \"ior\": %g%s}", id, ior, more)
+    printf "#declare M_%s = texture { pigment { rgbf 1 } finish { ambient 0 diffuse 0 reflection { 1 fresnel on } conserve_energy } }\n", id > pov
+}
+function hollow_scene() {
+    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7", 10)
+    light("-3,6,4", 40, 38, 36, 1)
+    floor_of_squares(16, 0, 230, 60)
+    # For POV-Ray a difference of balls; for whit a ball of air, which has priority.
+    if (mode == "colors") {
+        clear("glass", 1.5)
+        clear("air", 1, ", \"priority\": 1")
+        ball(-0.6, 1, 0.5, 0.7, "air", "", 1)
+        print "difference { sphere { <-0.6,1,0.5>,0.9 } sphere { <-0.6,1,0.5>,0.7 } texture { M_glass } interior { ior 1.5 } }" > pov
+    }
+    ball(-0.6, 1, 0.5, 0.9, "glass", "", mode == "colors")
+    material("clay", "0.7,0.25,0.15", ", \"specular\": 0.3, \"shininess\": 20", "specular 0.3 roughness 1/20")
+    ball(0.9, 0.8, -0.8, 0.8, "clay")
+    finish()
+}
+
+# --- wine: a ball that absorbs, and its shadow ---
+
+function wine_scene() {
+    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7", 10)
+    light("-3,6,4", 40, 38, 36, 1)
+    floor_of_squares(16, 0, 230, 60)
+    if (mode == "colors")
+        clear("wine", 1.33, ", \"absorption\": [0.3, 1.4, 1]")
+    # Beer: exp((fade_color - 1) depth / fade_distance), from a fade_power of 1000 on
+    ball(0, 1, 0.4, 0.9, "wine", "interior { ior 1.33 fade_power 1001 fade_distance 0.5 fade_color rgb <0.85,0.3,0.5> }")
+    finish()
+}
+
 # --- mesh: a wavy ring of triangles under two lights ---
 
 function point(u, v,    a, b, r) {
@@ -179,6 +216,8 @@ function mesh_scene(    u, v, i, obj, corner, list) {
 BEGIN {
     if (name == "flake") flake_scene()
     else if (name == "glass") glass_scene()
+    else if (name == "hollow") hollow_scene()
+    else if (name == "wine") wine_scene()
     else if (name == "mesh") mesh_scene()
     else exit 2
 }'
