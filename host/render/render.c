@@ -179,7 +179,8 @@ static whit_result create_pixel_buffers(struct renderer *renderer)
         log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
         return WHIT_ERROR_DEVICE;
     }
-    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS];
+    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] ||
+                 renderer->effects.called[SCENE_EFFECT_CATCHERS];
     p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
     uint32_t tile = largest_tile(renderer);
     uint64_t frame_slots = (uint64_t)blocks_across(width) * (p->band_rows / 8) * 64;

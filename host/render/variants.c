@@ -48,6 +48,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_ORDER = renderer->params.order;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_SECONDARY = secondary;
+    spec.SPEC_LISTED = renderer->params.adaptive > 0.0;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
@@ -58,6 +59,17 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     return spec;
 }
 
+/* Kinds of lights that the scene has none of. */
+static uint32_t added_lights(const struct renderer *renderer)
+{
+    struct scene_effects added = {.called = {false}};
+    struct gpu_spec spec = GPU_SPEC_DEFAULTS;
+    for (int i = 0; i < SCENE_EFFECT_COUNT; ++i)
+        added.called[i] = renderer->params.effects_added >> i & 1;
+    effects_switch(&added, &spec);
+    return spec.SPEC_LIGHTS;
+}
+
 struct gpu_spec variant_spec(const struct renderer *renderer)
 {
     struct gpu_spec spec = make_spec(renderer, &renderer->effects, renderer->has_secondary);
@@ -65,7 +77,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
         only_spheres(renderer->scene))
         spec.SPEC_SPHERES = SPHERES_ONLY;
     if (!renderer->params.all_effects)
-        spec.SPEC_LIGHTS &= lights_kinds(&renderer->pose);
+        spec.SPEC_LIGHTS &= lights_kinds(&renderer->pose) | added_lights(renderer);
     return spec;
 }
 
@@ -74,7 +86,9 @@ struct gpu_spec variant_general_spec(const struct renderer *renderer)
     struct scene_effects effects = renderer->effects;
     const struct render_params all = {.all_effects = true};
     effects_choose(&all, &effects);
-    return make_spec(renderer, &effects, true);
+    struct gpu_spec spec = make_spec(renderer, &effects, true);
+    spec.SPEC_LISTED = 1;
+    return spec;
 }
 
 /* What a kernel is bound to, while it is put together. */

@@ -69,7 +69,8 @@
     X(32, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
     X(33, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
     X(34, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
-    X(35, SPEC_EMISSION, 1)
+    X(35, SPEC_EMISSION, 1)                                                                        \
+    X(36, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -59,7 +59,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
         if (traced(weight, deep, count))
             push_beyond(slot, c, ray.dir, weight, steps, ray.media, ray.kind, count, status);
     }
-    if (SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u) {
+    if (SPEC_REFLECTION != 0u) {
         vec3 weight = ray.weight * o.reflected * solid;
         vec3 dir = reflect(ray.dir, s.ns);
         if (dot(dir, s.ng) <= 0.0)
@@ -153,7 +153,7 @@ void main()
 {
     bool stacked = SPEC_SECONDARY != 0u && chunk.stacked != 0u;
     uint slot = own_slot();
-    bool listed = chunk.listed != 0u;
+    bool listed = SPEC_LISTED != 0u && chunk.listed != 0u;
     if (slot >= (stacked  ? work_in.count
                  : listed ? chunk.listed
                           : chunk.block_count * BLOCK_PIXELS))

@@ -76,8 +76,9 @@ struct fixture {
     struct renderer *renderer;
 };
 
-static struct fixture fixture_open(struct scene *scene, const struct accel_params *accel_params,
-                                   const struct render_params *render_params)
+static inline struct fixture fixture_open(struct scene *scene,
+                                          const struct accel_params *accel_params,
+                                          const struct render_params *render_params)
 {
     struct fixture f = {.scene = scene};
     assert_int_equal(scene_freeze(scene), WHIT_OK);
@@ -91,7 +92,7 @@ static struct fixture fixture_open(struct scene *scene, const struct accel_param
     return f;
 }
 
-static void fixture_close(struct fixture *f)
+static inline void fixture_close(struct fixture *f)
 {
     renderer_destroy(f->renderer);
     assert_int_equal(device_validation_messages(f->device), 0);
