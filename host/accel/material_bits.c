@@ -10,44 +10,75 @@ static uint32_t optical_depth(double transmittance)
     return depth >= 1023.0 ? 1023u : depth > 0.0 ? (uint32_t)(depth + 0.5) : 0u;
 }
 
-/* What a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest through it. */
-static struct material_bits material_bits(const struct scene_material *m, bool area_lights)
+static bool any_channel(const float rgb[3])
+{
+    return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
+}
+
+static bool has_texture(const struct scene_material *m, enum scene_slot slot)
+{
+    return m->textures[slot].texture != SCENE_NONE;
+}
+
+/* What a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest through it.
+   Where textures, vertex colours or absorption have a say, the kernel tells it at each place (see
+   bind/filter.glsl); `shadow` is then that of plain white ones, and nothing absorbed. */
+static void filter_bits(const struct scene_material *m, bool colors, struct material_bits *bits)
+{
+    bool metal_rough = m->model == SCENE_MODEL_METAL_ROUGH, filters = false;
+    bool glassy = any_channel(m->transmission), blends = m->alpha == SCENE_ALPHA_BLEND;
+    bool tints = metal_rough && (colors || has_texture(m, SCENE_SLOT_DIFFUSE) ||
+                                 has_texture(m, SCENE_SLOT_METAL_ROUGH));
+    bool absorbs = any_channel(m->absorption) && !m->thin_walled;
+    bool varies = blends && (colors || has_texture(m, SCENE_SLOT_OPACITY) ||
+                             has_texture(m, SCENE_SLOT_DIFFUSE));
+    bool detail =
+        varies || (glassy && (absorbs || tints || has_texture(m, SCENE_SLOT_TRANSMISSION)));
+    double cover = blends ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
+    uint32_t shadow = 0;
+    for (int c = 0; c < 3; ++c) {
+        double passes = (double)m->transmission[c];
+        if (metal_rough)
+            passes *= (double)m->diffuse[c] * (1.0 - (double)m->metallic);
+        double kept = 1.0 - cover + cover * passes;
+        filters |= kept > 0.0;
+        shadow |= optical_depth(kept) << (10 * c);
+    }
+    if (filters || varies) {
+        bits->flags |= TRIANGLE_FILTER | (detail ? TRIANGLE_FILTER_DETAIL : 0);
+        bits->shadow = shadow;
+    }
+}
+
+static struct material_bits material_bits(const struct scene_material *m, bool area_lights,
+                                          bool colors)
 {
     struct material_bits bits = {.masked = m->alpha == SCENE_ALPHA_MASK};
-    if (bits.masked &&
-        (m->opacity < m->alpha_cutoff || m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE ||
-         m->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE))
+    if (bits.masked && (m->opacity < m->alpha_cutoff || has_texture(m, SCENE_SLOT_OPACITY) ||
+                        has_texture(m, SCENE_SLOT_DIFFUSE)))
         bits.flags |= TRIANGLE_CUTOUT;
-    /* Surfaces that scene_freeze puts light samples on; others that glow are ordinary ones. */
-    bool glows = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
-    if (area_lights && glows && m->model != SCENE_MODEL_UNLIT &&
-        m->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE)
+    /* Surfaces that scene_freeze makes lights of; others that glow are ordinary ones. */
+    if (area_lights && any_channel(m->emission) && m->model != SCENE_MODEL_UNLIT &&
+        !has_texture(m, SCENE_SLOT_EMISSION))
         bits.flags |= TRIANGLE_NO_SHADOW;
-    double cover = m->alpha == SCENE_ALPHA_BLEND ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
-    bool filters = false;
-    for (int c = 0; c < 3; ++c) {
-        double kept = 1.0 - cover + cover * (double)m->transmission[c];
-        filters |= kept > 0.0;
-        bits.shadow |= optical_depth(kept) << (10 * c);
-    }
-    bool glassy = m->transmission[0] > 0 || m->transmission[1] > 0 || m->transmission[2] > 0;
-    if (m->one_sided && !glassy)
+    if (m->shadow_catcher) /* is not there but for shadows that fall on it */
+        bits.flags |= TRIANGLE_NO_SHADOW;
+    if (m->one_sided && !any_channel(m->transmission))
         bits.flags |= TRIANGLE_ONE_SIDED;
-    if (filters)
-        bits.flags |= TRIANGLE_FILTER;
-    else
-        bits.shadow = 0;
+    filter_bits(m, colors, &bits);
     return bits;
 }
 
 void material_bits_scan(const struct scene *scene, struct material_bits *out)
 {
-    bool area_lights = false;
+    bool area_lights = false, colors = false;
     for (uint32_t i = 0; i < scene->light_count; ++i)
         area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE ||
                        (scene->lights[i].made_by_whit && scene_light_is_flat(&scene->lights[i]));
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        colors |= scene->meshes[i].colors != NULL;
     for (uint32_t i = 0; i < scene->material_count; ++i)
-        out[i] = material_bits(&scene->materials[i], area_lights);
+        out[i] = material_bits(&scene->materials[i], area_lights, colors);
 }
 
 void material_bits_whole(const struct scene *scene, const struct material_bits *materials,

@@ -324,10 +324,6 @@ static void set_class(struct scene *scene, const struct mtl_entry *entry,
         scene_note(scene, SCENE_NOTE_INFO,
                    "%s:%u: material `%s`: illum 8 reflects without rays, drawn as illum 2",
                    path_name(entry->file), entry->line, entry->name);
-    if (out->shadow_catcher)
-        scene_note(scene, SCENE_NOTE_WARNING,
-                   "%s:%u: material `%s`: shadow catchers are drawn as ordinary surfaces",
-                   path_name(entry->file), entry->line, entry->name);
 }
 
 /* Pr and Pm are the metallic-roughness extension; they say nothing new beside mirrors and glass. */

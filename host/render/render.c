@@ -242,7 +242,7 @@ static bool calls_for_secondary(const struct renderer *renderer)
     const bool *called = renderer->effects.called;
     return renderer->params.depth > 0 &&
            (called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
-            called[SCENE_EFFECT_CUTOUTS]);
+            called[SCENE_EFFECT_CUTOUTS] || called[SCENE_EFFECT_CATCHERS]);
 }
 
 static whit_result create_parts(struct renderer *renderer)

@@ -94,6 +94,7 @@ static uint32_t material_flags(const struct scene_material *m)
 {
     return (m->fresnel ? MATERIAL_FRESNEL : 0) | (m->thin_walled ? MATERIAL_THIN : 0) |
            (m->alpha == SCENE_ALPHA_MASK ? MATERIAL_MASK : 0) |
+           (m->shadow_catcher ? MATERIAL_CATCHER : 0) |
            (m->alpha == SCENE_ALPHA_BLEND ? MATERIAL_BLEND : 0) |
            m->priority << MATERIAL_PRIORITY_SHIFT;
 }

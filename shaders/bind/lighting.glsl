@@ -2,17 +2,29 @@
 #ifndef BIND_LIGHTING_GLSL
 #define BIND_LIGHTING_GLSL
 
+#include "filter.glsl"
 #include "light.glsl"
 #include "optics.glsl"
 #include "picture.glsl"
+#include "terminator.glsl"
+
+// Where light is received: what all shadow rays of a hit have in common.
+struct Receiver {
+    vec3 lift;       // from the hit point to where shadow rays start, see smooth_lift
+    vec3 absorption; // of the media around it
+    uint instance, primitive;
+};
 
 // What the shadow ray of a turn meets. Without trees: in the ranges so far.
-Hit find_blocker(uint slot, uint turn, vec3 origin, vec3 to_light, float distance, Hit from)
+Hit find_blocker(uint slot, uint turn, vec3 origin, vec3 to_light, float distance,
+                 uint skip_instance, uint skip_primitive)
 {
     Hit blocker;
+    if (SPEC_FILTER_DETAIL != 0u)
+        filter_end = distance < FLOAT_LARGEST ? distance : 0.0;
     if (SPEC_BRUTE == BRUTE_OFF) {
         blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
-                           from.instance, from.primitive);
+                           skip_instance, skip_primitive);
         add_cost(slot, RAY_SHADOW);
         return blocker;
     }
@@ -25,7 +37,7 @@ Hit find_blocker(uint slot, uint turn, vec3 origin, vec3 to_light, float distanc
     }
     if (SPEC_BRUTE == BRUTE_SHADOW) {
         traverse_runs(TRAVERSE_SHADOW, origin, to_light, 0.0, chunk.first_run, chunk.begin,
-                      from.instance, from.primitive, blocker);
+                      skip_instance, skip_primitive, blocker);
         add_cost(slot, RAY_SHADOW);
         passed[at] = gpu_passed(uint(blocker.filter_depth.r), uint(blocker.filter_depth.g),
                                 uint(blocker.filter_depth.b), uint(blocker.primitive != HIT_NONE));
@@ -34,19 +46,32 @@ Hit find_blocker(uint slot, uint turn, vec3 origin, vec3 to_light, float distanc
 }
 
 // How much of a light passes to the surface: 1 less opaque things in between, times the filters.
-vec3 light_share(uint slot, uint turn, Surface s, vec3 to_light, float distance, Hit from,
+// What is lifted off the triangle may be met by light from below the triangle's plane, which then
+// must pass beside the triangle itself.
+vec3 light_share(uint slot, uint turn, Surface s, Receiver at, LightTurn light, bool above,
                  inout uint status)
 {
     if (SPEC_SHADOWS == 0u)
         return vec3(1.0);
-    vec3 origin = offset_origin(s.p, s.error, s.ng);
-    Hit blocker = find_blocker(slot, turn, origin, to_light, distance, from);
+    vec3 origin = offset_origin(s.p + at.lift, s.error, s.ng);
+    vec3 to_light = light.to_light;
+    float distance = light.distance;
+    if (SPEC_TERMINATOR != 0u && at.lift != vec3(0.0) && distance < FLOAT_LARGEST) {
+        vec3 way = s.p + to_light * distance - origin;
+        distance = length(way);
+        to_light = way / distance;
+    }
+    Hit blocker = find_blocker(slot, turn, origin, to_light, distance, at.instance,
+                               above ? at.primitive : HIT_NONE);
     status |= blocker.status;
     if (blocker.primitive != HIT_NONE)
         return vec3(0.0);
     if (SPEC_FILTERS == 0u)
         return vec3(1.0);
-    return exp2(vec3(blocker.filter_depth) * (-1.0 / SHADOW_DEPTH_SCALE));
+    ivec3 depth = blocker.filter_depth;
+    if (SPEC_FILTER_DETAIL != 0u && SPEC_ABSORPTION != 0u)
+        depth = max(depth + absorption_depth(at.absorption, 0.0), ivec3(0));
+    return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
 }
 
 // What the points of a flat emitter add up to. Its diffuse light is that of the whole polygon, of
@@ -59,27 +84,35 @@ struct EmitterSum {
 
 const EmitterSum EMITTER_NOTHING = EmitterSum(0.0, vec3(0.0), vec3(0.0));
 
-// The highlight is not scaled up where points miss most of what is above the horizon.
-vec3 emitter_light(gpu_light light, Surface s, Optics o, EmitterSum sum)
+// The highlight is not scaled up where points miss most of what is above the horizon. `open`: the
+// diffuse light without shadows.
+vec3 emitter_light(gpu_light light, Surface s, Optics o, EmitterSum sum, out vec3 open)
 {
+    open = vec3(0.0);
     if (!(sum.weight > 0.0))
-        return vec3(0.0);
+        return open;
     float factor = emitter_form_factor(light, s.p, s.ns);
     float sampled = light.area_share * sum.weight;
+    vec3 radiance = min(light.color, vec3(LIGHT_MOST));
     vec3 diffuse = o.diffuse * (factor * (sum.visible / sum.weight));
     vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
-    return min(light.color, vec3(LIGHT_MOST)) * (diffuse + highlight);
+    open = radiance * (o.diffuse * factor);
+    return radiance * (diffuse + highlight);
 }
 
 // Light from all lights, towards the eye. One loop over all points of all lights, since a loop within
 // a loop would keep the lanes of a subgroup waiting for each other. The phase BRUTE_SHADOW has one
-// turn.
-vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint shadow_rays,
-                 inout uint status)
+// turn. `media`: around the surface, on its side. `open`: what the lights would add without shadows.
+vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media,
+                 out vec3 open, inout uint shadow_rays, inout uint status)
 {
     vec3 sum = o.emission + o.ambient * frame.ambient;
+    open = vec3(0.0);
     if (SPEC_LIGHTS == 0u)
         return sum;
+    Receiver receiver = Receiver(smooth_lift(hit, s), surrounding_absorption(media), hit.instance,
+                                 hit.primitive);
+    bool lifted = SPEC_TERMINATOR != 0u && receiver.lift != vec3(0.0);
     float cos_view = max(dot(view, s.ns), 0.0);
     uint each = turns_each();
     uint turn_count = frame.light_count * each;
@@ -92,7 +125,8 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint 
         bool lit = turn < turn_count && light_at(fetch_light(index), point, s.p, at);
         float cos_light = dot(at.to_light, s.ns);
         bool faces = lit && cos_light > 0.0;
-        lit = faces && dot(at.to_light, s.ng) > 0.0;
+        bool above = dot(at.to_light, s.ng) > 0.0;
+        lit = faces && (above || lifted);
         vec3 highlight = vec3(0.0);
         vec3 reflected = o.diffuse * cos_light;
         if (SPEC_HIGHLIGHTS != 0u) {
@@ -107,7 +141,7 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint 
         lit = lit && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
         vec3 share = vec3(0.0);
         if (lit) {
-            share = light_share(slot, turn, s, at.to_light, at.distance, hit, status);
+            share = light_share(slot, turn, s, receiver, at, above, status);
             if (SPEC_SHADOWS != 0u)
                 shadow_rays++;
         }
@@ -119,17 +153,43 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, inout uint 
             emitter.visible += share * weight;
             emitter.highlight += lit ? highlight * share * at.strength : vec3(0.0);
             if (is_last && SPEC_BRUTE != BRUTE_SHADOW) {
-                sum += emitter_light(at.light, s, o, emitter);
+                vec3 emitter_open;
+                sum += emitter_light(at.light, s, o, emitter, emitter_open);
+                open += emitter_open;
                 emitter = EMITTER_NOTHING;
             }
         } else if (lit) {
             sum += reflected * at.arriving * share;
+            if (SPEC_CATCHERS != 0u)
+                open += reflected * at.arriving;
         }
         turn += is_last ? each - point : 1u;
     } while (SPEC_BRUTE != BRUTE_SHADOW && turn < turn_count);
     if (SPEC_BRUTE != BRUTE_SHADOW && turn < turn_count)
         status |= STATUS_UNFINISHED_LOOP;
     return sum;
+}
+
+// A shadow catcher reflects nothing: light goes straight on, see caught_share.
+void make_catcher(inout Optics o)
+{
+    o.diffuse = vec3(1.0);
+    o.ambient = vec3(0.0);
+    o.highlight = vec3(0.0);
+    o.emission = vec3(0.0);
+    o.reflected = vec3(0.0);
+    o.refracted = vec3(0.0);
+    o.straight = 1.0;
+    o.unlit = false;
+    o.metal_rough = false;
+}
+
+// How much of what lies behind it a catcher shows: what light it gets of what it would get without
+// shadows. Where no light comes anyway it shows all.
+vec3 caught_share(vec3 light, vec3 open)
+{
+    vec3 share = clamp(light / max(open, vec3(1e-30)), vec3(0.0), vec3(1.0));
+    return mix(vec3(1.0), share, greaterThan(open, vec3(1e-30)));
 }
 
 #endif

@@ -10,7 +10,7 @@ struct Surface {
     vec3 p, error; // world; bound of the error of p
     vec3 ng;       // unit geometric normal, to the outside of closed meshes
     vec3 ns;       // unit shading normal, on the side of ng
-    vec3 e1, e2; // edges from the first vertex, world; with SPEC_NORMAL_MAPS or SPEC_MEDIA
+    vec3 e1, e2; // edges from the first vertex, world; of NORMAL_MAPS, MEDIA, TERMINATOR
     vec3 color;              // of the vertices
     float color_alpha;
     uint shade_index; // index among the triangles of all meshes
@@ -36,10 +36,19 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     return sample_opacity(material, index, u, v) >= material.alpha_cutoff;
 }
 
-ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
-                    ivec3 own)
+// Linear RGBA at a point of a triangle.
+vec4 vertex_color(uint shade_index, float u, float v)
 {
-    return own;
+    if (SPEC_VERTEX_COLORS == 0u)
+        return vec4(1.0);
+    uint color_row = frame.color_row + shade_index * TRIANGLE_COLOR_ROWS;
+    uvec4 ab = fetch_shading_row(color_row);
+    uvec4 c = fetch_shading_row(color_row + 1u);
+    vec4 first = vec4(unpackUnorm2x16(ab.x), unpackUnorm2x16(ab.y));
+    vec4 second = vec4(unpackUnorm2x16(ab.z), unpackUnorm2x16(ab.w));
+    vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
+    // By differences: three equal colours give just that colour.
+    return first + (second - first) * u + (third - first) * v;
 }
 
 // Zero where the mesh is flat.
@@ -157,7 +166,7 @@ Surface fetch_surface(Hit hit)
         place_point(inverse, f0, f1, f2, s.p, s.error);
         ng = place_normal(inverse, ng);
         ns = place_normal(inverse, ns);
-        if (SPEC_NORMAL_MAPS != 0u || SPEC_MEDIA != 0u) {
+        if (SPEC_NORMAL_MAPS != 0u || SPEC_MEDIA != 0u || SPEC_TERMINATOR != 0u) {
             s.e1 = rotate_rows(f0, f1, f2, s.e1);
             s.e2 = rotate_rows(f0, f1, f2, s.e2);
         }
@@ -170,20 +179,9 @@ Surface fetch_surface(Hit hit)
     }
     s.ng = normalize_or(ng, vec3(0.0, 1.0, 0.0));
     s.ns = normalize_or(ns, s.ng);
-    s.color = vec3(1.0);
-    s.color_alpha = 1.0;
-    if (SPEC_VERTEX_COLORS != 0u) {
-        uint color_row = frame.color_row + s.shade_index * TRIANGLE_COLOR_ROWS;
-        uvec4 ab = fetch_shading_row(color_row);
-        uvec4 c = fetch_shading_row(color_row + 1u);
-        vec4 first = vec4(unpackUnorm2x16(ab.x), unpackUnorm2x16(ab.y));
-        vec4 second = vec4(unpackUnorm2x16(ab.z), unpackUnorm2x16(ab.w));
-        vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
-        // By differences: three equal colours give just that colour.
-        vec4 mixed = first + (second - first) * s.u + (third - first) * s.v;
-        s.color = mixed.rgb;
-        s.color_alpha = mixed.a;
-    }
+    vec4 color = vertex_color(s.shade_index, s.u, s.v);
+    s.color = color.rgb;
+    s.color_alpha = color.a;
     return s;
 }
 

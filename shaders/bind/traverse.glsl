@@ -245,6 +245,7 @@ struct Meeting {
     bool met;
     float t, u, v;
     bool front; // met from outside
+    bool owned; // of several triangles that share the point one owns it
 };
 
 Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
@@ -256,6 +257,7 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
     m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+    m.owned = owns_point(ray, a, b, c);
     return m;
 }
 
@@ -272,6 +274,7 @@ Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool o
     m.u = square.x;
     m.v = square.y;
     m.front = !at_exit;
+    m.owned = true;
     return m;
 }
 
@@ -301,7 +304,8 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
             ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
         if (SPEC_FILTER_DETAIL != 0u && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
             depth = filter_detail(instance, primitive, uv.x, uv.y, m.t, m.front, depth);
-        hit.filter_depth += depth;
+        if (m.owned) // an edge within glass counts once
+            hit.filter_depth += depth;
         accepted = false;
     }
     refused = reached && !accepted;
@@ -354,6 +358,7 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
             m.u = is_sphere ? on_sphere.u : m.u;
             m.v = is_sphere ? on_sphere.v : m.v;
             m.front = is_sphere ? on_sphere.front : m.front;
+            m.owned = is_sphere || m.owned;
         }
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&

@@ -54,7 +54,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
             count.refracted++;
         }
     }
-    if (SPEC_CUTOUTS != 0u) {
+    if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) {
         vec3 weight = ray.weight * o.straight;
         if (traced(weight, deep, count))
             push_beyond(slot, c, ray.dir, weight, steps, ray.media, ray.kind, count, status);
@@ -100,10 +100,18 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
     Optics o = surface_optics(s, m, ray.dir, c.eta);
     if (dot(s.ns, ray.dir) > 0.0)
         s.ns = s.ng;
-    push_children(slot, ray, s, o, c, hit, count, status);
+    bool catcher = SPEC_CATCHERS != 0u && (m.flags & MATERIAL_CATCHER) != 0u;
+    if (catcher)
+        make_catcher(o);
+    vec3 open = vec3(0.0);
     vec3 light = o.unlit ? o.diffuse + o.emission
-                         : local_light(slot, s, o, -ray.dir, hit, count.shadow, status);
-    return light * ray.weight * (1.0 - o.straight);
+                         : local_light(slot, s, o, -ray.dir, hit, c.before, open, count.shadow,
+                                       status);
+    vec3 radiance = light * ray.weight * (1.0 - o.straight);
+    if (catcher)
+        ray.weight *= caught_share(light, open);
+    push_children(slot, ray, s, o, c, hit, count, status);
+    return radiance;
 }
 
 Hit found_hit(uint slot)

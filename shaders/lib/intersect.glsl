@@ -143,4 +143,33 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
     return !(below && above) && det != 0.0 && at >= t_min && t_near <= t_far;
 }
 
+// Whether a point on this edge, as seen along the ray, belongs to the triangle on its left.
+bool owns_edge(float x, float y, bool left)
+{
+    return left ? y > 0.0 || (y == 0.0 && x > 0.0) : y < 0.0 || (y == 0.0 && x < 0.0);
+}
+
+// Of the triangles around an edge or a vertex that a ray meets exactly, seen from the same side, just
+// one owns the point: the fill rule of rasterizers (Pineda 1988). For what must be counted once.
+bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
+{
+    vec3 ta = turn_dominant(ray.dominant, a);
+    vec3 tb = turn_dominant(ray.dominant, b);
+    vec3 tc = turn_dominant(ray.dominant, c);
+    precise float ax = ta.x - ray.shear.x * ta.z;
+    precise float ay = ta.y - ray.shear.y * ta.z;
+    precise float bx = tb.x - ray.shear.x * tb.z;
+    precise float by = tb.y - ray.shear.y * tb.z;
+    precise float cx = tc.x - ray.shear.x * tc.z;
+    precise float cy = tc.y - ray.shear.y * tc.z;
+    precise float ea = cx * by - cy * bx;
+    precise float eb = ax * cy - ay * cx;
+    precise float ec = bx * ay - by * ax;
+    precise float det = (ea + eb) + ec;
+    bool left = det > 0.0;
+    return (ea != 0.0 || owns_edge(cx - bx, cy - by, left)) &&
+           (eb != 0.0 || owns_edge(ax - cx, ay - cy, left)) &&
+           (ec != 0.0 || owns_edge(bx - ax, by - ay, left));
+}
+
 #endif

@@ -1,0 +1,84 @@
+// What light loses on its way through filters whose weight is a matter of the place: those that
+// textures or vertex colours pattern, and bodies that absorb. In 1/64 stops, as integers, whose sum
+// does not depend on the order in which a ray meets them.
+#ifndef BIND_FILTER_GLSL
+#define BIND_FILTER_GLSL
+
+#include "media.glsl"
+#include "surface.glsl"
+
+// Where the shadow ray in hand ends, at the light; 0 for suns. Set before each traversal. Absorption
+// is told from there: a surface that enters a body adds what the body would absorb from there on to
+// the end, one that leaves it takes that away again, and where the ray starts in a body it starts
+// with all of it (surrounding_absorption). So what remains is the path inside, wherever the ray's
+// ends are. No sun is inside anything, so the end may lie at 0, before the ray.
+// Open meshes: who enters and never leaves is absorbed up to the light, as seen by the eye, whose ray
+// stays in the medium; who leaves without having entered comes out below 0, which counts as 0.
+float filter_end;
+
+const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
+const float DEPTH_MOST = 1073741824.0;        // 2^30; sums wrap around, and back
+
+ivec3 absorption_depth(vec3 absorption, float t)
+{
+    vec3 depth = absorption * ((filter_end - t) * DEPTH_OF_ABSORPTION);
+    return ivec3(floor(clamp(depth, vec3(-DEPTH_MOST), vec3(DEPTH_MOST)) + 0.5));
+}
+
+// Of all media that a place is in. Where they overlap each of them absorbs; for the eye only the one
+// of the highest priority does.
+vec3 surrounding_absorption(uvec4 media)
+{
+    vec3 sum = vec3(0.0);
+    if (SPEC_FILTER_DETAIL == 0u || SPEC_ABSORPTION == 0u || SPEC_MEDIA == 0u)
+        return sum;
+    uint count = media_count(media), i = 0u;
+    do {
+        if (i < count)
+            sum += fetch_material(media_entry(media, i) - 1u).absorption;
+        i++;
+    } while (i < count);
+    return sum;
+}
+
+// 1/64 stops of what is kept; what keeps nothing keeps nothing.
+ivec3 filter_depth(vec3 kept)
+{
+    vec3 depth = floor(-64.0 * log2(max(kept, vec3(1e-30))) + 0.5);
+    return ivec3(mix(max(depth, vec3(0.0)), vec3(65535.0), lessThanEqual(kept, vec3(0.0))));
+}
+
+// As surface_optics has it for the straight and the refracted ray, without Fresnel.
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front, ivec3 own)
+{
+    if (SPEC_FILTER_DETAIL == 0u)
+        return own;
+    uint index = shade_index_of(instance, primitive);
+    gpu_material m = fetch_material(fetch_material_index(index));
+    vec4 color = vertex_color(index, u, v);
+    vec3 passes = m.transmission;
+    vec3 base = m.diffuse * color.rgb;
+    float metallic = m.metallic, opacity = m.opacity;
+    if (SPEC_TEXTURES != 0u) {
+        if (m.tex_transmission != TEXTURE_NONE)
+            passes *= sample_use(m.tex_transmission, index, u, v).r;
+        if (m.tex_diffuse != TEXTURE_NONE)
+            base *= sample_use(m.tex_diffuse, index, u, v).rgb;
+        if (SPEC_METAL_ROUGH != 0u && m.tex_metal_rough != TEXTURE_NONE)
+            metallic *= sample_use(m.tex_metal_rough, index, u, v).b;
+    }
+    if (SPEC_METAL_ROUGH != 0u && m.model == MATERIAL_MODEL_METAL_ROUGH)
+        passes *= base * (1.0 - metallic);
+    if (SPEC_TEXTURES != 0u && m.tex_opacity != TEXTURE_NONE)
+        opacity = sample_opacity(m, index, u, v);
+    bool blends = (m.flags & MATERIAL_BLEND) != 0u;
+    float cover = blends ? clamp(opacity * color.a, 0.0, 1.0) : 1.0;
+    ivec3 depth = filter_depth(1.0 - cover + cover * passes);
+    if (SPEC_ABSORPTION != 0u && (m.flags & MATERIAL_THIN) == 0u) {
+        ivec3 absorbed = absorption_depth(m.absorption, t);
+        depth += front ? absorbed : -absorbed;
+    }
+    return depth;
+}
+
+#endif

@@ -1,0 +1,52 @@
+// Where shadow rays start on smooth meshes of few triangles, which would shade themselves along the
+// edges of their triangles.
+#ifndef BIND_TERMINATOR_GLSL
+#define BIND_TERMINATOR_GLSL
+
+#include "surface.glsl"
+
+// Cosine to the triangle's normal from which a vertex normal is that of a smooth surface. A box whose
+// normals are averaged at its corners is none: there the surface would be far outside.
+const float SMOOTH_COSINE = 0.70710678;
+
+vec3 vertex_normal(Hit hit, uint shade_index, uint corner)
+{
+    uint row = frame.triangle_row + shade_index * TRIANGLE_SHADE_ROWS + corner;
+    vec3 n = row_vec3(fetch_shading_row(row));
+    if (SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
+        n = place_normal(fetch_instance_frame(hit.instance), n);
+    return normalize_or(n, vec3(0.0));
+}
+
+// How far a point, `from` away from a vertex, is below the tangent plane there, along the plane's
+// normal on the side of ng. `slack`: what rounding may do to flat meshes.
+vec3 lift_to_plane(vec3 from, vec3 n, vec3 ng, float slack, inout bool smooth_mesh)
+{
+    float cosine = dot(n, ng);
+    n = cosine < 0.0 ? -n : n;
+    smooth_mesh = smooth_mesh && abs(cosine) >= SMOOTH_COSINE;
+    return n * max(-dot(from, n) - slack, 0.0);
+}
+
+// From the hit point to the smooth surface, outwards only: to the mean of its projections on the
+// tangent planes at the vertices (Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II,
+// chapter 4). Zero on flat meshes, on hollow sides and on spheres. `s` faces the ray.
+vec3 smooth_lift(Hit hit, Surface s)
+{
+    if (SPEC_TERMINATOR == 0u || SPEC_SMOOTH_NORMALS == 0u || SPEC_SPHERES == SPHERES_ONLY)
+        return vec3(0.0);
+    vec3 from0 = s.e1 * s.u + s.e2 * s.v;
+    vec3 size = max(abs(s.e1), abs(s.e2));
+    float slack = max(size.x, max(size.y, size.z)) * (1.0 / 65536.0);
+    bool smooth_mesh = !is_on_sphere(hit);
+    vec3 lift0 = lift_to_plane(from0, vertex_normal(hit, s.shade_index, 0u), s.ng, slack,
+                               smooth_mesh);
+    vec3 lift1 = lift_to_plane(from0 - s.e1, vertex_normal(hit, s.shade_index, 1u), s.ng, slack,
+                               smooth_mesh);
+    vec3 lift2 = lift_to_plane(from0 - s.e2, vertex_normal(hit, s.shade_index, 2u), s.ng, slack,
+                               smooth_mesh);
+    vec3 lift = lift0 * (1.0 - s.u - s.v) + lift1 * s.u + lift2 * s.v;
+    return smooth_mesh ? lift : vec3(0.0);
+}
+
+#endif

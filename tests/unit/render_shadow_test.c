@@ -1,0 +1,428 @@
+/* Shadows: through textured and absorbing filters, on smooth meshes, and on surfaces that show
+   nothing else. */
+#include "picture_fixture.h"
+
+static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
+/* Depths are rounded to 1/64 stop: by half of that. */
+static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
+
+static struct scene *white_floor(void)
+{
+    struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("floor");
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_object(scene, plane(40), m, 0, 0, 0);
+    return scene;
+}
+
+static float middle_of(struct scene *scene, struct render_params params, int channel)
+{
+    params.width = params.height = 1;
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    float value = image.pixels[channel];
+    image_finish(&image);
+    fixture_close(&f);
+    return value;
+}
+
+/* Two texels, the second one darker, that nothing blends. */
+static uint32_t add_two_texels(struct scene *scene, uint8_t first, uint8_t second)
+{
+    struct scene_texture texture = {.name = string_copy("two"), .width = 2, .height = 1};
+    texture.rgba = malloc(8);
+    assert_non_null(texture.rgba);
+    for (int i = 0; i < 8; ++i)
+        texture.rgba[i] = i < 4 ? first : second;
+    texture.rgba[3] = texture.rgba[7] = 255;
+    return scene_add_texture(scene, texture);
+}
+
+static void use_texture(struct scene_material *m, enum scene_slot slot, uint32_t texture)
+{
+    struct scene_texture_use *use = &m->textures[slot];
+    scene_texture_use_init(use);
+    use->texture = texture;
+    use->nearest = true;
+    use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
+}
+
+/* The sun comes at 45 degrees, so that the pane is out of sight where its shadow is in it. */
+static struct scene *pane_scene(bool blends)
+{
+    struct scene *scene = white_floor();
+    struct scene_material m = material("pane");
+    m.thin_walled = true;
+    if (blends) {
+        m.alpha = SCENE_ALPHA_BLEND;
+        m.opacity = 1.0f;
+        use_texture(&m, SCENE_SLOT_OPACITY, add_two_texels(scene, 0, 191));
+    } else {
+        set_rgb(m.transmission, 1.0f, 0.5f, 0.0f);
+        use_texture(&m, SCENE_SLOT_TRANSMISSION, add_two_texels(scene, 255, 64));
+    }
+    add_object(scene, plane(2), m, -5, 5, 0);
+    add_sun(scene, 1, -1, 0, 1.0f);
+    return scene;
+}
+
+static void assert_pane(struct fixture *f, bool blends)
+{
+    struct image image = render(f);
+    uint32_t clear = 0, dark = 0, changes = 0;
+    for (uint32_t x = 0; x < image.width; ++x) {
+        double at = ((x + 0.5) / image.width * 2.0 - 1.0) * eye_height * tan(view / 2.0);
+        const float *pixel = &image.pixels[4 * ((size_t)image.height / 2 * image.width + x)];
+        if (fabs(at) > 0.97) {
+            if (fabs(at) > 1.03)
+                assert_near(pixel[0], sqrt(0.5), 2e-6);
+            continue;
+        }
+        if (fabs(at) < 0.03)
+            continue;
+        bool is_clear = (double)pixel[0] > 0.5 * sqrt(0.5);
+        double texel = blends ? 1.0 - 191.0 / 255.0 : 64.0 / 255.0;
+        clear += is_clear;
+        dark += !is_clear;
+        assert_near(pixel[0], sqrt(0.5) * (is_clear ? 1.0 : texel), half_a_step + 2e-6);
+        if (!blends) {
+            assert_near(pixel[1], sqrt(0.5) * (is_clear ? 0.5 : 0.5 * texel), half_a_step + 2e-6);
+            assert_true(pixel[2] == 0.0f);
+        }
+        changes += x > 0 && (pixel[0] > 0.6f) != (pixel[-4] > 0.6f);
+    }
+    /* One half each, side by side. */
+    assert_true(clear > 30 && dark > 30 && abs((int)clear - (int)dark) <= 2 && changes <= 1);
+    image_finish(&image);
+}
+
+static void textures_pattern_shadows(void **state)
+{
+    (void)state;
+    for (int blends = 0; blends < 2; ++blends) {
+        const struct render_params params = {.width = 201, .height = 201, .depth = 2};
+        struct fixture f = fixture_open(pane_scene(blends), NULL, &params);
+        assert_pane(&f, blends);
+        fixture_close(&f);
+    }
+}
+
+static const float sigma[3] = {0.3f, 0.7f, 1.5f};
+
+/* A block of glass that does not bend, 1 high, its middle at `y`. */
+static void add_block(struct scene *scene, double height, double y)
+{
+    struct scene_material m = material("glass");
+    set_rgb(m.diffuse, 0, 0, 0);
+    set_rgb(m.transmission, 1, 1, 1);
+    memcpy(m.absorption, sigma, sizeof sigma);
+    m.ior = 1.0f;
+    add_object(scene, box(6, height, 6), m, 0, y, 0);
+}
+
+/* What absorbs `length` on the way of the light and `seen` on that of the eye leaves exp(-sigma
+   (length + seen)); each end of the light's way inside is rounded to 1/64 stop. */
+static void assert_absorbed(struct scene *scene, const char *camera, double light, double length,
+                            double seen)
+{
+    struct render_params params = {.width = 1, .height = 1, .depth = 4, .camera = camera};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    for (int c = 0; c < 3; ++c)
+        assert_near(image.pixels[c], light * exp(-(double)sigma[c] * (length + seen)),
+                    2.0 * half_a_step + 1e-5);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static void bodies_absorb_along_the_way(void **state)
+{
+    (void)state;
+    const char *beside = "3.9,0.3,0,0,0,0,0,1,0,0.01"; /* under the block */
+    const double slant = sqrt(1.25);
+    /* A sun, straight and slanting; a lamp. */
+    struct scene *scene = white_floor();
+    add_block(scene, 1.0, 2.0);
+    add_sun(scene, 0, -1, 0, 2.0f);
+    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
+    scene = white_floor();
+    add_block(scene, 1.0, 2.0);
+    add_sun(scene, 1, -2, 0, 2.0f);
+    assert_absorbed(scene, beside, 2.0 / slant, slant, 0.0);
+    scene = white_floor();
+    add_block(scene, 1.0, 2.0);
+    add_lamp(scene, 0, 5, 0, 50.0f);
+    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
+    /* The lamp inside the block. */
+    scene = white_floor();
+    add_block(scene, 2.0, 2.0);
+    add_lamp(scene, 0, 2, 0, 8.0f);
+    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
+    /* The floor inside the block, the sun, the lamp outside and inside. */
+    const char *above = "0,8,0,0,0,0,0,0,-1,0.01";
+    scene = white_floor();
+    add_block(scene, 2.0, 0.0);
+    add_sun(scene, 0, -1, 0, 2.0f);
+    assert_absorbed(scene, above, 2.0, 1.0, 1.0);
+    scene = white_floor();
+    add_block(scene, 2.0, 0.0);
+    add_lamp(scene, 0, 2, 0, 8.0f);
+    assert_absorbed(scene, above, 2.0, 1.0, 1.0);
+    scene = white_floor();
+    add_block(scene, 2.0, 0.0);
+    add_lamp(scene, 0, 0.5, 0, 0.5f);
+    assert_absorbed(scene, above, 2.0, 0.5, 1.0);
+}
+
+static void knobs_make_shadows_opaque(void **state)
+{
+    (void)state;
+    for (int all = 0; all < 2; ++all) {
+        struct render_params params = {.width = 201, .height = 1, .opaque_shadows = true};
+        params.all_effects = all;
+        params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
+        for (int blends = 0; blends < 2; ++blends) {
+            struct fixture f = fixture_open(pane_scene(blends), NULL, &params);
+            struct image image = render(&f);
+            uint32_t dark = 0;
+            for (uint32_t x = 0; x < image.width; ++x) {
+                float value = image.pixels[4 * x];
+                assert_true(value == 0.0f || fabs((double)value - sqrt(0.5)) < 2e-6);
+                dark += value == 0.0f;
+            }
+            assert_true(dark > 50 && dark < 100);
+            image_finish(&image);
+            fixture_close(&f);
+        }
+    }
+}
+
+/* ---- The terminator ---- */
+
+static struct scene *ball_scene(uint32_t segments)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    struct scene_material m = material("ball");
+    struct scene_mesh ball = {0};
+    set_rgb(m.diffuse, 1, 1, 1);
+    assert_int_equal(shape_sphere(1.0, segments, segments / 2, &ball), WHIT_OK);
+    add_object(scene, ball, m, 0, 0, 0);
+    add_sun(scene, 1, -0.3, -0.2, 1.0f);
+    return scene;
+}
+
+static struct image ball_picture(uint32_t segments, bool without)
+{
+    struct render_params params = {.width = 120, .height = 120};
+    if (without)
+        params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
+    struct fixture f = fixture_open(ball_scene(segments), NULL, &params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+/* Within 0.85 of the ball's radius: outlines differ anyway. */
+static double ball_error(const struct image *a, const struct image *b)
+{
+    double sum = 0.0, radius = 60.0 / tan(0.3) / sqrt(24.0) * 0.85;
+    uint32_t count = 0;
+    for (uint32_t y = 0; y < a->height; ++y) {
+        for (uint32_t x = 0; x < a->width; ++x) {
+            double dx = x + 0.5 - 60.0, dy = y + 0.5 - 60.0;
+            if (dx * dx + dy * dy > radius * radius)
+                continue;
+            size_t at = 4 * ((size_t)y * a->width + x);
+            double d = (double)(a->pixels[at] - b->pixels[at]);
+            sum += d * d;
+            ++count;
+        }
+    }
+    return sqrt(sum / count);
+}
+
+/* The coarsest ball's own shape is off by more than its shadows are. */
+static void coarse_balls_are_shaded_like_fine_ones(void **state)
+{
+    (void)state;
+    struct image fine = ball_picture(512, true);
+    static const uint32_t segments[] = {12, 20, 32};
+    for (int i = 0; i < 3; ++i) {
+        struct image with = ball_picture(segments[i], false);
+        struct image without = ball_picture(segments[i], true);
+        double error = ball_error(&with, &fine), before = ball_error(&without, &fine);
+        print_message("  %2u segments: error %.5f, without %.5f\n", segments[i], error, before);
+        assert_true(error < (i == 0 ? 0.75 : 0.4) * before);
+        image_finish(&with);
+        image_finish(&without);
+    }
+    image_finish(&fine);
+}
+
+/* Without normals, and with those of the flat triangles. */
+static struct scene *flat_scene(bool normals)
+{
+    struct scene *scene = white_floor();
+    struct scene_material m = material("box");
+    struct scene_mesh boxes = box(1.3, 0.7, 1.1);
+    set_rgb(m.diffuse, 1, 1, 1);
+    free(boxes.normals);
+    boxes.normals = NULL;
+    if (normals) {
+        boxes.normals = calloc(3 * (size_t)boxes.vertex_count, sizeof *boxes.normals);
+        assert_non_null(boxes.normals);
+        for (uint32_t t = 0; t < boxes.triangle_count; ++t) {
+            const float *p[3];
+            float n[3];
+            for (int k = 0; k < 3; ++k)
+                p[k] = &boxes.positions[3 * (size_t)boxes.indices[3 * t + (uint32_t)k]];
+            for (int k = 0; k < 3; ++k) {
+                int a = (k + 1) % 3, b = (k + 2) % 3;
+                n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) -
+                       (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
+            }
+            for (int k = 0; k < 3; ++k)
+                memcpy(&boxes.normals[3 * (size_t)boxes.indices[3 * t + (uint32_t)k]], n, sizeof n);
+        }
+    }
+    add_object(scene, boxes, m, 0.1, 0.9, 0.2);
+    scene->nodes[scene->node_count - 1].rotation[0] = 0.3;
+    scene->nodes[scene->node_count - 1].rotation[3] = 0.95;
+    add_lamp(scene, 2, 3, 1, 9.0f);
+    add_sun(scene, 1, -1, 0.4, 0.3f);
+    return scene;
+}
+
+static void flat_meshes_do_not_change(void **state)
+{
+    (void)state;
+    for (int normals = 0; normals < 2; ++normals) {
+        struct image images[2];
+        for (int i = 0; i < 2; ++i) {
+            struct render_params params = {.width = 64, .height = 64, .all_effects = true};
+            if (i)
+                params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
+            struct fixture f = fixture_open(flat_scene(normals), NULL, &params);
+            images[i] = render(&f);
+            fixture_close(&f);
+        }
+        assert_memory_equal(images[0].pixels, images[1].pixels, 64 * 64 * 4 * sizeof(float));
+        image_finish(&images[0]);
+        image_finish(&images[1]);
+    }
+}
+
+/* Corners, each with one normal away from the middle. */
+static struct scene_mesh round_box(void)
+{
+    static const uint32_t faces[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                       2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    struct scene_mesh mesh = {.vertex_count = 8, .triangle_count = 12};
+    mesh.positions = calloc(24, sizeof *mesh.positions);
+    mesh.normals = calloc(24, sizeof *mesh.normals);
+    mesh.indices = calloc(36, sizeof *mesh.indices);
+    mesh.materials = calloc(12, sizeof *mesh.materials);
+    assert_true(mesh.positions && mesh.normals && mesh.indices && mesh.materials);
+    for (int i = 0; i < 24; ++i) {
+        float side = (i / 3) >> (i % 3) & 1 ? 1.0f : -1.0f;
+        mesh.positions[i] = side;
+        mesh.normals[i] = side * 0.57735027f;
+    }
+    memcpy(mesh.indices, faces, sizeof faces);
+    return mesh;
+}
+
+/* From inside a closed mesh with smooth normals no lamp outside is seen to light anything. */
+static void closed_rooms_stay_dark(void **state)
+{
+    (void)state;
+    static const double lamps[][3] = {{3, 0.2, 0.1}, {1.6, 1.7, 1.5}, {0.3, 1.2, -0.4},
+                                      {1.05, 0, 0},  {-2, -3, 0.5},   {0.99, 1.2, 1.2}};
+    for (int shape = 0; shape < 2; ++shape) {
+        struct scene *scene = dark_scene((double[]){0.3, 0.2, 0.1}, (double[]){0.3, 0.2, -1});
+        struct scene_material m = material("room");
+        struct scene_mesh room = {0};
+        set_rgb(m.diffuse, 1, 1, 1);
+        scene->cameras[0].fov_y = 2.4f;
+        if (shape == 0)
+            room = round_box();
+        else
+            assert_int_equal(shape_sphere(1.0, 10, 6, &room), WHIT_OK);
+        add_object(scene, room, m, 0, 0, 0);
+        for (size_t i = 0; i < sizeof lamps / sizeof *lamps; ++i)
+            add_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
+        struct render_params params = {.width = 100, .height = 100};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        for (int i = 0; i < 100 * 100; ++i)
+            assert_true(image.pixels[4 * i] == 0.0f);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+/* ---- Catchers ---- */
+
+/* A catcher before an even background; a box and a red pane over it, that the sun throws into view.
+ */
+static struct scene *catcher_scene(bool lit)
+{
+    struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("catcher"), pane = material("pane");
+    set_rgb(scene->environment.zenith, 0.5f, 0.25f, 0.75f);
+    set_rgb(scene->environment.horizon, 0.5f, 0.25f, 0.75f);
+    set_rgb(scene->environment.ground, 0.5f, 0.25f, 0.75f);
+    m.shadow_catcher = true;
+    set_rgb(m.diffuse, 0.1f, 0, 0);
+    set_rgb(pane.transmission, 1.0f, 0.25f, 0.25f);
+    pane.thin_walled = true;
+    add_object(scene, plane(40), m, 0, 0, 0);
+    add_object(scene, plane(30), m, 0, 7, 0); /* one above casts none */
+    add_object(scene, box(1, 0.1, 4), pane, -4.5, 5, 0);
+    add_object(scene, box(1, 0.1, 4), material("box"), -6, 5, 0);
+    if (lit)
+        add_sun(scene, 1, -1, 0, 3.0f);
+    else
+        add_lamp(scene, 0, -5, 0, 1.0f); /* below */
+    return scene;
+}
+
+static void catchers_show_shadows_alone(void **state)
+{
+    (void)state;
+    for (int all = 0; all < 2; ++all) {
+        struct render_params params = {.width = 201, .height = 1, .depth = 4, .bailout = -1.0};
+        params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
+        params.all_effects = all;
+        struct fixture f = fixture_open(catcher_scene(true), NULL, &params);
+        struct image image = render(&f);
+        uint32_t clear = 0, dark = 0, red = 0;
+        for (uint32_t x = 0; x < image.width; ++x) {
+            const float *p = &image.pixels[4 * x];
+            clear += p[0] == 0.5f && p[1] == 0.25f && p[2] == 0.75f;
+            dark += p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;
+            /* Two faces of the pane: a sixteenth. */
+            red += p[0] == 0.5f && p[1] == 0.25f / 16.0f && p[2] == 0.75f / 16.0f;
+        }
+        print_message("  clear %u, dark %u, red %u\n", clear, dark, red);
+        assert_true(clear > 80 && dark > 30 && red > 30 && clear + dark + red >= 195);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+    struct render_params params = {.depth = 4};
+    assert_true(middle_of(catcher_scene(false), params, 0) == 0.5f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(textures_pattern_shadows),
+        cmocka_unit_test(bodies_absorb_along_the_way),
+        cmocka_unit_test(knobs_make_shadows_opaque),
+        cmocka_unit_test(coarse_balls_are_shaded_like_fine_ones),
+        cmocka_unit_test(flat_meshes_do_not_change),
+        cmocka_unit_test(closed_rooms_stay_dark),
+        cmocka_unit_test(catchers_show_shadows_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
