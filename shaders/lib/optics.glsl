@@ -2,8 +2,8 @@
 #ifndef LIB_OPTICS_GLSL
 #define LIB_OPTICS_GLSL
 
-// Square of the cosine behind the surface, negative under total reflection. As sums of products of
-// exact differences: 1 - (eta sin)^2 would lose what is left of it near the critical angle.
+// Square of the cosine behind the surface, negative under total reflection. 1 - (eta sin)^2 by exact
+// differences: cos_in^2 itself where eta is 1, and nearly so where it is nearly 1.
 float refracted_cos2(float cos_in, float eta)
 {
     return cos_in * cos_in + (1.0 - cos_in) * (1.0 + cos_in) * (1.0 - eta) * (1.0 + eta);
