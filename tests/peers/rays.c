@@ -42,16 +42,35 @@ struct gpu_ray ray_to(const double origin[3], const double target[3])
     return ray;
 }
 
+/* On its surface, or at its centre. */
+static void sphere_target(const float *sphere, uint64_t *state, double out[3])
+{
+    double arm[3], length = 0.0;
+    bool center = random_bits(state) % 8 == 0;
+    for (int k = 0; k < 3; ++k) {
+        arm[k] = random_signed(state);
+        length += arm[k] * arm[k];
+    }
+    for (int k = 0; k < 3; ++k)
+        out[k] = (double)sphere[k] +
+                 (center ? 0.0 : (double)sphere[3] * arm[k] / sqrt(fmax(length, 1e-30)));
+}
+
 void random_target(const struct scene *scene, const struct scene_pose *pose, uint64_t *state,
                    double out[3])
 {
-    uint32_t i, triangles;
+    uint32_t i, primitives;
     do {
         i = (uint32_t)(random_bits(state) % scene->instance_count);
-        triangles = scene->meshes[scene->instances[i].mesh].triangle_count;
-    } while (triangles == 0);
+        primitives = scene_mesh_primitives(&scene->meshes[scene->instances[i].mesh]);
+    } while (primitives == 0);
     const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-    const uint32_t *corners = &mesh->indices[3 * (size_t)(random_bits(state) % triangles)];
+    if (mesh->sphere_count) {
+        sphere_target(&mesh->spheres[4 * (size_t)(random_bits(state) % primitives)], state, out);
+        affine_point(&pose->instances[i], (const double[]){out[0], out[1], out[2]}, out);
+        return;
+    }
+    const uint32_t *corners = &mesh->indices[3 * (size_t)(random_bits(state) % primitives)];
     uint32_t first = (uint32_t)(random_bits(state) % 3);
     const float *a = &mesh->positions[3 * (size_t)corners[first]];
     const float *b = &mesh->positions[3 * (size_t)corners[(first + 1) % 3]];
