@@ -369,8 +369,8 @@ typedef struct whit_ray {
     float origin[3], t_min, dir[3], t_max;
 } whit_ray;
 /* `u`, `v` weigh the second and third vertex; ng is (v1 - v0) x (v2 - v0) in world space, as long
-   as it comes. Of a sphere u and v are its normal in object space on the unit square (octahedral, +y
-   in the middle), and ng is that normal by the inverse transpose. */
+   as it comes. Of a sphere u and v are its normal in object space on the unit square (octahedral,
+   +y in the middle), and ng is that normal by the inverse transpose. */
 typedef struct whit_hit {
     float t; /* infinity: miss */
     float u, v;
