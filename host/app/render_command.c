@@ -25,7 +25,7 @@ enum render_id {
     ID_COUNTERS,
 };
 
-enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
+enum { DEPTH_MOST = 255, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
 
 static const struct cli_option options[] = {
     {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)"},

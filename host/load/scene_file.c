@@ -322,8 +322,9 @@ static bool read_environment(struct reader *reader, const struct place *place, c
 /* Materials come first, whatever their place in the file, since objects refer to them. */
 static bool read_root(struct reader *reader, const json_t *root)
 {
-    static const char *const keys[] = {"$schema", "description", "materials",   "objects", "lights",
-                                       "camera",  "cameras",     "environment", "ambient", NULL};
+    static const char *const keys[] = {"$schema", "description", "materials", "objects",
+                                       "lights",  "camera",      "cameras",   "environment",
+                                       "ambient", "contact",     NULL};
     static const struct {
         const char *key;
         bool (*read)(struct reader *reader, const struct place *place, const json_t *value);
@@ -337,7 +338,8 @@ static bool read_root(struct reader *reader, const json_t *root)
     struct place at_objects = {&place, "objects", 0}, at_cameras = {&place, "cameras", 0};
     if (!reader_object(reader, &place, root, keys) ||
         !reader_string(reader, &place, root, "description", &ignored) ||
-        !reader_color(reader, &place, root, "ambient", reader->scene->ambient))
+        !reader_color(reader, &place, root, "ambient", reader->scene->ambient) ||
+        !reader_float(reader, &place, root, "contact", 0.0, 1e15, &reader->scene->contact))
         return false;
     if (json_object_get(root, "camera") && json_object_get(root, "cameras"))
         return reader_fail(reader, &at_cameras, "`camera` and `cameras` exclude each other");

@@ -128,8 +128,8 @@ static bool list_bodies(const struct renderer *renderer, struct bodies *out)
     for (uint32_t i = 0; fine && i < renderer->pose.instance_count; ++i) {
         uint32_t mesh = scene->instances[i].mesh;
         for (uint32_t b = first[mesh]; fine && b < first[mesh + 1]; ++b) {
-            struct body body = place_body(&meshes.all[b], &renderer->pose.instances[i],
-                                          (double)scene->contact);
+            struct body body =
+                place_body(&meshes.all[b], &renderer->pose.instances[i], (double)scene->contact);
             fine = ARRAY_PUSH(out->all, out->count, out->capacity, body);
         }
     }
@@ -209,6 +209,10 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
     }
     struct gpu_hit hit;
     uint32_t status = 0;
+    /* At an edge both neighbours are met, as one. */
+    uint32_t last_instance = SCENE_NONE, last_material = SCENE_NONE;
+    float last_t = 0.0f;
+    bool last_left = false;
     traverse_next_float(renderer->accel, &ray, NULL, &hit, &status);
     for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MOST; ++hits) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[hit.instance].mesh];
@@ -217,10 +221,17 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
             struct around *around = find_around(s, hit.instance, material);
             if (!around)
                 return false;
-            float out = ray.dir[0] * hit.ng_x + ray.dir[1] * hit.ng_y + ray.dir[2] * hit.ng_z;
-            around->left[direction] += out > 0.0f ? 1 : -1;
-            if (direction == 0 && out > 0.0f)
+            bool left =
+                ray.dir[0] * hit.ng_x + ray.dir[1] * hit.ng_y + ray.dir[2] * hit.ng_z > 0.0f;
+            bool again = hit.instance == last_instance && material == last_material &&
+                         left == last_left && hit.t - last_t <= 8.0f * FLT_EPSILON * hit.t;
+            around->left[direction] += again ? 0 : left ? 1 : -1;
+            if (direction == 0 && left)
                 around->exit_t = hit.t;
+            last_instance = hit.instance;
+            last_material = material;
+            last_t = hit.t;
+            last_left = left;
         }
         traverse_next_float(renderer->accel, &ray, &hit, &hit, &status);
     }
@@ -231,8 +242,12 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
 static int32_t times_inside(const struct around *around)
 {
     const int32_t *n = around->left;
-    int32_t middle = n[0] > n[1] ? (n[1] > n[2] ? n[1] : n[0] < n[2] ? n[0] : n[2])
-                                 : (n[0] > n[2] ? n[0] : n[1] < n[2] ? n[1] : n[2]);
+    int32_t middle = n[0] > n[1] ? (n[1] > n[2]   ? n[1]
+                                    : n[0] < n[2] ? n[0]
+                                                  : n[2])
+                                 : (n[0] > n[2]   ? n[0]
+                                    : n[1] < n[2] ? n[1]
+                                                  : n[2]);
     return middle > 0 ? middle : 0;
 }
 

@@ -17,6 +17,7 @@ enum {
     TILE_MAX = 512,
     TILE_FIRST = 64,
     TILE_STACKED_MAX = 128, /* ray stacks cost memory; larger only when asked for */
+    DEPTH_LARGEST = 255,    /* bounces of a ray have 8 bits */
     PASSES_FIRST = 8,
     PASSES_MAX = 64,
 };
@@ -91,8 +92,8 @@ static whit_result check_params(const struct log *log, struct render_params *par
     }
     if (params->adaptive > 0.0)
         params->samples = 4; /* to begin with */
-    if (params->depth > 32) {
-        log_error(log, "depth %u: must be 0..32", params->depth);
+    if (params->depth > DEPTH_LARGEST) {
+        log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
         return WHIT_ERROR_USAGE;
     }
     return WHIT_OK;

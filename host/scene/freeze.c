@@ -119,6 +119,10 @@ static uint32_t mend_material(struct scene_material *m)
         m->ior = 1.5f;
         ++count;
     }
+    if (m->priority > 255) {
+        m->priority = 255;
+        ++count;
+    }
     return count;
 }
 
@@ -456,6 +460,8 @@ static void check_environment(struct scene *scene)
                      mend_rgb(scene->ambient, huge, 0.0f);
     if (sky->kind == SCENE_ENVIRONMENT_MAP && (!sky->rgb || !sky->width || !sky->height))
         sky->kind = SCENE_ENVIRONMENT_GRADIENT;
+    if (!(scene->contact >= 0.0f && isfinite(scene->contact)))
+        scene->contact = 0.0f;
     size_t floats = sky->rgb ? (size_t)sky->width * sky->height * 3 : 0;
     for (size_t i = 0; i < floats; ++i)
         count += mend(&sky->rgb[i], 0.0f, huge, 0.0f);

@@ -39,6 +39,7 @@ static void hash_material(struct hash *hash, const struct scene_material *m)
     HASH_FIELD(hash, flags);
     HASH_FIELD(hash, values);
     HASH_FIELD(hash, m->ambient);
+    HASH_FIELD(hash, m->priority);
     HASH_FIELD(hash, m->diffuse);
     HASH_FIELD(hash, m->specular);
     HASH_FIELD(hash, m->emission);
@@ -144,5 +145,6 @@ uint64_t freeze_hash(const struct scene *scene)
         hash_channel(&hash, &scene->channels[i]);
     hash_environment(&hash, &scene->environment);
     HASH_FIELD(&hash, scene->ambient);
+    HASH_FIELD(&hash, scene->contact);
     return hash.value;
 }

@@ -40,25 +40,41 @@ float largest_of(vec3 v)
     return max(v.x, max(v.y, v.z));
 }
 
-// How far behind a hit, along the ray, another one may be at the same place. Each `t` of the
-// intersection test is off by a few roundings of the coordinates that enter it, across the surface;
-// along the ray that is more by the cosine. frame.contact is meant across the surface too. Cosines
-// are bounded so that rays along a surface do not gather all that is near it.
-float crossing_reach(Surface s, Ray ray, float t)
+// How far apart, along the ray, hits at one place may be. Each `t` of the intersection test is off by a
+// few roundings of the coordinates that enter it, across the surface; along the ray that is more by
+// the cosine, which is bounded so that rays along a surface do not gather all that is near it.
+float crossing_slack(Surface s, Ray ray, float t)
 {
-    float cosine = abs(dot(ray.dir, s.ng));
-    float size = largest_of(abs(ray.origin)) + largest_of(abs(s.p)) +
-                 largest_of(abs(s.e1)) + largest_of(abs(s.e2)) + t;
-    return rounding_bound(8.0) * size / max(cosine, 1.0 / 1024.0) +
-           frame.contact / max(cosine, 1.0 / 16.0);
+    float size = largest_of(abs(ray.origin)) + largest_of(abs(s.p)) + largest_of(abs(s.e1)) +
+                 largest_of(abs(s.e2)) + t;
+    return rounding_bound(8.0) * size / max(abs(dot(ray.dir, s.ng)), 1.0 / 1024.0);
+}
+
+// frame.contact along the ray: it is meant across the surface.
+float crossing_contact(Surface s, Ray ray)
+{
+    return frame.contact / max(abs(dot(ray.dir, s.ng)), 1.0 / 16.0);
 }
 
 // The surfaces that are crossed at one place, in the order of the ray.
 struct Crossed {
     uvec4 entries; // material + 1
+    uvec4 instances;
     uint leaving;  // bit i: entry i is left
     uint count;
 };
+
+// Which of the crossed surfaces is the last one of the same body; CROSSED_MOST: none.
+uint find_crossed(Crossed crossed, uint entry, uint instance)
+{
+    uint found = CROSSED_MOST;
+    for (uint i = 0u; i < CROSSED_MOST; i++)
+        found = i < crossed.count && crossed.entries[i] == entry &&
+                        crossed.instances[i] == instance
+                    ? i
+                    : found;
+    return found;
+}
 
 // Enters all that is entered, then leaves: rounding may swap surfaces that touch. What is left
 // without having been entered (an open mesh) was around the ray so far.
@@ -86,11 +102,14 @@ void cross_all(Crossed crossed, inout Crossing c, inout uint status)
 
 // Adds the surfaces of other media that the ray crosses at the place of `hit`, and makes `s` and
 // `inside` those of the surface that is seen there: of the material with the highest priority, of
-// equal ones one that is entered.
+// equal ones one that is entered. A body that is entered twice on end has been met at an edge, by
+// both its neighbours. One that is left again has no thickness but for rounding, or else is thinner
+// than the contact distance, which does not mean it.
 void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout Crossing c,
                      inout Surface s, inout bool inside, inout uint status)
 {
-    float reach = hit.t + crossing_reach(s, ray, hit.t);
+    float near = hit.t + crossing_slack(s, ray, hit.t);
+    float reach = near + crossing_contact(s, ray);
     uint rank = medium_priority(s.material + 1u) * 2u + uint(!inside);
     bool more = frame.nested != 0u;
     do {
@@ -107,9 +126,14 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
         if (more) {
             Surface other = fetch_surface(hit);
             more = bounds_medium(fetch_material(other.material));
-            if (more) {
-                bool leaves = face_ray(other, ray.dir);
+            bool leaves = face_ray(other, ray.dir);
+            uint same = find_crossed(crossed, other.material + 1u, hit.instance);
+            bool left = (crossed.leaving >> same & 1u) != 0u;
+            bool again = same != CROSSED_MOST && left == leaves;
+            more = more && (again || same == CROSSED_MOST || hit.t <= near);
+            if (more && !again) {
                 crossed.entries[crossed.count] = other.material + 1u;
+                crossed.instances[crossed.count] = hit.instance;
                 crossed.leaving |= uint(leaves) << crossed.count;
                 crossed.count++;
                 c.p = other.p;
@@ -131,6 +155,14 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
     } while (more);
 }
 
+// Whether a hit is the surface that the ray has just crossed once more: the neighbour of a primitive at
+// whose edge it was crossed, entered a second time or left a second time.
+bool is_crossed_already(Ray ray, Hit hit, Surface s, bool inside)
+{
+    return hit.instance == ray.skip_instance && hit.t <= crossing_slack(s, ray, hit.t) &&
+           media_have(ray.media, s.material + 1u) != inside;
+}
+
 // `s` faces the ray; so it does afterwards, when it is another one.
 Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_material m,
                        bool inside, inout uint status)
@@ -147,7 +179,12 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
     c.primitive = hit.primitive;
     if (SPEC_MEDIA == 0u || !bounds_medium(m))
         return c;
-    Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uint(inside), 1u);
+    if (is_crossed_already(ray, hit, s, inside)) {
+        c.seen = false;
+        return c;
+    }
+    Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uvec4(hit.instance, 0u, 0u, 0u),
+                              uint(inside), 1u);
     if (SPEC_BRUTE == BRUTE_OFF) {
         gather_touching(slot, ray, hit, crossed, c, s, inside, status);
         m = fetch_material(s.material);

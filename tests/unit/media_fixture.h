@@ -1,0 +1,117 @@
+/* Glass, walls that say where they are hit, and optics in double, for tests of refraction. */
+#ifndef TESTS_MEDIA_FIXTURE_H
+#define TESTS_MEDIA_FIXTURE_H
+
+#include "picture_fixture.h"
+#include "render/renderer.h"
+
+/* Clear, without a highlight: all light is reflected or let through, by Fresnel. */
+static inline struct scene_material clear_glass(float ior, uint32_t priority)
+{
+    struct scene_material m = material("clear");
+    set_rgb(m.diffuse, 0, 0, 0);
+    set_rgb(m.transmission, 1, 1, 1);
+    m.fresnel = true;
+    m.ior = ior;
+    m.priority = priority;
+    return m;
+}
+
+static inline void set_sky(struct scene *scene, float zenith, float horizon, float ground)
+{
+    set_rgb(scene->environment.zenith, zenith, zenith, zenith);
+    set_rgb(scene->environment.horizon, horizon, horizon, horizon);
+    set_rgb(scene->environment.ground, ground, ground, ground);
+}
+
+/* As add_object, for spheres too, and with the object's index. */
+static inline uint32_t add_body(struct scene *scene, struct scene_mesh mesh,
+                                struct scene_material m, double x, double y, double z)
+{
+    m.name = string_copy("body");
+    uint32_t index = scene_add_material(scene, m);
+    for (uint32_t i = 0; i < mesh.triangle_count + mesh.sphere_count; ++i)
+        mesh.materials[i] = index;
+    mesh.name = string_copy("body");
+    struct scene_node node;
+    scene_node_init(&node, "node", SCENE_NONE);
+    node.translation[0] = x;
+    node.translation[1] = y;
+    node.translation[2] = z;
+    struct scene_instance instance = {.name = string_copy("body"),
+                                      .mesh = scene_add_mesh(scene, mesh),
+                                      .node = scene_add_node(scene, node)};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    return index;
+}
+
+static inline struct scene_mesh empty_mesh(uint32_t vertices, uint32_t triangles)
+{
+    struct scene_mesh mesh = {.vertex_count = vertices, .triangle_count = triangles};
+    mesh.positions = array_alloc_zeroed(vertices, 3 * sizeof *mesh.positions);
+    mesh.indices = array_alloc_zeroed(triangles, 3 * sizeof *mesh.indices);
+    mesh.materials = array_alloc_zeroed(triangles, sizeof *mesh.materials);
+    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    return mesh;
+}
+
+/* Shines with the coordinates at which it is met: red and green go from 0 to 1 over x and y from
+   -side to side, blue is 1. Faces +z. */
+static inline void add_coordinate_wall(struct scene *scene, double z, double side)
+{
+    struct scene_mesh mesh = empty_mesh(4, 2);
+    static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+    memcpy(mesh.indices, indices, sizeof indices);
+    mesh.colors = array_alloc_zeroed(4, 4 * sizeof *mesh.colors);
+    assert_non_null(mesh.colors);
+    for (size_t i = 0; i < 4; ++i) {
+        double right = i == 1 || i == 2, top = i >= 2;
+        mesh.positions[3 * i] = (float)(side * (2.0 * right - 1.0));
+        mesh.positions[3 * i + 1] = (float)(side * (2.0 * top - 1.0));
+        set_rgb(&mesh.colors[4 * i], (float)right, (float)top, 1.0f);
+        mesh.colors[4 * i + 3] = 1.0f;
+    }
+    struct scene_material m = material("wall");
+    m.model = SCENE_MODEL_UNLIT;
+    set_rgb(m.diffuse, 1, 1, 1);
+    add_body(scene, mesh, m, 0, 0, z);
+}
+
+/* Where a coordinate wall was met, by the colour that came from it. */
+static inline double wall_coordinate(const float *color, int axis, double side)
+{
+    return side * (2.0 * (double)color[axis] / (double)color[2] - 1.0);
+}
+
+/* The direction of a pixel's camera ray, z = -1, of a camera that looks along -z. */
+static inline void pixel_slope(const struct image *image, uint32_t x, uint32_t y, double fov_y,
+                               double slope[2])
+{
+    double up = tan(fov_y / 2), right = up * image->width / image->height;
+    slope[0] = right * ((x + 0.5) / image->width * 2.0 - 1.0);
+    slope[1] = -up * ((y + 0.5) / image->height * 2.0 - 1.0);
+}
+
+/* Share of unpolarised light that is reflected, between indices n1 and n2. */
+static inline double fresnel(double cos1, double n1, double n2)
+{
+    double sin2 = n1 / n2 * sqrt(1.0 - cos1 * cos1);
+    if (sin2 >= 1.0)
+        return 1.0;
+    double cos2 = sqrt(1.0 - sin2 * sin2);
+    double s = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
+    double p = (n1 * cos2 - n2 * cos1) / (n1 * cos2 + n2 * cos1);
+    return 0.5 * (s * s + p * p);
+}
+
+/* What the kernel counted for a pixel of a picture of one sample a pixel. */
+static inline struct gpu_counts pixel_counts(const struct fixture *f, size_t pixel)
+{
+    struct gpu_counts counts;
+    assert_int_equal(buffer_read(f->renderer->pixel_buffers.counts, pixel * sizeof counts, &counts,
+                                 sizeof counts),
+                     WHIT_OK);
+    return counts;
+}
+
+#endif

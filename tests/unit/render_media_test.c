@@ -1,0 +1,260 @@
+/* Media that are nested, touch, leak, or hold the camera. */
+#include "media_fixture.h"
+
+static const double FOV = 0.5;
+
+/* ---- Plane layers, by Snell and Fresnel ---- */
+
+/* A medium from z = -half to half. */
+struct layer {
+    double half;
+    float ior;
+    uint32_t priority;
+};
+
+static struct scene *layer_scene(const struct layer *layers, int count)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
+    scene->cameras[0].fov_y = (float)FOV;
+    for (int i = 0; i < count; ++i)
+        add_body(scene, box(40, 40, 2 * layers[i].half),
+                 clear_glass(layers[i].ior, layers[i].priority), 0, 0, 0);
+    add_coordinate_wall(scene, -4, 8);
+    return scene;
+}
+
+/* The way from z = 5 to z = -4 through interfaces at z[i], with index n[i] in front of each and air
+   at the end: how far sideways, relative to the slope's length, and what share of the light
+   arrives. */
+static void pass_layers(const double *z, const double *n, int count, double slope, double *aside,
+                        double *share)
+{
+    double sine = slope / sqrt(1.0 + slope * slope), at = 5.0;
+    *aside = 0.0;
+    *share = 1.0;
+    for (int i = 0; i <= count; ++i) {
+        double here = i < count ? n[i] : 1.0, next = i == count ? -4.0 : z[i];
+        double s = sine / here, c = sqrt(1.0 - s * s);
+        *aside += (at - next) * s / c;
+        at = next;
+        if (i < count)
+            *share *= 1.0 - fresnel(c, here, i + 1 < count ? n[i + 1] : 1.0);
+    }
+}
+
+/* As many bounces as interfaces: nothing that was reflected comes back in time. */
+static void check_layers(const struct layer *layers, int layer_count, const double *z,
+                         const double *n, int count)
+{
+    const struct render_params params = {
+        .width = 24, .height = 24, .depth = (uint32_t)count, .bailout = -1.0};
+    struct fixture f = fixture_open(layer_scene(layers, layer_count), NULL, &params);
+    struct image image = render(&f);
+    double worst = 0.0, worst_share = 0.0;
+    for (uint32_t i = 0; i < 24 * 24; ++i) {
+        const float *color = &image.pixels[4 * (size_t)i];
+        double slope[2], aside, share;
+        pixel_slope(&image, i % 24, i / 24, FOV, slope);
+        double length = hypot(slope[0], slope[1]);
+        pass_layers(z, n, count, length, &aside, &share);
+        for (int k = 0; k < 2; ++k)
+            worst = fmax(worst, fabs(wall_coordinate(color, k, 8) - aside * slope[k] / length));
+        worst_share = fmax(worst_share, fabs((double)color[2] / share - 1.0));
+    }
+    print_message("  off by %.2g sideways, by %.2g of the light\n", worst, worst_share);
+    /* At each interface and at the wall: gamma(7) of vertices whose coordinates are 20, the error
+       bound of a hit point (docs/numerics.md). Light: a few roundings a Fresnel term. */
+    assert_true(worst < (count + 1) * 7 * 20 * 0x1p-24);
+    assert_true(worst_share < count * 8 * 0x1p-24);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* A bubble of air in glass in water. With equal priorities, the medium entered last is there; and
+   so it is when they say the same. */
+static void bubble_in_glass_in_water(void **state)
+{
+    (void)state;
+    const double z[] = {1.5, 1.0, 0.4, -0.4, -1.0, -1.5};
+    const double n[] = {1.0, 1.33, 1.5, 1.0, 1.5, 1.33};
+    check_layers((struct layer[]){{1.5, 1.33f, 0}, {1.0, 1.5f, 0}, {0.4, 1.0f, 0}}, 3, z, n, 6);
+    check_layers((struct layer[]){{0.4, 1.0f, 9}, {1.0, 1.5f, 4}, {1.5, 1.33f, 1}}, 3, z, n, 6);
+}
+
+/* The highest priority wins, wherever it was entered: nothing of the others is seen. */
+static void priority_hides_what_is_inside(void **state)
+{
+    (void)state;
+    const double z[] = {1.5, -1.5}, n[] = {1.0, 1.33};
+    check_layers((struct layer[]){{1.5, 1.33f, 2}, {1.0, 1.5f, 1}, {0.4, 1.0f, 0}}, 3, z, n, 2);
+}
+
+/* Two media of one index: a surface between them that neither bends nor reflects. */
+static void equal_indices_do_not_bend(void **state)
+{
+    (void)state;
+    const double z[] = {1.5, 1.0, -1.0, -1.5}, n[] = {1.0, 1.33, 1.33, 1.33};
+    check_layers((struct layer[]){{1.5, 1.33f, 0}, {1.0, 1.33f, 0}}, 2, z, n, 4);
+}
+
+/* ---- The list of media ---- */
+
+static struct scene *shell_scene(int count)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 20}, (double[]){0, 0, 0});
+    set_sky(scene, 1, 1, 1);
+    for (int i = 0; i < count; ++i) {
+        double side = 10.0 - 0.5 * i;
+        add_body(scene, box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0), 0, 0,
+                 0);
+    }
+    return scene;
+}
+
+static void list_holds_eight_media(void **state)
+{
+    (void)state;
+    const struct render_params params = {.width = 8, .height = 8, .depth = 20};
+    struct fixture f = fixture_open(shell_scene(8), NULL, &params);
+    struct image image = render(&f);
+    assert_true(middle(&image)[0] > 0.9f && middle(&image)[0] < 1.0001f);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static void ninth_medium_is_an_error(void **state)
+{
+    (void)state;
+    const int counts[] = {9, 16};
+    for (int i = 0; i < 2; ++i) {
+        const struct render_params params = {.width = 8, .height = 8, .depth = 20};
+        struct fixture f = fixture_open(shell_scene(counts[i]), NULL, &params);
+        assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);
+        fixture_close(&f);
+    }
+}
+
+/* Balls with holes: rays leave what they never entered, and enter what they never leave. */
+static void open_meshes_stay_finite(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 0.3, 4}, (double[]){0, 0, 0});
+    set_sky(scene, 1, 1, 1);
+    for (int i = 0; i < 3; ++i) {
+        struct scene_mesh mesh = {0};
+        assert_int_equal(shape_icosphere(1.0, 3, &mesh), WHIT_OK);
+        uint32_t kept = 0;
+        for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
+            if (t % 3 == 0)
+                continue;
+            memcpy(&mesh.indices[3 * (size_t)kept++], &mesh.indices[3 * (size_t)t],
+                   3 * sizeof *mesh.indices);
+        }
+        mesh.triangle_count = kept;
+        struct scene_material m = clear_glass(1.5f, (uint32_t)i);
+        set_rgb(m.absorption, 0.1f, 0.2f, 0.0f);
+        add_body(scene, mesh, m, 0.5 * i - 0.5, 0, 0);
+    }
+    const struct render_params params = {.width = 40, .height = 40, .depth = 8, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    assert_int_equal(f.renderer->frame.nested, 1);
+    struct image image = render(&f);
+    for (uint32_t i = 0; i < 40 * 40 * 4; ++i)
+        assert_true(image.pixels[i] >= 0.0f && image.pixels[i] < 1.001f);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* ---- The camera inside ---- */
+
+static void check_eye(struct scene *scene, const uint32_t *expected, uint32_t count)
+{
+    struct fixture f = fixture_open(scene, NULL, NULL);
+    const struct gpu_frame *frame = &f.renderer->frame;
+    const uint32_t words[] = {frame->eye_media0, frame->eye_media1, frame->eye_media2,
+                              frame->eye_media3};
+    for (uint32_t i = 0; i < MEDIA_MOST; ++i)
+        assert_int_equal(words[i / 2] >> 16 * (i % 2) & 0xffff, i < count ? expected[i] + 1 : 0);
+    fixture_close(&f);
+}
+
+static struct scene_mesh ball(double radius)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_balls((double[]){0, 0, 0, radius}, 1, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static void camera_knows_its_media(void **state)
+{
+    (void)state;
+    const double inside[3] = {0.1, 0.2, 0.1}, away[3] = {0, 0, -9};
+    /* Outside; in a box; in two, of which the inner one is entered last; by priority. */
+    struct scene *scene = dark_scene((double[]){0, 0, 5}, away);
+    add_body(scene, box(2, 2, 2), clear_glass(1.5f, 0), 0, 0, 0);
+    check_eye(scene, NULL, 0);
+    for (uint32_t high = 0; high < 2; ++high) {
+        scene = dark_scene(inside, away);
+        uint32_t inner = add_body(scene, box(2, 2, 2), clear_glass(1.5f, 1), 0, 0, 0);
+        uint32_t outer = add_body(scene, box(3, 3, 3), clear_glass(1.3f, 1 + high), 0, 0, 0);
+        add_body(scene, box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
+        check_eye(scene, high ? (uint32_t[]){inner, outer} : (uint32_t[]){outer, inner}, 2);
+    }
+    /* In a sphere and a thin box, which has no inside. */
+    scene = dark_scene(inside, away);
+    struct scene_material thin = clear_glass(1.5f, 0);
+    thin.thin_walled = true;
+    add_body(scene, box(4, 4, 4), thin, 0, 0, 0);
+    uint32_t round = add_body(scene, ball(1.0), clear_glass(1.5f, 0), 0, 0, 0);
+    check_eye(scene, &round, 1);
+    /* Below a sheet that ends nowhere: no majority says inside, and nothing breaks. */
+    scene = dark_scene(inside, away);
+    add_body(scene, plane(8), clear_glass(1.33f, 0), 0, 1, 0);
+    check_eye(scene, NULL, 0);
+}
+
+/* Looking up from water: within the critical angle the sky, beyond it what the surface reflects,
+   here the dark below. One bounce. */
+static void snells_window_is_where_it_should_be(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, -1, 0}, (double[]){0, 0, 0});
+    scene->cameras[0].fov_y = 2.0f;
+    set_sky(scene, 1, 1, 0);
+    add_body(scene, box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
+    const struct render_params params = {.width = 101, .height = 101, .depth = 1, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double critical = tan(asin(1.0 / (double)1.33f)), pixel = 2.0 * tan(1.0) / 101;
+    int lit = 0, close = 0;
+    for (uint32_t i = 0; i < 101 * 101; ++i) {
+        double slope[2];
+        pixel_slope(&image, i % 101, i / 101, 2.0, slope);
+        double radius = hypot(slope[0], slope[1]);
+        bool is_lit = image.pixels[4 * (size_t)i] > 0.0f;
+        lit += is_lit;
+        if (fabs(radius - critical) < pixel / 100)
+            ++close; /* a hundredth of a pixel */
+        else
+            assert_true(is_lit == (radius < critical));
+    }
+    print_message("  %d pixels see the sky, %d are too close to tell\n", lit, close);
+    assert_true(lit > 1000 && close < 4);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bubble_in_glass_in_water),
+        cmocka_unit_test(priority_hides_what_is_inside),
+        cmocka_unit_test(equal_indices_do_not_bend),
+        cmocka_unit_test(list_holds_eight_media),
+        cmocka_unit_test(ninth_medium_is_an_error),
+        cmocka_unit_test(open_meshes_stay_finite),
+        cmocka_unit_test(camera_knows_its_media),
+        cmocka_unit_test(snells_window_is_where_it_should_be),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
