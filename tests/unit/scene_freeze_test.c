@@ -97,6 +97,49 @@ static void bad_triangles_are_dropped_and_counted(void **state)
     scene_destroy(scene);
 }
 
+static void bad_spheres_are_dropped_and_counted(void **state)
+{
+    (void)state;
+    const float spheres[] = {1, 2,          3, 0.5f,  0, 0, 0, 0,          0, 0, 0, -1,
+                             0, (float)NAN, 0, 1,     0, 0, 0, (float)NAN, 0, 0, 0, INFINITY,
+                             0, 0,          0, 2e18f, 9, 9, 9, 1e-30f,     4, 5, 6, 1e17f};
+    const uint32_t materials[] = {0, 0, 0, 0, 0, 0, 0, 1, 0};
+    struct scene_mesh mesh = {.name = string_copy("balls"), .sphere_count = 9};
+    mesh.spheres = copy_of(spheres, sizeof spheres);
+    mesh.materials = copy_of(materials, sizeof materials);
+    struct scene *scene = scene_of(mesh);
+    for (int i = 0; i < 2; ++i) {
+        struct scene_material material;
+        scene_material_init(&material, "grey");
+        assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    const struct scene_mesh *m = &scene->meshes[0];
+    assert_int_equal(m->sphere_count, 3);
+    assert_int_equal(scene->sphere_total, 3);
+    assert_true(m->spheres[7] == 1e-30f && m->spheres[11] == 1e17f);
+    assert_true(m->materials[0] == 0 && m->materials[1] == 1 && m->materials[2] == 0);
+    assert_true(m->lo[0] <= -1e17f && m->hi[2] >= 1e17f);
+    assert_true(noted(scene, "6 spheres dropped"));
+    struct scene_effects effects;
+    scene_effects_scan(scene, &effects);
+    assert_true(effects.called[SCENE_EFFECT_SPHERES]);
+    scene_destroy(scene);
+}
+
+/* A mesh is of triangles or of spheres. */
+static void mixed_meshes_are_refused(void **state)
+{
+    (void)state;
+    const float sphere[] = {0, 0, 0, 1};
+    struct scene_mesh mesh = box_mesh();
+    mesh.sphere_count = 1;
+    mesh.spheres = copy_of(sphere, sizeof sphere);
+    struct scene *scene = scene_of(mesh);
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+}
+
 static void attributes_are_mended(void **state)
 {
     (void)state;
@@ -354,6 +397,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_triangles_are_dropped_and_counted),
+        cmocka_unit_test(bad_spheres_are_dropped_and_counted),
+        cmocka_unit_test(mixed_meshes_are_refused),
         cmocka_unit_test(attributes_are_mended),
         cmocka_unit_test(materials_are_mended),
         cmocka_unit_test(broken_references_are_refused),
