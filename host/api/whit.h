@@ -258,7 +258,10 @@ typedef struct whit_renderer_params {
        for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
        changes the picture. */
     const char *effects;
-    bool compile_beside; /* draw with the general kernel while that of the scene is compiled */
+    /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
+       compiles that of the scene; the pictures are the same. Errors of that thread are logged from
+       it. Without trees: not done. */
+    bool compile_beside;
     uint32_t tile_size;  /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 64 };
@@ -51,4 +52,38 @@ void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context
     run(&loop);
     for (uint32_t i = 0; i < started; ++i)
         pthread_join(threads[i], NULL);
+}
+
+struct thread {
+    pthread_t id;
+    void (*fn)(void *);
+    void *context;
+};
+
+static void *run_once(void *user)
+{
+    struct thread *thread = user;
+    thread->fn(thread->context);
+    return NULL;
+}
+
+struct thread *thread_start(void (*fn)(void *context), void *context)
+{
+    struct thread *thread = calloc(1, sizeof *thread);
+    if (!thread)
+        return NULL;
+    thread->fn = fn;
+    thread->context = context;
+    if (pthread_create(&thread->id, NULL, run_once, thread) == 0)
+        return thread;
+    free(thread);
+    return NULL;
+}
+
+void thread_join(struct thread *thread)
+{
+    if (!thread)
+        return;
+    pthread_join(thread->id, NULL);
+    free(thread);
 }

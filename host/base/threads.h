@@ -1,4 +1,4 @@
-/* Fork and join over a fixed number of threads. */
+/* Fork and join over a fixed number of threads, and threads of their own. */
 #ifndef BASE_THREADS_H
 #define BASE_THREADS_H
 
@@ -13,5 +13,11 @@ uint32_t threads_available(void);
    work. */
 void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context, uint32_t index),
                  void *context);
+
+/* A thread that calls fn(context) once. NULL when it cannot be started. */
+struct thread;
+struct thread *thread_start(void (*fn)(void *context), void *context);
+/* Waits for its end and frees it; NULL is fine. */
+void thread_join(struct thread *thread);
 
 #endif

@@ -270,6 +270,26 @@ static whit_result create_parts(struct renderer *renderer)
     return result;
 }
 
+/* Renderers that only trace batches never need the large kernel. */
+static whit_result compile(struct renderer *renderer)
+{
+    bool beside = renderer->params.compile_beside && !renderer->accel->no_trees;
+    if (renderer->whitted.pipeline && !renderer->beside.general)
+        return WHIT_OK;
+    double start_ms = clock_ms();
+    whit_result result = beside ? beside_prepare(renderer) : variant_create_whitted(renderer);
+    if (result == WHIT_OK) {
+        struct pipeline_info info;
+        pipeline_get_info(renderer->whitted.pipeline, &info);
+        renderer->stats.kernel_instructions = info.instructions;
+        renderer->stats.general = renderer->beside.general;
+    } else {
+        passes_finish(renderer);
+    }
+    renderer->stats.compile_ms = clock_ms() - start_ms;
+    return result;
+}
+
 whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
                             const struct render_params *params, struct renderer **out)
 {
@@ -298,6 +318,8 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
         result = accel_pose(accel, &renderer->pose);
     if (result == WHIT_OK)
         result = create_parts(renderer);
+    if (result == WHIT_OK && renderer->params.compile_beside)
+        result = compile(renderer);
     if (result != WHIT_OK) {
         renderer_destroy(renderer);
         return result;
@@ -312,6 +334,7 @@ void renderer_destroy(struct renderer *renderer)
         return;
     commands_destroy(renderer->commands);
     passes_finish(renderer);
+    beside_finish(renderer);
     trace_finish(&renderer->trace);
     brute_finish(&renderer->brute);
     pixel_buffers_finish(&renderer->pixel_buffers);
@@ -720,25 +743,8 @@ static void clear_stats(struct render_stats *stats)
                                    .compile_ms = stats->compile_ms,
                                    .device_bytes = stats->device_bytes,
                                    .kernel_instructions = stats->kernel_instructions,
+                                   .general = stats->general,
                                    .texel_loads = stats->texel_loads};
-}
-
-/* Renderers that only trace batches never need the large kernel. */
-static whit_result compile(struct renderer *renderer)
-{
-    if (renderer->whitted.pipeline)
-        return WHIT_OK;
-    double start_ms = clock_ms();
-    whit_result result = variant_create_whitted(renderer);
-    if (result == WHIT_OK) {
-        struct pipeline_info info;
-        pipeline_get_info(renderer->whitted.pipeline, &info);
-        renderer->stats.kernel_instructions = info.instructions;
-    } else {
-        passes_finish(renderer);
-    }
-    renderer->stats.compile_ms = clock_ms() - start_ms;
-    return result;
 }
 
 whit_result renderer_render(struct renderer *renderer)

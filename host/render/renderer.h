@@ -22,11 +22,11 @@ struct scene_buffers {
 /* The state of the pixels of one band of rows, and of the ray trees of one chunk. */
 struct pixel_buffers {
     struct buffer *pixels, *ids, *counts;
-    struct buffer *ray_stacks; /* NULL: surfaces leave no rays */
-    struct buffer *ray_media;  /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
+    struct buffer *ray_stacks;          /* NULL: surfaces leave no rays */
+    struct buffer *ray_media;           /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
     struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
-    struct buffer *costs;     /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
-    struct buffer *listed;    /* work list of camera rays; NULL when not adaptive */
+    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
+    struct buffer *listed; /* work list of camera rays; NULL when not adaptive */
     struct buffer *status;
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
@@ -72,6 +72,12 @@ struct progress {
     uint8_t *levels; /* of each pixel: 1: 4 samples, 2: 16, 3: 64; NULL when not adaptive */
 };
 
+/* With params.compile_beside: see beside.c. */
+struct beside_state {
+    struct beside_job *job; /* the specialised kernel in the making; NULL: none is */
+    bool general;           /* renderer->whitted is the general kernel */
+};
+
 struct renderer {
     struct log log;
     struct device *device;
@@ -85,6 +91,7 @@ struct renderer {
     struct pass whitted;
     struct brute_state brute;
     struct trace_state trace;
+    struct beside_state beside;
     struct commands *commands;
     struct gpu_frame frame;
     struct image color, ids;            /* of the last picture, where it has more than one band */
@@ -166,8 +173,8 @@ bool lights_take_turn(const struct renderer *renderer, uint32_t turn);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 /* media.c: of renderer->frame the media that the camera is in, and whether media meet, for the pose
-   and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told apart,
-   WHIT_ERROR_STATUS where the camera is in too many media. */
+   and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told
+   apart, WHIT_ERROR_STATUS where the camera is in too many media. */
 WHIT_CHECK whit_result media_frame(struct renderer *renderer);
 
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
@@ -180,10 +187,30 @@ void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 struct gpu_spec variant_spec(const struct renderer *renderer);
 /* The same with every effect. */
 struct gpu_spec variant_general_spec(const struct renderer *renderer);
+/* Every effect that the renderer's buffers allow and its params do not remove. */
+struct gpu_spec variant_beside_spec(const struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
+/* What pipeline_create() is told of the Whitted kernel with trees; stands alone, and is not to be
+   copied or moved. */
+struct variant_job {
+    struct gpu_spec spec;
+    enum binding_kind kinds[BIND_WHITTED_COUNT];
+    struct pipeline_params params;
+};
+void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
+                      struct variant_job *job);
+/* Makes the binding sets of pass->pipeline. */
+WHIT_CHECK whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 void pass_finish(struct pass *pass);
 void passes_finish(struct renderer *renderer);
+
+/* beside.c: renderer->whitted is the best kernel that there is without waiting for it: at first the
+   general one, while a thread compiles the specialised one, and from some later call on that. The
+   thread logs when it fails; the general kernel then stays. */
+WHIT_CHECK whit_result beside_prepare(struct renderer *renderer);
+/* Waits for the thread. */
+void beside_finish(struct renderer *renderer);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);
@@ -192,8 +219,8 @@ void trace_finish(struct trace_state *trace);
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
 
 /* adaptive.c: everything around the passes of an adaptive picture, which render.c makes. */
-/* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`, in
-   some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
+/* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,
+   in some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
 uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels);
 /* Lists the pixels of the chunk that the pass draws: their number is chunk->listed. */
 WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct progress *progress,

@@ -1,4 +1,6 @@
 /* Which specialization constants a scene gets, and the pipelines made with them. */
+#include <string.h>
+
 #include "render/renderer.h"
 
 #include "kernels.h"
@@ -48,12 +50,12 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_ORDER = renderer->params.order;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_SECONDARY = secondary;
-    spec.SPEC_LISTED = renderer->params.adaptive > 0.0;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = camera_code(renderer);
+    spec.SPEC_LISTED = renderer->params.adaptive > 0.0;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
     return spec;
@@ -89,6 +91,22 @@ struct gpu_spec variant_general_spec(const struct renderer *renderer)
     struct gpu_spec spec = make_spec(renderer, &effects, true);
     spec.SPEC_LISTED = 1;
     return spec;
+}
+
+struct gpu_spec variant_beside_spec(const struct renderer *renderer)
+{
+    /* All but what the buffers hold nothing for. */
+    static const enum scene_effect held[] = {SCENE_EFFECT_SMOOTH_NORMALS,
+                                             SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_MEDIA};
+    struct scene_effects effects = renderer->effects;
+    struct render_params all = renderer->params;
+    all.all_effects = true;
+    for (size_t i = 0; i < sizeof held / sizeof *held; ++i) {
+        if (!effects.called[held[i]])
+            all.effects_removed |= UINT64_C(1) << held[i];
+    }
+    effects_choose(&all, &effects);
+    return make_spec(renderer, &effects, renderer->has_secondary);
 }
 
 /* What a kernel is bound to, while it is put together. */
@@ -172,15 +190,21 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     return bindings;
 }
 
-/* `brute`: BRUTE_*. */
-static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
+void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
+                      struct variant_job *job)
+{
+    struct bindings bindings = bind_whitted(renderer);
+    *job = (struct variant_job){.spec = *spec};
+    memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
+    job->params = whitted_params(&job->spec, &bindings);
+    job->params.bindings = job->kinds;
+}
+
+whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
 {
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
     struct bindings bindings = bind_whitted(renderer);
-    struct gpu_spec spec = variant_spec(renderer);
-    spec.SPEC_BRUTE = brute;
-    const struct pipeline_params params = whitted_params(&spec, &bindings);
-    whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
+    whit_result result = WHIT_OK;
     int set_count = pixels->work[0] ? 2 : 1;
     for (int i = 0; result == WHIT_OK && i < set_count; ++i) {
         if (pixels->work[0]) {
@@ -191,6 +215,17 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
                                     &pass->sets[i]);
     }
     return result;
+}
+
+/* `brute`: BRUTE_*. */
+static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
+{
+    struct variant_job job;
+    struct gpu_spec spec = variant_spec(renderer);
+    spec.SPEC_BRUTE = brute;
+    variant_job_init(renderer, &spec, &job);
+    whit_result result = pipeline_create(renderer->device, &job.params, &pass->pipeline);
+    return result == WHIT_OK ? variant_bind_whitted(renderer, pass) : result;
 }
 
 whit_result variant_create_whitted(struct renderer *renderer)
@@ -274,6 +309,7 @@ void pass_finish(struct pass *pass)
 
 void passes_finish(struct renderer *renderer)
 {
+    renderer->beside.general = false;
     pass_finish(&renderer->whitted);
     pass_finish(&renderer->brute.closest);
     pass_finish(&renderer->brute.shadow);

@@ -1,0 +1,176 @@
+/* The general kernel draws while a thread compiles the specialised one: the same bytes, whichever
+   it is, and whatever comes in between. */
+#include <time.h>
+
+#include "picture_fixture.h"
+#include "render/renderer.h"
+#include "render_scenes.h"
+
+static void sleep_ms(long ms)
+{
+    const struct timespec span = {.tv_nsec = ms * 1000000};
+    nanosleep(&span, NULL);
+}
+
+static struct render_stats stats_of(const struct renderer *renderer)
+{
+    struct render_stats stats;
+    renderer_get_stats(renderer, &stats);
+    return stats;
+}
+
+/* Draws with the general kernel, though the other one may be there by now. */
+static struct image render_general(struct fixture *f)
+{
+    assert_true(f->renderer->beside.general);
+    f->renderer->beside.general = false;
+    struct image image = render(f);
+    f->renderer->beside.general = true;
+    return image;
+}
+
+/* Draws until the specialised kernel is there. */
+static struct image render_specialised(struct fixture *f)
+{
+    for (int i = 0; i < 6000; ++i) {
+        struct image image = render(f);
+        if (!stats_of(f->renderer).general)
+            return image;
+        image_finish(&image);
+        sleep_ms(10);
+    }
+    fail_msg("the specialised kernel never came");
+    return (struct image){0};
+}
+
+static void assert_same(const struct image *a, const struct image *b)
+{
+    assert_memory_equal(a->pixels, b->pixels, (size_t)a->width * a->height * 16);
+}
+
+static void renew(struct fixture *f, const struct render_params *params)
+{
+    renderer_destroy(f->renderer);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
+                     WHIT_OK);
+}
+
+static void both_kernels_draw_the_same(void **state)
+{
+    (void)state;
+    static struct scene *(*const make[])(void) = {terrain_scene, glass_scene, ring_scene};
+    static const char *const cameras[] = {"0,6,9,0,0,0,0,1,0,40", glass_camera,
+                                          "0,6,14,0,0,0,0,1,0,40"};
+    for (int i = 0; i < 3; ++i) {
+        struct render_params params = {
+            .width = 50, .height = 30, .depth = 4, .camera = cameras[i], .compile_beside = true};
+        struct fixture f = fixture_open(make[i](), NULL, &params);
+        struct render_stats begun = stats_of(f.renderer);
+        assert_true(begun.general);
+        struct image first = render_general(&f), second = render_specialised(&f);
+        struct render_stats done = stats_of(f.renderer);
+        assert_null(f.renderer->beside.job);
+        assert_true(done.kernel_instructions < begun.kernel_instructions);
+        params.compile_beside = false;
+        renew(&f, &params);
+        assert_false(stats_of(f.renderer).general);
+        struct image at_once = render(&f);
+        assert_int_equal(stats_of(f.renderer).kernel_instructions, done.kernel_instructions);
+        assert_same(&first, &at_once);
+        assert_same(&second, &at_once);
+        image_finish(&first);
+        image_finish(&second);
+        image_finish(&at_once);
+        fixture_close(&f);
+    }
+}
+
+/* What is taken out by name stays out of the general kernel too. */
+static void removed_effects_stay_removed(void **state)
+{
+    (void)state;
+    struct render_params params = {.width = 50,
+                                   .height = 30,
+                                   .depth = 4,
+                                   .camera = glass_camera,
+                                   .no_shadows = true,
+                                   .effects_removed = UINT64_C(1) << SCENE_EFFECT_REFLECTION,
+                                   .compile_beside = true};
+    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    struct image first = render_general(&f), second = render_specialised(&f);
+    assert_same(&first, &second);
+    assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
+    assert_int_equal(stats_of(f.renderer).rays_reflected, 0);
+    image_finish(&first);
+    image_finish(&second);
+    fixture_close(&f);
+}
+
+/* With everything compiled there is nothing to wait for. */
+static void all_effects_need_no_thread(void **state)
+{
+    (void)state;
+    struct render_params params = {.width = 8, .height = 8, .compile_beside = true};
+    struct fixture f = fixture_open(terrain_scene(), NULL, &params);
+    params.all_effects = true;
+    renew(&f, &params);
+    struct image image = render(&f);
+    assert_null(f.renderer->beside.job);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* Other scenes, other times, passes that are gone, cancelled pictures: all while a thread is at
+   work or has just left its pipeline. */
+static void anything_may_come_in_between(void **state)
+{
+    (void)state;
+    bool cancel = false;
+    struct render_params params = {.width = 50,
+                                   .height = 30,
+                                   .depth = 4,
+                                   .camera = glass_camera,
+                                   .cancel = &cancel,
+                                   .compile_beside = true};
+    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    for (int i = 0; i < 3; ++i) {
+        sleep_ms(i * 30);
+        renew(&f, &params); /* destroyed without a picture */
+    }
+    cancel = true;
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
+    cancel = false;
+    struct image before = render(&f);
+    passes_finish(f.renderer); /* as when a buffer grows */
+    struct image again = render(&f);
+    assert_same(&before, &again);
+    image_finish(&again);
+    assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
+    again = render_specialised(&f);
+    assert_same(&before, &again);
+    image_finish(&again);
+    /* Constants that no longer fit: the node stack has grown. */
+    f.renderer->node_stack_size += 4;
+    passes_finish(f.renderer);
+    again = render(&f);
+    assert_same(&before, &again);
+    image_finish(&again);
+    f.renderer->node_stack_size += 4;
+    passes_finish(f.renderer);
+    again = render_specialised(&f);
+    assert_same(&before, &again);
+    image_finish(&again);
+    image_finish(&before);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_kernels_draw_the_same),
+        cmocka_unit_test(removed_effects_stay_removed),
+        cmocka_unit_test(all_effects_need_no_thread),
+        cmocka_unit_test(anything_may_come_in_between),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
