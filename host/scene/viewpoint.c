@@ -33,7 +33,8 @@
 
 /* Triangles in a space where the scene is around the origin and its bounding sphere is 1. */
 struct soup {
-    float *corners; /* 9 per triangle */
+    float *corners;    /* 9 per triangle */
+    uint8_t *pictured; /* 1 per triangle: shows a picture */
     uint32_t count;
     uint32_t fit_count; /* with those that only the fit looks at: where things are later on */
     bool whole;         /* else boxes around the instances stand for them */
@@ -51,10 +52,11 @@ struct view {
 struct sketch {
     float nearness[DOWN][ACROSS]; /* 1 / depth; 0: nothing */
     bool front[DOWN][ACROSS];
+    bool pictured[DOWN][ACROSS];
 };
 
 struct verdict {
-    double share; /* of fronts in what is seen */
+    double share; /* of fronts in what is seen; of a board: in what shows pictures, if anything */
     double fill;  /* of the rectangle around what is seen */
     double close; /* share of what is seen that is nearer than 1 / the nearness asked for */
     double level; /* share of the middle row that shows anything */
@@ -101,11 +103,13 @@ static void put_corner(const struct soup *soup, const struct affine *matrix, con
         out[i] = (float)((world[i] - soup->centre[i]) / soup->radius);
 }
 
-static void add_triangles(struct soup *soup, const struct scene_mesh *mesh,
-                          const struct affine *matrix)
+static void add_triangles(struct soup *soup, const struct scene *scene,
+                          const struct scene_mesh *mesh, const struct affine *matrix)
 {
     bool mirrored = affine_determinant(matrix) < 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const struct scene_material *material = &scene->materials[mesh->materials[t]];
+        soup->pictured[soup->count] = material->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE;
         float *out = soup->corners + 9 * (size_t)soup->count++;
         for (int i = 0; i < 3; ++i) {
             const float *p = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + (size_t)i];
@@ -243,12 +247,15 @@ static whit_result gather(const struct scene *scene, const struct scene_pose *po
     soup->whole = total <= TRIANGLES_MOST && !spheres;
     uint64_t room = (soup->whole ? total : 0) + 3ull * moments.count * scene->instance_count;
     soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
-    if (!soup->corners) {
+    soup->pictured = array_alloc((size_t)room, sizeof *soup->pictured);
+    if (!soup->corners || !soup->pictured) {
+        free(soup->corners);
+        free(soup->pictured);
         moments_finish(&moments);
         return WHIT_ERROR_MEMORY;
     }
     for (uint32_t i = 0; soup->whole && i < scene->instance_count; ++i)
-        add_triangles(soup, &scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
+        add_triangles(soup, scene, &scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
     soup->fit_count = soup->count;
     for (uint32_t i = soup->whole ? 1 : 0; i < moments.count; ++i)
         add_boxes(scene, &moments.poses[i], soup);
@@ -357,7 +364,7 @@ static int pixel_to(double high, int count)
 
 /* a, b, c: pixel x, pixel y, 1 / depth. Of surfaces in one place the front counts. */
 static void draw_projected(struct sketch *sketch, const double a[3], const double b[3],
-                           const double c[3], bool front)
+                           const double c[3], bool front, bool pictured)
 {
     double area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
     int x0 = pixel_from(least(least(a[0], b[0]), c[0])),
@@ -378,6 +385,7 @@ static void draw_projected(struct sketch *sketch, const double a[3], const doubl
             if (near > there * (front ? 1.0f - 1e-5f : 1.0f + 1e-5f)) {
                 sketch->nearness[y][x] = near;
                 sketch->front[y][x] = front;
+                sketch->pictured[y][x] = pictured;
             }
         }
     }
@@ -401,7 +409,8 @@ static uint32_t clip(double corners[3][3], double nearest, double out[4][3])
     return count;
 }
 
-static void draw_triangle(const struct view *view, const float *corners, struct sketch *sketch)
+static void draw_triangle(const struct view *view, const float *corners, bool pictured,
+                          struct sketch *sketch)
 {
     double seen[3][3], clipped[4][3];
     for (int i = 0; i < 3; ++i) {
@@ -423,21 +432,23 @@ static void draw_triangle(const struct view *view, const float *corners, struct 
         clipped[i][1] = 0.5 * DOWN * (1.0 - clipped[i][1] * clipped[i][2]);
     }
     for (uint32_t i = 2; i < count; ++i)
-        draw_projected(sketch, clipped[0], clipped[i - 1], clipped[i], front);
+        draw_projected(sketch, clipped[0], clipped[i - 1], clipped[i], front, pictured);
 }
 
 static void draw(const struct soup *soup, const struct view *view, struct sketch *out)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t t = 0; t < soup->count; ++t)
-        draw_triangle(view, soup->corners + 9 * (size_t)t, out);
+        draw_triangle(view, soup->corners + 9 * (size_t)t, soup->pictured[t], out);
 }
 
-static struct verdict judge(const struct soup *soup, const struct view *view, double nearness)
+/* `board`: its front is where its pictures are the right way round. */
+static struct verdict judge(const struct soup *soup, const struct view *view, double nearness,
+                            bool board)
 {
     struct sketch sketch;
     int left = ACROSS, right = -1, top = DOWN, bottom = -1;
-    uint32_t fronts = 0, seen = 0, level = 0, close = 0;
+    uint32_t fronts = 0, seen = 0, level = 0, close = 0, pictures = 0, picture_fronts = 0;
     draw(soup, view, &sketch);
     for (int y = 0; y < DOWN; ++y) {
         for (int x = 0; x < ACROSS; ++x) {
@@ -447,6 +458,8 @@ static struct verdict judge(const struct soup *soup, const struct view *view, do
             level += y == DOWN / 2;
             close += (double)sketch.nearness[y][x] >= nearness;
             fronts += sketch.front[y][x];
+            pictures += sketch.pictured[y][x];
+            picture_fronts += sketch.pictured[y][x] && sketch.front[y][x];
             left = x < left ? x : left, right = x > right ? x : right;
             top = y < top ? y : top, bottom = y;
         }
@@ -455,8 +468,8 @@ static struct verdict judge(const struct soup *soup, const struct view *view, do
     if (seen < ACROSS * DOWN / 50)
         return (struct verdict){0};
     double rectangle = (double)(right - left + 1) * (bottom - top + 1);
-    return (struct verdict){(double)fronts / seen, seen / rectangle, (double)close / seen,
-                            (double)level / ACROSS};
+    double share = board && pictures ? (double)picture_fronts / pictures : (double)fronts / seen;
+    return (struct verdict){share, seen / rectangle, (double)close / seen, (double)level / ACROSS};
 }
 
 /* --- outside -------------------------------------------------------------------------------- */
@@ -485,13 +498,16 @@ static void choose_outside(const struct soup *soup, uint32_t *way, struct view *
     struct view other;
     *way = first_way(soup);
     fit_view(soup, ways[*way], false, view);
-    double share = soup->whole && soup->count ? judge(soup, view, 0.0).share : 1.0, best = share;
+    bool board = *way >= STRAIGHT_FIRST;
+    double share = soup->whole && soup->count ? judge(soup, view, 0.0, board).share : 1.0;
+    double best = share;
     uint32_t best_way = *way;
     for (uint32_t i = 0; share < SHARE_ENOUGH && i < 8; ++i) {
-        fit_view(soup, ways[i], false, &other);
-        double found = judge(soup, &other, 0.0).share;
+        uint32_t tried = board ? (i + STRAIGHT_FIRST) % 8 : i;
+        fit_view(soup, ways[tried], false, &other);
+        double found = judge(soup, &other, 0.0, board).share;
         if (found > best + 1e-9)
-            best = found, best_way = i;
+            best = found, best_way = tried;
     }
     if (best >= share + SHARE_BETTER)
         *way = best_way;
@@ -508,7 +524,7 @@ static bool has_walls(const struct soup *soup)
         fit_view(soup, ways[i], false, &view);
         double half = fabs(dot(soup->half, view.forward));
         double inner_face = -dot(view.eye, view.forward) - half + WALLS_DEPTH * half;
-        struct verdict verdict = judge(soup, &view, 1.0 / inner_face);
+        struct verdict verdict = judge(soup, &view, 1.0 / inner_face, false);
         walls = verdict.fill >= WALLS_FILL && verdict.close >= WALLS_CLOSE;
     }
     return walls;
@@ -521,7 +537,7 @@ static bool is_enclosed(const struct soup *soup, const double eye[3])
         struct view view;
         make_view(ways[i], FOV_Y_INSIDE, &view);
         memcpy(view.eye, eye, sizeof view.eye);
-        struct verdict verdict = judge(soup, &view, 0.0);
+        struct verdict verdict = judge(soup, &view, 0.0, false);
         if (verdict.share < SHARE_INSIDE || verdict.level < 1.0 - SKY_INSIDE)
             return false;
     }
@@ -596,5 +612,6 @@ whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose 
         out->target[i] = out->eye[i] + soup.radius * distance * view.forward[i];
     }
     free(soup.corners);
+    free(soup.pictured);
     return WHIT_OK;
 }

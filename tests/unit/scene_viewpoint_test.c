@@ -216,6 +216,28 @@ static void boards_are_seen_straight_on(void **state)
     scene_destroy(scene);
 }
 
+/* A board with a picture on its far side, and a plate before most of it. */
+static void boards_show_their_pictures(void **state)
+{
+    (void)state;
+    struct scene *scene = empty_scene();
+    struct scene_material printed;
+    scene_material_init(&printed, "printed");
+    struct scene_texture picture = {string_copy("picture"), 1, 1, calloc(4, 1)};
+    printed.textures[SCENE_SLOT_DIFFUSE].texture = scene_add_texture(scene, picture);
+    uint32_t index = scene_add_material(scene, printed);
+    assert_int_not_equal(index, SCENE_NONE);
+    struct scene_mesh board = walls((const float[]){1.2f, 1.2f, 0.02f}, 0x2f, true);
+    for (uint32_t i = 0; i < board.triangle_count; ++i)
+        board.materials[i] = index;
+    place(scene, board, SCENE_NONE);
+    place(scene, walls((const float[]){1, 1, 0.02f}, 0x1f, true), SCENE_NONE);
+    double forward[3];
+    camera_of(scene, forward);
+    assert_true(fabs(forward[2] - 1.0) < 1e-9);
+    scene_destroy(scene);
+}
+
 /* What flies away later is in the picture from the start. */
 static void animations_stay_in_the_picture(void **state)
 {
@@ -340,6 +362,7 @@ int main(void)
         cmocka_unit_test(mirrors_do_not_turn_surfaces),
         cmocka_unit_test(rooms_are_seen_from_inside),
         cmocka_unit_test(boards_are_seen_straight_on),
+        cmocka_unit_test(boards_show_their_pictures),
         cmocka_unit_test(animations_stay_in_the_picture),
         cmocka_unit_test(lamps_of_models_light_their_scene),
         cmocka_unit_test(stated_lights_change_only_where_nothing_is_seen),
