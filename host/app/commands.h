@@ -54,10 +54,9 @@ void recipe_finish(struct recipe *recipe);
 /* The device's driver without the name of the device in front. */
 const char *stats_driver(const whit_device_info *device);
 
-/* --stats of `whit render`: on standard output. `kernel`: zeroed where it is not known; `sequence`:
-   with --frames, else NULL. */
+/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL. */
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, const whit_kernel_info *kernel, double save_ms,
+                const whit_renderer *renderer, const whit_stats *stats, double save_ms,
                 const struct sequence *sequence);
 
 #endif

@@ -422,11 +422,8 @@ static int work(struct job *job, const struct render_request *request)
                                : render_one(job, request, renderer, &progress, &sequence);
     cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
-        whit_kernel_info kernel = {0};
         say_done(job, request, &sequence.stats);
-        if (job->stats != JOB_STATS_NONE) /* without it zeros, and no line */
-            (void)!whit_renderer_get_kernel(renderer, &kernel);
-        status = stats_print(job, request, &sequence.stats, &kernel, sequence.save_ms,
+        status = stats_print(job, request, renderer, &sequence.stats, sequence.save_ms,
                              frames->given ? &sequence : NULL);
     } else {
         status = cli_exit_of(result);

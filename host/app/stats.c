@@ -14,17 +14,18 @@ struct figures {
     uint64_t rays;
 };
 
-static void collect(const struct job *job, const whit_stats *stats, const whit_kernel_info *kernel,
+static void collect(const struct job *job, const whit_renderer *renderer, const whit_stats *stats,
                     double save_ms, const struct sequence *sequence, struct figures *out)
 {
-    *out = (struct figures){
-        .render = stats, .kernel = *kernel, .save_ms = save_ms, .sequence = sequence};
+    *out = (struct figures){.render = stats, .save_ms = save_ms, .sequence = sequence};
     whit_scene_get_info(job->scene, &out->scene);
     whit_accel_get_info(job->accel, &out->tree);
     whit_device_get_info(job->device, &out->device);
     out->rays =
         stats->rays_primary + stats->rays_shadow + stats->rays_reflected + stats->rays_refracted;
     out->total_ms = whit_clock_ms() - job->start_ms;
+    if (whit_renderer_get_kernel(renderer, &out->kernel) != WHIT_OK)
+        out->kernel = (whit_kernel_info){0};
 }
 
 static json_t *times_document(const struct job *job, const struct figures *figures)
@@ -325,11 +326,13 @@ static int print_text(const struct job *job, const struct render_request *reques
 }
 
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_stats *stats, const whit_kernel_info *kernel, double save_ms,
+                const whit_renderer *renderer, const whit_stats *stats, double save_ms,
                 const struct sequence *sequence)
 {
     struct figures figures;
-    collect(job, stats, kernel, save_ms, sequence, &figures);
+    if (job->stats == JOB_STATS_NONE)
+        return EXIT_FINE;
+    collect(job, renderer, stats, save_ms, sequence, &figures);
     if (job->stats == JOB_STATS_JSON)
         return print_json(job, request, &figures);
     if (job->stats == JOB_STATS_TEXT)

@@ -30,14 +30,13 @@ static uint64_t hash_bytes(const uint8_t *data, size_t size_bytes)
     return hash ? hash : 1;
 }
 
-static bool cache_is_off(void)
+bool cache_is_off(void)
 {
     const char *value = getenv("WHIT_NO_CACHE");
     return value && *value && strcmp(value, "0") != 0;
 }
 
-/* $XDG_CACHE_HOME/whit or ~/.cache/whit, made if asked for; NULL when there is no such place. */
-static char *cache_folder(bool make)
+char *cache_folder(bool make)
 {
     const char *xdg = getenv("XDG_CACHE_HOME");
     const char *home = getenv("HOME");

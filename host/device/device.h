@@ -57,8 +57,8 @@ struct device_params {
 };
 
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
-   Compiled pipelines are kept in $XDG_CACHE_HOME/whit or ~/.cache/whit from one run to the next,
-   unless WHIT_NO_CACHE=1 is in the environment. */
+   Compiled pipelines, and kernels with their constants filled in, are kept in $XDG_CACHE_HOME/whit
+   or ~/.cache/whit from one run to the next, unless WHIT_NO_CACHE=1 is in the environment. */
 WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);

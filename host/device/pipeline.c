@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "device/specialize.h"
 
 static VkDescriptorType descriptor_type(enum binding_kind kind)
 {
@@ -96,21 +95,18 @@ fail:
     return result;
 }
 
-/* A kernel as the driver gets it. */
-struct kernel_words {
-    uint32_t *specialized; /* NULL: as it came */
-    size_t word_count;
-    struct spirv_info info;
-};
-
 static bool specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
+    if (kernel_cache_load(params, out))
+        return true;
     *out = (struct kernel_words){.word_count = word_count};
     if (spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
                          &out->specialized, &out->word_count) &&
-        spirv_inspect(out->specialized, out->word_count, &out->info))
+        spirv_inspect(out->specialized, out->word_count, &out->info)) {
+        kernel_cache_save(params, out);
         return true;
+    }
     free(out->specialized);
     *out = (struct kernel_words){.word_count = word_count};
     return false;

@@ -84,6 +84,11 @@ spv_result_t inspect_instruction(void *user, const spv_parsed_instruction_t *ins
 
 } // namespace
 
+const char *spirv_tools_version(void)
+{
+    return spvSoftwareVersionString();
+}
+
 bool spirv_inspect(const uint32_t *words, size_t word_count, struct spirv_info *out)
 try {
     inspection seen = {};

@@ -18,6 +18,9 @@ extern "C" {
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words);
 
+/* Of the library that does it; never NULL. */
+const char *spirv_tools_version(void);
+
 /* What a module has in its functions. */
 struct spirv_info {
     uint32_t instructions;

@@ -15,6 +15,7 @@
 #include <vulkan/vulkan.h>
 
 #include "device/device.h"
+#include "device/specialize.h"
 
 enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };
 
@@ -96,6 +97,21 @@ bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t
 /* cache.c: the pipeline cache and its file. */
 whit_result cache_open(struct device *device);
 void cache_close(struct device *device); /* saves, destroys */
+bool cache_is_off(void);
+/* $XDG_CACHE_HOME/whit or ~/.cache/whit, made if asked for; NULL when there is no such place. The
+   caller's to free. */
+char *cache_folder(bool make);
+
+/* A kernel as the driver gets it. */
+struct kernel_words {
+    uint32_t *specialized; /* owned; NULL: as it came */
+    size_t word_count;
+    struct spirv_info info;
+};
+
+/* kernel_cache.c: specialized kernels of earlier runs. */
+bool kernel_cache_load(const struct pipeline_params *params, struct kernel_words *out);
+void kernel_cache_save(const struct pipeline_params *params, const struct kernel_words *kernel);
 
 /* device.c */
 void device_read_fault(struct device *device);

@@ -186,8 +186,8 @@ static void fifty_devices_in_turn(void **state)
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
 }
 
-/* The one file in `folder`/whit, "" when there is none. */
-static void cache_file(const char *folder, char *path, size_t path_bytes)
+/* The one file in `folder`/whit whose name begins so, "" when there is none. */
+static void cache_file(const char *folder, const char *begin, char *path, size_t path_bytes)
 {
     char cache[128];
     snprintf(cache, sizeof cache, "%s/whit", folder);
@@ -197,7 +197,7 @@ static void cache_file(const char *folder, char *path, size_t path_bytes)
         return;
     int count = 0;
     for (struct dirent *entry; (entry = readdir(dir));)
-        if (entry->d_name[0] != '.' && ++count)
+        if (strncmp(entry->d_name, begin, strlen(begin)) == 0 && ++count)
             snprintf(path, path_bytes, "%s/%s", cache, entry->d_name);
     closedir(dir);
     assert_int_equal(count, 1);
@@ -220,22 +220,11 @@ static void write_all(const char *path, const uint8_t *data, size_t data_bytes)
     assert_int_equal(fclose(file), 0);
 }
 
-static void damaged_cache_files_are_replaced(void **state)
+/* Damages the file in several ways; each time the next run makes it anew, and says nothing. */
+static void damage_and_run(const char *path)
 {
-    (void)state;
     static uint8_t good[1 << 20], broken[1 << 20], now[1 << 20];
-    char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
     struct messages messages;
-    assert_non_null(mkdtemp(folder));
-    setenv("XDG_CACHE_HOME", folder, 1);
-    assert_int_equal(cycle_run(&messages, false), WHIT_OK); /* WHIT_NO_CACHE is on */
-    cache_file(folder, path, sizeof path);
-    assert_string_equal(path, "");
-
-    unsetenv("WHIT_NO_CACHE");
-    assert_int_equal(cycle_run(&messages, false), WHIT_OK);
-    cache_file(folder, path, sizeof path);
-    assert_true(path[0] != '\0');
     size_t bytes = read_all(path, good, sizeof good);
     assert_true(bytes > 32 && bytes < sizeof good);
     for (int damage = 0; damage < 5; ++damage) {
@@ -251,11 +240,32 @@ static void damaged_cache_files_are_replaced(void **state)
         assert_true(broken_bytes != bytes || memcmp(now, broken, bytes) != 0);
         assert_memory_equal(now, good, 8); /* ours again, at the size it had */
     }
+}
+
+static void damaged_cache_files_are_replaced(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/whit-device-XXXXXX", path[512], kernel[512], cache[64];
+    struct messages messages;
+    assert_non_null(mkdtemp(folder));
+    setenv("XDG_CACHE_HOME", folder, 1);
+    assert_int_equal(cycle_run(&messages, false), WHIT_OK); /* WHIT_NO_CACHE is on */
+    cache_file(folder, "", path, sizeof path);
+    assert_string_equal(path, "");
+
+    unsetenv("WHIT_NO_CACHE");
+    assert_int_equal(cycle_run(&messages, false), WHIT_OK);
+    cache_file(folder, "pipelines-", path, sizeof path);
+    cache_file(folder, "kernel-", kernel, sizeof kernel);
+    assert_true(path[0] != '\0' && kernel[0] != '\0');
+    damage_and_run(path);
+    damage_and_run(kernel);
+    assert_int_equal(unlink(kernel), 0);
     assert_int_equal(unlink(path), 0);
     snprintf(cache, sizeof cache, "%s/whit", folder);
     assert_int_equal(rmdir(cache), 0);
     /* A file where the folder should be: no cache, and no complaint. */
-    write_all(cache, good, 1);
+    write_all(cache, (const uint8_t[]){0}, 1);
     assert_int_equal(cycle_run(&messages, false), WHIT_OK);
     assert_int_equal(messages.lines, 0);
     assert_int_equal(unlink(cache), 0);

@@ -5,10 +5,16 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <glob.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "abi/bindings.h"
 #include "abi/spec.h"
+#include "device/device.h"
 #include "device/specialize.h"
 #include "kernels.h"
 
@@ -89,12 +95,97 @@ static void nonsense_is_left_to_the_driver(void **state)
     assert_null(out);
 }
 
+/* Every binding that a function names is counted, and no other. */
+static void bindings_follow_the_constants(void **state)
+{
+    (void)state;
+    struct gpu_spec spec = GPU_SPEC_DEFAULTS;
+    for (uint32_t path = LOAD_STORAGE; path <= LOAD_TEXEL; ++path) {
+        uint32_t *words = NULL;
+        size_t count = 0;
+        struct spirv_info info;
+        spec.SPEC_LOAD_PATH = path;
+        assert_true(spirv_specialize(kernels[KERNEL_WHITTED].words,
+                                     kernels[KERNEL_WHITTED].bytes / 4, (const uint32_t *)&spec,
+                                     GPU_SPEC_COUNT, &words, &count));
+        assert_true(spirv_inspect(words, count, &info));
+        assert_true(info.instructions > 0 &&
+                    info.instructions < tally_of(words, count).instructions);
+        assert_int_equal(info.bindings >> BIND_NODES & 1, path == LOAD_STORAGE);
+        assert_int_equal(info.bindings >> BIND_NODE_TEXELS & 1, path == LOAD_TEXEL);
+        assert_int_equal(info.bindings >> BIND_ENVIRONMENT & 1, 1);
+        assert_int_equal(info.bindings >> BIND_COSTS & 1, 0); /* SPEC_COUNT is 0 */
+        free(words);
+    }
+}
+
+/* The number of the file of the only kernel in the cache. Writing it anew gives another one. */
+static ino_t cached_file(const char *folder, char *path, size_t size)
+{
+    glob_t found;
+    struct stat about;
+    char pattern[128];
+    snprintf(pattern, sizeof pattern, "%s/whit/kernel-*.bin", folder);
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    assert_int_equal(found.gl_pathc, 1);
+    snprintf(path, size, "%s", found.gl_pathv[0]);
+    globfree(&found);
+    assert_int_equal(stat(path, &about), 0);
+    return about.st_ino;
+}
+
+static void flip_bit(const char *path, long at)
+{
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, at, SEEK_SET), 0);
+    int byte = fgetc(file);
+    assert_int_equal(fseek(file, at, SEEK_SET), 0);
+    assert_int_not_equal(fputc(byte ^ 4, file), EOF);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void kernels_are_kept_and_damage_is_seen(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/whit-kernels-XXXXXX", path[256];
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(setenv("XDG_CACHE_HOME", folder, 1), 0);
+    const struct gpu_spec spec = GPU_SPEC_DEFAULTS;
+    const struct pipeline_params params = {.spirv = kernels[KERNEL_TRACE].words,
+                                           .spirv_bytes = kernels[KERNEL_TRACE].bytes,
+                                           .spec = (const uint32_t *)&spec,
+                                           .spec_count = GPU_SPEC_COUNT};
+    struct pipeline_info first, again;
+    assert_true(pipeline_count(&params, &first));
+    ino_t file = cached_file(folder, path, sizeof path);
+    assert_true(pipeline_count(&params, &again));
+    assert_memory_equal(&again, &first, sizeof first);
+    assert_int_equal(cached_file(folder, path, sizeof path), file);
+    for (long at = 0; at < 200; at += 20) { /* header and words */
+        file = cached_file(folder, path, sizeof path);
+        flip_bit(path, at);
+        FILE *held = fopen(path, "rb"); /* so that its number is not given to another one */
+        assert_true(pipeline_count(&params, &again));
+        assert_memory_equal(&again, &first, sizeof first);
+        assert_int_not_equal(cached_file(folder, path, sizeof path), file);
+        fclose(held);
+    }
+    assert_int_equal(unlink(path), 0);
+    char inner[128];
+    snprintf(inner, sizeof inner, "%s/whit", folder);
+    assert_int_equal(rmdir(inner), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constants_are_gone_and_floats_stay_exact),
         cmocka_unit_test(what_is_switched_off_is_gone),
         cmocka_unit_test(nonsense_is_left_to_the_driver),
+        cmocka_unit_test(bindings_follow_the_constants),
+        cmocka_unit_test(kernels_are_kept_and_damage_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
