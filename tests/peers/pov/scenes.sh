@@ -1,6 +1,6 @@
 #!/bin/sh
 # One scene for both ray tracers: writes NAME.json for whit and NAME.pov for POV-Ray into FOLDER.
-#     sh scenes.sh flake|glass|hollow|wine|mesh colors|masks WIDTH HEIGHT FOLDER
+#     sh scenes.sh flake|glass|hollow|wine|mesh colors|masks WIDTH HEIGHT BOUNCES FOLDER
 # colors: lit as the scene says. masks: every object in one flat colour of its own, so that only the
 # geometry and the camera count.
 #
@@ -9,15 +9,15 @@
 # 1 / n is Blinn's (n.h)^n, as whit has it. A light that fades with fade_distance f and fade_power 2 is
 # 2 / (1 + (d/f)^2) of its colour, which for a small f is inverse square within (f/d)^2.
 set -eu
-name=$1 mode=$2 width=$3 height=$4 folder=$5
+name=$1 mode=$2 width=$3 height=$4 depth=$5 folder=$6
 
-awk -v name="$name" -v mode="$mode" -v width="$width" -v height="$height" \
+awk -v name="$name" -v mode="$mode" -v width="$width" -v height="$height" -v depth="$depth" \
     -v json="$folder/$name.json" -v pov="$folder/$name.pov" '
 function rgb(r, g, b) { return sprintf("%.9g,%.9g,%.9g", r, g, b) }
 
 # --- what both have ---
 
-function begin(eye, target, fov, background, depth,    half) {
+function begin(eye, target, fov, background,    half) {
     half = fov * atan2(0, -1) / 360
     wide = 2 * atan2(sin(half) / cos(half) * width / height, 1) * 180 / atan2(0, -1)
     printf "{\n\"ambient\": 0,\n\"environment\": [%s],\n", mode == "masks" ? "0,0,0" : background > json
@@ -111,7 +111,7 @@ function flake(x, y, z, r, ux, uy, uz, level,    i, a, e, px, py, pz, qx, qy, qz
     }
 }
 function flake_scene() {
-    begin("2.1,1.7,3.2", "0,0.1,0", 45, "0.1,0.2,0.4", 6)
+    begin("2.1,1.7,3.2", "0,0.1,0", 45, "0.1,0.2,0.4")
     light("4,5,4", 30, 30, 28, 1)
     light("-5,3,2", 0.25, 0.3, 0.4, 0)
     material("mirror", "0.3,0.28,0.2", ", \"specular\": 0.4, \"shininess\": 40, \"reflection\": [0.5, 0.55, 0.6]",
@@ -126,7 +126,7 @@ function flake_scene() {
 # --- glass: a ball of index 1.5 before another one, over squares ---
 
 function glass_scene() {
-    begin("0.4,1.9,5.5", "0,0.9,0", 34, "0.25,0.4,0.7", 10)
+    begin("0.4,1.9,5.5", "0,0.9,0", 34, "0.25,0.4,0.7")
     light("-3,6,4", 40, 38, 36, 1)
     floor_of_squares(16, 0, 230, 60)
     if (mode == "colors") {
@@ -146,7 +146,7 @@ function clear(id, ior, more) {
     printf "#declare M_%s = texture { pigment { rgbf 1 } finish { ambient 0 diffuse 0 reflection { 1 fresnel on } conserve_energy } }\n", id > pov
 }
 function hollow_scene() {
-    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7", 10)
+    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7")
     light("-3,6,4", 40, 38, 36, 1)
     floor_of_squares(16, 0, 230, 60)
     # For POV-Ray a difference of balls; for whit a ball of air, which has priority.
@@ -163,9 +163,10 @@ function hollow_scene() {
 }
 
 # --- wine: a ball that absorbs, and its shadow ---
+# With two bounces: POV-Ray does not absorb what is reflected inside.
 
 function wine_scene() {
-    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7", 10)
+    begin("0.2,2.1,5.5", "0,0.8,0", 34, "0.25,0.4,0.7")
     light("-3,6,4", 40, 38, 36, 1)
     floor_of_squares(16, 0, 230, 60)
     if (mode == "colors")
@@ -184,7 +185,7 @@ function point(u, v,    a, b, r) {
 }
 function mesh_scene(    u, v, i, obj, corner, list) {
     us = 96; vs = 40
-    begin("0,2.6,3.6", "0,-0.1,0", 42, "0.02,0.03,0.05", 4)
+    begin("0,2.6,3.6", "0,-0.1,0", 42, "0.02,0.03,0.05")
     light("3,4,2", 18, 16, 13, 1)
     light("-4,3,1", 0.2, 0.3, 0.5, 0)
     material("ring", "0.75,0.5,0.35", ", \"specular\": 0.35, \"shininess\": 25", "specular 0.35 roughness 1/25")
