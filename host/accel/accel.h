@@ -156,6 +156,8 @@ WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
 /* Refs that a traversal may have to keep: at least 1. */
 uint32_t accel_stack_size(const struct accel *accel);
+/* Whether any record has TRIANGLE_FILTER_DETAIL. */
+bool accel_filters_vary(const struct accel *accel);
 
 /* ---- Traversal on the CPU ---- */
 

@@ -116,3 +116,12 @@ struct gpu_triangle material_bits_record(const struct scene *scene,
     }
     return out;
 }
+
+bool accel_filters_vary(const struct accel *accel)
+{
+    for (uint32_t i = 0; i < accel->record_count; ++i) {
+        if (accel->triangles[i].flags & TRIANGLE_FILTER_DETAIL)
+            return true;
+    }
+    return false;
+}

@@ -166,6 +166,14 @@ static void senseless_content_is_refused(void **state)
                  "test.json:1:28: objects[0].radius: a group has no `radius`");
     assert_error(state, "{\"lights\":[{\"position\":[0,1,0],\"direction\":[0,1,0]}]}",
                  "test.json:1:32: lights[0].direction: a point light has no `direction`");
+    assert_error(state, "{\"lights\":[{\"kind\":\"rectangle\",\"u\":[1,0,0],\"v\":[0,0,1]}]}",
+                 "test.json:1:12: lights[0]: a rectangle light needs a `position`");
+    assert_error(state,
+                 "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[0,1,0],\"u\":[1,0,0],"
+                 "\"v\":[2,0,0]}]}",
+                 "test.json:1:12: lights[0]: the light has no area");
+    assert_error(state, "{\"lights\":[{\"kind\":\"triangle\",\"points\":[[0,0,0],[1,0,0]]}]}",
+                 "test.json:1:12: lights[0]: a triangle light needs three `points`");
     assert_error(state, "{\"camera\":{},\n\"cameras\":[]}",
                  "test.json:2:1: cameras: `camera` and `cameras` exclude each other");
     assert_error(
@@ -437,6 +445,22 @@ static void lights_cameras_and_sky(void **state)
     scene_destroy(scene);
 }
 
+static void flat_emitters(void **state)
+{
+    struct scene *scene = load_fine(
+        state, "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
+               "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
+               "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
+    const struct scene_light *panel = &scene->lights[0], *corner = &scene->lights[1];
+    assert_int_equal(panel->kind, SCENE_LIGHT_RECTANGLE);
+    assert_true(panel->position[0] == 0.0 && panel->position[2] == -1.0 && panel->two_sided);
+    assert_true(panel->edge_u[0] == 2.0 && panel->edge_v[2] == 6.0 && panel->color[0] == 8.0f);
+    assert_int_equal(corner->kind, SCENE_LIGHT_TRIANGLE);
+    assert_true(corner->position[1] == 1.0 && !corner->two_sided && corner->color[2] == 3.0f);
+    assert_true(corner->edge_u[0] == 2.0 && corner->edge_v[1] == 1.0);
+    scene_destroy(scene);
+}
+
 static void sky_test(void **state)
 {
     struct heard *heard = *state;
@@ -595,6 +619,7 @@ int main(void)
         FOLDER_TEST(materials_mean_what_they_say),
         FOLDER_TEST(patterns_become_textures),
         FOLDER_TEST(sky_test),
+        FOLDER_TEST(flat_emitters),
         FOLDER_TEST(textures_are_found),
         FOLDER_TEST(missing_textures_are_refused),
         FOLDER_TEST(large_textures_are_halved),
