@@ -1,0 +1,116 @@
+/* Nothing gains light, nothing is lost but what was cut, and what was cut is counted. */
+#include "media_fixture.h"
+#include "render_scenes.h"
+
+/* ---- White furnace ---- */
+
+static struct scene *furnace(struct scene_mesh mesh, struct scene_material m)
+{
+    struct scene *scene = dark_scene((double[]){0.3, 0.5, 4}, (double[]){0, 0, 0});
+    set_sky(scene, 1, 1, 1);
+    add_body(scene, mesh, m, 0, 0, 0);
+    return scene;
+}
+
+/* Under a white sky a pixel is white but for the rays that were cut. */
+static void check_furnace(const char *name, struct scene *scene)
+{
+    const struct render_params params = {.width = 32, .height = 32, .depth = 5, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double highest = 0, worst = 0, cut = 0;
+    for (size_t i = 0; i < 32 * 32; ++i) {
+        struct gpu_counts counts = pixel_counts(&f, i);
+        double value = (double)image.pixels[4 * i], lost = (double)counts.cut_depth_weight;
+        assert_true(counts.cut_bailout == 0 && (counts.cut_depth > 0) == (lost > 0));
+        highest = fmax(highest, value);
+        worst = fmax(worst, fabs(value + lost - 1));
+        cut = fmax(cut, lost);
+    }
+    print_message("  %s: 1 %+.2g at most, with what was cut 1 within %.2g; cut: up to %.2g\n", name,
+                  highest - 1, worst, cut);
+    assert_true(highest <= 1 + 1e-4 && worst <= 1e-4); /* NUMERICS O13 */
+    struct render_stats stats;
+    renderer_get_stats(f.renderer, &stats);
+    assert_true(fabs(stats.weight_cut_depth - cut) < 1e-6 && stats.weight_cut_bailout == 0);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static void white_furnace(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    check_furnace("cube", furnace(box(1, 1, 1), clear_glass(1.5f, 0)));
+    assert_int_equal(shape_icosphere(1, 3, &mesh), WHIT_OK);
+    check_furnace("smooth mesh", furnace(mesh, clear_glass(1.5f, 0)));
+    assert_int_equal(shape_torus(0.7, 0.3, 24, 12, &mesh), WHIT_OK);
+    check_furnace("smooth ring", furnace(mesh, clear_glass(2.42f, 0)));
+    assert_int_equal(shape_balls((double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
+    check_furnace("ball", furnace(mesh, clear_glass(1.33f, 0)));
+    struct scene_material thin = clear_glass(1.5f, 0);
+    thin.thin_walled = true;
+    check_furnace("thin cube", furnace(box(1, 1, 1), thin));
+    struct scene_material mirror = material("mirror");
+    set_rgb(mirror.diffuse, 0, 0, 0);
+    set_rgb(mirror.reflection, 1, 1, 1);
+    assert_int_equal(shape_torus(0.7, 0.3, 24, 12, &mesh), WHIT_OK);
+    check_furnace("mirror ring", furnace(mesh, mirror));
+}
+
+static void white_furnace_of_nested_media(void **state)
+{
+    (void)state;
+    struct scene_mesh ball = {0}, ring = {0};
+    struct scene *scene = furnace(box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
+    assert_int_equal(shape_icosphere(0.6, 3, &ball), WHIT_OK);
+    add_body(scene, ball, clear_glass(1.5f, 1), 0.3, 0, 0);
+    assert_int_equal(shape_torus(0.5, 0.2, 24, 12, &ring), WHIT_OK);
+    add_body(scene, ring, clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
+    add_body(scene, box(1, 0.5, 0.5), clear_glass(1.2f, 0), 0.3, -0.25, 0.8);
+    check_furnace("nested", scene);
+}
+
+/* ---- Facing mirrors ---- */
+
+/* Mirrors that reflect everything and shine a little: each bounce adds as much, and it ends. */
+static void facing_mirrors_end(void **state)
+{
+    (void)state;
+    const uint32_t depths[] = {0, 1, 2, 3, 8, 64, 255};
+    struct image before = {0};
+    for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
+        struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
+        struct scene_material mirror = material("mirror");
+        set_rgb(mirror.diffuse, 0, 0, 0);
+        set_rgb(mirror.reflection, 1, 1, 1);
+        set_rgb(mirror.emission, 0.01f, 0.01f, 0.01f);
+        for (int i = 0; i < 2; ++i)
+            add_body(scene, box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
+        add_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
+        const struct render_params params = {
+            .width = 15, .height = 15, .depth = depths[d], .bailout = -1.0};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        assert_near(middle(&image)[0], 0.01 * (depths[d] + 1), 1e-5);
+        assert_near((float)pixel_counts(&f, 15 * 7 + 7).cut_depth_weight, 1, 1e-6);
+        for (size_t i = 0; i < 15 * 15 * 4; ++i) {
+            assert_true(isfinite(image.pixels[i]));
+            assert_true(!before.pixels || image.pixels[i] >= before.pixels[i]);
+        }
+        image_finish(&before);
+        before = image;
+        fixture_close(&f);
+    }
+    image_finish(&before);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_furnace),
+        cmocka_unit_test(white_furnace_of_nested_media),
+        cmocka_unit_test(facing_mirrors_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

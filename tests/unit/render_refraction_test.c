@@ -1,0 +1,293 @@
+/* Where refracted rays go and what they carry, against formulas in double. */
+#include "media_fixture.h"
+
+static const double FOV = 0.7;
+
+static struct scene *lens_scene(const double eye[3])
+{
+    struct scene *scene = dark_scene(eye, (double[]){eye[0], eye[1], eye[2] - 1});
+    scene->cameras[0].fov_y = (float)FOV;
+    return scene;
+}
+
+/* ---- A slab ---- */
+
+static const double SLAB_HALF = 0.3, SLAB_IOR = 1.5;
+
+/* A sky in which a ray's |y| can be read: red over blue; blue is what arrives of its weight. */
+static void set_height_sky(struct scene *scene)
+{
+    set_rgb(scene->environment.zenith, 1, 0, 1);
+    set_rgb(scene->environment.horizon, 0, 0, 1);
+    set_rgb(scene->environment.ground, 1, 0, 1);
+}
+
+/* All rays leave as steep as they came, those reflected within too. */
+static void slab_keeps_directions(void **state)
+{
+    (void)state;
+    struct scene *scene = lens_scene((double[]){0, 0, 5});
+    set_height_sky(scene);
+    add_body(scene, box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
+    const struct render_params params = {.width = 24, .height = 24, .depth = 8, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double worst = 0.0;
+    for (uint32_t i = 0; i < 24 * 24; ++i) {
+        const float *color = &image.pixels[4 * (size_t)i];
+        double slope[2];
+        pixel_slope(&image, i % 24, i / 24, FOV, slope);
+        double y = fabs(slope[1]) / sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1]);
+        worst = fmax(worst, fabs((double)color[0] / (double)color[2] - y));
+    }
+    print_message("  directions are off by %.2g\n", worst);
+    assert_true(worst <= 2e-6); /* NUMERICS O4: some ten roundings of a unit vector */
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* Set aside as Snell says, and weaker by both faces. */
+static void slab_moves_rays_aside(void **state)
+{
+    (void)state;
+    struct scene *scene = lens_scene((double[]){0, 0, 5});
+    add_body(scene, box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
+    add_coordinate_wall(scene, -2, 8);
+    const struct render_params params = {.width = 24, .height = 24, .depth = 2, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    double worst = 0.0, worst_light = 0.0;
+    for (uint32_t i = 0; i < 24 * 24; ++i) {
+        const float *color = &image.pixels[4 * (size_t)i];
+        double slope[2];
+        pixel_slope(&image, i % 24, i / 24, FOV, slope);
+        double tangent = hypot(slope[0], slope[1]), sine = tangent / sqrt(1 + tangent * tangent);
+        double inside = sine / SLAB_IOR, cosine = sqrt(1 - sine * sine);
+        double aside =
+            tangent * (7 - 2 * SLAB_HALF) + 2 * SLAB_HALF * inside / sqrt(1 - inside * inside);
+        for (int k = 0; k < 2; ++k)
+            worst = fmax(worst, fabs(wall_coordinate(color, k, 8) - aside * slope[k] / tangent));
+        double light = pow(1 - fresnel(cosine, 1, SLAB_IOR), 2);
+        worst_light = fmax(worst_light, fabs((double)color[2] / light - 1));
+    }
+    print_message("  off by %.2g sideways, by %.2g of the light\n", worst, worst_light);
+    /* gamma(7) of coordinates up to 10 at both faces and at the wall: bounds of hit points */
+    assert_true(worst < 3 * 7 * 10 * 0x1p-24);
+    assert_true(worst_light < 16 * 0x1p-24);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* ---- A ball lens ---- */
+
+/* Through a ball of radius 1 at the origin, to the plane z = -wall. False where the ray misses or
+   is beyond 0.7 of the radius: there what the ball reflects reaches the wall too. */
+static bool pass_ball(const double slope[2], double n, double wall, double at[2])
+{
+    double d[3] = {slope[0], slope[1], -1}, o[3] = {0, 0, 5}, p[3];
+    double size = sqrt(d[0] * d[0] + d[1] * d[1] + 1);
+    for (int k = 0; k < 3; ++k)
+        d[k] /= size;
+    double b = -o[2] * d[2], off2 = 25.0 - b * b;
+    if (off2 > 0.49)
+        return false;
+    double t = b - sqrt(1 - off2), eta = 1 / n;
+    for (int face = 0; face < 2; ++face) {
+        double cosine = 0;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = o[k] + t * d[k];
+            cosine -= d[k] * p[k];
+        }
+        double side = face == 0 ? 1 : -1;
+        cosine *= side;
+        double turn = eta * cosine - sqrt(1 - eta * eta * (1 - cosine * cosine));
+        for (int k = 0; k < 3; ++k) {
+            d[k] = eta * d[k] + turn * side * p[k];
+            o[k] = p[k];
+        }
+        t = -2 * (d[0] * p[0] + d[1] * p[1] + d[2] * p[2]);
+        eta = n;
+    }
+    for (int k = 0; k < 2; ++k)
+        at[k] = p[k] + d[k] * (-wall - p[2]) / d[2];
+    return true;
+}
+
+/* An analytic ball, and walls before, at and behind the image of the camera. */
+static void ball_bends_rays_to_its_focus(void **state)
+{
+    (void)state;
+    const double walls[] = {1.2, 2.14, 6.0}; /* 1 / 1.5 = 1 / 5 + 1 / 2.14 */
+    double spread[3] = {0};
+    for (int w = 0; w < 3; ++w) {
+        struct scene *scene = lens_scene((double[]){0, 0, 5});
+        struct scene_mesh ball = {0};
+        assert_int_equal(shape_balls((double[]){0, 0, 0, 1}, 1, &ball), WHIT_OK);
+        add_body(scene, ball, clear_glass(1.5f, 0), 0, 0, 0);
+        add_coordinate_wall(scene, -walls[w], 4);
+        const struct render_params params = {
+            .width = 32, .height = 32, .depth = 2, .bailout = -1.0};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        double worst = 0;
+        uint32_t through = 0;
+        for (uint32_t i = 0; i < 32 * 32; ++i) {
+            double slope[2], at[2];
+            pixel_slope(&image, i % 32, i / 32, FOV, slope);
+            if (!pass_ball(slope, 1.5, walls[w], at))
+                continue;
+            const float *color = &image.pixels[4 * (size_t)i];
+            for (int k = 0; k < 2; ++k)
+                worst = fmax(worst, fabs(wall_coordinate(color, k, 4) - at[k]));
+            if (hypot(slope[0], slope[1]) < 0.05)
+                spread[w] = fmax(spread[w],
+                                 hypot(wall_coordinate(color, 0, 4), wall_coordinate(color, 1, 4)));
+            ++through;
+        }
+        print_message("  wall at %g: %u rays, off by %.2g at most; near the axis %.3g wide\n",
+                      walls[w], through, worst, spread[w]);
+        assert_true(through > 100);
+        /* Hits of the ball: some 8 roundings of the 5 between; normals likewise. Each face turns an
+           error of the normal into up to twice that of the direction this far from the rim, and the
+           wall is up to 6 away. */
+        assert_true(worst < 8 * 5 * 0x1p-24 * 2 * 2 * (1 + walls[w]));
+        image_finish(&image);
+        fixture_close(&f);
+    }
+    assert_true(spread[1] < 0.1 * spread[0] && spread[1] < 0.1 * spread[2]);
+}
+
+/* ---- Many bounces ---- */
+
+/* Between two mirrors, up and out: 64 reflections later the direction is what it was. */
+static void directions_stay_unit(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){1, 0.05, 0.001});
+    set_height_sky(scene);
+    struct scene_material mirror = material("mirror");
+    set_rgb(mirror.diffuse, 0, 0, 0);
+    set_rgb(mirror.reflection, 1, 1, 1);
+    for (int i = 0; i < 2; ++i)
+        add_body(scene, box(1, 13, 13), mirror, i ? 1.5 : -1.5, 0, 0);
+    const struct render_params params = {.width = 1, .height = 1, .depth = 255, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    struct gpu_counts counts = pixel_counts(&f, 0);
+    double y = 0.05 / sqrt(1 + 0.05 * 0.05 + 0.001 * 0.001), seen = (double)image.pixels[0];
+    print_message("  %u reflections; y is off by %.2g, the weight by %.2g\n", counts.reflected,
+                  seen / (double)image.pixels[2] - y, (double)image.pixels[2] - 1);
+    assert_true(counts.reflected >= 64 && counts.cut_depth == 0);
+    assert_true(fabs(seen / (double)image.pixels[2] - y) <= 1e-6); /* NUMERICS O6 */
+    assert_true(image.pixels[2] == 1.0f);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* ---- Absorption ---- */
+
+/* Straight through glass of index 1, a unit thick: what is left of each colour. */
+static void beer_from_nothing_to_infinity(void **state)
+{
+    (void)state;
+    const float absorptions[] = {0.0f, 1e-9f, 1.0f, 100.0f, 3e38f, INFINITY};
+    for (size_t i = 0; i < sizeof absorptions / sizeof *absorptions; ++i) {
+        struct scene *scene = lens_scene((double[]){0, 0, 5});
+        set_sky(scene, 1, 1, 1);
+        struct scene_material m = clear_glass(1.0f, 0);
+        set_rgb(m.absorption, 0, absorptions[i], 1.0f);
+        add_body(scene, box(20, 20, 1), m, 0, 0, 0);
+        const struct render_params params = {.width = 1, .height = 1, .depth = 4, .bailout = -1.0};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        const float *color = image.pixels;
+        assert_true(color[0] == 1.0f);
+        /* What is not finite is mended to 0 when the scene is frozen. */
+        double expected = isfinite(absorptions[i]) ? exp(-(double)absorptions[i]) : 1.0;
+        print_message("  %g: %.9g\n", (double)absorptions[i], (double)color[1]);
+        /* exp: 3 + 2 |x| ulp (Vulkan, precision of SPIR-V instructions); below FLT_MIN: 0 */
+        assert_true(color[1] >= 0.0f && color[1] <= 1.0f);
+        assert_true(fabs((double)color[1] - expected) <=
+                    expected * (8 + 2 * fmin((double)absorptions[i], 100)) * 0x1p-23 + 1.2e-38);
+        assert_near(color[2], exp(-1), 10 * 0x1p-23);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
+/* A camera in a medium that never ends sees nothing of the colours that it absorbs. */
+static void endless_media_are_dark(void **state)
+{
+    (void)state;
+    struct scene *scene = lens_scene((double[]){0, 0, 0});
+    set_sky(scene, 1, 1, 1);
+    struct scene_material m = clear_glass(1.0f, 0);
+    set_rgb(m.absorption, 0, 1e-3f, 1e-9f);
+    struct scene_mesh cube = box(20, 20, 20);
+    /* Without the side that the camera looks at, -z. */
+    uint32_t kept = 0;
+    for (uint32_t t = 0; t < cube.triangle_count; ++t) {
+        bool back = true;
+        for (size_t k = 0; k < 3; ++k)
+            back = back && cube.positions[3 * cube.indices[3 * t + k] + 2] < 0;
+        if (!back)
+            memcpy(&cube.indices[3 * (size_t)kept++], &cube.indices[3 * (size_t)t],
+                   3 * sizeof *cube.indices);
+    }
+    cube.triangle_count = kept;
+    add_body(scene, cube, m, 0, 0, 0);
+    const struct render_params params = {.width = 1, .height = 1, .depth = 4};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    assert_true(f.renderer->frame.eye_media0 != 0);
+    assert_true(image.pixels[0] == 1.0f && image.pixels[1] < 1e-37f && image.pixels[2] < 1e-37f);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* ---- Both ways ---- */
+
+/* From air into glass and back along the same path the same share arrives: whit carries radiance
+   over the square of the index. */
+static void paths_are_reversible(void **state)
+{
+    (void)state;
+    const double slopes[] = {0.1, 0.7, 2.0, 5.0};
+    for (int i = 0; i < 4; ++i) {
+        double sine = slopes[i] / sqrt(1 + slopes[i] * slopes[i]), inside = sine / 1.5;
+        double tangent = inside / sqrt(1 - inside * inside), share[2];
+        for (int way = 0; way < 2; ++way) {
+            /* The surface is y = 0, met at the origin; glass is below. */
+            double eye[3] = {way ? tangent : -slopes[i], way ? -1 : 1, 0};
+            struct scene *scene = dark_scene(eye, (double[]){0, 0, 0});
+            scene->cameras[0].fov_y = 0.01f;
+            add_body(scene, box(80, 40, 80), clear_glass(1.5f, 0), 0, -20, 0);
+            struct scene_material lamp = material("lamp");
+            lamp.model = SCENE_MODEL_UNLIT;
+            set_rgb(lamp.diffuse, 1, 1, 1);
+            double far = way ? 3 : -3;
+            add_body(scene, box(1, 1, 1), lamp, way ? -slopes[i] * 3 : tangent * 3, far, 0);
+            const struct render_params params = {
+                .width = 1, .height = 1, .depth = 1, .bailout = -1.0};
+            struct fixture f = fixture_open(scene, NULL, &params);
+            struct image image = render(&f);
+            share[way] = (double)image.pixels[0];
+            image_finish(&image);
+            fixture_close(&f);
+        }
+        double expected = 1 - fresnel(sqrt(1 - sine * sine), 1, 1.5);
+        print_message("  %.7f there, %.7f back, by formula %.7f\n", share[0], share[1], expected);
+        assert_true(fabs(share[0] - expected) < 1e-5 && fabs(share[1] - expected) < 1e-5);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slab_keeps_directions),         cmocka_unit_test(slab_moves_rays_aside),
+        cmocka_unit_test(ball_bends_rays_to_its_focus),  cmocka_unit_test(directions_stay_unit),
+        cmocka_unit_test(beer_from_nothing_to_infinity), cmocka_unit_test(endless_media_are_dark),
+        cmocka_unit_test(paths_are_reversible),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
