@@ -1,0 +1,276 @@
+/* Normals and texture coordinates as files have them: missing, without length, not finite, turned
+   about, huge. All with every effect compiled, since nothing may be left to luck there. */
+#include "picture_fixture.h"
+
+enum { SIDE = 9 };
+static const struct render_params all_params = {
+    .width = SIDE, .height = SIDE, .depth = 3, .all_effects = true};
+
+/* A texture of one texel. */
+static uint32_t add_texel(struct scene *scene, uint8_t r, uint8_t g, uint8_t b)
+{
+    struct scene_texture texture = {.name = string_copy("texel"), .width = 1, .height = 1};
+    const uint8_t rgba[4] = {r, g, b, 255};
+    texture.rgba = array_alloc(1, sizeof rgba);
+    assert_non_null(texture.rgba);
+    memcpy(texture.rgba, rgba, sizeof rgba);
+    return scene_add_texture(scene, texture);
+}
+
+/* All channels of all pixels are `expected`. */
+static void assert_even(struct scene *scene, double expected, double relative)
+{
+    struct fixture f = fixture_open(scene, NULL, &all_params);
+    struct image image = render(&f);
+    for (int i = 0; i < SIDE * SIDE; ++i)
+        for (int c = 0; c < 3; ++c)
+            assert_near(image.pixels[4 * i + c], expected, relative);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* No pixel is other than a number between 0 and `most`. */
+static void assert_sane(struct scene *scene, double most)
+{
+    struct fixture f = fixture_open(scene, NULL, &all_params);
+    struct image image = render(&f);
+    for (int i = 0; i < SIDE * SIDE; ++i)
+        for (int c = 0; c < 3; ++c)
+            assert_true(image.pixels[4 * i + c] >= 0.0f && (double)image.pixels[4 * i + c] <= most);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+/* The floor fills the picture, seen from straight above; the sun is 60 degrees from it. */
+#define COS_SUN 0.5
+static struct scene *floor_scene(struct scene_mesh mesh, struct scene_material m)
+{
+    struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+    add_object(scene, mesh, m, 0, 0, 0);
+    add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+    return scene;
+}
+
+static struct scene_material white(void)
+{
+    struct scene_material m = material("white");
+    set_rgb(m.diffuse, 1, 1, 1);
+    return m;
+}
+
+static void fill_normals(struct scene_mesh *mesh, float x, float y, float z)
+{
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i)
+        set_rgb(&mesh->normals[3 * i], x, y, z);
+}
+
+static void unusable_normals_are_those_of_the_faces(void **state)
+{
+    (void)state;
+    static const float wrong[][3] = {{0, 0, 0},        {-0.0f, 0, -0.0f}, {NAN, 1, 0},
+                                     {0, INFINITY, 0}, {0, -INFINITY, 1}, {NAN, NAN, NAN},
+                                     {0, 1e-44f, 0},   {0, 3.4e38f, 0}}; /* these have one */
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        struct scene_mesh mesh = plane(10);
+        fill_normals(&mesh, wrong[i][0], wrong[i][1], wrong[i][2]);
+        assert_even(floor_scene(mesh, white()), COS_SUN, 1e-6);
+    }
+    struct scene_mesh flat = plane(10);
+    free(flat.normals);
+    flat.normals = NULL;
+    assert_even(floor_scene(flat, white()), COS_SUN, 1e-6);
+}
+
+/* A longer normal weighs no more than its neighbours. */
+static void lengths_of_normals_do_not_matter(void **state)
+{
+    (void)state;
+    static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
+    struct scene_mesh mesh = plane(10), even = plane(10);
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        float x = i % 2 ? 0.6f : 0.0f, y = i % 2 ? 0.8f : 1.0f;
+        set_rgb(&even.normals[3 * i], x, y, 0);
+        set_rgb(&mesh.normals[3 * i], x * lengths[i % 4], y * lengths[i % 4], 0);
+    }
+    struct image images[2];
+    for (int k = 0; k < 2; ++k) {
+        struct fixture f = fixture_open(floor_scene(k ? mesh : even, white()), NULL, &all_params);
+        images[k] = render(&f);
+        fixture_close(&f);
+    }
+    for (int i = 0; i < SIDE * SIDE; ++i)
+        assert_near(images[1].pixels[4 * i], (double)images[0].pixels[4 * i], 1e-6);
+    /* They do bend the light. */
+    assert_true(fabsf(images[0].pixels[4] - images[0].pixels[4 * SIDE - 8]) > 0.01f);
+    image_finish(&images[0]);
+    image_finish(&images[1]);
+}
+
+/* Normals to the other side, or corners the other way round, or both: the eye sees its own side. */
+static void turned_normals_shade_the_same(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        struct scene_mesh mesh = plane(10);
+        if (i & 1)
+            fill_normals(&mesh, 0, -1, 0);
+        for (uint32_t t = 0; (i & 2) && t < mesh.triangle_count; ++t) {
+            uint32_t other = mesh.indices[3 * t];
+            mesh.indices[3 * t] = mesh.indices[3 * t + 1];
+            mesh.indices[3 * t + 1] = other;
+        }
+        assert_even(floor_scene(mesh, white()), COS_SUN, 1e-6);
+    }
+}
+
+/* A shading normal that faces away from the eye gives way to the face's own. */
+static void averted_normals_give_way(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = plane(40);
+    fill_normals(&mesh, 0, 0.3f, -1);
+    struct scene *scene = dark_scene((double[]){0, 1, 3}, (double[]){0, 0, 0});
+    scene->cameras[0].fov_y = 0.1f;
+    add_object(scene, mesh, white(), 0, 0, 0);
+    add_sun(scene, 0, -1, 0, 1.0f);
+    assert_even(scene, 1.0, 1e-6);
+    /* Mirrors, glass and highlights under such normals: finite, and no more than there is. */
+    for (int kind = 0; kind < 3; ++kind) {
+        struct scene_mesh again = plane(40);
+        struct scene_material m = white();
+        fill_normals(&again, kind == 1 ? 5.0f : 0.0f, 0.01f, -1);
+        set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
+        set_rgb(m.reflection, 0.5f, 0.5f, 0.5f);
+        if (kind == 1)
+            set_rgb(m.transmission, 0.5f, 0.5f, 0.5f);
+        m.fresnel = kind == 1;
+        if (kind == 2) {
+            m.model = SCENE_MODEL_METAL_ROUGH;
+            set_rgb(m.specular, 1, 1, 1);
+            m.roughness = 0.5f;
+            m.metallic = 0.5f;
+        }
+        scene = dark_scene((double[]){0, 1, 3}, (double[]){0, 0, 0});
+        set_rgb(scene->environment.zenith, 1, 1, 1);
+        add_object(scene, again, m, 0, 0, 0);
+        add_sun(scene, 0.3, -1, 0.2, 1.0f);
+        assert_sane(scene, 4.0);
+    }
+}
+
+static struct scene *textured_floor(const float uvs[4][2], bool bent)
+{
+    struct scene_mesh mesh = plane(10);
+    assert_int_equal(mesh.vertex_count, 4);
+    if (uvs) {
+        memcpy(mesh.uvs[0], uvs, 8 * sizeof(float));
+    } else {
+        free(mesh.uvs[0]);
+        mesh.uvs[0] = NULL;
+    }
+    struct scene_material m = white();
+    struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+    m.textures[SCENE_SLOT_DIFFUSE].texture = add_texel(scene, 188, 188, 188);
+    if (bent)
+        m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 240, 128, 180);
+    add_object(scene, mesh, m, 0, 0, 0);
+    add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+    return scene;
+}
+
+/* The texture is of one colour: whatever its coordinates, that is what is seen. */
+static void coordinates_may_be_anything(void **state)
+{
+    (void)state;
+    static const float uvs[][4][2] = {
+        {{0, 0}, {1, 0}, {0, 1}, {1, 1}},
+        {{0, 0}, {0, 0}, {0, 0}, {0, 0}},
+        {{0.5f, 0.25f}, {0.5f, 0.75f}, {0.5f, 0.5f}, {0.5f, 1}}, /* on a line */
+        {{NAN, 0}, {0, NAN}, {NAN, NAN}, {1, 1}},
+        {{1e9f, -1e9f}, {-1e9f, 1e9f}, {1e9f, 1e9f}, {0, 0}},
+        {{INFINITY, 0}, {0, -INFINITY}, {3e38f, -3e38f}, {1, 1}},
+        {{1e-45f, 0}, {0, 1e-45f}, {1e-45f, 1e-45f}, {0, 0}},
+    };
+    const double linear = pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
+    for (size_t i = 0; i < sizeof uvs / sizeof *uvs; ++i) {
+        assert_even(textured_floor(uvs[i], false), linear * COS_SUN, 2e-6);
+        assert_sane(textured_floor(uvs[i], true), linear * 1.000001);
+    }
+    assert_even(textured_floor(NULL, false), linear * COS_SUN, 2e-6);
+    assert_sane(textured_floor(NULL, true), linear * 1.000001);
+}
+
+static void cross_of(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* A square across `n`, with texture coordinates along its sides. */
+static struct scene_mesh square_across(const double n[3])
+{
+    struct scene_mesh mesh = plane(10);
+    double aside[3], up[3];
+    int least = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2)
+                                        : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
+    const double axis[3] = {least == 0, least == 1, least == 2};
+    cross_of(n, axis, aside);
+    double length = sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
+    for (int k = 0; k < 3; ++k)
+        aside[k] /= length;
+    cross_of(n, aside, up);
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        float *p = &mesh.positions[3 * i];
+        double s = (double)p[0], t = (double)p[2];
+        for (int k = 0; k < 3; ++k) {
+            p[k] = (float)(s * aside[k] + t * up[k]);
+            mesh.normals[3 * i + (uint32_t)k] = (float)n[k];
+        }
+    }
+    return mesh;
+}
+
+/* Normals at which frames built from a normal alone lose their digits (Duff et al. 2017, Building
+   an Orthonormal Basis, Revisited). A map that tilts by the same angle everywhere shades the same.
+ */
+static void frames_stand_in_every_direction(void **state)
+{
+    (void)state;
+    static const double normals[][3] = {
+        {0, 0, -1},
+        {0, 0, 1},
+        {-0.0, -0.0, -1},
+        {0.00038527316, 0.00038460016, -0.99999988079},
+        {-0.00019813581, -0.00008946839, -0.99999999},
+        {1, 0, 0},
+        {0, -1, 0},
+        {0.57735026919, -0.57735026919, 0.57735026919},
+        {1e-8, 1, 0},
+    };
+    const double v[3] = {204.0 / 127.5 - 1.0, 128.0 / 127.5 - 1.0, 230.0 / 127.5 - 1.0};
+    double expected = v[2] / sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (size_t i = 0; i < sizeof normals / sizeof *normals; ++i) {
+        const double *n = normals[i];
+        struct scene *scene =
+            dark_scene((double[]){5 * n[0], 5 * n[1], 5 * n[2]}, (double[]){0, 0, 0});
+        struct scene_material m = white();
+        m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 204, 128, 230);
+        add_object(scene, square_across(n), m, 0, 0, 0);
+        add_sun(scene, -n[0], -n[1], -n[2], 1.0f);
+        assert_even(scene, expected, 2e-6);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(unusable_normals_are_those_of_the_faces),
+        cmocka_unit_test(lengths_of_normals_do_not_matter),
+        cmocka_unit_test(turned_normals_shade_the_same),
+        cmocka_unit_test(averted_normals_give_way),
+        cmocka_unit_test(coordinates_may_be_anything),
+        cmocka_unit_test(frames_stand_in_every_direction),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
