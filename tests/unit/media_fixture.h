@@ -55,6 +55,39 @@ static inline struct scene_mesh empty_mesh(uint32_t vertices, uint32_t triangles
     return mesh;
 }
 
+/* A closed profile of radii and heights, turned about the y axis; on the axis the radius is 0. The
+   points go so that the surface faces outwards: up at the outside, down at the axis. */
+static inline struct scene_mesh lathe(const double (*profile)[2], uint32_t count, uint32_t segments)
+{
+    struct scene_mesh mesh = empty_mesh(count * segments, 2 * (count - 1) * segments);
+    uint32_t used = 0;
+    for (uint32_t s = 0; s < segments; ++s) {
+        for (uint32_t i = 0; i < count; ++i) {
+            double angle = 2.0 * acos(-1.0) * s / segments;
+            float *p = &mesh.positions[3 * (size_t)(s * count + i)];
+            p[0] = (float)(profile[i][0] * cos(angle));
+            p[1] = (float)profile[i][1];
+            p[2] = (float)(-profile[i][0] * sin(angle));
+        }
+        for (uint32_t i = 0; i + 1 < count; ++i) {
+            uint32_t next = (s + 1) % segments;
+            uint32_t quad[4] = {s * count + i, next * count + i, next * count + i + 1,
+                                s * count + i + 1};
+            uint32_t *t = &mesh.indices[3 * (size_t)used];
+            if (profile[i][0] > 0) {
+                memcpy(t, (uint32_t[]){quad[0], quad[1], quad[2]}, 3 * sizeof *t);
+                ++used, t += 3;
+            }
+            if (profile[i + 1][0] > 0) {
+                memcpy(t, (uint32_t[]){quad[0], quad[2], quad[3]}, 3 * sizeof *t);
+                ++used;
+            }
+        }
+    }
+    mesh.triangle_count = used;
+    return mesh;
+}
+
 /* Shines with the coordinates at which it is met: red and green go from 0 to 1 over x and y from
    -side to side, blue is 1. Faces +z. */
 static inline void add_coordinate_wall(struct scene *scene, double z, double side)

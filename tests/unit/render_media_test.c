@@ -244,12 +244,82 @@ static void snells_window_is_where_it_should_be(void **state)
     fixture_close(&f);
 }
 
+/* ---- Liquid in a glass ---- */
+
+/* The liquid is wider than the inside of the glass by `overlap`. */
+static struct image liquid_picture(double overlap, uint32_t glass_priority, double contact,
+                                   double ior)
+{
+    const double glass[][2] = {{0, 0}, {1, 0}, {1, 2.4}, {0.85, 2.4}, {0.85, 0.3}, {0, 0.3}};
+    const double liquid[][2] = {
+        {0, 0.3 - overlap}, {0.85 + overlap, 0.3 - overlap}, {0.85 + overlap, 1.7}, {0, 1.7}};
+    struct scene *scene = dark_scene((double[]){0, 2.6, 6}, (double[]){0, 1.1, 0});
+    scene->cameras[0].fov_y = 0.55f;
+    set_sky(scene, 0.2f, 0.5f, 0.1f);
+    scene->contact = (float)contact;
+    add_body(scene, lathe(glass, 6, 48), clear_glass(1.5f, glass_priority), 0, 0, 0);
+    add_body(scene, lathe(liquid, 4, 48), clear_glass((float)ior, 0), 0, 0, 0);
+    add_coordinate_wall(scene, -3, 4);
+    const struct render_params params = {.width = 64, .height = 64, .depth = 12, .bailout = -1.0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+/* Pixels that differ by more than `tolerance` in some channel. */
+static uint32_t count_unlike(const char *name, const struct image *a, struct image b,
+                             double tolerance)
+{
+    uint32_t unlike = 0;
+    double sum = 0;
+    for (size_t i = 0; i < 64 * 64; ++i) {
+        double worst = 0;
+        for (size_t k = 0; k < 3; ++k)
+            worst = fmax(worst, fabs((double)a->pixels[4 * i + k] - (double)b.pixels[4 * i + k]));
+        unlike += worst > tolerance;
+        sum += worst * worst;
+    }
+    print_message("  %s: %u of 4096 pixels differ by more than %g; %.2g root mean square\n", name,
+                  unlike, tolerance, sqrt(sum / 4096));
+    image_finish(&b);
+    return unlike;
+}
+
+/* Three ways to model it make one picture. */
+static void liquid_in_a_glass(void **state)
+{
+    (void)state;
+    struct image touching = liquid_picture(0, 1, 0, 1.33);
+    /* Priority says where the surface is, so that the pictures are one but for roundings. */
+    assert_int_equal(
+        count_unlike("overlap of 0.05", &touching, liquid_picture(0.05, 1, 0, 1.33), 1e-3), 0);
+    assert_int_equal(
+        count_unlike("touching, last entered", &touching, liquid_picture(0, 0, 0, 1.33), 1e-3), 0);
+    assert_int_equal(count_unlike("gap of 1e-5, contact 1e-4", &touching,
+                                  liquid_picture(-1e-5, 1, 1e-4, 1.33), 1e-3),
+                     0);
+    /* A surface that is 1e-3, a thirtieth of a pixel, elsewhere: edges may fall on another pixel.
+     */
+    assert_true(count_unlike("overlap of 1e-3, last entered", &touching,
+                             liquid_picture(1e-3, 0, 0, 1.33), 1e-2) <= 4096 / 64);
+    assert_true(count_unlike("gap of 1e-3, contact 4e-3", &touching,
+                             liquid_picture(-1e-3, 1, 4e-3, 1.33), 1e-2) <= 4096 / 64);
+    /* A layer of air reflects all that comes at a flat angle: nearly as if there were no liquid. */
+    assert_true(count_unlike("gap of 1e-5, no contact", &touching,
+                             liquid_picture(-1e-5, 1, 0, 1.33), 1e-2) > 4096 / 8);
+    assert_true(count_unlike("no liquid", &touching, liquid_picture(-0.2, 1, 0, 1.0), 1e-2) >
+                4096 / 8);
+    image_finish(&touching);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bubble_in_glass_in_water),
         cmocka_unit_test(priority_hides_what_is_inside),
         cmocka_unit_test(equal_indices_do_not_bend),
+        cmocka_unit_test(liquid_in_a_glass),
         cmocka_unit_test(list_holds_eight_media),
         cmocka_unit_test(ninth_medium_is_an_error),
         cmocka_unit_test(open_meshes_stay_finite),
