@@ -184,7 +184,8 @@ void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
    or an end of the interval, or a hit on another triangle that is narrowly missed, or as near.
    Below 1 the float test may decide otherwise. Negative for a miss. Triangles far off do not enter
    it when traced by tree: then only what is below 1 is exact. `second_t` is the next hit behind on
-   another primitive (infinity: none; equal: a tie). `t_error` bounds the error of the float test's t. */
+   another primitive (infinity: none; equal: a tie). `t_error` bounds the error of the float test's
+   t. */
 struct oracle_hit {
     double t, u, v;
     uint32_t primitive, instance;

@@ -262,7 +262,7 @@ typedef struct whit_renderer_params {
        compiles that of the scene; the pictures are the same. Errors of that thread are logged from
        it. Without trees: not done. */
     bool compile_beside;
-    uint32_t tile_size;  /* pixels on a side, 16..512; 0: by measured time */
+    uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
@@ -356,9 +356,9 @@ typedef struct whit_stats {
     double weight_cut_depth, weight_cut_bailout;
     /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
     double bailout_bound;
-    uint64_t pixels_by_samples[4];                      /* of 1, 4, 16 and 64 samples */
-    uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
-    bool general; /* drawn by the general kernel: see params.compile_beside */
+    uint64_t pixels_by_samples[4]; /* of 1, 4, 16 and 64 samples */
+    uint32_t kernel_instructions;  /* SPIR-V, of its functions; see whit_renderer_get_kernel */
+    bool general;                  /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;
     const char *load_path;           /* "storage" or "texel" */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */

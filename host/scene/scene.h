@@ -253,12 +253,12 @@ struct scene {
     bool has_environment; /* false: scene_freeze makes one */
     float ambient[3];     /* ambient light, times each material's `ambient` */
     bool has_ambient;
-    float contact; /* surfaces of two media within this distance, world units, are one; 0: only where
-                      they touch but for rounding */
+    float contact; /* surfaces of two media within this distance, world units, are one; 0: only
+                      where they touch but for rounding */
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
-    float time_end_s;        /* last key of any channel; 0: nothing moves */
-    uint64_t file_bytes;     /* of all files read */
-    uint64_t hash;           /* of everything above; set by scene_freeze */
+    float time_end_s;                      /* last key of any channel; 0: nothing moves */
+    uint64_t file_bytes;                   /* of all files read */
+    uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */
 };
