@@ -312,6 +312,16 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
     return accepted;
 }
 
+void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit hit)
+{
+    hit.t = m.t;
+    hit.u = m.u;
+    hit.v = m.v;
+    hit.triangle = record;
+    hit.primitive = primitive;
+    hit.instance = instance;
+}
+
 // Tests one record, a triangle's or a sphere's, and keeps it when it is nearer, or as near with
 // smaller ids. With SPEC_FLAT the record names its instance. True: the traversal may end.
 bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
@@ -344,7 +354,16 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
     bool at_exit = false;
     if (SPEC_SPHERES != SPHERES_NONE)
         at_exit = own || !(chord.t_near >= t_min);
-    bool accepted, again;
+    bool accepted, again, refused;
+    if (SPEC_SPHERES == SPHERES_NONE) {
+        // No loop, not even one of a single turn.
+        accepted = accept_meeting(mode, on_triangle, vec2(on_triangle.u, on_triangle.v), flags,
+                                  r2.w, instance, primitive, skip_instance, skip_primitive, hit,
+                                  refused);
+        if (accepted)
+            keep_hit(on_triangle, record, primitive, instance, hit);
+        return !finds_closest(mode) && accepted;
+    }
     do {
         Meeting m;
         if (SPEC_SPHERES != SPHERES_ONLY)
@@ -364,18 +383,11 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
             is_sphere)
             uv = sphere_uv(dir_from_square(uv));
-        bool refused;
         accepted =
             accept_meeting(mode, m, uv, flags, r2.w, instance, primitive, skip_instance,
                            skip_primitive, hit, refused);
-        if (accepted) {
-            hit.t = m.t;
-            hit.u = m.u;
-            hit.v = m.v;
-            hit.triangle = record;
-            hit.primitive = primitive;
-            hit.instance = instance;
-        }
+        if (accepted)
+            keep_hit(m, record, primitive, instance, hit);
         again = SPEC_SPHERES != SPHERES_NONE && passes && is_sphere && refused && !at_exit;
         at_exit = true;
     } while (again);
