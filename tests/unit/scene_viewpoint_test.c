@@ -291,11 +291,24 @@ static struct scene *lamp_scene(float emission, const char *file)
     return scene;
 }
 
+/* Over pi, straight on, from far away: flat lights state their radiance. */
 static double light_total(const struct scene *scene)
 {
     double total = 0.0;
-    for (uint32_t i = 0; i < scene->light_count; ++i)
-        total += (double)scene->lights[i].color[1];
+    for (uint32_t i = 0; i < scene->light_count; ++i) {
+        const struct scene_light *light = &scene->lights[i];
+        const double *u = light->edge_u, *v = light->edge_v;
+        double area2 = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            int l = (k + 1) % 3, m = (k + 2) % 3;
+            double side = u[l] * v[m] - u[m] * v[l];
+            area2 += side * side;
+        }
+        double share = light->kind == SCENE_LIGHT_RECTANGLE  ? sqrt(area2) / 3.14159265358979
+                       : light->kind == SCENE_LIGHT_TRIANGLE ? sqrt(area2) / 6.28318530717959
+                                                             : 1.0;
+        total += share * (double)light->color[1];
+    }
     return total;
 }
 
