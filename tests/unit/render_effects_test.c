@@ -1,0 +1,501 @@
+/* Only what a scene calls for: kernels made for a scene draw the picture of the one with every
+   effect, and what is not called for is in no kernel, descriptor or buffer. */
+#include "picture_fixture.h"
+#include "render/renderer.h"
+#include "render_scenes.h"
+
+static const struct render_params small = {.width = 48, .height = 36, .depth = 5};
+
+/* ---- Scenes ---- */
+
+/* A floor under a lamp. */
+static struct scene *plain_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 5, 6}, (double[]){0, 0, 0});
+    struct scene_material m = material("floor");
+    set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
+    add_object(scene, plane(10), m, 0, 0, 0);
+    add_lamp(scene, 2, 4, 1, 9.0f);
+    return scene;
+}
+
+static uint32_t add_chequers(struct scene *scene)
+{
+    static const uint8_t texels[] = {255, 200, 90, 255, 10,  40,  90,  0,
+                                     90,  90,  90, 120, 255, 255, 255, 255};
+    struct scene_texture texture = {
+        .name = string_copy("chequers"), .width = 2, .height = 2, .rgba = malloc(sizeof texels)};
+    assert_non_null(texture.rgba);
+    memcpy(texture.rgba, texels, sizeof texels);
+    return scene_add_texture(scene, texture);
+}
+
+static struct scene_material textured(uint32_t texture, enum scene_slot slot)
+{
+    struct scene_material m = material("textured");
+    set_rgb(m.diffuse, 0.8f, 0.8f, 0.8f);
+    m.textures[slot].texture = texture;
+    return m;
+}
+
+static struct scene_mesh ring(void)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_torus(0.7, 0.25, 16, 8, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static struct scene_mesh painted_box(void)
+{
+    struct scene_mesh mesh = box(1, 1, 1);
+    mesh.colors = malloc(4 * sizeof *mesh.colors * mesh.vertex_count);
+    assert_non_null(mesh.colors);
+    for (uint32_t i = 0; i < 4 * mesh.vertex_count; ++i)
+        mesh.colors[i] = i % 4 == 3 ? 1.0f : (float)(i % 7) / 7.0f;
+    return mesh;
+}
+
+static void add_glass(struct scene *scene, double x, double y, double z)
+{
+    struct scene_material m = material("glass");
+    set_rgb(m.transmission, 0.9f, 0.9f, 0.9f);
+    set_rgb(m.absorption, 0.1f, 0.5f, 0.9f);
+    m.ior = 1.5f;
+    m.fresnel = true;
+    add_object(scene, ring(), m, x, y, z);
+}
+
+static void add_lights(struct scene *scene)
+{
+    add_lamp(scene, 2, 4, 1, 6.0f);
+    add_sun(scene, 0.3, -1, -0.4, 0.4f);
+    struct scene_light spot = {.name = string_copy("spot"),
+                               .kind = SCENE_LIGHT_SPOT,
+                               .node = SCENE_NONE,
+                               .position = {-3, 4, 2},
+                               .direction = {0.6, -0.8, 0},
+                               .cos_inner = 0.95f,
+                               .cos_outer = 0.7f};
+    set_rgb(spot.color, 0.5f, 0.4f, 0.3f);
+    assert_int_not_equal(scene_add_light(scene, spot), SCENE_NONE);
+    struct scene_light area = {.name = string_copy("area"),
+                               .kind = SCENE_LIGHT_AREA_SAMPLE,
+                               .node = SCENE_NONE,
+                               .position = {0, 6, 0},
+                               .direction = {0, -1, 0},
+                               .falloff = true};
+    set_rgb(area.color, 5, 5, 6);
+    assert_int_not_equal(scene_add_light(scene, area), SCENE_NONE);
+}
+
+static void add_sky(struct scene *scene)
+{
+    struct scene_environment *sky = &scene->environment;
+    sky->kind = SCENE_ENVIRONMENT_MAP;
+    sky->width = 4;
+    sky->height = 2;
+    sky->rgb = malloc(24 * sizeof *sky->rgb);
+    assert_non_null(sky->rgb);
+    for (int i = 0; i < 24; ++i)
+        sky->rgb[i] = 0.1f + 0.03f * (float)i;
+}
+
+/* Every effect that needs no camera or primitive of its own. */
+static struct scene *rich_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 4, 7}, (double[]){0, 0.4, 0});
+    uint32_t chequers = add_chequers(scene);
+    add_sky(scene);
+    add_lights(scene);
+    add_object(scene, plane(10), textured(chequers, SCENE_SLOT_DIFFUSE), 0, 0, 0);
+    struct scene_material m = material("mirror");
+    set_rgb(m.reflection, 0.6f, 0.6f, 0.6f);
+    set_rgb(m.specular, 0.4f, 0.4f, 0.4f);
+    set_rgb(m.emission, 0.05f, 0.0f, 0.0f);
+    m.shininess = 20;
+    add_object(scene, box(1, 1.5, 1), m, -2, 0.75, -1);
+    add_glass(scene, 0, 0.9, 0.6);
+    m = textured(chequers, SCENE_SLOT_BUMP);
+    add_object(scene, painted_box(), m, 1.8, 0.5, -0.5);
+    m = textured(chequers, SCENE_SLOT_OPACITY);
+    m.alpha = SCENE_ALPHA_MASK;
+    m.alpha_cutoff = 0.5f;
+    add_object(scene, box(0.8, 0.8, 0.1), m, -0.9, 0.5, 1.8);
+    m = material("metal");
+    m.model = SCENE_MODEL_METAL_ROUGH;
+    set_rgb(m.diffuse, 0.9f, 0.7f, 0.4f);
+    set_rgb(m.specular, 1, 1, 1);
+    m.metallic = 0.8f;
+    m.roughness = 0.3f;
+    m.one_sided = true;
+    add_object(scene, ring(), m, 1.2, 0.3, 1.6);
+    m = material("catcher");
+    m.shadow_catcher = true;
+    add_object(scene, box(1, 0.1, 1), m, -2.4, 0.05, 1.4);
+    return scene;
+}
+
+/* ---- Pictures ---- */
+
+struct drawn {
+    struct image color, ids;
+    struct render_stats stats;
+};
+
+static struct drawn draw(struct scene *scene, const struct render_params *params)
+{
+    struct drawn drawn = {0};
+    struct fixture f = fixture_open(scene, NULL, params);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(f.renderer, &drawn.color), WHIT_OK);
+    assert_int_equal(renderer_read_ids(f.renderer, &drawn.ids), WHIT_OK);
+    renderer_get_stats(f.renderer, &drawn.stats);
+    fixture_close(&f);
+    return drawn;
+}
+
+static void drawn_finish(struct drawn *drawn)
+{
+    image_finish(&drawn->color);
+    image_finish(&drawn->ids);
+}
+
+static bool same_bytes(const struct image *a, const struct image *b)
+{
+    size_t values = (size_t)a->width * a->height * a->channels;
+    return a->width == b->width && a->height == b->height && a->channels == b->channels &&
+           (a->pixels ? memcmp(a->pixels, b->pixels, values * sizeof *a->pixels)
+                      : memcmp(a->words, b->words, values * sizeof *a->words)) == 0;
+}
+
+static uint64_t bit(enum scene_effect effect)
+{
+    return UINT64_C(1) << effect;
+}
+
+/* The picture for the scene and the one with every effect. */
+static struct render_stats assert_auto_is_all(struct scene *(*make)(void))
+{
+    struct render_params all = small;
+    all.all_effects = true;
+    struct drawn a = draw(make(), &small), b = draw(make(), &all);
+    assert_true(same_bytes(&a.color, &b.color));
+    assert_true(same_bytes(&a.ids, &b.ids));
+    assert_int_equal(a.stats.rays_shadow, b.stats.rays_shadow);
+    assert_int_equal(a.stats.rays_reflected, b.stats.rays_reflected);
+    assert_int_equal(a.stats.rays_refracted, b.stats.rays_refracted);
+    print_message("  %u of %u instructions\n", a.stats.kernel_instructions,
+                  b.stats.kernel_instructions);
+    struct render_stats stats = a.stats;
+    drawn_finish(&a);
+    drawn_finish(&b);
+    return stats;
+}
+
+static void kernels_for_a_scene_draw_the_same(void **state)
+{
+    (void)state;
+    struct render_stats plain = assert_auto_is_all(plain_scene);
+    assert_int_equal(plain.rays_reflected + plain.rays_refracted, 0);
+    assert_true(plain.rays_shadow > 0);
+    struct render_stats rich = assert_auto_is_all(rich_scene);
+    assert_true(rich.rays_reflected > 0 && rich.rays_refracted > 0);
+    assert_true(plain.kernel_instructions < rich.kernel_instructions);
+}
+
+/* Which effect alone is added to the plain scene. */
+static enum scene_effect alone;
+
+static struct scene_material alone_material(struct scene *scene)
+{
+    struct scene_material m = material("alone");
+    set_rgb(m.diffuse, 0.5f, 0.4f, 0.3f);
+    if (alone == SCENE_EFFECT_TEXTURES)
+        m.textures[SCENE_SLOT_DIFFUSE].texture = add_chequers(scene);
+    if (alone == SCENE_EFFECT_NORMAL_MAPS)
+        m.textures[SCENE_SLOT_BUMP].texture = add_chequers(scene);
+    if (alone == SCENE_EFFECT_CUTOUTS) {
+        m.alpha = SCENE_ALPHA_BLEND;
+        m.opacity = 0.4f;
+    }
+    if (alone == SCENE_EFFECT_REFLECTION || alone == SCENE_EFFECT_FRESNEL)
+        set_rgb(m.reflection, 0.3f, 0.3f, 0.3f);
+    if (alone == SCENE_EFFECT_REFRACTION || alone == SCENE_EFFECT_ABSORPTION)
+        set_rgb(m.transmission, 0.8f, 0.8f, 0.8f);
+    if (alone == SCENE_EFFECT_ABSORPTION)
+        set_rgb(m.absorption, 0.2f, 0.4f, 0.6f);
+    if (alone == SCENE_EFFECT_HIGHLIGHTS)
+        set_rgb(m.specular, 0.7f, 0.7f, 0.7f);
+    if (alone == SCENE_EFFECT_EMISSION)
+        set_rgb(m.emission, 0.1f, 0.2f, 0.3f);
+    m.fresnel = alone == SCENE_EFFECT_FRESNEL;
+    m.one_sided = alone == SCENE_EFFECT_CULLING;
+    m.shadow_catcher = alone == SCENE_EFFECT_CATCHERS;
+    if (alone == SCENE_EFFECT_METAL_ROUGH) {
+        m.model = SCENE_MODEL_METAL_ROUGH;
+        m.roughness = 0.4f;
+    }
+    return m;
+}
+
+static struct scene *alone_scene(void)
+{
+    struct scene *scene = plain_scene();
+    struct scene_material m = alone_material(scene);
+    add_object(scene, alone == SCENE_EFFECT_VERTEX_COLORS ? painted_box() : box(1, 1, 1), m, 0, 0.5,
+               0);
+    add_object(scene, ring(), m, 0.5, 1.5, 0.5);
+    if (alone == SCENE_EFFECT_ENVIRONMENT_MAP)
+        add_sky(scene);
+    if (alone == SCENE_EFFECT_DIRECTIONAL_LIGHTS)
+        add_sun(scene, 0.3, -1, -0.4, 0.4f);
+    return scene;
+}
+
+/* One at a time: what the scan of one effect misses, no other effect can hide. */
+static void effects_alone_draw_the_same(void **state)
+{
+    (void)state;
+    static const enum scene_effect effects[] = {
+        SCENE_EFFECT_REFLECTION,      SCENE_EFFECT_REFRACTION,    SCENE_EFFECT_FRESNEL,
+        SCENE_EFFECT_ABSORPTION,      SCENE_EFFECT_CUTOUTS,       SCENE_EFFECT_TEXTURES,
+        SCENE_EFFECT_NORMAL_MAPS,     SCENE_EFFECT_EMISSION,      SCENE_EFFECT_HIGHLIGHTS,
+        SCENE_EFFECT_ENVIRONMENT_MAP, SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_METAL_ROUGH,
+        SCENE_EFFECT_CULLING,         SCENE_EFFECT_CATCHERS,      SCENE_EFFECT_DIRECTIONAL_LIGHTS};
+    for (size_t i = 0; i < sizeof effects / sizeof *effects; ++i) {
+        alone = effects[i];
+        print_message("  %s:", scene_effect_name(alone));
+        assert_auto_is_all(alone_scene);
+    }
+}
+
+/* What is left out leaves no rays of its kind, in the general kernel as well. */
+static void effects_left_out_are_gone(void **state)
+{
+    (void)state;
+    const uint64_t without[] = {bit(SCENE_EFFECT_SHADOWS), bit(SCENE_EFFECT_REFLECTION),
+                                bit(SCENE_EFFECT_REFRACTION)};
+    for (int i = 0; i < 6; ++i) {
+        struct render_params params = small;
+        params.effects_removed = without[i % 3];
+        params.all_effects = i >= 3;
+        struct drawn drawn = draw(rich_scene(), &params);
+        const uint64_t rays[] = {drawn.stats.rays_shadow, drawn.stats.rays_reflected,
+                                 drawn.stats.rays_refracted};
+        for (int k = 0; k < 3; ++k)
+            assert_true(k == i % 3 ? rays[k] == 0 : rays[k] > 0);
+        drawn_finish(&drawn);
+    }
+}
+
+static void effects_added_do_not_matter(void **state)
+{
+    (void)state;
+    static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
+                                              SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_AREA_LIGHTS,
+                                              SCENE_EFFECT_CULLING,     SCENE_EFFECT_SPHERES};
+    struct drawn plain = draw(plain_scene(), &small);
+    for (size_t i = 0; i < sizeof added / sizeof *added; ++i) {
+        struct render_params more = small;
+        more.effects_added = bit(added[i]);
+        struct drawn drawn = draw(plain_scene(), &more);
+        print_message("  with %-16s %+6d instructions\n", scene_effect_name(added[i]),
+                      (int)drawn.stats.kernel_instructions - (int)plain.stats.kernel_instructions);
+        assert_true(same_bytes(&plain.color, &drawn.color));
+        assert_true(drawn.stats.kernel_instructions > plain.stats.kernel_instructions);
+        drawn_finish(&drawn);
+    }
+    drawn_finish(&plain);
+}
+
+/* ---- Kernels ---- */
+
+static struct render_kernel_info kernel_of(struct scene *scene, const struct render_params *params)
+{
+    struct render_kernel_info info;
+    struct fixture f = fixture_open(scene, NULL, params);
+    assert_int_equal(renderer_get_kernel(f.renderer, &info), WHIT_OK);
+    fixture_close(&f);
+    return info;
+}
+
+/* Every effect that can be left out takes instructions with it, and each that is added brings
+   some, but what does nothing alone. */
+static void every_effect_has_its_code(void **state)
+{
+    (void)state;
+    struct scene_effects effects;
+    struct scene *rich = rich_scene();
+    assert_int_equal(scene_freeze(rich), WHIT_OK);
+    scene_effects_scan(rich, &effects);
+    scene_destroy(rich);
+    uint32_t whole = kernel_of(rich_scene(), &small).instructions, missing = 0;
+    print_message("  %-20s %6u instructions\n", "all of the rich scene", whole);
+    for (int i = 0; i < SCENE_EFFECT_COUNT; ++i) {
+        struct render_params params = small;
+        if (!effects.called[i] || !render_effect_can_remove((enum scene_effect)i))
+            continue;
+        params.effects_removed = bit((enum scene_effect)i);
+        uint32_t left = kernel_of(rich_scene(), &params).instructions;
+        print_message("  without %-20s %6d\n", scene_effect_name((enum scene_effect)i),
+                      (int)left - (int)whole);
+        /* What points need, spots need too. */
+        missing += i != SCENE_EFFECT_POINT_LIGHTS && left >= whole;
+    }
+    assert_int_equal(missing, 0);
+}
+
+static uint64_t bindings_of(const struct fixture *f)
+{
+    struct pipeline_info info;
+    pipeline_get_info(f->renderer->whitted.pipeline, &info);
+    assert_true(info.specialized);
+    return info.bindings;
+}
+
+static bool has(uint64_t bindings, int binding)
+{
+    return bindings >> binding & 1;
+}
+
+static void plain_scenes_bind_little(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(plain_scene(), NULL, &small);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    uint64_t plain = bindings_of(&f);
+    static const int absent[] = {
+        BIND_TEXELS,   BIND_TEXEL_TEXELS, BIND_ENVIRONMENT, BIND_RAY_STACKS, BIND_RAY_MEDIA,
+        BIND_WORK_OUT, BIND_COSTS,        BIND_RUNS,        BIND_FOUND,      BIND_PASSED};
+    for (size_t i = 0; i < sizeof absent / sizeof *absent; ++i)
+        assert_false(has(plain, absent[i]));
+    assert_true(has(plain, BIND_PIXELS) && has(plain, BIND_FRAME));
+    const struct scene_buffers *scene = &f.renderer->scene_buffers;
+    const struct pixel_buffers *pixels = &f.renderer->pixel_buffers;
+    assert_null(scene->texels);
+    assert_null(scene->environment);
+    assert_null(pixels->ray_stacks);
+    assert_null(pixels->ray_media);
+    assert_null(pixels->work[0]);
+    assert_null(pixels->work_head);
+    assert_null(pixels->costs);
+    assert_int_equal(scene->uv_sets, 0);
+    fixture_close(&f);
+    f = fixture_open(rich_scene(), NULL, &small);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    uint64_t rich = bindings_of(&f);
+    assert_true(has(rich, BIND_ENVIRONMENT) && has(rich, BIND_RAY_STACKS));
+    assert_true(has(rich, BIND_RAY_MEDIA) && has(rich, BIND_WORK_OUT));
+    assert_true(has(rich, BIND_TEXELS) || has(rich, BIND_TEXEL_TEXELS));
+    fixture_close(&f);
+}
+
+/* ---- Who traces what ---- */
+
+static void add_pane(struct scene *scene, struct scene_material m, double width, double height,
+                     double x, double y, double z)
+{
+    add_object(scene, box(width, height, 0.2), m, x, y, z);
+}
+
+/* The view is in four quarters around the eye at the origin: upper left a mirror that shows glass
+   behind the eye, lower left the same mirror without glass, lower right glass, upper right nothing.
+   All edges run through the eye or through its mirror image, between pixels. */
+static struct scene *quarters_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
+    struct scene_material mirror = material("mirror"), glass = material("glass");
+    set_rgb(mirror.reflection, 0.9f, 0.9f, 0.9f);
+    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
+    glass.fresnel = true;
+    add_pane(scene, mirror, 10, 20, -5, 0, -5);
+    add_pane(scene, glass, 10, 10, 5, -5, -4);
+    add_pane(scene, glass, 40, 40, -20, 20, 5);
+    set_rgb(scene->environment.zenith, 1, 1, 1);
+    add_lamp(scene, 0, 0, 1, 5.0f);
+    return scene;
+}
+
+static void only_pixels_that_see_glass_refract(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(quarters_scene(), NULL, &small);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    struct gpu_counts *counts = malloc(small.width * small.height * sizeof *counts);
+    assert_non_null(counts);
+    assert_int_equal(buffer_read(f.renderer->pixel_buffers.counts, 0, counts,
+                                 small.width * small.height * sizeof *counts),
+                     WHIT_OK);
+    for (uint32_t y = 0; y < small.height; ++y) {
+        for (uint32_t x = 0; x < small.width; ++x) {
+            bool sees = (x < small.width / 2) == (y < small.height / 2);
+            const struct gpu_counts *count = &counts[y * small.width + x];
+            if ((count->refracted > 0) != sees)
+                fail_msg("pixel %u, %u: %u refracted rays", x, y, count->refracted);
+            if (x < small.width / 2)
+                assert_true(count->reflected > 0);
+        }
+    }
+    free(counts);
+    fixture_close(&f);
+}
+
+/* Glass that stands below the view until second 1. */
+static struct scene *rising_glass_scene(void)
+{
+    struct scene *scene = plain_scene();
+    struct scene_material glass = material("glass");
+    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
+    add_pane(scene, glass, 2, 2, 0, -30, 2);
+    struct scene_channel rise = {.node = scene->node_count - 1,
+                                 .path = SCENE_PATH_TRANSLATION,
+                                 .interpolation = SCENE_STEP,
+                                 .key_count = 2,
+                                 .times_s = malloc(2 * sizeof(float)),
+                                 .values = malloc(6 * sizeof(float))};
+    assert_non_null(rise.times_s);
+    assert_non_null(rise.values);
+    memcpy(rise.times_s, (float[]){0, 1}, 2 * sizeof(float));
+    memcpy(rise.values, (float[]){0, -30, 2, 0, 2, 2}, 6 * sizeof(float));
+    assert_int_not_equal(scene_add_channel(scene, rise), SCENE_NONE);
+    return scene;
+}
+
+static void what_comes_into_view_is_right_at_once(void **state)
+{
+    (void)state;
+    struct render_params later = small;
+    struct render_stats stats;
+    later.time_s = 1.0;
+    struct drawn expected = draw(rising_glass_scene(), &later);
+    assert_true(expected.stats.rays_refracted > 0);
+    struct fixture f = fixture_open(rising_glass_scene(), NULL, &small);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    renderer_get_stats(f.renderer, &stats);
+    assert_int_equal(stats.rays_refracted, 0);
+    const struct pipeline *pipeline = f.renderer->whitted.pipeline;
+    assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
+    struct image image = render(&f);
+    assert_true(same_bytes(&image, &expected.color));
+    assert_ptr_equal(f.renderer->whitted.pipeline, pipeline);
+    renderer_get_stats(f.renderer, &stats);
+    assert_int_equal(stats.rays_refracted, expected.stats.rays_refracted);
+    image_finish(&image);
+    drawn_finish(&expected);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(kernels_for_a_scene_draw_the_same),
+        cmocka_unit_test(effects_alone_draw_the_same),
+        cmocka_unit_test(effects_left_out_are_gone),
+        cmocka_unit_test(effects_added_do_not_matter),
+        cmocka_unit_test(every_effect_has_its_code),
+        cmocka_unit_test(plain_scenes_bind_little),
+        cmocka_unit_test(only_pixels_that_see_glass_refract),
+        cmocka_unit_test(what_comes_into_view_is_right_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
