@@ -179,6 +179,10 @@ void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
                           struct gpu_hit *hit);
 
+/* From a point to the nearest surface, world units, in double; to spheres that a transform
+   stretches it may be less. Infinity in an empty scene. `pose` is the one that `accel` has. */
+double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3]);
+
 /* The double-precision oracle's closest hit, with how sure it is: |edge_margin| is by how many
    error bounds of the float test the ray keeps away from another answer: losing the hit at an edge
    or an end of the interval, or a hit on another triangle that is narrowly missed, or as near.

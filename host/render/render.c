@@ -819,4 +819,5 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)
 {
     *stats = renderer->stats;
+    stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
 }

@@ -105,12 +105,68 @@ static void facing_mirrors_end(void **state)
     image_finish(&before);
 }
 
+/* ---- Rays that are too weak ---- */
+
+static struct scene *weak_scene(int which)
+{
+    if (which == 0)
+        return glass_scene();
+    struct scene *scene = furnace(box(1.2, 1.2, 1.2), clear_glass(1.5f, 0));
+    add_body(scene, box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
+    struct scene_material shiny = material("shiny");
+    set_rgb(shiny.diffuse, 0.5f, 0.5f, 0.5f);
+    set_rgb(shiny.specular, 0.5f, 0.5f, 0.5f);
+    set_rgb(shiny.reflection, 0.3f, 0.3f, 0.3f);
+    add_body(scene, plane(6), shiny, 0, -0.8, 0);
+    add_lamp(scene, 2, 3, 2, 8);
+    return scene;
+}
+
+/* No pixel is off by more than the statistics say, and that is no idle word. */
+static void bailout_keeps_its_bound(void **state)
+{
+    (void)state;
+    const double bailouts[] = {-1.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};
+    for (int which = 0; which < 2; ++which) {
+        struct image full = {0};
+        for (int i = 0; i < 4; ++i) {
+            const struct render_params params = {.width = 40,
+                                                 .height = 40,
+                                                 .depth = 6,
+                                                 .bailout = bailouts[i],
+                                                 .camera = which ? NULL : glass_camera};
+            struct fixture f = fixture_open(weak_scene(which), NULL, &params);
+            struct image image = render(&f);
+            struct render_stats stats;
+            renderer_get_stats(f.renderer, &stats);
+            double worst = 0;
+            for (size_t k = 0; full.pixels && k < 40 * 40 * 4; ++k)
+                worst = fmax(worst, fabs((double)image.pixels[k] - (double)full.pixels[k]));
+            if (i == 0) {
+                assert_true(stats.rays_cut_bailout == 0 && stats.bailout_bound == 0);
+                full = image;
+            } else {
+                print_message("  bailout 1/%g cuts %llu rays: off by %.3g, the bound is %.3g\n",
+                              1 / bailouts[i], (unsigned long long)stats.rays_cut_bailout, worst,
+                              stats.bailout_bound);
+                assert_true(stats.rays_cut_bailout > 0 && worst > 0);
+                assert_true(worst <= stats.bailout_bound + 1e-6);
+                assert_true(stats.bailout_bound < 100 * worst);
+                image_finish(&image);
+            }
+            fixture_close(&f);
+        }
+        image_finish(&full);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(white_furnace_of_nested_media),
         cmocka_unit_test(facing_mirrors_end),
+        cmocka_unit_test(bailout_keeps_its_bound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

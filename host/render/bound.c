@@ -1,0 +1,154 @@
+/* By how much a picture can differ from one for which no ray was too weak to be traced: the weights
+   that were cut from a pixel, times the most radiance that a ray can bring. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "render/renderer.h"
+
+static double largest(const float rgb[3])
+{
+    return fmax(fmax((double)rgb[0], (double)rgb[1]), fmax((double)rgb[2], 0.0));
+}
+
+/* What lights can bring to a point at most; < 0: no bound is known. `highlights`: of some material.
+   Flat emitters fill no more than all that a surface sees, which bounds its diffuse light alone. */
+static double arriving_most(const struct renderer *renderer, bool highlights)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < renderer->pose.light_count; ++i) {
+        const struct scene_light *light = &renderer->pose.lights[i];
+        double color = largest(light->color);
+        if (light->kind == SCENE_LIGHT_AREA_SAMPLE || (scene_light_is_flat(light) && highlights))
+            return -1.0;
+        if (light->falloff && light->kind != SCENE_LIGHT_DIRECTIONAL &&
+            !scene_light_is_flat(light)) {
+            /* Hits are off by roundings. */
+            double away = 0.999 * accel_distance(renderer->accel, &renderer->pose, light->position);
+            if (!(away > 0.0))
+                return -1.0;
+            color /= away * away;
+        }
+        sum += color;
+    }
+    return sum;
+}
+
+/* A material's light of its own, and the weights of all rays that it calls for, at most. */
+struct most {
+    double own, weights;
+};
+
+static bool uses(const struct scene_material *m, enum scene_slot slot)
+{
+    return m->textures[slot].texture != SCENE_NONE;
+}
+
+/* GGX times visibility and the light's cosine: 1 / alpha^2 where the half vector is the normal,
+   times 0.5 / alpha, as the spread is no less than alpha times the cosine (lib/optics.glsl). */
+static double ggx_most(const struct scene_material *m)
+{
+    double alpha = uses(m, SCENE_SLOT_METAL_ROUGH) ? 0.0 : pow((double)m->roughness, 2.0);
+    alpha = fmax(alpha, 0.02);
+    return 0.5 / (alpha * alpha * alpha);
+}
+
+static double weights_most(const struct scene_material *m, double base)
+{
+    double through = largest(m->transmission), mirror = largest(m->reflection), weights = mirror;
+    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+        weights = fmax(fmax(1.0, base), through * fmax(1.0, base));
+    } else if (through > 0.0) {
+        weights = fmax(1.0, m->fresnel ? through : through + mirror);
+    } else if (m->fresnel && mirror > 0.0) {
+        weights = fmax(1.0, mirror);
+    }
+    if (m->model == SCENE_MODEL_UNLIT)
+        weights = 0.0;
+    return m->alpha == SCENE_ALPHA_BLEND || m->shadow_catcher ? fmax(1.0, weights) : weights;
+}
+
+static bool has_highlight(const struct scene_material *m)
+{
+    return m->model == SCENE_MODEL_METAL_ROUGH ||
+           (m->model == SCENE_MODEL_PHONG && largest(m->specular) > 0.0);
+}
+
+static struct most material_most(const struct renderer *renderer, const struct scene_material *m,
+                                 double arriving)
+{
+    double base = largest(m->diffuse), ambient = largest(m->ambient);
+    double highlight = largest(m->specular);
+    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+        highlight = fmax(1.0, base); /* of F0 */
+        ambient = base + highlight;
+        highlight *= ggx_most(m);
+    }
+    struct most most = {.own = base + largest(m->emission), .weights = weights_most(m, base)};
+    if (m->model != SCENE_MODEL_UNLIT)
+        most.own = largest(m->emission) + ambient * largest(renderer->frame.ambient) +
+                   (base + (has_highlight(m) ? highlight : 0.0)) * arriving;
+    return most;
+}
+
+static double sky_most(const struct renderer *renderer)
+{
+    const struct scene_environment *sky = &renderer->scene->environment;
+    const struct gpu_frame *frame = &renderer->frame;
+    double most =
+        fmax(largest(frame->zenith), fmax(largest(frame->horizon), largest(frame->ground)));
+    if (sky->kind != SCENE_ENVIRONMENT_MAP || frame->environment_size == 0)
+        return most;
+    if (!sky->rgb)
+        return -1.0;
+    most = 0.0;
+    for (size_t i = 0; i < (size_t)sky->width * sky->height; ++i)
+        most = fmax(most, largest(&sky->rgb[3 * i]));
+    return most * largest(sky->scale);
+}
+
+static bool *worn_materials(const struct scene *scene)
+{
+    bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
+    for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[i];
+        for (uint32_t t = 0; t < scene_mesh_primitives(mesh); ++t)
+            worn[mesh->materials[t]] = true;
+    }
+    return worn;
+}
+
+/* The most that a ray can bring: the sky, or a surface's own light and what its rays bring. */
+static double ray_most(const struct renderer *renderer, const bool *worn)
+{
+    const struct scene *scene = renderer->scene;
+    bool highlights = false;
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        highlights |= worn[i] && has_highlight(&scene->materials[i]);
+    double arriving = arriving_most(renderer, highlights), sky = sky_most(renderer);
+    if (arriving < 0.0 || sky < 0.0)
+        return -1.0;
+    double radiance = 0.0;
+    for (uint32_t level = 0; level <= renderer->params.depth; ++level) {
+        double next = sky;
+        for (uint32_t i = 0; i < scene->material_count; ++i) {
+            if (!worn[i])
+                continue;
+            struct most most = material_most(renderer, &scene->materials[i], arriving);
+            next = fmax(next, most.own + most.weights * radiance);
+        }
+        radiance = next;
+    }
+    return isfinite(radiance) ? radiance : -1.0;
+}
+
+double bailout_bound(const struct renderer *renderer)
+{
+    double cut = renderer->stats.weight_cut_bailout;
+    if (cut == 0.0)
+        return 0.0;
+    bool *worn = worn_materials(renderer->scene);
+    double most = worn ? ray_most(renderer, worn) : -1.0;
+    free(worn);
+    return most < 0.0 ? -1.0 : cut * most;
+}
