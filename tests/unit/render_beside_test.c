@@ -55,10 +55,19 @@ static void renew(struct fixture *f, const struct render_params *params)
                      WHIT_OK);
 }
 
+/* Its rows of triangles are shorter: no normals, no colours. */
+static struct scene *flat_scene(void)
+{
+    struct scene *scene = terrain_scene();
+    free(scene->meshes[0].normals);
+    scene->meshes[0].normals = NULL;
+    return scene;
+}
+
 static void both_kernels_draw_the_same(void **state)
 {
     (void)state;
-    static struct scene *(*const make[])(void) = {terrain_scene, glass_scene, ring_scene};
+    static struct scene *(*const make[])(void) = {flat_scene, glass_scene, ring_scene};
     static const char *const cameras[] = {"0,6,9,0,0,0,0,1,0,40", glass_camera,
                                           "0,6,14,0,0,0,0,1,0,40"};
     for (int i = 0; i < 3; ++i) {
@@ -149,17 +158,13 @@ static void anything_may_come_in_between(void **state)
     again = render_specialised(&f);
     assert_same(&before, &again);
     image_finish(&again);
-    /* Constants that no longer fit: the node stack has grown. */
-    f.renderer->node_stack_size += 4;
+    /* Constants that no longer fit: what the thread makes with them is not taken. */
+    renew(&f, &params);
+    f.renderer->effects.called[SCENE_EFFECT_SHADOWS] = false;
     passes_finish(f.renderer);
-    again = render(&f);
-    assert_same(&before, &again);
-    image_finish(&again);
-    f.renderer->node_stack_size += 4;
-    passes_finish(f.renderer);
-    again = render_specialised(&f);
-    assert_same(&before, &again);
-    image_finish(&again);
+    image_finish(&before);
+    before = render_specialised(&f);
+    assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
     image_finish(&before);
     fixture_close(&f);
 }
