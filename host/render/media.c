@@ -138,6 +138,14 @@ static bool list_bodies(const struct renderer *renderer, struct bodies *out)
     return fine;
 }
 
+bool media_may_touch(const struct renderer *renderer)
+{
+    struct bodies bodies = {0};
+    bool may = !list_bodies(renderer, &bodies) || bodies.count > 1;
+    free(bodies.all);
+    return may;
+}
+
 static int by_low_x(const void *a, const void *b)
 {
     double x = ((const struct body *)a)->lo[0], y = ((const struct body *)b)->lo[0];

@@ -176,6 +176,8 @@ WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
    and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told
    apart, WHIT_ERROR_STATUS where the camera is in too many media. */
 WHIT_CHECK whit_result media_frame(struct renderer *renderer);
+/* Whether the scene has more than one body of a medium: at some time they may touch. */
+bool media_may_touch(const struct renderer *renderer);
 
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */

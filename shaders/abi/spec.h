@@ -27,6 +27,11 @@
 #define FRESNEL_EXACT   1u
 #define FRESNEL_SCHLICK 2u /* Schlick's approximation in its place */
 
+/* Media. */
+#define MEDIA_NONE  0u
+#define MEDIA_ALONE 1u /* of one body, which nothing touches */
+#define MEDIA_TOUCH 2u /* surfaces of several may be at one place */
+
 /* What the triangle records of all meshes are. */
 #define SPHERES_NONE 0u
 #define SPHERES_SOME 1u
@@ -62,7 +67,7 @@
     X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
     X(26, SPEC_BRUTE, 0)              /* BRUTE_*: no trees, every triangle of every instance */    \
     X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */            \
-    X(28, SPEC_MEDIA, 1)              /* rays carry a stack of the media that they are in */       \
+    X(28, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of what they are in */        \
     X(29, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
     X(30, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
     X(31, SPEC_FILTER_DETAIL, 1)      /* filters that textures pattern, or that absorb */          \

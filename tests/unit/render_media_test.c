@@ -97,6 +97,30 @@ static void equal_indices_do_not_bend(void **state)
     check_layers((struct layer[]){{1.5, 1.33f, 0}, {1.0, 1.33f, 0}}, 2, z, n, 4);
 }
 
+/* What looks for touching surfaces is compiled where there are some, and changes nothing elsewhere.
+ */
+static void lone_bodies_need_less(void **state)
+{
+    (void)state;
+    const struct layer layers[] = {{1.5, 1.33f, 0}, {1.0, 1.5f, 0}};
+    const uint32_t expected[] = {MEDIA_NONE, MEDIA_ALONE, MEDIA_TOUCH};
+    for (int count = 0; count < 3; ++count) {
+        struct image images[2];
+        for (int all = 0; all < 2; ++all) {
+            const struct render_params params = {
+                .width = 16, .height = 16, .depth = 6, .all_effects = all};
+            struct fixture f = fixture_open(layer_scene(layers, count), NULL, &params);
+            struct gpu_spec spec = variant_spec(f.renderer);
+            assert_int_equal(spec.SPEC_MEDIA, all ? MEDIA_TOUCH : expected[count]);
+            images[all] = render(&f);
+            fixture_close(&f);
+        }
+        assert_memory_equal(images[0].pixels, images[1].pixels, 16 * 16 * 16);
+        image_finish(&images[0]);
+        image_finish(&images[1]);
+    }
+}
+
 /* ---- The list of media ---- */
 
 static struct scene *shell_scene(int count)
@@ -320,6 +344,7 @@ int main(void)
         cmocka_unit_test(priority_hides_what_is_inside),
         cmocka_unit_test(equal_indices_do_not_bend),
         cmocka_unit_test(liquid_in_a_glass),
+        cmocka_unit_test(lone_bodies_need_less),
         cmocka_unit_test(list_holds_eight_media),
         cmocka_unit_test(ninth_medium_is_an_error),
         cmocka_unit_test(open_meshes_stay_finite),
