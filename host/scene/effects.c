@@ -188,11 +188,11 @@ static void scan_light(struct scene_effects *out, const struct scene_light *ligh
     };
     char place[64];
     place_of(&light->origin, place, sizeof place);
-    const char *by = light->made_by_whit ? ", added by whit" : place;
+    const char *by = light->made_by_whit ? ", added by whit" : "";
     const char *name = light->name ? light->name : "";
-    call(out, effects[light->kind], "light `%.60s`%s", name, by);
+    call(out, effects[light->kind], "light `%.60s`%s%s", name, by, place);
     if (any(light->color))
-        call(out, SCENE_EFFECT_SHADOWS, "light `%.60s`%s", name, by);
+        call(out, SCENE_EFFECT_SHADOWS, "light `%.60s`%s%s", name, by, place);
 }
 
 static void scan_geometry(const struct scene *scene, struct scene_effects *out)

@@ -122,6 +122,8 @@ static struct scene_light light_of(const struct scene *scene, const struct emitt
     const struct scene_material *material = &scene->materials[emitter->material];
     return (struct scene_light){
         .name = string_format("emission of `%s`", material->name ? material->name : ""),
+        .origin = {.file = material->origin.file ? string_copy(material->origin.file) : NULL,
+                   .line = material->origin.line},
         .node = scene->instances[emitter->instance].node,
         .falloff = true,
         .cos_inner = 1.0f,
