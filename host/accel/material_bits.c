@@ -54,8 +54,8 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
                                           bool colors)
 {
     struct material_bits bits = {.masked = m->alpha == SCENE_ALPHA_MASK};
-    if (bits.masked && (m->opacity < m->alpha_cutoff || has_texture(m, SCENE_SLOT_OPACITY) ||
-                        has_texture(m, SCENE_SLOT_DIFFUSE)))
+    if (bits.masked && (m->opacity < m->alpha_cutoff || colors ||
+                        has_texture(m, SCENE_SLOT_OPACITY) || has_texture(m, SCENE_SLOT_DIFFUSE)))
         bits.flags |= TRIANGLE_CUTOUT;
     /* Surfaces that scene_freeze makes lights of; others that glow are ordinary ones. */
     if (area_lights && any_channel(m->emission) && m->model != SCENE_MODEL_UNLIT &&

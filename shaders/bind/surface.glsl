@@ -25,17 +25,6 @@ uint shade_index_of(uint instance, uint primitive)
     return fetch_instance_row(instance * INSTANCE_ROWS + 3u).y + primitive;
 }
 
-bool cutout_is_solid(uint instance, uint primitive, float u, float v)
-{
-    uint index = shade_index_of(instance, primitive);
-    gpu_material material = fetch_material(fetch_material_index(index));
-    if ((material.flags & MATERIAL_MASK) == 0u)
-        return true;
-    if (material.tex_opacity == TEXTURE_NONE)
-        return material.opacity >= material.alpha_cutoff;
-    return sample_opacity(material, index, u, v) >= material.alpha_cutoff;
-}
-
 // Linear RGBA at a point of a triangle.
 vec4 vertex_color(uint shade_index, float u, float v)
 {
@@ -49,6 +38,17 @@ vec4 vertex_color(uint shade_index, float u, float v)
     vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
     // By differences: three equal colours give just that colour.
     return first + (second - first) * u + (third - first) * v;
+}
+
+bool cutout_is_solid(uint instance, uint primitive, float u, float v)
+{
+    uint index = shade_index_of(instance, primitive);
+    gpu_material material = fetch_material(fetch_material_index(index));
+    if ((material.flags & MATERIAL_MASK) == 0u)
+        return true;
+    float opacity = material.tex_opacity == TEXTURE_NONE ? material.opacity
+                                                         : sample_opacity(material, index, u, v);
+    return opacity * vertex_color(index, u, v).a >= material.alpha_cutoff;
 }
 
 // Zero where the mesh is flat.

@@ -200,6 +200,27 @@ static void coordinates_may_be_anything(void **state)
     assert_sane(textured_floor(NULL, true), linear * 1.000001);
 }
 
+/* glTF multiplies the opacity of a mask by the alpha of vertices: below the cutoff nothing is
+ * there. */
+static void masks_heed_the_alpha_of_vertices(void **state)
+{
+    (void)state;
+    static const float alphas[] = {0.6f, 0.4f};
+    for (int i = 0; i < 2; ++i) {
+        struct scene_mesh mesh = plane(10);
+        mesh.colors = array_alloc(mesh.vertex_count, 4 * sizeof *mesh.colors);
+        assert_non_null(mesh.colors);
+        for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+            set_rgb(&mesh.colors[4 * v], 1, 1, 1);
+            mesh.colors[4 * v + 3] = alphas[i];
+        }
+        struct scene_material m = white();
+        m.alpha = SCENE_ALPHA_MASK;
+        m.alpha_cutoff = 0.5f;
+        assert_even(floor_scene(mesh, m), i ? 0.0 : COS_SUN, 1e-6);
+    }
+}
+
 static void cross_of(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -270,6 +291,7 @@ int main(void)
         cmocka_unit_test(turned_normals_shade_the_same),
         cmocka_unit_test(averted_normals_give_way),
         cmocka_unit_test(coordinates_may_be_anything),
+        cmocka_unit_test(masks_heed_the_alpha_of_vertices),
         cmocka_unit_test(frames_stand_in_every_direction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
