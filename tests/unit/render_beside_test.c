@@ -55,10 +55,19 @@ static void renew(struct fixture *f, const struct render_params *params)
                      WHIT_OK);
 }
 
-/* Its rows of triangles are shorter: no normals, no colours. */
+/* Its rows of triangles are shorter: no normals, no colours. Of two materials, so that it shows
+   when a kernel takes another row for a triangle's. */
 static struct scene *flat_scene(void)
 {
     struct scene *scene = terrain_scene();
+    struct scene_material dark = material("dark");
+    dark.name = string_copy("dark");
+    set_rgb(dark.diffuse, 0.1f, 0.2f, 0.3f);
+    uint32_t index = scene_add_material(scene, dark);
+    for (uint32_t t = 0; t < scene->meshes[0].triangle_count; ++t) {
+        if (t % 5 < 2)
+            scene->meshes[0].materials[t] = index;
+    }
     free(scene->meshes[0].normals);
     scene->meshes[0].normals = NULL;
     return scene;
