@@ -214,7 +214,11 @@ whit_result device_create(const struct log *log, const struct device_params *par
     }
     if (log)
         device->log = *log;
-    device->validation = (params && params->validation) || environment_on("WHIT_VALIDATION");
+    const char *validation = getenv("WHIT_VALIDATION");
+    bool asked = params && params->validation;
+    device->validation = asked || environment_on("WHIT_VALIDATION");
+    device->validation_of_shaders =
+        device->validation && (asked || strcmp(validation, "sync") != 0);
     device->staged = environment_on("WHIT_STAGING");
     device_read_fault(device);
 

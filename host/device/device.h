@@ -53,7 +53,8 @@ struct device_params {
                              number: that index; else part of a name, any case */
     bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
                              absence is an error. WHIT_VALIDATION=1 in the environment turns it on
-                             for every device */
+                             for every device; WHIT_VALIDATION=sync without the GPU-assisted
+                             checks, which make kernels slow to compile */
 };
 
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.

@@ -122,15 +122,16 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
         enabled[enabled_count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
 
     const VkValidationFeatureEnableEXT checks[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
         VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
         VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT,
-        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,
     };
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(device);
     VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &messenger,
-        .enabledValidationFeatureCount = sizeof checks / sizeof *checks,
+        .enabledValidationFeatureCount =
+            device->validation_of_shaders ? sizeof checks / sizeof *checks : 1,
         .pEnabledValidationFeatures = checks,
     };
     VkApplicationInfo application = {

@@ -28,7 +28,8 @@ struct device {
     struct log log;
     struct fault fault;
     bool validation, staged;
-    bool lost; /* every later call fails at once */
+    bool validation_of_shaders; /* GPU-assisted checks too */
+    bool lost;                  /* every later call fails at once */
     atomic_uint validation_messages;
 
     VkInstance instance;

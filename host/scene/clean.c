@@ -7,6 +7,8 @@
 
 #define LARGEST_COORDINATE 1e18f
 #define LARGEST_UV         1e9f
+/* Radians between a normal and that of its face: what files of four decimals round away. */
+#define NORMAL_SLACK       1e-4
 
 struct cleaned {
     uint32_t out_of_range, not_finite, zero_area;
@@ -152,6 +154,19 @@ static double length_of(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+/* As long as the triangle's area, doubled. */
+static void face_normal(const struct scene_mesh *mesh, uint32_t triangle, double n[3])
+{
+    const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
+    const float *a = mesh->positions + 3 * (size_t)index[0];
+    double e1[3], e2[3];
+    edge(a, mesh->positions + 3 * (size_t)index[1], e1);
+    edge(a, mesh->positions + 3 * (size_t)index[2], e2);
+    n[0] = e1[1] * e2[2] - e1[2] * e2[1];
+    n[1] = e1[2] * e2[0] - e1[0] * e2[2];
+    n[2] = e1[0] * e2[1] - e1[1] * e2[0];
+}
+
 /* Area-weighted face normals summed into the vertices marked bad. */
 static void average_faces(const struct scene_mesh *mesh, const bool *bad, double *sums)
 {
@@ -159,14 +174,8 @@ static void average_faces(const struct scene_mesh *mesh, const bool *bad, double
         const uint32_t *index = mesh->indices + 3 * (size_t)t;
         if (!bad[index[0]] && !bad[index[1]] && !bad[index[2]])
             continue;
-        double e1[3], e2[3];
-        const float *a = mesh->positions + 3 * (size_t)index[0];
-        for (int k = 0; k < 3; ++k) {
-            e1[k] = (double)mesh->positions[3 * (size_t)index[1] + (size_t)k] - (double)a[k];
-            e2[k] = (double)mesh->positions[3 * (size_t)index[2] + (size_t)k] - (double)a[k];
-        }
-        double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
-                       e1[0] * e2[1] - e1[1] * e2[0]};
+        double n[3];
+        face_normal(mesh, t, n);
         for (int corner = 0; corner < 3; ++corner) {
             for (int k = 0; bad[index[corner]] && k < 3; ++k)
                 sums[3 * (size_t)index[corner] + (size_t)k] += n[k];
@@ -269,6 +278,31 @@ static uint32_t mend_tangents(struct scene_mesh *mesh)
     return count;
 }
 
+/* Whether unit `normal` is that of the face, on either side. */
+static bool says_the_face(const float *normal, const double face[3])
+{
+    const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+    const double across[3] = {n[1] * face[2] - n[2] * face[1], n[2] * face[0] - n[0] * face[2],
+                              n[0] * face[1] - n[1] * face[0]};
+    return length_of(across) <= NORMAL_SLACK * length_of(face);
+}
+
+/* Normals that say what the faces say are none: then nothing has to interpolate them. */
+static void drop_flat_normals(struct scene_mesh *mesh)
+{
+    for (uint32_t t = 0; mesh->normals && t < mesh->triangle_count; ++t) {
+        const uint32_t *index = mesh->indices + 3 * (size_t)t;
+        double face[3];
+        face_normal(mesh, t, face);
+        for (int corner = 0; corner < 3; ++corner) {
+            if (!says_the_face(mesh->normals + 3 * (size_t)index[corner], face))
+                return;
+        }
+    }
+    free(mesh->normals);
+    mesh->normals = NULL;
+}
+
 static void report(struct scene *scene, const struct scene_mesh *mesh, uint32_t count,
                    const char *what)
 {
@@ -306,6 +340,7 @@ whit_result freeze_clean_mesh(struct scene *scene, uint32_t index)
     result = mend_normals(scene, mesh, &normals);
     if (result != WHIT_OK)
         return result;
+    drop_flat_normals(mesh);
     report_dropped(scene, mesh, &dropped);
     report(scene, mesh, normals, "normals without length or not finite, made from the faces");
     report(scene, mesh, mend_uvs(mesh), "texture coordinates not finite or beyond 1e9, set to 0");

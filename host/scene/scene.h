@@ -104,7 +104,7 @@ struct scene_mesh {
     uint32_t sphere_count;
     float *spheres;      /* 4 per sphere: centre, radius > 0 */
     float *positions;    /* 3 per vertex */
-    float *normals;      /* 3 per vertex, or NULL: flat */
+    float *normals;      /* 3 per vertex, or NULL: flat; scene_freeze drops those of flat faces */
     float *uvs[2];       /* 2 per vertex (v downwards), or NULL */
     float *colors;       /* 4 per vertex linear RGBA, or NULL */
     float *tangents;     /* 4 per vertex, w = sign of the bitangent, or NULL */

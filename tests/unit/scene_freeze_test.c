@@ -145,7 +145,7 @@ static void attributes_are_mended(void **state)
     (void)state;
     const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};
     const uint32_t indices[] = {0, 1, 2};
-    const float normals[] = {0, 0, 0, (float)NAN, 0, 1, 0, 0, -3, 0, 0, 0};
+    const float normals[] = {0, 0, 0, (float)NAN, 0, 1, 0, -3, 0, 0, 0, 0};
     const float uvs[] = {0.5f, 0.25f, (float)INFINITY, 0, 2e9f, 1, 0, 0};
     struct scene_mesh mesh = make_mesh(p, 4, indices, 1);
     mesh.normals = copy_of(normals, sizeof normals);
@@ -153,13 +153,39 @@ static void attributes_are_mended(void **state)
     struct scene *scene = scene_of(mesh);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct scene_mesh *m = &scene->meshes[0];
-    const float mended[] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 1};
+    const float mended[] = {0, 0, 1, 0, 0, 1, 0, -1, 0, 0, 0, 1};
     const float mended_uvs[] = {0.5f, 0.25f, 0, 0, 0, 0, 0, 0};
     assert_memory_equal(m->normals, mended, sizeof mended);
     assert_memory_equal(m->uvs[0], mended_uvs, sizeof mended_uvs);
     assert_true(noted(scene, "3 normals"));
     assert_true(noted(scene, "2 texture coordinates"));
     scene_destroy(scene);
+}
+
+/* Of one triangle whose last normal leans by `lean` radians. */
+static bool keeps_normals(float side, float lean)
+{
+    const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t indices[] = {0, 1, 2};
+    const float normals[] = {0, 0, side, 0, 0, side, lean, 0, side};
+    struct scene_mesh mesh = make_mesh(p, 3, indices, 1);
+    mesh.normals = copy_of(normals, sizeof normals);
+    struct scene *scene = scene_of(mesh);
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    bool keeps = scene->meshes[0].normals != NULL;
+    scene_destroy(scene);
+    return keeps;
+}
+
+static void normals_of_flat_faces_go(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        float side = i ? -1.0f : 1.0f;
+        assert_false(keeps_normals(side, 0.0f));
+        assert_false(keeps_normals(side, 5e-5f));
+        assert_true(keeps_normals(side, 2e-4f));
+    }
 }
 
 static void materials_are_mended(void **state)
@@ -400,6 +426,7 @@ int main(void)
         cmocka_unit_test(bad_spheres_are_dropped_and_counted),
         cmocka_unit_test(mixed_meshes_are_refused),
         cmocka_unit_test(attributes_are_mended),
+        cmocka_unit_test(normals_of_flat_faces_go),
         cmocka_unit_test(materials_are_mended),
         cmocka_unit_test(broken_references_are_refused),
         cmocka_unit_test(singular_instances_and_unused_meshes_go),
