@@ -37,12 +37,10 @@ const float LIGHT_MOST = 1e24; // so that sums of what arrives cannot overflow
 
 // One turn of the loop over lights: a light, or one point of a flat emitter.
 struct LightTurn {
-    gpu_light light;
     vec3 to_light; // unit
     float distance;
     vec3 arriving;  // irradiance over pi, facing the light, before shadows
     float strength; // flat emitters: arriving = color * area_share * strength
-    bool flat_emitter;
 };
 
 bool is_flat(gpu_light light)
@@ -95,8 +93,7 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 n)
 // Turn `index` of a light towards `p`. False: nothing arrives.
 bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
 {
-    turn.light = light;
-    turn.flat_emitter = is_flat(light);
+    bool flat_emitter = is_flat(light);
     turn.arriving = light.color;
     turn.strength = 0.0;
     if (((SPEC_LIGHTS >> light.kind) & 1u) == 0u)
@@ -107,7 +104,7 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
         return true;
     }
     vec3 way = light.position - p;
-    if (turn.flat_emitter)
+    if (flat_emitter)
         way = emitter_point(light, index) - p;
     float largest = max(abs(way.x), max(abs(way.y), abs(way.z)));
     if (!(largest > 0.0)) {
@@ -129,7 +126,7 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
     }
     if ((SPEC_LIGHTS & (1u << LIGHT_AREA_SAMPLE)) != 0u && light.kind == LIGHT_AREA_SAMPLE)
         turn.arriving *= cos_emitter;
-    if (turn.flat_emitter) {
+    if (flat_emitter) {
         turn.strength = min(cos_emitter / square, LIGHT_MOST);
         turn.arriving = light.color * (light.area_share * turn.strength);
     }
@@ -137,7 +134,7 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
     if (turn.distance > light.range)
         return false;
     // What lies in one plane with an emitter, as a ceiling may, casts no shadow of its light.
-    if (turn.flat_emitter)
+    if (flat_emitter)
         turn.distance *= 1.0 - 1.0 / 4096.0;
     return max(turn.arriving.r, max(turn.arriving.g, turn.arriving.b)) > 0.0;
 }

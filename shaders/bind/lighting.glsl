@@ -100,9 +100,59 @@ vec3 emitter_light(gpu_light light, Surface s, Optics o, EmitterSum sum, out vec
     return radiance * (diffuse + highlight);
 }
 
-// Light from all lights, towards the eye. One loop over all points of all lights, since a loop within
-// a loop would keep the lanes of a subgroup waiting for each other. The phase BRUTE_SHADOW has one
-// turn. `media`: around the surface, on its side. `open`: what the lights would add without shadows.
+// What all turns of a hit have in common.
+struct Lit {
+    Receiver receiver;
+    vec3 view;
+    float cos_view;
+    bool lifted;
+};
+
+// One turn of the loops over lights and their points. What a point of a flat emitter adds goes into
+// `emitter`, all else into `sum`; `open`: what it would add without shadows.
+void add_turn(uint slot, uint turn, gpu_light light, uint point, Surface s, Optics o, Lit lit,
+              inout EmitterSum emitter, inout vec3 sum, inout vec3 open, inout uint shadow_rays,
+              inout uint status)
+{
+    LightTurn at;
+    bool arrives = light_at(light, point, s.p, at);
+    float cos_light = dot(at.to_light, s.ns);
+    bool faces = arrives && cos_light > 0.0;
+    bool above = dot(at.to_light, s.ng) > 0.0;
+    bool wanted = faces && (above || lit.lifted);
+    vec3 highlight = vec3(0.0);
+    vec3 reflected = o.diffuse * cos_light;
+    if (SPEC_HIGHLIGHTS != 0u) {
+        vec3 middle = normalize_or(at.to_light + lit.view, s.ns);
+        float cos_half = clamp(dot(middle, s.ns), 0.0, 1.0);
+        highlight = o.metal_rough ? o.highlight * cos_light *
+                                        ggx_highlight(cos_half, cos_light, lit.cos_view, o.alpha)
+                                  : o.highlight * blinn_highlight(cos_half, o.shininess);
+        reflected += highlight;
+    }
+    wanted = wanted && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
+    vec3 share = vec3(0.0);
+    if (wanted) {
+        share = light_share(slot, turn, s, lit.receiver, at, above, status);
+        if (SPEC_SHADOWS != 0u)
+            shadow_rays++;
+    }
+    if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
+        float weight = faces ? cos_light * at.strength : 0.0;
+        emitter.weight += weight;
+        emitter.visible += share * weight;
+        emitter.highlight += wanted ? highlight * share * at.strength : vec3(0.0);
+    } else if (wanted) {
+        sum += reflected * at.arriving * share;
+        if (SPEC_CATCHERS != 0u)
+            open += reflected * at.arriving;
+    }
+}
+
+// Light from all lights, towards the eye. The inner loop is over the points of a flat emitter; all
+// rays go through the same lights and points, so none waits for another. The phase BRUTE_SHADOW has
+// one turn. `media`: around the surface, on its side. `open`: what the lights would add without
+// shadows.
 vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media,
                  out vec3 open, inout uint shadow_rays, inout uint status)
 {
@@ -110,62 +160,41 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media
     open = vec3(0.0);
     if (SPEC_LIGHTS == 0u)
         return sum;
-    Receiver receiver = Receiver(smooth_lift(hit, s), surrounding_absorption(media), hit.instance,
-                                 hit.primitive);
-    bool lifted = SPEC_TERMINATOR != 0u && receiver.lift != vec3(0.0);
-    float cos_view = max(dot(view, s.ns), 0.0);
+    Lit lit;
+    lit.receiver = Receiver(smooth_lift(hit, s), surrounding_absorption(media), hit.instance,
+                            hit.primitive);
+    lit.view = view;
+    lit.cos_view = max(dot(view, s.ns), 0.0);
+    lit.lifted = SPEC_TERMINATOR != 0u && lit.receiver.lift != vec3(0.0);
+    const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
     uint each = turns_each();
-    uint turn_count = frame.light_count * each;
     uint turn = SPEC_BRUTE == BRUTE_SHADOW ? chunk.light : 0u;
-    EmitterSum emitter = EMITTER_NOTHING;
+    uint index = flats ? turn >> uint(findMSB(each)) : turn;
+    if (index >= frame.light_count)
+        return sum;
     do {
-        uint index = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u ? turn >> uint(findMSB(each)) : turn;
-        uint point = turn & (each - 1u);
-        LightTurn at;
-        bool lit = turn < turn_count && light_at(fetch_light(index), point, s.p, at);
-        float cos_light = dot(at.to_light, s.ns);
-        bool faces = lit && cos_light > 0.0;
-        bool above = dot(at.to_light, s.ng) > 0.0;
-        lit = faces && (above || lifted);
-        vec3 highlight = vec3(0.0);
-        vec3 reflected = o.diffuse * cos_light;
-        if (SPEC_HIGHLIGHTS != 0u) {
-            vec3 middle = normalize_or(at.to_light + view, s.ns);
-            float cos_half = clamp(dot(middle, s.ns), 0.0, 1.0);
-            highlight = o.metal_rough
-                            ? o.highlight * cos_light *
-                                  ggx_highlight(cos_half, cos_light, cos_view, o.alpha)
-                            : o.highlight * blinn_highlight(cos_half, o.shininess);
-            reflected += highlight;
+        gpu_light light = fetch_light(index);
+        uint point = turn - index * each;
+        uint points = flats && is_flat(light) ? each : 1u;
+        EmitterSum emitter = EMITTER_NOTHING;
+        bool more = false;
+        do {
+            add_turn(slot, turn, light, point, s, o, lit, emitter, sum, open, shadow_rays, status);
+            point++;
+            turn++;
+            more = flats && SPEC_BRUTE != BRUTE_SHADOW && point < points;
+        } while (more);
+        if (more)
+            status |= STATUS_UNFINISHED_LOOP;
+        if (flats && SPEC_BRUTE != BRUTE_SHADOW && is_flat(light)) {
+            vec3 emitter_open;
+            sum += emitter_light(light, s, o, emitter, emitter_open);
+            open += emitter_open;
         }
-        lit = lit && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
-        vec3 share = vec3(0.0);
-        if (lit) {
-            share = light_share(slot, turn, s, receiver, at, above, status);
-            if (SPEC_SHADOWS != 0u)
-                shadow_rays++;
-        }
-        bool is_last = true; // turn of its light
-        if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && turn < turn_count && is_flat(at.light)) {
-            is_last = point == each - 1u;
-            float weight = faces ? cos_light * at.strength : 0.0;
-            emitter.weight += weight;
-            emitter.visible += share * weight;
-            emitter.highlight += lit ? highlight * share * at.strength : vec3(0.0);
-            if (is_last && SPEC_BRUTE != BRUTE_SHADOW) {
-                vec3 emitter_open;
-                sum += emitter_light(at.light, s, o, emitter, emitter_open);
-                open += emitter_open;
-                emitter = EMITTER_NOTHING;
-            }
-        } else if (lit) {
-            sum += reflected * at.arriving * share;
-            if (SPEC_CATCHERS != 0u)
-                open += reflected * at.arriving;
-        }
-        turn += is_last ? each - point : 1u;
-    } while (SPEC_BRUTE != BRUTE_SHADOW && turn < turn_count);
-    if (SPEC_BRUTE != BRUTE_SHADOW && turn < turn_count)
+        index++;
+        turn = index * each;
+    } while (SPEC_BRUTE != BRUTE_SHADOW && index < frame.light_count);
+    if (SPEC_BRUTE != BRUTE_SHADOW && index < frame.light_count)
         status |= STATUS_UNFINISHED_LOOP;
     return sum;
 }

@@ -278,24 +278,43 @@ Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool o
     return m;
 }
 
-// What has been met, unless something about it says no; filters add up and are not hits. `uv`: where
+// Whether rays may go on through a sphere's near end where nothing is marked at it.
+bool goes_through(const uint mode)
+{
+    return SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+           mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
+}
+
+bool is_nearer(Meeting m, uint instance, uint primitive, Hit hit)
+{
+    return m.met && (m.t < hit.t ||
+                     (m.t == hit.t && (instance < hit.instance ||
+                                       (instance == hit.instance && primitive < hit.primitive))));
+}
+
+// What is met, nearer, and there for rays of this kind at all.
+bool is_reached(const uint mode, Meeting m, uint flags, uint instance, uint primitive,
+                uint skip_instance, uint skip_primitive, Hit hit)
+{
+    bool reached = is_nearer(m, instance, primitive, hit);
+    if (mode == TRAVERSE_NEXT)
+        reached = reached && is_behind(m.t, instance, primitive, skip_instance, skip_primitive);
+    if (mode == TRAVERSE_SHADOW)
+        reached = reached && (flags & TRIANGLE_NO_SHADOW) == 0u;
+    // Light comes through what the eye sees not.
+    if (finds_closest(mode) && SPEC_CULLING != 0u)
+        reached = reached && (m.front || (flags & TRIANGLE_ONE_SIDED) == 0u);
+    return reached;
+}
+
+// What is reached, unless something about it says no; filters add up and are not hits. `uv`: where
 // textures are read. `refused`: the ray goes on through the point.
 bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow, uint instance,
                     uint primitive, uint skip_instance, uint skip_primitive, inout Hit hit,
                     out bool refused)
 {
-    bool nearer = m.t < hit.t ||
-                  (m.t == hit.t && (instance < hit.instance ||
-                                    (instance == hit.instance && primitive < hit.primitive)));
-    bool reached = m.met && nearer;
-    bool accepted = reached;
-    if (mode == TRAVERSE_NEXT)
-        accepted = accepted && is_behind(m.t, instance, primitive, skip_instance, skip_primitive);
-    if (mode == TRAVERSE_SHADOW)
-        accepted = accepted && (flags & TRIANGLE_NO_SHADOW) == 0u;
-    // Light comes through what the eye sees not.
-    if (finds_closest(mode) && SPEC_CULLING != 0u)
-        accepted = accepted && (m.front || (flags & TRIANGLE_ONE_SIDED) == 0u);
+    bool accepted = is_reached(mode, m, flags, instance, primitive, skip_instance, skip_primitive,
+                               hit);
     if (SPEC_CUTOUTS != 0u && accepted && (flags & TRIANGLE_CUTOUT) != 0u)
         accepted = cutout_is_solid(instance, primitive, uv.x, uv.y);
     if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
@@ -308,7 +327,7 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
             hit.filter_depth += depth;
         accepted = false;
     }
-    refused = reached && !accepted;
+    refused = is_nearer(m, instance, primitive, hit) && !accepted;
     return accepted;
 }
 
@@ -322,84 +341,143 @@ void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit h
     hit.instance = instance;
 }
 
-// Tests one record, a triangle's or a sphere's, and keeps it when it is nearer, or as near with
-// smaller ids. With SPEC_FLAT the record names its instance. True: the traversal may end.
-bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
-                 uint skip_instance, uint skip_primitive, inout Hit hit)
+// Whether some record may have to be looked at before it counts: see look_at_record.
+bool has_looks(const uint mode)
 {
-    // Both ends of a sphere's chord are met where a ray goes on through the first one.
-    const bool passes = SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
-                        mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
-    uvec4 r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
-    uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
-    uvec4 r2 = uvec4(0u);
+    return SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+           (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
+}
+
+// A triangle or a sphere as it stands in its record.
+struct Primitive {
+    uvec4 r0, r1, r2;
+    uint index, flags, instance;
+    bool own; // the ray starts on it
+    bool is_sphere;
+};
+
+// With SPEC_FLAT the record names its instance.
+Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip_instance,
+                          uint skip_primitive)
+{
+    Primitive p;
+    p.r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
+    p.r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
+    p.r2 = uvec4(0u);
     if (SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u)
-        r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
-    uint primitive = r0.w;
-    uint flags = r1.w;
-    if (SPEC_FLAT != 0u)
-        instance = flags >> TRIANGLE_INSTANCE_SHIFT;
+        p.r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    p.index = p.r0.w;
+    p.flags = p.r1.w;
+    p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
+    p.own = mode != TRAVERSE_NEXT && p.index == skip_primitive && p.instance == skip_instance;
+    p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
+    return p;
+}
+
+// Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
+Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
+{
+    Meeting m;
+    if (SPEC_SPHERES != SPHERES_ONLY) {
+        m = meet_triangle(ray, t_min, p.r0, p.r1, p.r2);
+        m.met = m.met && !p.own;
+    }
+    if (SPEC_SPHERES != SPHERES_NONE) {
+        Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
+        if (SPEC_SPHERES == SPHERES_ONLY)
+            m = on_sphere;
+        m.met = p.is_sphere ? on_sphere.met : m.met;
+        m.t = p.is_sphere ? on_sphere.t : m.t;
+        m.u = p.is_sphere ? on_sphere.u : m.u;
+        m.v = p.is_sphere ? on_sphere.v : m.v;
+        m.front = p.is_sphere ? on_sphere.front : m.front;
+        m.owned = p.is_sphere || m.owned;
+    }
+    return m;
+}
+
+Chord chord_of(RaySetup ray, float t_min, Primitive p)
+{
+    Chord chord;
+    if (SPEC_SPHERES != SPHERES_NONE)
+        chord = intersect_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x), t_min);
+    return chord;
+}
+
+bool starts_at_exit(Primitive p, Chord chord, float t_min)
+{
+    return SPEC_SPHERES != SPHERES_NONE && (p.own || !(chord.t_near >= t_min));
+}
+
+// Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal
+// may end. `waits`: it is met, but has to be looked at first.
+bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
+                 uint skip_instance, uint skip_primitive, inout Hit hit, out bool waits)
+{
     if (SPEC_COUNT != 0u)
         traversal_cost.triangles++;
-    bool own = mode != TRAVERSE_NEXT && primitive == skip_primitive && instance == skip_instance;
-    bool is_sphere = SPEC_SPHERES != SPHERES_NONE && (flags & TRIANGLE_SPHERE) != 0u;
-    Meeting on_triangle;
-    Chord chord;
-    if (SPEC_SPHERES != SPHERES_ONLY) {
-        on_triangle = meet_triangle(ray, t_min, r0, r1, r2);
-        on_triangle.met = on_triangle.met && !own;
+    Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
+    Chord chord = chord_of(ray, t_min, p);
+    Meeting m = meet_primitive(ray, t_min, p, chord, starts_at_exit(p, chord, t_min));
+    bool accepted = is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
+                               skip_primitive, hit);
+    waits = false;
+    if (has_looks(mode)) {
+        bool marked = (SPEC_CUTOUTS != 0u && (p.flags & TRIANGLE_CUTOUT) != 0u) ||
+                      (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u &&
+                       (p.flags & TRIANGLE_FILTER) != 0u);
+        waits = accepted && marked;
+        if (SPEC_SPHERES != SPHERES_NONE && goes_through(mode))
+            waits = waits || (p.is_sphere && chord.met);
+        accepted = accepted && !waits;
     }
-    if (SPEC_SPHERES != SPHERES_NONE)
-        chord = intersect_sphere(ray, row_vec3(r0), uintBitsToFloat(r1.x), t_min);
-    bool at_exit = false;
-    if (SPEC_SPHERES != SPHERES_NONE)
-        at_exit = own || !(chord.t_near >= t_min);
-    bool accepted, again, refused;
-    if (SPEC_SPHERES == SPHERES_NONE) {
-        // No loop, not even one of a single turn.
-        accepted = accept_meeting(mode, on_triangle, vec2(on_triangle.u, on_triangle.v), flags,
-                                  r2.w, instance, primitive, skip_instance, skip_primitive, hit,
-                                  refused);
-        if (accepted)
-            keep_hit(on_triangle, record, primitive, instance, hit);
-        return !finds_closest(mode) && accepted;
-    }
+    if (accepted)
+        keep_hit(m, record, p.index, p.instance, hit);
+    return !finds_closest(mode) && accepted;
+}
+
+// Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
+// end of a sphere behind an end that does.
+bool look_at_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
+                    uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
+    Chord chord = chord_of(ray, t_min, p);
+    bool at_exit = starts_at_exit(p, chord, t_min);
+    bool accepted, again;
     do {
-        Meeting m;
-        if (SPEC_SPHERES != SPHERES_ONLY)
-            m = on_triangle;
-        if (SPEC_SPHERES != SPHERES_NONE) {
-            Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, own);
-            if (SPEC_SPHERES == SPHERES_ONLY)
-                m = on_sphere;
-            m.met = is_sphere ? on_sphere.met : m.met;
-            m.t = is_sphere ? on_sphere.t : m.t;
-            m.u = is_sphere ? on_sphere.u : m.u;
-            m.v = is_sphere ? on_sphere.v : m.v;
-            m.front = is_sphere ? on_sphere.front : m.front;
-            m.owned = is_sphere || m.owned;
-        }
+        Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
-            is_sphere)
+            p.is_sphere)
             uv = sphere_uv(dir_from_square(uv));
-        accepted =
-            accept_meeting(mode, m, uv, flags, r2.w, instance, primitive, skip_instance,
-                           skip_primitive, hit, refused);
+        bool refused;
+        accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index, skip_instance,
+                                  skip_primitive, hit, refused);
         if (accepted)
-            keep_hit(m, record, primitive, instance, hit);
-        again = SPEC_SPHERES != SPHERES_NONE && passes && is_sphere && refused && !at_exit;
+            keep_hit(m, record, p.index, p.instance, hit);
+        again = p.is_sphere && goes_through(mode) && refused && !at_exit;
         at_exit = true;
     } while (again);
     return !finds_closest(mode) && accepted;
 }
 
-// A mesh tree, whose root is at `level`, with its stack in memory from `base` up.
-void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint base, uint level,
-                   uint instance, uint skip_instance, uint skip_primitive, inout Hit hit)
+// The ref behind a leaf's record that was tested.
+uint next_ref(uint ref, bool done, inout NodeStack stack)
 {
-    NodeStack stack = make_stack(base, level);
-    uint ref = root;
+    ref += 1u - REF_ONE_PRIMITIVE;
+    if (SPEC_COUNT != 0u && (is_inner(ref) || done))
+        traversal_cost.leaves++;
+    ref = pop_ref(is_inner(ref), ref, stack);
+    return done ? REF_DONE : ref;
+}
+
+// Goes on through a mesh tree at `ref` until REF_DONE, or until a record waits.
+void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint skip_instance,
+               uint skip_primitive, inout uint ref, inout NodeStack stack, inout Hit hit,
+               out bool waits)
+{
+    waits = false;
     do {
         do {
             if (is_inner(ref) && has_room(stack))
@@ -408,19 +486,43 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint b
         do {
             if (is_leaf(ref)) {
                 bool done = test_record(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
-                                        skip_instance, skip_primitive, hit);
-                ref += 1u - REF_ONE_PRIMITIVE;
-                if (SPEC_COUNT != 0u && (is_inner(ref) || done))
-                    traversal_cost.leaves++;
-                ref = pop_ref(is_inner(ref), ref, stack);
-                if (done)
-                    ref = REF_DONE;
+                                        skip_instance, skip_primitive, hit, waits);
+                if (!waits)
+                    ref = next_ref(ref, done, stack);
             }
-        } while (is_leaf(ref));
+        } while (is_leaf(ref) && !waits);
         ref = refill_stack(ref, stack, hit.status);
-    } while (ref != REF_DONE);
+    } while (ref != REF_DONE && !waits);
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
-    if (ref != REF_DONE)
+    if (ref != REF_DONE && !waits)
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
+}
+
+// Looks at the record at `ref`, and goes on to the next.
+void look_at_leaf(const uint mode, RaySetup ray, float t_min, uint instance, uint skip_instance,
+                  uint skip_primitive, inout uint ref, inout NodeStack stack, inout Hit hit)
+{
+    bool done = look_at_record(mode, ray, t_min, ref & BVH_FIRST_MASK, instance, skip_instance,
+                               skip_primitive, hit);
+    ref = next_ref(ref, done, stack);
+    ref = refill_stack(ref, stack, hit.status);
+}
+
+// The only mesh tree. A ray with a record that waits stands still until all others of its subgroup
+// are done or wait too: looking costs more than many tests, and on lavapipe it costs that wherever it
+// stands, needed or not.
+void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint skip_instance,
+                   uint skip_primitive, inout Hit hit)
+{
+    NodeStack stack = make_stack(0u, 0u);
+    uint ref = root;
+    do {
+        bool waits;
+        walk_mesh(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit, waits);
+        if (has_looks(mode) && waits)
+            look_at_leaf(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit);
+    } while (has_looks(mode) && ref != REF_DONE);
+    if (has_looks(mode) && ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
@@ -434,32 +536,59 @@ RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
     return local;
 }
 
-// The tree over instances; each leaf is one.
+// Goes on through the tree over instances at `ref`, each leaf of which is one, until REF_DONE, or until
+// a record waits. `inside`: first through the rest, at `mesh_ref`, of the mesh tree of that leaf.
+void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min,
+                    uint skip_instance, uint skip_primitive, inout uint ref,
+                    inout NodeStack stack, inout RaySetup local, inout uint mesh_ref,
+                    inout NodeStack mesh_stack, bool inside, inout Hit hit, out bool waits)
+{
+    waits = false;
+    do {
+        do {
+            if (is_inner(ref) && has_room(stack) && !inside)
+                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, stack, hit);
+        } while (is_inner(ref) && has_room(stack) && !inside);
+        if (is_leaf(ref)) {
+            uint instance = ref & BVH_FIRST_MASK;
+            if (!inside) {
+                local = make_local_setup(instance, origin, dir);
+                mesh_ref = fetch_instance_row(instance * INSTANCE_ROWS + 3u).x;
+                mesh_stack = make_stack(stack.in_memory, stack.level);
+                if (SPEC_COUNT != 0u)
+                    traversal_cost.instances++;
+            }
+            walk_mesh(mode, local, t_min, instance, skip_instance, skip_primitive, mesh_ref,
+                      mesh_stack, hit, waits);
+            bool done = !finds_closest(mode) && hit.primitive != HIT_NONE;
+            if (!waits)
+                ref = done ? REF_DONE : pop_ref(true, ref, stack);
+            inside = false;
+        }
+        ref = refill_stack(ref, stack, hit.status);
+    } while (ref != REF_DONE && !waits);
+    if (ref != REF_DONE && !waits)
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
+}
+
+// See traverse_mesh.
 void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uint root,
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {
-    RaySetup ray = make_ray_setup(origin, dir);
-    NodeStack stack = make_stack(0u, 0u);
-    uint ref = root;
+    RaySetup ray = make_ray_setup(origin, dir), local = ray;
+    NodeStack stack = make_stack(0u, 0u), mesh_stack = stack;
+    uint ref = root, mesh_ref = REF_DONE;
+    bool inside = false;
     do {
-        do {
-            if (is_inner(ref) && has_room(stack))
-                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, stack, hit);
-        } while (is_inner(ref) && has_room(stack));
-        if (is_leaf(ref)) {
-            uint instance = ref & BVH_FIRST_MASK;
-            uint mesh_root = fetch_instance_row(instance * INSTANCE_ROWS + 3u).x;
-            if (SPEC_COUNT != 0u)
-                traversal_cost.instances++;
-            traverse_mesh(mode, make_local_setup(instance, origin, dir), t_min, mesh_root,
-                          stack.in_memory, stack.level, instance, skip_instance, skip_primitive,
-                          hit);
-            bool done = !finds_closest(mode) && hit.primitive != HIT_NONE;
-            ref = done ? REF_DONE : pop_ref(true, ref, stack);
-        }
-        ref = refill_stack(ref, stack, hit.status);
-    } while (ref != REF_DONE);
-    if (ref != REF_DONE)
+        bool waits;
+        walk_instances(mode, ray, origin, dir, t_min, skip_instance, skip_primitive, ref, stack,
+                       local, mesh_ref, mesh_stack, inside, hit, waits);
+        inside = has_looks(mode); // of those that wait
+        if (has_looks(mode) && waits)
+            look_at_leaf(mode, local, t_min, ref & BVH_FIRST_MASK, skip_instance, skip_primitive,
+                         mesh_ref, mesh_stack, hit);
+    } while (has_looks(mode) && ref != REF_DONE);
+    if (has_looks(mode) && ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
@@ -495,7 +624,7 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
         RaySetup ray = make_ray_setup(origin, dir);
         if (SPEC_CLIPPED != 0u)
             widen_ray_setup(ray, fetch_mesh_center(0u), fetch_mesh_reach(0u));
-        traverse_mesh(mode, ray, t_min, root, 0u, 0u, 0u, skip_instance, skip_primitive, hit);
+        traverse_mesh(mode, ray, t_min, root, skip_instance, skip_primitive, hit);
     }
     return hit;
 }

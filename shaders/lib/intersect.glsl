@@ -88,6 +88,23 @@ void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near
     t_far = widened;
 }
 
+// Vertices, the dominant axis last, sheared so that the ray goes along that axis; and for each vertex
+// the edge function of the other two.
+void shear_triangle(RaySetup ray, vec3 ta, vec3 tb, vec3 tc, out vec2 sa, out vec2 sb, out vec2 sc,
+                    out vec3 edges)
+{
+    precise vec2 a = ta.xy - ray.shear.xy * ta.z;
+    precise vec2 b = tb.xy - ray.shear.xy * tb.z;
+    precise vec2 c = tc.xy - ray.shear.xy * tc.z;
+    precise float ea = c.x * b.y - c.y * b.x;
+    precise float eb = a.x * c.y - a.y * c.x;
+    precise float ec = b.x * a.y - b.y * a.x;
+    sa = a;
+    sb = b;
+    sc = c;
+    edges = vec3(ea, eb, ec);
+}
+
 // Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
 // An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
 // triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
@@ -115,26 +132,20 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
     vec3 ta = turn_dominant(ray.dominant, a);
     vec3 tb = turn_dominant(ray.dominant, b);
     vec3 tc = turn_dominant(ray.dominant, c);
-    precise float ax = ta.x - ray.shear.x * ta.z;
-    precise float ay = ta.y - ray.shear.y * ta.z;
-    precise float bx = tb.x - ray.shear.x * tb.z;
-    precise float by = tb.y - ray.shear.y * tb.z;
-    precise float cx = tc.x - ray.shear.x * tc.z;
-    precise float cy = tc.y - ray.shear.y * tc.z;
-    precise float ea = cx * by - cy * bx;
-    precise float eb = ax * cy - ay * cx;
-    precise float ec = bx * ay - by * ax;
-    bool below = ea < 0.0 || eb < 0.0 || ec < 0.0;
-    bool above = ea > 0.0 || eb > 0.0 || ec > 0.0;
-    precise float det = (ea + eb) + ec;
+    vec2 sa, sb, sc;
+    vec3 edges;
+    shear_triangle(ray, ta, tb, tc, sa, sb, sc, edges);
+    bool below = edges.x < 0.0 || edges.y < 0.0 || edges.z < 0.0;
+    bool above = edges.x > 0.0 || edges.y > 0.0 || edges.z > 0.0;
+    precise float det = (edges.x + edges.y) + edges.z;
     precise float az = ray.shear.z * ta.z;
     precise float bz = ray.shear.z * tb.z;
     precise float cz = ray.shear.z * tc.z;
-    precise float scaled_t = (ea * az + eb * bz) + ec * cz;
+    precise float scaled_t = (edges.x * az + edges.y * bz) + edges.z * cz;
     precise float inv_det = 1.0 / det;
     precise float at = scaled_t * inv_det;
-    precise float weight_b = eb * inv_det;
-    precise float weight_c = ec * inv_det;
+    precise float weight_b = edges.y * inv_det;
+    precise float weight_c = edges.z * inv_det;
     u = weight_b;
     v = weight_c;
     t = at > t_near ? at : t_near;
@@ -144,32 +155,25 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
 }
 
 // Whether a point on this edge, as seen along the ray, belongs to the triangle on its left.
-bool owns_edge(float x, float y, bool left)
+bool owns_edge(vec2 edge, bool left)
 {
-    return left ? y > 0.0 || (y == 0.0 && x > 0.0) : y < 0.0 || (y == 0.0 && x < 0.0);
+    return left ? edge.y > 0.0 || (edge.y == 0.0 && edge.x > 0.0)
+                : edge.y < 0.0 || (edge.y == 0.0 && edge.x < 0.0);
 }
 
 // Of the triangles around an edge or a vertex that a ray meets exactly, seen from the same side, just
 // one owns the point: the fill rule of rasterizers (Pineda 1988). For what must be counted once.
 bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
-    vec3 ta = turn_dominant(ray.dominant, a);
-    vec3 tb = turn_dominant(ray.dominant, b);
-    vec3 tc = turn_dominant(ray.dominant, c);
-    precise float ax = ta.x - ray.shear.x * ta.z;
-    precise float ay = ta.y - ray.shear.y * ta.z;
-    precise float bx = tb.x - ray.shear.x * tb.z;
-    precise float by = tb.y - ray.shear.y * tb.z;
-    precise float cx = tc.x - ray.shear.x * tc.z;
-    precise float cy = tc.y - ray.shear.y * tc.z;
-    precise float ea = cx * by - cy * bx;
-    precise float eb = ax * cy - ay * cx;
-    precise float ec = bx * ay - by * ax;
-    precise float det = (ea + eb) + ec;
+    vec2 sa, sb, sc;
+    vec3 edges;
+    shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
+                   turn_dominant(ray.dominant, c), sa, sb, sc, edges);
+    precise float det = (edges.x + edges.y) + edges.z;
     bool left = det > 0.0;
-    return (ea != 0.0 || owns_edge(cx - bx, cy - by, left)) &&
-           (eb != 0.0 || owns_edge(ax - cx, ay - cy, left)) &&
-           (ec != 0.0 || owns_edge(bx - ax, by - ay, left));
+    return (edges.x != 0.0 || owns_edge(sc - sb, left)) &&
+           (edges.y != 0.0 || owns_edge(sa - sc, left)) &&
+           (edges.z != 0.0 || owns_edge(sb - sa, left));
 }
 
 #endif

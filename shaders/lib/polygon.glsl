@@ -2,29 +2,10 @@
 #ifndef LIB_POLYGON_GLSL
 #define LIB_POLYGON_GLSL
 
+#include "angles.glsl"
 #include "spawn.glsl"
 
 const float POLYGON_PI = 3.14159265358979;
-
-// Angle of (x, y) to the x axis, 0..pi, for y >= 0; 0 for (0, 0). By a polynomial of our own
-// (Abramowitz and Stegun 1964, 4.4.49: off by at most 2e-8), since drivers may be off by 4096 ulp.
-float turn_angle(float y, float x)
-{
-    float ax = abs(x);
-    float large = max(ax, y), small = min(ax, y);
-    float r = large > 0.0 ? small / large : 0.0;
-    float q = r * r;
-    float p = -0.0161657367 + q * 0.0028662257;
-    p = 0.0429096138 + q * p;
-    p = -0.0752896400 + q * p;
-    p = 0.1065626393 + q * p;
-    p = -0.1420889944 + q * p;
-    p = 0.1999355085 + q * p;
-    p = -0.3333314528 + q * p;
-    float angle = r + r * q * p;
-    angle = y > ax ? 0.5 * POLYGON_PI - angle : angle;
-    return x < 0.0 ? POLYGON_PI - angle : angle;
-}
 
 // The angle between a and b, times the cosine of n to the normal of the plane of both: what the
 // edge from a to b adds (Lambert 1760; Arvo 1995, "Applications of irradiance tensors", section 4).
@@ -32,7 +13,7 @@ float edge_term(vec3 n, vec3 a, vec3 b)
 {
     vec3 normal = cross(a, b - a); // b - a first: less cancels where the edge is short
     float size = length(normal);
-    return size > 0.0 ? turn_angle(size, dot(a, b)) * dot(n, normal) / size : 0.0;
+    return size > 0.0 ? angle_of(dot(a, b), size) * dot(n, normal) / size : 0.0;
 }
 
 // The part of an edge above the horizon. Remembers where the outline leaves it and comes back.

@@ -3,6 +3,7 @@
 #ifndef LIB_SPHERE_GLSL
 #define LIB_SPHERE_GLSL
 
+#include "angles.glsl"
 #include "intersect.glsl"
 
 // Where a ray's line goes through a sphere.
@@ -108,27 +109,6 @@ vec3 dir_from_square(vec2 at)
     folded.y = p.y >= 0.0 ? folded.y : -folded.y;
     vec2 xz = y < 0.0 ? folded : p;
     return vec3(xz.x, y, xz.y);
-}
-
-// Angle of (x, y) from the x axis, -pi..pi, to 2e-7; the polynomial on |a| <= tan(pi / 8) is that of
-// Moshier's Cephes library. GLSL's atan() may be off by 4096 ulp, and in another way on each device.
-float angle_of(float x, float y)
-{
-    const float pi = 3.14159265;
-    float ax = abs(x), ay = abs(y);
-    float larger = ax > ay ? ax : ay, smaller = ax > ay ? ay : ax;
-    float ratio = larger > 0.0 ? smaller / larger : 0.0;
-    bool steep = ratio > 0.41421356;
-    float a = steep ? (ratio - 1.0) / (ratio + 1.0) : ratio;
-    float z = a * a;
-    float angle =
-        (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) *
-            z * a +
-        a;
-    angle += steep ? 0.25 * pi : 0.0;
-    angle = ay > ax ? 0.5 * pi - angle : angle;
-    angle = x < 0.0 ? pi - angle : angle;
-    return y < 0.0 ? -angle : angle;
 }
 
 // Texture coordinates, 0..1: u once around y from +x towards -z, v from the top (+y) down.
