@@ -522,7 +522,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
         if (has_looks(mode) && waits)
             look_at_leaf(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit);
     } while (has_looks(mode) && ref != REF_DONE);
-    if (has_looks(mode) && ref != REF_DONE)
+    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
+    if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
@@ -588,7 +589,8 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
             look_at_leaf(mode, local, t_min, ref & BVH_FIRST_MASK, skip_instance, skip_primitive,
                          mesh_ref, mesh_stack, hit);
     } while (has_looks(mode) && ref != REF_DONE);
-    if (has_looks(mode) && ref != REF_DONE)
+    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
+    if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
