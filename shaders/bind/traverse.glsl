@@ -71,7 +71,7 @@ Hit make_hit(float t_max)
 }
 
 // The node stack. In memory alone (SPEC_SHORT_STACK 0) it is node_stack[base..in_memory). Short, its
-// top entries are the registers, and only the outer loop of traverse_mesh moves entries between
+// top entries are the registers, and only the outer loop of walk_mesh moves entries between
 // them and memory: on lavapipe a store to a private array costs as much as half a box test, even
 // where nothing is stored, while registers cost a few selects.
 uint node_stack[SPEC_STACK_SIZE];
