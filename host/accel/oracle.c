@@ -36,6 +36,7 @@
 #include <string.h>
 
 #include "accel/accel_inside.h"
+#include "accel/wide.h"
 
 #define ROUNDING            0x1p-24
 #define DENORMAL            0x1p-149
@@ -43,8 +44,6 @@
    lies within 16 roundings of it. */
 #define BOX_GROWTH          0x1p-18
 #define BOX_GROWTH_INSTANCE 0x1p-14 /* of the tree over instances: maps stretch errors */
-
-enum { STACK_SIZE = 512 };
 
 struct probe {
     double origin[3], dir[3];
@@ -72,17 +71,6 @@ struct point {
 struct number {
     double value, error;
 };
-
-static bool ray_is_usable(const struct gpu_ray *ray)
-{
-    bool moves = false;
-    for (int i = 0; i < 3; ++i) {
-        if (!isfinite(ray->origin[i]) || !isfinite(ray->dir[i]))
-            return false;
-        moves |= ray->dir[i] != 0.0f;
-    }
-    return moves;
-}
 
 /* The same rule as make_ray_setup: ties go to z, then y. */
 static void probe_shear(struct probe *p)
@@ -349,8 +337,8 @@ static struct verdict probe_sphere(const struct probe *p, const struct gpu_trian
 /* ---- Every triangle that matters ---- */
 
 struct search {
-    const struct accel *accel;
-    bool brute;
+    struct wide_walk walk; /* the first member: its callbacks get at the rest */
+    struct probe world, probe;
     /* First pass: the two nearest hits. */
     struct verdict best;
     uint32_t instance, primitive;
@@ -358,7 +346,6 @@ struct search {
     /* Second pass: how many error bounds away another answer is. */
     bool judging;
     double margin;
-    double limit; /* what lies behind does not matter */
 };
 
 static double outside(double t, double t_error, const struct probe *p)
@@ -370,6 +357,8 @@ static double outside(double t, double t_error, const struct probe *p)
 static void keep_nearest(struct search *s, const struct verdict *v, uint32_t instance,
                          uint32_t primitive)
 {
+    if (instance == s->instance && primitive == s->primitive)
+        return; /* another part of it */
     bool nearer = v->t < s->best.t ||
                   (v->t == s->best.t && (instance < s->instance ||
                                          (instance == s->instance && primitive < s->primitive)));
@@ -381,7 +370,7 @@ static void keep_nearest(struct search *s, const struct verdict *v, uint32_t ins
     } else if (v->t < s->second_t) {
         s->second_t = v->t;
     }
-    s->limit = fmin(s->limit, s->second_t);
+    s->walk.limit = fmin(s->walk.limit, s->second_t);
 }
 
 /* The float answer differs only if the winner is lost, or if some other triangle is hit, in the
@@ -403,42 +392,33 @@ static void judge(struct search *s, const struct verdict *v, const struct probe 
     s->margin = fmin(s->margin, margin);
 }
 
-/* Entry distance into the grown box; infinity: not entered within the interval that matters. */
-static double box_entry(const struct search *s, const struct probe *p, const float box_lo[3],
-                        const float box_hi[3])
+static struct wide_ray probe_ray(const struct probe *p)
 {
-    double lo[3], hi[3], far = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        lo[i] = (double)box_lo[i] - p->origin[i];
-        hi[i] = (double)box_hi[i] - p->origin[i];
-        far = fmax(far, fmax(fabs(lo[i]), fabs(hi[i])));
-    }
-    double growth = far * p->box_growth + 16.0 * p->origin_error_largest;
-    double start = -INFINITY, end = INFINITY;
-    for (int i = 0; i < 3; ++i) {
-        if (p->dir[i] == 0.0) {
-            if (lo[i] - growth > 0.0 || hi[i] + growth < 0.0)
-                return INFINITY;
-            continue;
-        }
-        double a = (lo[i] - growth) / p->dir[i], b = (hi[i] + growth) / p->dir[i];
-        start = fmax(start, fmin(a, b));
-        end = fmin(end, fmax(a, b));
-    }
-    bool reached = start <= end && start - BOX_GROWTH * fabs(start) <= fmin(s->limit, p->t_max) &&
-                   end + BOX_GROWTH * fabs(end) >= p->t_min;
-    return reached ? start : INFINITY;
+    struct wide_ray ray = {.t_min = p->t_min,
+                           .t_max = p->t_max,
+                           .growth = p->box_growth,
+                           .margin = 16.0 * p->origin_error_largest};
+    memcpy(ray.origin, p->origin, sizeof ray.origin);
+    memcpy(ray.dir, p->dir, sizeof ray.dir);
+    return ray;
 }
 
-static void visit_triangle(struct search *s, const struct probe *p, uint32_t record,
-                           uint32_t instance)
+static bool enter_instance(struct wide_walk *walk, uint32_t instance)
 {
-    const struct gpu_triangle *triangle = &s->accel->triangles[record];
-    if (s->accel->flat)
-        instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
+    struct search *s = (struct search *)walk;
+    s->probe = probe_local(&s->world, &walk->accel->instances[instance]);
+    walk->ray = probe_ray(&s->probe);
+    return true;
+}
+
+static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t instance)
+{
+    struct search *s = (struct search *)walk;
+    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
+    const struct probe *p = &s->probe;
     /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
     struct bvh_box box = accel_record_box(triangle);
-    if (s->judging && box_entry(s, p, box.lo, box.hi) == INFINITY)
+    if (s->judging && wide_entry(walk, box.lo, box.hi) == INFINITY)
         return;
     struct verdict v =
         triangle->flags & TRIANGLE_SPHERE ? probe_sphere(p, triangle) : probe_triangle(p, triangle);
@@ -446,86 +426,6 @@ static void visit_triangle(struct search *s, const struct probe *p, uint32_t rec
         judge(s, &v, p, instance, triangle->primitive);
     else if (v.hit && v.t >= p->t_min && v.t <= p->t_max)
         keep_nearest(s, &v, instance, triangle->primitive);
-}
-
-typedef void (*leaf_fn)(struct search *s, const struct probe *p, const struct gpu_bvh_node *leaf,
-                        uint32_t instance);
-
-static void walk_tree(struct search *s, const struct probe *p, uint32_t root, leaf_fn leaf,
-                      uint32_t instance)
-{
-    uint32_t stack[STACK_SIZE], top = 0;
-    stack[top++] = root;
-    while (top > 0) {
-        const struct gpu_bvh_node *node = &s->accel->nodes[stack[--top]];
-        if (box_entry(s, p, node->lo, node->hi) == INFINITY)
-            continue;
-        if (bvh_count(node) > 0) {
-            leaf(s, p, node, instance);
-            continue;
-        }
-        const struct gpu_bvh_node *pair = &s->accel->nodes[node->first];
-        double a = box_entry(s, p, pair[0].lo, pair[0].hi);
-        double b = box_entry(s, p, pair[1].lo, pair[1].hi);
-        uint32_t nearer = b < a ? 1 : 0;
-        if (fmax(a, b) < INFINITY)
-            stack[top++] = node->first + (1 - nearer);
-        if (fmin(a, b) < INFINITY)
-            stack[top++] = node->first + nearer;
-    }
-}
-
-static void visit_mesh_leaf(struct search *s, const struct probe *p,
-                            const struct gpu_bvh_node *leaf, uint32_t instance)
-{
-    for (uint32_t i = 0; i < bvh_count(leaf); ++i)
-        visit_triangle(s, p, leaf->first + i, instance);
-}
-
-static void visit_instance(struct search *s, const struct probe *world, uint32_t index)
-{
-    const struct gpu_instance *in = &s->accel->instances[index];
-    const struct accel_mesh *mesh = &s->accel->meshes[in->mesh];
-    struct probe local = s->accel->single_identity ? *world : probe_local(world, in);
-    if (in->root == BVH_EMPTY_REF)
-        return;
-    if (!s->brute) {
-        walk_tree(s, &local, mesh->first_node, visit_mesh_leaf, index);
-        return;
-    }
-    for (uint32_t i = 0; i < mesh->triangle_count; ++i)
-        visit_triangle(s, &local, mesh->first_triangle + i, index);
-}
-
-static void visit_instance_leaf(struct search *s, const struct probe *p,
-                                const struct gpu_bvh_node *leaf, uint32_t instance)
-{
-    (void)instance;
-    visit_instance(s, p, leaf->first);
-}
-
-static void visit_world(struct search *s, const struct probe *world)
-{
-    const struct accel_mesh *mesh = &s->accel->meshes[0];
-    if (!s->brute && mesh->node_count > 0)
-        walk_tree(s, world, mesh->first_node, visit_mesh_leaf, 0);
-    for (uint32_t i = 0; s->brute && i < mesh->record_count; ++i)
-        visit_triangle(s, world, mesh->first_triangle + i, 0);
-}
-
-static void visit_all(struct search *s, const struct probe *world)
-{
-    if (s->accel->flat) {
-        visit_world(s, world);
-        return;
-    }
-    if (!s->brute) {
-        if (s->accel->instance_root != BVH_EMPTY_REF)
-            walk_tree(s, world, 0, visit_instance_leaf, 0);
-        return;
-    }
-    for (uint32_t i = 0; i < s->accel->instance_count; ++i)
-        visit_instance(s, world, i);
 }
 
 void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
@@ -536,25 +436,28 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
                                .instance = HIT_NONE,
                                .edge_margin = -INFINITY,
                                .second_t = INFINITY};
-    if (!ray_is_usable(ray))
+    if (!accel_ray_is_usable(ray))
         return;
-    struct probe world =
-        probe_world(ray, accel->single_identity || accel->flat ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
-    if (!(world.t_min <= world.t_max))
-        return;
-    bool deep = accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;
-    struct search s = {.accel = accel,
-                       .brute = brute || deep,
+    struct search s = {.walk = {.accel = accel,
+                                .brute = brute,
+                                .limit = INFINITY,
+                                .enter = enter_instance,
+                                .visit = visit_record},
                        .best = {.t = INFINITY},
                        .instance = HIT_NONE,
                        .primitive = HIT_NONE,
                        .second_t = INFINITY,
-                       .limit = INFINITY,
                        .margin = INFINITY};
-    visit_all(&s, &world);
+    s.world =
+        probe_world(ray, accel->single_identity || accel->flat ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
+    if (!(s.world.t_min <= s.world.t_max))
+        return;
+    s.probe = s.world;
+    s.walk.ray = probe_ray(&s.world);
+    wide_walk_run(&s.walk);
     s.judging = true;
-    s.limit = s.primitive == HIT_NONE ? INFINITY : s.best.t + 2.0 * s.best.t_error;
-    visit_all(&s, &world);
+    s.walk.limit = s.primitive == HIT_NONE ? INFINITY : s.best.t + 2.0 * s.best.t_error;
+    wide_walk_run(&s.walk);
     hit->second_t = s.second_t;
     hit->edge_margin = s.primitive == HIT_NONE ? -s.margin : s.margin;
     if (s.primitive == HIT_NONE)

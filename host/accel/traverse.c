@@ -204,13 +204,6 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
     }
 }
 
-static struct vec3 rotate_rows(const float *r0, const float *r1, const float *r2, struct vec3 p)
-{
-    return vec3_make((r0[0] * p.x + r0[1] * p.y) + r0[2] * p.z,
-                     (r1[0] * p.x + r1[1] * p.y) + r1[2] * p.z,
-                     (r2[0] * p.x + r2[1] * p.y) + r2[2] * p.z);
-}
-
 static void widen(const struct accel *accel, const struct gpu_instance *i, struct ray_setup *ray)
 {
     if (accel->clipped)
@@ -219,12 +212,8 @@ static void widen(const struct accel *accel, const struct gpu_instance *i, struc
 
 static struct ray_setup local_ray(const struct gpu_instance *instance, const struct gpu_ray *ray)
 {
-    struct vec3 origin = vec3_make(instance->origin_x, instance->origin_y, instance->origin_z);
-    struct vec3 relative = vec3_sub(vec3_load(ray->origin), origin);
-    return make_ray_setup(
-        rotate_rows(instance->inverse0, instance->inverse1, instance->inverse2, relative),
-        rotate_rows(instance->inverse0, instance->inverse1, instance->inverse2,
-                    vec3_load(ray->dir)));
+    struct gpu_ray local = accel_local_ray(instance, ray);
+    return make_ray_setup(vec3_load(local.origin), vec3_load(local.dir));
 }
 
 static void traverse_instances(struct walk *walk, const struct gpu_ray *ray, uint32_t root)
@@ -263,19 +252,12 @@ static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t 
     if (!accel->single_identity && !accel->flat) {
         const struct gpu_instance *i = &accel->instances[hit->instance];
         const float *r0 = i->inverse0, *r1 = i->inverse1, *r2 = i->inverse2;
-        n = rotate_rows((float[]){r0[0], r1[0], r2[0]}, (float[]){r0[1], r1[1], r2[1]},
-                        (float[]){r0[2], r1[2], r2[2]}, n);
+        n = accel_rotate_rows((float[]){r0[0], r1[0], r2[0]}, (float[]){r0[1], r1[1], r2[1]},
+                              (float[]){r0[2], r1[2], r2[2]}, n);
     }
     hit->ng_x = n.x;
     hit->ng_y = n.y;
     hit->ng_z = n.z;
-}
-
-static bool ray_is_usable(const struct gpu_ray *ray)
-{
-    struct vec3 o = vec3_load(ray->origin), d = vec3_load(ray->dir);
-    struct vec3 bounded = vec3_add(vec3_sub(o, o), vec3_sub(d, d)); /* 0, or NaN */
-    return bounded.x + bounded.y + bounded.z == 0.0f && (d.x != 0.0f || d.y != 0.0f || d.z != 0.0f);
 }
 
 static void begin_hit(struct gpu_hit *hit, float t_max)
@@ -368,7 +350,7 @@ void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_
     walk.any = any;
     walk.skip_instance = skip_instance;
     walk.skip_primitive = skip_primitive;
-    if (ray_is_usable(ray)) {
+    if (accel_ray_is_usable(ray)) {
         if (accel->no_trees)
             traverse_records(&walk, ray);
         else
@@ -392,7 +374,7 @@ void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
         walk.skip_instance = before->instance;
         walk.skip_primitive = before->primitive;
     }
-    if (ray_is_usable(ray)) {
+    if (accel_ray_is_usable(ray)) {
         if (accel->no_trees)
             traverse_records(&walk, ray);
         else
@@ -407,7 +389,7 @@ void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, 
 {
     struct walk walk;
     begin_walk(&walk, accel, ray, hit);
-    if (ray_is_usable(ray))
+    if (accel_ray_is_usable(ray))
         traverse_records(&walk, ray);
     end_hit(hit, accel, walk.triangle);
 }

@@ -1,0 +1,121 @@
+#include "accel/wide.h"
+
+#include <math.h>
+
+#include "accel/accel_inside.h"
+
+#define INTERVAL_GROWTH 0x1p-18
+#define DENORMAL        0x1p-149
+
+enum { STACK_SIZE = 512 };
+
+double wide_entry(const struct wide_walk *walk, const float box_lo[3], const float box_hi[3])
+{
+    const struct wide_ray *ray = &walk->ray;
+    double lo[3], hi[3], far = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = (double)box_lo[i] - ray->origin[i];
+        hi[i] = (double)box_hi[i] - ray->origin[i];
+        far = fmax(far, fmax(fabs(lo[i]), fabs(hi[i])));
+    }
+    double growth = far * ray->growth + ray->margin;
+    double start = -INFINITY, end = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+        if (ray->dir[i] == 0.0) {
+            if (lo[i] - growth > 0.0 || hi[i] + growth < 0.0)
+                return INFINITY;
+            continue;
+        }
+        double a = (lo[i] - growth) / ray->dir[i], b = (hi[i] + growth) / ray->dir[i];
+        start = fmax(start, fmin(a, b));
+        end = fmin(end, fmax(a, b));
+    }
+    bool reached =
+        start <= end &&
+        start - INTERVAL_GROWTH * fabs(start) - DENORMAL <= fmin(walk->limit, ray->t_max) &&
+        end + INTERVAL_GROWTH * fabs(end) + DENORMAL >= ray->t_min;
+    return reached ? start : INFINITY;
+}
+
+typedef void (*leaf_fn)(struct wide_walk *walk, const struct gpu_bvh_node *leaf, uint32_t instance);
+
+static void walk_tree(struct wide_walk *walk, uint32_t root, leaf_fn leaf, uint32_t instance)
+{
+    uint32_t stack[STACK_SIZE], top = 0;
+    stack[top++] = root;
+    while (top > 0 && !walk->done) {
+        const struct gpu_bvh_node *node = &walk->accel->nodes[stack[--top]];
+        if (wide_entry(walk, node->lo, node->hi) == INFINITY)
+            continue;
+        if (bvh_count(node) > 0) {
+            leaf(walk, node, instance);
+            continue;
+        }
+        const struct gpu_bvh_node *pair = &walk->accel->nodes[node->first];
+        double a = wide_entry(walk, pair[0].lo, pair[0].hi);
+        double b = wide_entry(walk, pair[1].lo, pair[1].hi);
+        uint32_t nearer = b < a ? 1 : 0;
+        if (fmax(a, b) < INFINITY)
+            stack[top++] = node->first + (1 - nearer);
+        if (fmin(a, b) < INFINITY)
+            stack[top++] = node->first + nearer;
+    }
+}
+
+static void visit_records(struct wide_walk *walk, uint32_t first, uint32_t count, uint32_t instance)
+{
+    for (uint32_t i = 0; i < count && !walk->done; ++i) {
+        bool flat = walk->accel->flat;
+        uint32_t flags = walk->accel->triangles[first + i].flags;
+        walk->visit(walk, first + i, flat ? flags >> TRIANGLE_INSTANCE_SHIFT : instance);
+    }
+}
+
+static void visit_mesh_leaf(struct wide_walk *walk, const struct gpu_bvh_node *leaf,
+                            uint32_t instance)
+{
+    visit_records(walk, leaf->first, bvh_count(leaf), instance);
+}
+
+static void visit_mesh(struct wide_walk *walk, const struct accel_mesh *mesh, uint32_t instance)
+{
+    if (walk->brute)
+        visit_records(walk, mesh->first_triangle, mesh->record_count, instance);
+    else if (mesh->node_count > 0)
+        walk_tree(walk, mesh->first_node, visit_mesh_leaf, instance);
+}
+
+static void visit_instance(struct wide_walk *walk, uint32_t index)
+{
+    const struct gpu_instance *instance = &walk->accel->instances[index];
+    struct wide_ray world = walk->ray;
+    if (instance->root == BVH_EMPTY_REF)
+        return;
+    if (walk->accel->single_identity || walk->enter(walk, index))
+        visit_mesh(walk, &walk->accel->meshes[instance->mesh], index);
+    walk->ray = world;
+}
+
+static void visit_instance_leaf(struct wide_walk *walk, const struct gpu_bvh_node *leaf,
+                                uint32_t instance)
+{
+    (void)instance;
+    visit_instance(walk, leaf->first);
+}
+
+void wide_walk_run(struct wide_walk *walk)
+{
+    const struct accel *accel = walk->accel;
+    walk->brute |= accel->no_trees || accel->mesh_depth + 2 > STACK_SIZE ||
+                   accel->instance_depth + 2 > STACK_SIZE;
+    if (accel->flat) {
+        visit_mesh(walk, &accel->meshes[0], 0);
+        return;
+    }
+    if (walk->brute) {
+        for (uint32_t i = 0; i < accel->instance_count && !walk->done; ++i)
+            visit_instance(walk, i);
+    } else if (accel->instance_root != BVH_EMPTY_REF) {
+        walk_tree(walk, 0, visit_instance_leaf, 0);
+    }
+}
