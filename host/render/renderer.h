@@ -107,6 +107,20 @@ struct renderer {
 };
 
 enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
+enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
+enum { READ_SLICE = 4096 };             /* pixels that are read at once */
+
+/* params.c: fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
+WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
+
+/* renderer.c: the kernel of the picture, where there is none yet. */
+WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
+
+/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer. */
+WHIT_CHECK whit_result pixels_create(struct renderer *renderer);
+void pixels_finish(struct pixel_buffers *buffers);
+/* Blocks of 8 x 8 that cover `pixels` in a row or column. */
+uint32_t pixels_blocks_across(uint32_t pixels);
 
 /* camera.c: the camera of params->camera in `pose`, and its CAMERA_*. */
 WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
@@ -222,8 +236,22 @@ void beside_finish(struct renderer *renderer);
 /* trace.c */
 void trace_finish(struct trace_state *trace);
 
-/* render.c: all of renderer->frame but the rows. */
+/* frame.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
+
+/* readback.c: a picture of one band and one pass stays on the device until it is asked for. */
+bool readback_is_late(const struct renderer *renderer);
+/* What the device holds of `rows` finished rows from `band_y` on, into the picture and the
+   statistics. Ids are those of the first pass. */
+WHIT_CHECK whit_result readback_band(struct renderer *renderer, const struct progress *progress,
+                                     uint32_t band_y, uint32_t rows);
+
+/* stats.c: forgets the last picture, and keeps what was measured before it. */
+void stats_clear(struct render_stats *stats);
+/* Sums what the kernel counted for `count` pixels of the band, of which `first` is the first one's
+   index in the picture. */
+WHIT_CHECK whit_result stats_add_counts(struct renderer *renderer, const struct progress *progress,
+                                        size_t first, size_t count);
 
 /* adaptive.c: everything around the passes of an adaptive picture, which render.c makes. */
 /* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,

@@ -1,0 +1,46 @@
+/* The record that every ray of a picture reads: camera, sky, where trees begin, limits. */
+#include <float.h>
+
+#include "render/renderer.h"
+
+whit_result frame_fill(struct renderer *renderer)
+{
+    struct gpu_frame *frame = &renderer->frame;
+    const struct accel *accel = renderer->accel;
+    const struct scene_environment *environment = &renderer->scene->environment;
+    uint32_t kind;
+    whit_result result =
+        camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
+                     renderer->params.width, renderer->params.height, frame, &kind);
+    if (result != WHIT_OK)
+        return result;
+    /* Of all cameras only the one that is drawn counts. */
+    renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
+    renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;
+    renderer->effects.called[SCENE_EFFECT_PANORAMA] = kind == CAMERA_PANORAMA;
+    for (int i = 0; i < 3; ++i) {
+        frame->zenith[i] = environment->zenith[i] * environment->scale[i];
+        frame->horizon[i] = environment->horizon[i] * environment->scale[i];
+        frame->ground[i] = environment->ground[i] * environment->scale[i];
+        frame->ambient[i] = renderer->scene->ambient[i];
+    }
+    frame->light_count = renderer->pose.light_count;
+    frame->light_samples = lights_samples(renderer);
+    frame->environment_size = renderer->scene_buffers.environment_size;
+    frame->root = accel->instance_root;
+    frame->shade_base = 0;
+    if (accel->flat) {
+        frame->root = accel->meshes[0].root;
+    } else if (accel->single_identity) {
+        const struct accel_mesh *mesh = &accel->meshes[renderer->scene->instances[0].mesh];
+        frame->root = mesh->root;
+        frame->shade_base = mesh->shade_base;
+    }
+    frame->depth = renderer->params.depth;
+    double bailout = renderer->params.bailout;
+    frame->bailout = bailout == 0.0  ? (float)WHIT_BAILOUT_DEFAULT
+                     : bailout < 0.0 ? FLT_MIN
+                                     : (float)bailout;
+    frame->stack_size = renderer->pixel_buffers.stack_size;
+    return media_frame(renderer);
+}

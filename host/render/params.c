@@ -1,0 +1,49 @@
+/* What a renderer is asked for: defaults, and what is out of range. */
+#include "render/renderer.h"
+
+enum { DEPTH_LARGEST = 255 }; /* bounces of a ray have 8 bits */
+
+whit_result params_check(const struct log *log, struct render_params *params)
+{
+    if (params->width == 0 && params->height == 0) {
+        params->width = 640;
+        params->height = 480;
+    }
+    if (params->samples == 0)
+        params->samples = 1;
+    if (params->width == 0 || params->height == 0 || params->width > 65535 ||
+        params->height > 65535) {
+        log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
+        return WHIT_ERROR_USAGE;
+    }
+    uint32_t n = params->samples;
+    if (n != 1 && n != 4 && n != 16 && n != 64) {
+        log_error(log, "%u samples a pixel: must be 1, 4, 16 or 64", n);
+        return WHIT_ERROR_USAGE;
+    }
+    n = params->light_samples;
+    if (n != 0 && n != 1 && n != 4 && n != 16 && n != 64) {
+        log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX)) {
+        log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    if (!(params->adaptive >= 0.0) || params->adaptive > 1.0) {
+        log_error(log, "adaptive contrast %g: must be 0 (off) up to 1", params->adaptive);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->adaptive > 0.0 && params->count) {
+        log_error(log, "what rays cost is counted with 1, 4, 16 or 64 samples a pixel, not with "
+                       "adaptive ones");
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->adaptive > 0.0)
+        params->samples = 4; /* to begin with */
+    if (params->depth > DEPTH_LARGEST) {
+        log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}

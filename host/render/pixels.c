@@ -1,0 +1,107 @@
+/* The buffers of pixels: as many rows and ray trees as the device holds at once. */
+#include "render/renderer.h"
+
+/* Ray stacks cost memory; larger only when asked for. */
+enum { TILE_STACKED_MAX = 128 };
+
+uint32_t pixels_blocks_across(uint32_t pixels)
+{
+    return (pixels + 7) / 8;
+}
+
+/* Rays that wait when one ray leaves up to `children` others, depth first. */
+static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
+{
+    return depth * (children - 1) + 1;
+}
+
+static uint32_t largest_tile(const struct renderer *renderer)
+{
+    const struct render_params *params = &renderer->params;
+    uint32_t tile = params->tile_size         ? params->tile_size
+                    : renderer->has_secondary ? TILE_STACKED_MAX
+                                              : TILE_MAX;
+    if (renderer->accel->no_trees && !params->tile_size)
+        tile = TILE_STACKED_MAX;
+    uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
+    uint64_t slot_bytes = 0;
+    if (renderer->has_secondary)
+        slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
+    uint64_t passed_bytes = sizeof(struct gpu_passed) * lights_turns(renderer);
+    if (renderer->accel->no_trees && passed_bytes > slot_bytes)
+        slot_bytes = passed_bytes;
+    while (tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
+        tile /= 2;
+    return tile;
+}
+
+whit_result pixels_create(struct renderer *renderer)
+{
+    struct pixel_buffers *p = &renderer->pixel_buffers;
+    struct device *device = renderer->device;
+    uint32_t width = renderer->params.width;
+    uint64_t limit = device_get_info(device)->max_storage_range_bytes;
+    uint64_t rows = limit / ((uint64_t)width * sizeof(struct gpu_counts)) / 8 * 8;
+    uint32_t height = pixels_blocks_across(renderer->params.height) * 8;
+    p->band_rows = rows < height ? (uint32_t)rows : height;
+    if (p->band_rows == 0) {
+        log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
+        return WHIT_ERROR_DEVICE;
+    }
+    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] ||
+                 renderer->effects.called[SCENE_EFFECT_CATCHERS];
+    p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
+    uint32_t tile = largest_tile(renderer);
+    uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
+    uint64_t slots = (uint64_t)tile * tile;
+    p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
+    uint64_t pixels = (uint64_t)width * p->band_rows;
+    /* What nothing is bound to has no bytes, and is not created. */
+    bool adaptive = renderer->params.adaptive > 0.0;
+    bool lists = renderer->has_secondary || adaptive || renderer->accel->no_trees;
+    uint64_t list_bytes = lists ? 16 + (uint64_t)p->chunk_slots * 4 : 0;
+    uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;
+    whit_result result = WHIT_OK;
+    const struct {
+        struct buffer **buffer;
+        uint64_t bytes;
+        uint32_t uses;
+        const char *name;
+    } all[] = {
+        {&p->pixels, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
+        {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
+        {&p->counts, pixels * sizeof(struct gpu_counts), BUFFER_STORAGE | BUFFER_HOST, "counts"},
+        {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
+        {&p->work[0], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
+        {&p->work[1], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
+        {&p->work_head, lists ? 16 : 0, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
+        {&p->listed, adaptive ? list_bytes : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
+        {&p->ray_stacks, stacked * sizeof(struct gpu_stacked_ray), BUFFER_STORAGE, "ray stacks"},
+        {&p->ray_media,
+         renderer->effects.called[SCENE_EFFECT_MEDIA] ? stacked * sizeof(struct gpu_media) : 0,
+         BUFFER_STORAGE, "ray media"},
+    };
+    for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
+        if (all[i].bytes == 0)
+            continue;
+        result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
+        if (result == WHIT_OK)
+            renderer->scene_buffers.bytes += all[i].bytes;
+    }
+    if (result == WHIT_OK)
+        result = costs_create(renderer);
+    const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
+    if (result == WHIT_OK && lists)
+        result = buffer_write(p->work_head, 0, &head, sizeof head);
+    return result;
+}
+
+void pixels_finish(struct pixel_buffers *p)
+{
+    struct buffer *all[] = {p->pixels,  p->ids,       p->counts,    p->status,
+                            p->work[0], p->work[1],   p->work_head, p->ray_stacks,
+                            p->costs,   p->ray_media, p->listed};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+        buffer_destroy(all[i]);
+    *p = (struct pixel_buffers){0};
+}

@@ -1,0 +1,92 @@
+/* Pictures from the device to the host. */
+#include "render/renderer.h"
+
+#include <string.h>
+
+bool readback_is_late(const struct renderer *renderer)
+{
+    return renderer->pixel_buffers.band_rows >= renderer->params.height &&
+           !(renderer->params.adaptive > 0.0);
+}
+
+static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)
+{
+    return buffer_read(renderer->pixel_buffers.pixels, 0, pixels,
+                       (uint64_t)renderer->params.width * rows * 4 * sizeof *pixels);
+}
+
+static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint32_t *words)
+{
+    return buffer_read(renderer->pixel_buffers.ids, 0, words,
+                       (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
+}
+
+/* Those that the pass drew, of `count` pixels of the band, into the picture from pixel `first` on.
+ */
+static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
+                               size_t first, size_t count)
+{
+    float pixels[READ_SLICE][4];
+    for (size_t at = 0; at < count; at += READ_SLICE) {
+        size_t n = count - at < READ_SLICE ? count - at : READ_SLICE;
+        whit_result result = buffer_read(renderer->pixel_buffers.pixels, at * sizeof *pixels,
+                                         pixels, n * sizeof *pixels);
+        if (result != WHIT_OK)
+            return result;
+        for (size_t i = 0; i < n; ++i) {
+            if (adaptive_draws(progress, first + at + i))
+                memcpy(&renderer->color.pixels[4 * (first + at + i)], pixels[i], sizeof pixels[i]);
+        }
+    }
+    return WHIT_OK;
+}
+
+whit_result readback_band(struct renderer *renderer, const struct progress *progress,
+                          uint32_t band_y, uint32_t rows)
+{
+    size_t first = (size_t)renderer->params.width * band_y;
+    size_t count = (size_t)renderer->params.width * rows;
+    whit_result result = WHIT_OK;
+    if (progress->listed) {
+        result = read_listed(renderer, progress, first, count);
+    } else if (!readback_is_late(renderer)) {
+        result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
+        if (result == WHIT_OK)
+            result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
+    }
+    return result == WHIT_OK ? stats_add_counts(renderer, progress, first, count) : result;
+}
+
+static whit_result begin_read(const struct renderer *renderer, uint32_t channels, bool integers,
+                              struct image *out)
+{
+    if (!renderer->rendered) {
+        log_error(&renderer->log, "no picture was rendered yet");
+        return WHIT_ERROR_USAGE;
+    }
+    return image_init(out, renderer->params.width, renderer->params.height, channels, integers);
+}
+
+whit_result renderer_read_color(struct renderer *renderer, struct image *out)
+{
+    whit_result result = begin_read(renderer, 4, false, out);
+    if (result != WHIT_OK)
+        return result;
+    if (readback_is_late(renderer))
+        return read_pixels(renderer, out->height, out->pixels);
+    memcpy(out->pixels, renderer->color.pixels,
+           (size_t)out->width * out->height * 4 * sizeof(float));
+    return WHIT_OK;
+}
+
+whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
+{
+    whit_result result = begin_read(renderer, 2, true, out);
+    if (result != WHIT_OK)
+        return result;
+    if (readback_is_late(renderer))
+        return read_ids(renderer, out->height, out->words);
+    memcpy(out->words, renderer->ids.words,
+           (size_t)out->width * out->height * 2 * sizeof(uint32_t));
+    return WHIT_OK;
+}

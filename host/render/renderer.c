@@ -1,0 +1,114 @@
+/* A renderer from its making to its end. */
+#include "render/renderer.h"
+
+#include <stdlib.h>
+
+#include "base/clock.h"
+
+static bool calls_for_secondary(const struct renderer *renderer)
+{
+    const bool *called = renderer->effects.called;
+    return renderer->params.depth > 0 &&
+           (called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
+            called[SCENE_EFFECT_CUTOUTS] || called[SCENE_EFFECT_CATCHERS]);
+}
+
+static whit_result create_parts(struct renderer *renderer)
+{
+    double start_ms = clock_ms();
+    renderer->has_secondary = calls_for_secondary(renderer);
+    renderer->node_stack_size = accel_stack_size(renderer->accel);
+    renderer->single_identity = renderer->accel->single_identity;
+    whit_result result = pixels_create(renderer);
+    if (result == WHIT_OK)
+        result = upload_scene(renderer);
+    if (result == WHIT_OK)
+        result = frame_fill(renderer);
+    if (result == WHIT_OK)
+        result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
+                              "frame", &renderer->scene_buffers.frame);
+    if (result == WHIT_OK)
+        result = brute_create(renderer);
+    renderer->stats.upload_ms = clock_ms() - start_ms;
+    if (result == WHIT_OK)
+        result = commands_create(renderer->device, "render", &renderer->commands);
+    renderer->stats.texel_loads = renderer->scene_buffers.texel_loads;
+    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    return result;
+}
+
+/* Renderers that only trace batches never need the large kernel. */
+whit_result renderer_compile(struct renderer *renderer)
+{
+    bool beside = renderer->params.compile_beside && !renderer->accel->no_trees;
+    if (renderer->whitted.pipeline && !renderer->beside.general)
+        return WHIT_OK;
+    double start_ms = clock_ms();
+    whit_result result = beside ? beside_prepare(renderer) : variant_create_whitted(renderer);
+    if (result == WHIT_OK) {
+        struct pipeline_info info;
+        pipeline_get_info(renderer->whitted.pipeline, &info);
+        renderer->stats.kernel_instructions = info.instructions;
+        renderer->stats.general = renderer->beside.general;
+    } else {
+        passes_finish(renderer);
+    }
+    renderer->stats.compile_ms = clock_ms() - start_ms;
+    return result;
+}
+
+whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
+                            const struct render_params *params, struct renderer **out)
+{
+    *out = NULL;
+    struct renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer)
+        return WHIT_ERROR_MEMORY;
+    renderer->log = *log;
+    renderer->create_ms = clock_ms();
+    renderer->device = device;
+    renderer->accel = accel;
+    renderer->scene = accel->scene;
+    if (params)
+        renderer->params = *params;
+    scene_effects_scan(renderer->scene, &renderer->effects);
+    effects_choose(&renderer->params, &renderer->effects);
+    whit_result result = params_check(log, &renderer->params);
+    if (renderer->scene->pictures_dropped) {
+        log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
+                  renderer->scene->name);
+        result = WHIT_ERROR_USAGE;
+    }
+    if (result == WHIT_OK)
+        result = scene_pose_init(renderer->scene, renderer->params.time_s, &renderer->pose);
+    if (result == WHIT_OK)
+        result = accel_pose(accel, &renderer->pose);
+    if (result == WHIT_OK)
+        result = create_parts(renderer);
+    if (result == WHIT_OK && renderer->params.compile_beside)
+        result = renderer_compile(renderer);
+    if (result != WHIT_OK) {
+        renderer_destroy(renderer);
+        return result;
+    }
+    *out = renderer;
+    return WHIT_OK;
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer)
+        return;
+    commands_destroy(renderer->commands);
+    passes_finish(renderer);
+    beside_finish(renderer);
+    trace_finish(&renderer->trace);
+    brute_finish(&renderer->brute);
+    pixels_finish(&renderer->pixel_buffers);
+    costs_clear(renderer);
+    upload_finish(&renderer->scene_buffers);
+    scene_pose_finish(&renderer->pose);
+    image_finish(&renderer->color);
+    image_finish(&renderer->ids);
+    free(renderer);
+}
