@@ -446,3 +446,12 @@ bool reader_material_use(struct reader *reader, const struct place *place, const
         return add_material(reader, place, value, "", index);
     return reader_fail(reader, place, "the name of a material, or a material in { }, is expected");
 }
+
+bool reader_object_material(struct reader *reader, const struct place *place, const json_t *object,
+                            uint32_t *index)
+{
+    const json_t *value = json_object_get(object, "material");
+    struct place here = {place, "material", 0};
+    *index = SCENE_NONE;
+    return !value || reader_material_use(reader, &here, value, index);
+}

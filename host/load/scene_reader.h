@@ -23,10 +23,14 @@ struct shape_cache {
     uint32_t mesh;
 };
 
-/* What one placing of a model added, to be copied by the next one. */
+/* What an object added to the scene: nodes below `parent`, instances, channels. */
+struct scene_range {
+    uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end;
+};
+
 struct model_cache {
     char *key;
-    uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end;
+    struct scene_range range;
 };
 
 struct reader {
@@ -96,6 +100,9 @@ bool reader_materials(struct reader *reader, const struct place *place, const js
 /* A material's name or a material written in place. */
 bool reader_material_use(struct reader *reader, const struct place *place, const json_t *value,
                          uint32_t *index);
+/* Of the object's "material"; *index is SCENE_NONE when it names none. */
+bool reader_object_material(struct reader *reader, const struct place *place, const json_t *object,
+                            uint32_t *index);
 
 /* scene_objects.c */
 bool reader_objects(struct reader *reader, const struct place *place, const json_t *value,

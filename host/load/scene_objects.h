@@ -1,0 +1,49 @@
+/* What objects of a scene file consist of. As in scene_reader.h, functions give false after they
+   logged one error. */
+#ifndef LOAD_SCENE_OBJECTS_H
+#define LOAD_SCENE_OBJECTS_H
+
+#include "load/scene_reader.h"
+
+#define INSTANCES_MOST 4000000u
+
+enum shape {
+    SHAPE_BOX,
+    SHAPE_PLANE,
+    SHAPE_SPHERE,
+    SHAPE_ICOSPHERE,
+    SHAPE_TORUS,
+    SHAPE_CYLINDER,
+    SHAPE_CONE,
+    SHAPE_TERRAIN,
+    SHAPE_STRANDS,
+    SHAPE_ATRIUM,
+    SHAPE_SPHEREFLAKE,
+    SHAPE_BALL,
+    SHAPE_BALLS,
+    SHAPE_COUNT
+};
+
+/* scene_shapes.c: by enum shape; shape_names and each list of keys end with NULL. */
+extern const char *const shape_names[SHAPE_COUNT + 1];
+extern const char *const *const shape_keys[SHAPE_COUNT];
+/* A shape's mesh and instances, below `node`. */
+bool reader_shape(struct reader *reader, const struct place *place, const json_t *object,
+                  enum shape shape, const char *name, uint32_t node);
+
+/* scene_models.c: all of the model that the object names, below `node`. */
+bool reader_model(struct reader *reader, const struct place *place, const json_t *object,
+                  uint32_t node);
+
+/* scene_transform.c: where the object is, into `node`. */
+bool reader_transform(struct reader *reader, const struct place *place, const json_t *object,
+                      struct scene_node *node);
+
+/* scene_range.c: what is added below `parent` between begin and end. */
+struct scene_range range_begin(const struct scene *scene, uint32_t parent);
+void range_end(const struct scene *scene, struct scene_range *range);
+/* The nodes, instances and channels of `range` once more, below `parent`. */
+bool range_copy(struct reader *reader, const struct place *place, const struct scene_range *range,
+                uint32_t parent);
+
+#endif
