@@ -103,6 +103,28 @@ static inline struct scene_mesh box(double x, double y, double z)
     return mesh;
 }
 
+/* A texture of two texels side by side; see use_texture. */
+static inline uint32_t add_two_texels(struct scene *scene, uint8_t first, uint8_t second)
+{
+    struct scene_texture texture = {.name = string_copy("two"), .width = 2, .height = 1};
+    texture.rgba = malloc(8);
+    assert_non_null(texture.rgba);
+    for (int i = 0; i < 8; ++i)
+        texture.rgba[i] = i < 4 ? first : second;
+    texture.rgba[3] = texture.rgba[7] = 255;
+    return scene_add_texture(scene, texture);
+}
+
+/* Nearest texels, held beyond the edges. */
+static inline void use_texture(struct scene_material *m, enum scene_slot slot, uint32_t texture)
+{
+    struct scene_texture_use *use = &m->textures[slot];
+    scene_texture_use_init(use);
+    use->texture = texture;
+    use->nearest = true;
+    use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
+}
+
 static inline struct image render(struct fixture *f)
 {
     struct image image = {0};

@@ -268,6 +268,96 @@ static void snells_window_is_where_it_should_be(void **state)
     fixture_close(&f);
 }
 
+/* ---- Edges ---- */
+
+/* How far a ray from `eye` along the unit `d` goes inside |x| + |y| + |z| <= 1, or within |x|, |y|,
+   |z|
+   <= 1. */
+static double convex_chord(bool octahedron, const double eye[3], const double d[3])
+{
+    double in = 0, out = INFINITY;
+    for (int side = 0; side < 27; ++side) {
+        const int n[3] = {side % 3 - 1, side / 3 % 3 - 1, side / 9 - 1};
+        if (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] != (octahedron ? 3 : 1))
+            continue;
+        double toward = 0, beyond = -1;
+        for (int k = 0; k < 3; ++k) {
+            toward += n[k] * d[k];
+            beyond += n[k] * eye[k];
+        }
+        if (toward < 0)
+            in = fmax(in, -beyond / toward);
+        else if (toward > 0)
+            out = fmin(out, -beyond / toward);
+        else if (beyond > 0)
+            out = 0;
+    }
+    return fmax(out - in, 0);
+}
+
+static struct scene_mesh octahedron_mesh(void)
+{
+    struct scene_mesh mesh = empty_mesh(6, 8);
+    for (uint32_t i = 0; i < 6; ++i)
+        mesh.positions[3 * i + i / 2] = i % 2 ? -1.0f : 1.0f;
+    for (uint32_t i = 0; i < 8; ++i) {
+        uint32_t corners[3] = {i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)};
+        bool turned = (i & 1) ^ (i >> 1 & 1) ^ (i >> 2);
+        mesh.indices[3 * i] = corners[0];
+        mesh.indices[3 * i + 1] = corners[turned ? 2 : 1];
+        mesh.indices[3 * i + 2] = corners[turned ? 1 : 2];
+    }
+    return mesh;
+}
+
+/* Bodies that do not bend, seen so that whole rows of pixels look exactly at edges and vertices,
+   where rays meet several triangles at once, and leave by others. Each is entered and left once:
+   light is lost along the way inside, and nowhere else. */
+static void edges_are_crossed_once(void **state)
+{
+    (void)state;
+    enum { SIDE = 33 };
+    const double far = 5, eyes[2][3] = {{far, 0, far}, {0, 0, far}};
+    for (int way = 0; way < 4; ++way) {
+        bool octahedron = way & 1;
+        const double *eye = eyes[octahedron];
+        double size = octahedron ? far : far * sqrt(2), worst = 0;
+        struct scene *scene = dark_scene(eye, (double[]){0, 0, 0});
+        struct scene_material m = clear_glass(1.0f, 0);
+        scene->cameras[0].fov_y = (float)FOV;
+        set_sky(scene, 1, 1, 1);
+        set_rgb(m.absorption, 1, 0.5f, 0);
+        add_body(scene, octahedron ? octahedron_mesh() : box(2, 2, 2), m, 0, 0, 0);
+        struct render_params params = {.width = SIDE, .height = SIDE, .depth = 6, .bailout = -1.0};
+        params.all_effects = way >= 2; /* looks for other surfaces at the same place */
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct image image = render(&f);
+        uint32_t through = 0;
+        for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+            double slope[2];
+            pixel_slope(&image, i % SIDE, i / SIDE, FOV, slope);
+            double length = sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+            /* Right is (z, 0, -x) of the way back to the eye. */
+            const double d[3] = {(slope[0] * eye[2] - eye[0]) / size / length, slope[1] / length,
+                                 (-slope[0] * eye[0] - eye[2]) / size / length};
+            double way_inside = convex_chord(octahedron, eye, d);
+            through += way_inside > 0;
+            for (int k = 0; k < 3; ++k)
+                worst = fmax(worst, fabs((double)image.pixels[4 * i + (uint32_t)k] -
+                                         exp(-(double)m.absorption[k] * way_inside)));
+        }
+        print_message("  %s%s: %u of %d rays go through, light off by %.2g at most\n",
+                      octahedron ? "octahedron" : "cube", way >= 2 ? ", every effect" : "", through,
+                      SIDE * SIDE, worst);
+        assert_true(through > SIDE * SIDE / 4 && through < SIDE * SIDE);
+        /* gamma(7) of coordinates up to 2 at both ends of the way, at 60 degrees and less but for
+           the outline, where the way is short */
+        assert_true(worst < 1e-5);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
 /* ---- Liquid in a glass ---- */
 
 /* The liquid is wider than the inside of the glass by `overlap`. */
@@ -343,6 +433,7 @@ int main(void)
         cmocka_unit_test(bubble_in_glass_in_water),
         cmocka_unit_test(priority_hides_what_is_inside),
         cmocka_unit_test(equal_indices_do_not_bend),
+        cmocka_unit_test(edges_are_crossed_once),
         cmocka_unit_test(liquid_in_a_glass),
         cmocka_unit_test(lone_bodies_need_less),
         cmocka_unit_test(list_holds_eight_media),

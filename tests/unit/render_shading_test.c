@@ -178,6 +178,11 @@ static struct scene *textured_floor(const float uvs[4][2], bool bent)
     return scene;
 }
 
+static double linear_of(uint8_t srgb)
+{
+    return pow((srgb / 255.0 + 0.055) / 1.055, 2.4);
+}
+
 /* The texture is of one colour: whatever its coordinates, that is what is seen. */
 static void coordinates_may_be_anything(void **state)
 {
@@ -191,13 +196,41 @@ static void coordinates_may_be_anything(void **state)
         {{INFINITY, 0}, {0, -INFINITY}, {3e38f, -3e38f}, {1, 1}},
         {{1e-45f, 0}, {0, 1e-45f}, {1e-45f, 1e-45f}, {0, 0}},
     };
-    const double linear = pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
+    const double linear = linear_of(188);
     for (size_t i = 0; i < sizeof uvs / sizeof *uvs; ++i) {
         assert_even(textured_floor(uvs[i], false), linear * COS_SUN, 2e-6);
         assert_sane(textured_floor(uvs[i], true), linear * 1.000001);
     }
     assert_even(textured_floor(NULL, false), linear * COS_SUN, 2e-6);
     assert_sane(textured_floor(NULL, true), linear * 1.000001);
+}
+
+/* By set 0 a texture's first texel is met, by set 1 its second one; two textures, each by its own.
+ */
+static void each_texture_has_its_coordinates(void **state)
+{
+    (void)state;
+    static const uint8_t diffuse[2] = {200, 90}, emission[2] = {60, 140};
+    for (uint32_t sets = 0; sets < 4; ++sets) {
+        struct scene_mesh mesh = plane(10);
+        mesh.uvs[1] = array_alloc(mesh.vertex_count, 2 * sizeof *mesh.uvs[1]);
+        assert_true(mesh.uvs[0] && mesh.uvs[1]);
+        for (uint32_t i = 0; i < 2 * mesh.vertex_count; ++i) {
+            mesh.uvs[0][i] = i % 2 ? 0.5f : 0.25f;
+            mesh.uvs[1][i] = i % 2 ? 0.5f : 0.75f;
+        }
+        struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+        struct scene_material m = white();
+        set_rgb(m.emission, 1, 1, 1);
+        use_texture(&m, SCENE_SLOT_DIFFUSE, add_two_texels(scene, diffuse[0], diffuse[1]));
+        use_texture(&m, SCENE_SLOT_EMISSION, add_two_texels(scene, emission[0], emission[1]));
+        m.textures[SCENE_SLOT_DIFFUSE].uv_set = sets & 1;
+        m.textures[SCENE_SLOT_EMISSION].uv_set = sets >> 1;
+        add_object(scene, mesh, m, 0, 0, 0);
+        add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+        assert_even(scene, linear_of(diffuse[sets & 1]) * COS_SUN + linear_of(emission[sets >> 1]),
+                    2e-6);
+    }
 }
 
 /* glTF multiplies the opacity of a mask by the alpha of vertices: below the cutoff nothing is
@@ -291,6 +324,7 @@ int main(void)
         cmocka_unit_test(turned_normals_shade_the_same),
         cmocka_unit_test(averted_normals_give_way),
         cmocka_unit_test(coordinates_may_be_anything),
+        cmocka_unit_test(each_texture_has_its_coordinates),
         cmocka_unit_test(masks_heed_the_alpha_of_vertices),
         cmocka_unit_test(frames_stand_in_every_direction),
     };

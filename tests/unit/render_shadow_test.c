@@ -26,27 +26,6 @@ static float middle_of(struct scene *scene, struct render_params params, int cha
     return value;
 }
 
-/* Two texels, the second one darker, that nothing blends. */
-static uint32_t add_two_texels(struct scene *scene, uint8_t first, uint8_t second)
-{
-    struct scene_texture texture = {.name = string_copy("two"), .width = 2, .height = 1};
-    texture.rgba = malloc(8);
-    assert_non_null(texture.rgba);
-    for (int i = 0; i < 8; ++i)
-        texture.rgba[i] = i < 4 ? first : second;
-    texture.rgba[3] = texture.rgba[7] = 255;
-    return scene_add_texture(scene, texture);
-}
-
-static void use_texture(struct scene_material *m, enum scene_slot slot, uint32_t texture)
-{
-    struct scene_texture_use *use = &m->textures[slot];
-    scene_texture_use_init(use);
-    use->texture = texture;
-    use->nearest = true;
-    use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
-}
-
 /* The sun comes at 45 degrees, so that the pane is out of sight where its shadow is in it. */
 static struct scene *pane_scene(bool blends)
 {
@@ -413,6 +392,60 @@ static void catchers_show_shadows_alone(void **state)
     assert_true(middle_of(catcher_scene(false), params, 0) == 0.5f);
 }
 
+/* ---- Walks that are cut short ---- */
+
+/* Sheets upon sheets under `m`, 1e-4 apart, from `y` on upwards. */
+static struct scene_mesh sheets(uint32_t count, float y)
+{
+    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
+    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
+    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
+    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
+    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    for (uint32_t i = 0; i < count; ++i) {
+        float at = y + (float)i * 1e-4f;
+        const float corners[9] = {-2, at, -2, 0, at, 3, 2, at, -2};
+        memcpy(&mesh.positions[9 * (size_t)i], corners, sizeof corners);
+        for (uint32_t k = 0; k < 3; ++k)
+            mesh.indices[3 * i + k] = 3 * i + k;
+    }
+    return mesh;
+}
+
+/* More sheets than lavapipe grants turns of loops, each of which has to be looked at and lets the
+   ray through: an error, and no picture of what was met so far. On the way of the eye, or of the
+   light alone. */
+static void cut_walks_through_sheets_are_reported(void **state)
+{
+    (void)state;
+    for (int lit = 0; lit < 2; ++lit) {
+        struct scene *scene =
+            lit ? white_floor() : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
+        struct scene_material m = material("sheet");
+        m.alpha = lit ? SCENE_ALPHA_BLEND : SCENE_ALPHA_MASK;
+        m.alpha_cutoff = 0.5f;
+        m.opacity = lit ? 1e-3f : 0.0f; /* 1/64 stop is more: nothing is lost */
+        add_object(scene, sheets(70000, lit ? 10 : -9), m, 0, 0, 0);
+        set_rgb(scene->environment.horizon, 0.5f, 0.5f, 0.5f);
+        set_rgb(scene->environment.ground, 0.5f, 0.5f, 0.5f);
+        add_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);
+        const struct render_params params = {.width = 1, .height = 1, .depth = 2};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        whit_result result = renderer_render(f.renderer);
+        print_message("  %s: %s\n", lit ? "light" : "eye", whit_result_name(result));
+        if (device_get_info(f.device)->loop_limited) {
+            assert_int_equal(result, WHIT_ERROR_STATUS);
+        } else {
+            struct image image = {0};
+            assert_int_equal(result, WHIT_OK);
+            assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
+            assert_near(image.pixels[0], 0.5, 1e-6);
+            image_finish(&image);
+        }
+        fixture_close(&f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -423,6 +456,7 @@ int main(void)
         cmocka_unit_test(flat_meshes_do_not_change),
         cmocka_unit_test(closed_rooms_stay_dark),
         cmocka_unit_test(catchers_show_shadows_alone),
+        cmocka_unit_test(cut_walks_through_sheets_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
