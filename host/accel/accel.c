@@ -95,8 +95,10 @@ static whit_result check_whole(const struct creation *creation, uint32_t index)
     if (tree->reference_count == tree->primitive_count)
         return WHIT_OK;
     uint8_t *whole = array_alloc(scene_mesh_primitives(mesh), 1);
-    if (!whole)
+    if (!whole) {
+        log_error(&accel->log, "%s: mesh %s: out of memory", accel->params.tree_file, mesh->name);
         return WHIT_ERROR_MEMORY;
+    }
     material_bits_whole(accel->scene, creation->materials, mesh, whole);
     for (uint32_t i = 0; result == WHIT_OK && i < tree->reference_count; ++i) {
         uint8_t *once = &whole[tree->order[i]];
@@ -259,6 +261,13 @@ static whit_result meshes_write(struct creation *creation)
 
 /* ---- Whole scenes ---- */
 
+static whit_result no_memory(const struct accel *accel, whit_result result)
+{
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(&accel->log, "%s: out of memory for its trees", accel->scene->name);
+    return result;
+}
+
 static whit_result creation_alloc(struct creation *creation)
 {
     struct accel *accel = creation->accel;
@@ -286,14 +295,15 @@ static whit_result creation_run(struct creation *creation)
 {
     whit_result result = creation_alloc(creation);
     if (result != WHIT_OK)
-        return result;
+        return no_memory(creation->accel, result);
     material_bits_scan(creation->accel->scene, creation->materials);
-    result = meshes_build(creation);
-    if (result == WHIT_OK)
-        result = meshes_place(creation);
+    result = meshes_build(creation); /* says itself why it fails */
+    if (result != WHIT_OK)
+        return result;
+    result = meshes_place(creation);
     if (result == WHIT_OK)
         result = meshes_write(creation);
-    return result;
+    return no_memory(creation->accel, result);
 }
 
 static void creation_finish(struct creation *creation)
@@ -334,9 +344,8 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
     accel->params.instances.leaf_limit = 1;
     accel->no_trees = accel->params.mesh.builder == BVH_NONE && !accel->params.tree_file;
     struct creation creation = {.accel = accel};
-    whit_result result = accel->params.flatten ? accel_flat_create(accel) : creation_run(&creation);
-    if (result == WHIT_ERROR_MEMORY)
-        log_error(log, "%s: out of memory for its trees", scene->name);
+    whit_result result = accel->params.flatten ? no_memory(accel, accel_flat_create(accel))
+                                               : creation_run(&creation);
     creation_finish(&creation);
     accel->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK)

@@ -274,6 +274,13 @@ static whit_result refuse_spheres(const struct flattening *f)
     return WHIT_OK;
 }
 
+static whit_result no_memory(const struct accel *accel)
+{
+    log_error(&accel->log, "%s: out of memory for one tree over all its triangles",
+              accel->scene->name);
+    return WHIT_ERROR_MEMORY;
+}
+
 static whit_result world_build(struct flattening *f)
 {
     struct accel *accel = f->accel;
@@ -291,7 +298,7 @@ static whit_result world_build(struct flattening *f)
     f->boxes = array_alloc(count, sizeof *f->boxes);
     f->whole = split ? array_alloc(count, 1) : NULL;
     if (!f->positions || !f->indices || !f->owners || !f->boxes || (split && !f->whole))
-        return WHIT_ERROR_MEMORY;
+        return no_memory(accel);
     threads_for(threads, flat->span_count, place_vertices, f);
     result = refuse_range(f);
     if (result != WHIT_OK)
@@ -334,7 +341,7 @@ static whit_result world_write(struct flattening *f)
     uint32_t count = f->tree.reference_count;
     f->triangles = array_alloc_aligned(count, sizeof *f->triangles);
     if (!f->triangles)
-        return WHIT_ERROR_MEMORY;
+        return no_memory(f->accel);
     threads_for(f->accel->params.mesh.thread_count, (count + SPAN - 1) / SPAN, write_records, f);
     return WHIT_OK;
 }
@@ -379,9 +386,6 @@ whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose)
         result = world_write(&f);
     if (result == WHIT_OK)
         world_commit(&f);
-    else if (result == WHIT_ERROR_MEMORY)
-        log_error(&accel->log, "%s: out of memory for one tree over all its triangles",
-                  accel->scene->name);
     bvh_finish(&f.tree);
     free(f.triangles);
     free(f.positions);

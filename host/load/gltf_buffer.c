@@ -46,11 +46,11 @@ static int base64_digit(char c)
     return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
-bool gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
+whit_result gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
 {
     const char *text = strstr(uri, ";base64,");
     if (strncmp(uri, "data:", 5) != 0 || !text)
-        return false;
+        return WHIT_ERROR_INPUT;
     text += 8;
     size_t length = strlen(text), used = 0;
     uint8_t *out = array_alloc(length / 4 * 3 + 3, 1);
@@ -59,7 +59,7 @@ bool gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
         int digit = base64_digit(*text);
         if (digit < 0) {
             free(out);
-            return false;
+            return WHIT_ERROR_INPUT;
         }
         bits = bits << 6 | (uint32_t)digit;
         if (++count % 4 == 0) {
@@ -74,7 +74,7 @@ bool gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
         out[used++] = (uint8_t)(bits >> 2);
     *data = out;
     *size_bytes = used;
-    return out;
+    return out ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
 /* --- buffers -------------------------------------------------------------------------------- */
@@ -120,10 +120,9 @@ static whit_result load_buffer(struct gltf *gltf, uint32_t index, struct gltf_by
     if (!uri && index == 0)
         *out = gltf->chunk;
     else if (uri && strncmp(uri, "data:", 5) == 0) {
-        if (!gltf_decode_uri(uri, &out->owned, &out->size_bytes)) {
+        result = gltf_decode_uri(uri, &out->owned, &out->size_bytes);
+        if (result == WHIT_ERROR_INPUT)
             gltf_fail(gltf, &at, "its data: URI cannot be read");
-            return WHIT_ERROR_INPUT;
-        }
         out->data = out->owned;
     } else if (uri && has_scheme(uri)) {
         gltf_fail(gltf, &at, "`%.80s` is not a file beside the model", uri);

@@ -30,6 +30,8 @@ struct geometry {
     bool draco;
 };
 
+static const char no_memory[] = "out of memory";
+
 static bool set_new(json_t *object, const char *key, json_t *value)
 {
     return json_object_set_new(object, key, value) == 0;
@@ -38,8 +40,8 @@ static bool set_new(json_t *object, const char *key, json_t *value)
 /* --- attributes ----------------------------------------------------------------------------- */
 
 /* Appends the accessor's values as floats: a new buffer, view and accessor of the smaller file. */
-static bool convert(struct geometry *geometry, uint32_t accessor, const char *type,
-                    uint32_t components, uint32_t *index)
+static bool convert(struct geometry *geometry, const struct gltf_place *at, uint32_t accessor,
+                    const char *type, uint32_t components, uint32_t *index)
 {
     float *values;
     uint32_t count;
@@ -49,7 +51,7 @@ static bool convert(struct geometry *geometry, uint32_t accessor, const char *ty
     struct gltf_bytes floats = {(const uint8_t *)values, bytes, (uint8_t *)values};
     if (!ARRAY_PUSH(geometry->floats, geometry->float_count, geometry->float_capacity, floats)) {
         free(values);
-        return false;
+        return gltf_fail(geometry->gltf, at, no_memory);
     }
     uint32_t buffer = geometry->gltf->buffer_count + geometry->float_count - 1;
     char name[24];
@@ -61,9 +63,10 @@ static bool convert(struct geometry *geometry, uint32_t accessor, const char *ty
         json_pack("{s:I,s:I}", "buffer", (json_int_t)buffer, "byteLength", (json_int_t)bytes);
     json_t *a = json_pack("{s:I,s:i,s:I,s:s}", "bufferView", (json_int_t)view, "componentType",
                           GLTF_FLOAT, "count", (json_int_t)count, "type", type);
-    return json_array_append_new(geometry->buffers, b) == 0 &&
-           json_array_append_new(geometry->views, v) == 0 &&
-           json_array_append_new(geometry->accessors, a) == 0;
+    bool appended = json_array_append_new(geometry->buffers, b) == 0;
+    appended = json_array_append_new(geometry->views, v) == 0 && appended;
+    appended = json_array_append_new(geometry->accessors, a) == 0 && appended;
+    return appended || gltf_fail(geometry->gltf, at, no_memory);
 }
 
 static bool add_attributes(struct geometry *geometry, const json_t *primitive,
@@ -101,11 +104,11 @@ static bool add_attributes(struct geometry *geometry, const json_t *primitive,
                              wanted[i].name, accessor.count, *vertex_count);
         bool is_packed = json_object_get(packed, wanted[i].name) != NULL;
         if (accessor.component != GLTF_FLOAT && !is_packed &&
-            !convert(geometry, index, accessor.components == 3 ? "VEC3" : wanted[i].type,
+            !convert(geometry, &place, index, accessor.components == 3 ? "VEC3" : wanted[i].type,
                      accessor.components, &index))
             return false;
         if (!set_new(out, wanted[i].name, json_integer(index)))
-            return false;
+            return gltf_fail(gltf, &place, no_memory);
     }
     return json_object_get(out, "POSITION") || gltf_fail(gltf, &place, "there is no POSITION");
 }
@@ -178,14 +181,16 @@ static bool plan_primitive(struct geometry *geometry, uint32_t mesh, uint32_t in
     geometry->morphed += json_array_size(targets) > 0;
     geometry->draco |= draco != NULL;
     json_t *attributes = json_object();
-    bool ok = attributes &&
+    bool ok = (attributes || gltf_fail(gltf, &at, no_memory)) &&
               add_attributes(geometry, primitive, &at, draco, attributes, &vertex_count) &&
               check_indices(gltf, primitive, &at, vertex_count, &indices, &corners);
     if (ok) {
         drawn.triangles = triangles_of(mode, corners);
-        ok = drawn.triangles == 0 ||
-             (pack_primitive(geometry, &drawn, mode, indices, attributes, draco) &&
-              ARRAY_PUSH(geometry->drawn, geometry->drawn_count, geometry->drawn_capacity, drawn));
+        ok =
+            drawn.triangles == 0 ||
+            (pack_primitive(geometry, &drawn, mode, indices, attributes, draco) &&
+             ARRAY_PUSH(geometry->drawn, geometry->drawn_count, geometry->drawn_capacity, drawn)) ||
+            gltf_fail(gltf, &at, no_memory);
     }
     json_decref(attributes);
     return ok;
@@ -233,20 +238,19 @@ static bool begin(struct geometry *geometry)
 static char *write_smaller(const struct geometry *geometry)
 {
     json_t *roots = json_array(), *nodes = json_array();
-    for (uint32_t i = 0; i < geometry->drawn_count; i++) {
-        json_array_append_new(roots, json_integer(i));
-        json_array_append_new(nodes, json_pack("{s:I}", "mesh", (json_int_t)i));
-    }
+    bool ok = roots && nodes;
+    for (uint32_t i = 0; ok && i < geometry->drawn_count; i++)
+        ok = json_array_append_new(roots, json_integer(i)) == 0 &&
+             json_array_append_new(nodes, json_pack("{s:I}", "mesh", (json_int_t)i)) == 0;
     json_t *root = json_pack("{s:{s:s},s:i,s:[{s:o}],s:o,s:O,s:O,s:O,s:O}", "asset", "version",
                              "2.0", "scene", 0, "scenes", "nodes", roots, "nodes", nodes, "meshes",
                              geometry->meshes, "accessors", geometry->accessors, "bufferViews",
                              geometry->views, "buffers", geometry->buffers);
     const char *draco = "KHR_draco_mesh_compression";
-    if (root && geometry->draco) {
-        set_new(root, "extensionsUsed", json_pack("[s]", draco));
-        set_new(root, "extensionsRequired", json_pack("[s]", draco));
-    }
-    char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
+    if (root && geometry->draco)
+        ok = ok && set_new(root, "extensionsUsed", json_pack("[s]", draco)) &&
+             set_new(root, "extensionsRequired", json_pack("[s]", draco));
+    char *text = root && ok ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;
 }

@@ -341,8 +341,8 @@ static whit_result add_light(struct gltf *gltf, const json_t *node, const struct
     if (!gltf_string(gltf, object, &place, "name", &name) ||
         !read_light(gltf, object, &place, &light))
         return WHIT_ERROR_INPUT;
-    light.name = string_copy(name && *name ? name : node_name);
-    light.origin.file = string_copy(gltf->request->path);
+    light.name = scene_text(gltf->scene, name && *name ? name : node_name);
+    light.origin.file = scene_text(gltf->scene, gltf->request->path);
     return scene_add_light(gltf->scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 

@@ -58,11 +58,11 @@ static whit_result load_image(struct gltf *gltf, uint32_t index, bool visible, u
         return load_file_image(gltf, uri, visible, texture);
     if (uri) {
         uint8_t *owned = NULL;
-        if (!gltf_decode_uri(uri, &owned, &size)) {
+        whit_result result = gltf_decode_uri(uri, &owned, &size);
+        if (result == WHIT_ERROR_INPUT)
             gltf_fail(gltf, &at, "its data: URI cannot be read");
-            return WHIT_ERROR_INPUT;
-        }
-        whit_result result = load_held_image(gltf, index, owned, size, texture);
+        if (result == WHIT_OK)
+            result = load_held_image(gltf, index, owned, size, texture);
         free(owned);
         return result;
     }

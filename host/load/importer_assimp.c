@@ -69,14 +69,22 @@ static enum aiReturn seek_file(struct aiFile *io, size_t offset, enum aiOrigin o
     return aiReturn_SUCCESS;
 }
 
+/* All files that there are. */
+struct library {
+    const struct import_request *request;
+    bool lacks_memory; /* to open one: assimp only says that it could not */
+};
+
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
 {
     (void)mode;
-    const struct import_request *request = (const struct import_request *)(void *)io->UserData;
+    struct library *library = (struct library *)(void *)io->UserData;
+    const struct import_request *request = library->request;
     for (uint32_t i = 0; i < request->file_count; i++) {
         if (strcmp(path_name(path), request->files[i].name) != 0)
             continue;
         struct open_file *open = calloc(1, sizeof *open);
+        library->lacks_memory |= !open;
         if (!open)
             return NULL;
         open->file = &request->files[i];
@@ -554,12 +562,14 @@ _Static_assert(sizeof(struct import_record) % 8 == 0, "strings follow the record
 int importer_assimp_run(void *user, void *to, child_write write)
 {
     const struct import_request *request = user;
+    struct library library = {.request = request};
     struct aiFileIO io = {
-        .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)user};
+        .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)&library};
     const struct aiScene *scene =
         aiImportFileEx(request->files[0].name, aiProcess_Triangulate, &io);
     if (!scene)
-        return write_error(aiGetErrorString(), to, write);
+        return library.lacks_memory ? CHILD_EXIT_MEMORY
+                                    : write_error(aiGetErrorString(), to, write);
     struct flat flat = {0};
     int code = 1;
     if (!flatten(&flat, scene, request->kind))

@@ -10,6 +10,18 @@
 #include "base/array.h"
 #include "base/file.h"
 
+/* stb_image does not always say so. */
+static _Thread_local bool lacks_memory;
+
+static void *taken(void *memory)
+{
+    lacks_memory |= !memory;
+    return memory;
+}
+
+#define STBI_MALLOC(bytes)         taken(malloc(bytes))
+#define STBI_REALLOC(block, bytes) taken(realloc(block, bytes))
+#define STBI_FREE(block)           free(block)
 #define STBI_NO_STDIO
 #define STBI_NO_PIC
 #define STBI_NO_PSD
@@ -47,13 +59,17 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, bool linear, 
         *reason = "it has more than 2^26 pixels";
         return WHIT_ERROR_INPUT;
     }
+    lacks_memory = false;
     if (linear)
         out->rgb = stbi_loadf_from_memory(data, size, &width, &height, &channels, 3);
     else
         out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
     if (!out->rgb && !out->rgba) {
         *reason = stbi_failure_reason() ? stbi_failure_reason() : "damaged";
-        return WHIT_ERROR_INPUT;
+        if (!lacks_memory)
+            return WHIT_ERROR_INPUT;
+        *reason = "out of memory";
+        return WHIT_ERROR_MEMORY;
     }
     out->width = (uint32_t)width;
     out->height = (uint32_t)height;

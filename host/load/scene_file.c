@@ -175,8 +175,8 @@ static bool read_light(struct reader *reader, const struct place *place, const j
         !read_light_values(reader, place, object, &light) ||
         !moving_node(reader, place, object, name, &light.node))
         return false;
-    light.name = string_copy(name);
-    light.origin.file = string_copy(reader->path);
+    light.name = scene_text(reader->scene, name);
+    light.origin.file = scene_text(reader->scene, reader->path);
     light.origin.line = reader_line(reader, place);
     return scene_add_light(reader->scene, light) != SCENE_NONE || reader_no_memory(reader);
 }
@@ -247,7 +247,7 @@ static bool read_camera(struct reader *reader, const struct place *place, const 
     camera.fov_y = (float)(fov * RADIANS);
     if (!moving_node(reader, place, object, name, &camera.node))
         return false;
-    camera.name = string_copy(name);
+    camera.name = scene_text(reader->scene, name);
     return scene_add_camera(reader->scene, camera) != SCENE_NONE || reader_no_memory(reader);
 }
 

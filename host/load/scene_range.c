@@ -50,7 +50,7 @@ bool range_copy(struct reader *reader, const struct place *place, const struct s
     }
     for (uint32_t i = range->first_instance; i < range->instance_end; ++i) {
         struct scene_instance instance = scene->instances[i];
-        instance.name = string_copy(instance.name);
+        instance.name = scene_text(scene, instance.name);
         instance.node = moved_node(range, instance.node, parent, first);
         if (scene_add_instance(scene, instance) == SCENE_NONE)
             return reader_no_memory(reader);

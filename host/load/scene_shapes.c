@@ -178,7 +178,7 @@ static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t m
 static bool add_dressed(struct reader *reader, enum shape shape, struct scene_mesh mesh,
                         uint32_t material, uint32_t *index)
 {
-    mesh.name = string_copy(shape_names[shape]);
+    mesh.name = scene_text(reader->scene, shape_names[shape]);
     for (uint32_t i = 0; i < scene_mesh_primitives(&mesh); ++i)
         mesh.materials[i] = material;
     *index = scene_add_mesh(reader->scene, mesh);
@@ -251,7 +251,8 @@ static bool shared_mesh(struct reader *reader, const struct place *place, enum s
 static bool add_instance(struct reader *reader, const char *name, uint32_t mesh, uint32_t node,
                          const struct affine *local)
 {
-    struct scene_instance instance = {.name = string_copy(name), .mesh = mesh, .node = node};
+    struct scene_instance instance = {
+        .name = scene_text(reader->scene, name), .mesh = mesh, .node = node};
     if (local) {
         instance.has_local = true;
         instance.local = *local;

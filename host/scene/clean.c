@@ -70,14 +70,11 @@ static void shrink_groups(struct scene_mesh *mesh, const uint32_t *kept_before)
     }
 }
 
-static whit_result drop_triangles(struct scene *scene, struct scene_mesh *mesh,
-                                  struct cleaned *count)
+static whit_result drop_triangles(struct scene_mesh *mesh, struct cleaned *count)
 {
     uint32_t *kept_before = array_alloc((size_t)mesh->triangle_count + 1, sizeof *kept_before);
-    if (!kept_before) {
-        log_error(&scene->log, "%s: out of memory checking triangles", scene->name);
+    if (!kept_before)
         return WHIT_ERROR_MEMORY;
-    }
     uint32_t kept = 0;
     for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
         kept_before[i] = kept;
@@ -205,7 +202,7 @@ static bool normalize(float *normal)
     return true;
 }
 
-static whit_result mend_normals(struct scene *scene, struct scene_mesh *mesh, uint32_t *count)
+static whit_result mend_normals(struct scene_mesh *mesh, uint32_t *count)
 {
     if (!mesh->normals)
         return WHIT_OK;
@@ -230,8 +227,6 @@ static whit_result mend_normals(struct scene *scene, struct scene_mesh *mesh, ui
     }
     result = WHIT_OK;
 fail:
-    if (result != WHIT_OK)
-        log_error(&scene->log, "%s: out of memory mending normals", scene->name);
     free(bad);
     free(sums);
     return result;
@@ -331,13 +326,13 @@ whit_result freeze_clean_mesh(struct scene *scene, uint32_t index)
     struct scene_mesh *mesh = &scene->meshes[index];
     struct cleaned dropped = {0};
     uint32_t normals = 0;
-    whit_result result = drop_triangles(scene, mesh, &dropped);
+    whit_result result = drop_triangles(mesh, &dropped);
     if (result != WHIT_OK)
         return result;
     drop_spheres(mesh, &dropped);
     zero_unusable_vertices(mesh);
     set_bounds(mesh);
-    result = mend_normals(scene, mesh, &normals);
+    result = mend_normals(mesh, &normals);
     if (result != WHIT_OK)
         return result;
     drop_flat_normals(mesh);

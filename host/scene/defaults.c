@@ -50,7 +50,7 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     if (result != WHIT_OK)
         return result;
     struct scene_camera camera = {
-        .name = string_copy("default"),
+        .name = scene_text(scene, "default"),
         .kind = SCENE_CAMERA_PERSPECTIVE,
         .node = SCENE_NONE,
         .up = {0, 1, 0},
@@ -80,7 +80,7 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
     unit(forward);
     for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
         struct scene_light light = {
-            .name = string_copy(lamps[k].name),
+            .name = scene_text(scene, lamps[k].name),
             .kind = SCENE_LIGHT_POINT,
             .node = SCENE_NONE,
             .direction = {0, -1, 0},
@@ -105,7 +105,7 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
 {
     const double aside = kind == VIEWPOINT_STRAIGHT ? 0.3 : 1.0;
     struct scene_light light = {
-        .name = string_copy("default key light"),
+        .name = scene_text(scene, "default key light"),
         .kind = SCENE_LIGHT_DIRECTIONAL,
         .node = SCENE_NONE,
         .color = {0.95f, 0.93f, 0.9f},

@@ -117,13 +117,14 @@ static void point_in(double corners[3][3], double u, double v, double out[3])
 }
 
 /* What all lights of an emitter's material have in common. */
-static struct scene_light light_of(const struct scene *scene, const struct emitter *emitter)
+static struct scene_light light_of(struct scene *scene, const struct emitter *emitter)
 {
     const struct scene_material *material = &scene->materials[emitter->material];
+    char *name = string_format("emission of `%s`", material->name ? material->name : "");
+    scene->lacks_memory |= !name;
     return (struct scene_light){
-        .name = string_format("emission of `%s`", material->name ? material->name : ""),
-        .origin = {.file = material->origin.file ? string_copy(material->origin.file) : NULL,
-                   .line = material->origin.line},
+        .name = name,
+        .origin = {.file = scene_text(scene, material->origin.file), .line = material->origin.line},
         .node = scene->instances[emitter->instance].node,
         .falloff = true,
         .cos_inner = 1.0f,
@@ -376,8 +377,6 @@ whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose 
         result = WHIT_ERROR_MEMORY;
     *added = scene->light_count - before;
 done:
-    if (result != WHIT_OK)
-        log_error(&scene->log, "%s: out of memory sampling emissive surfaces", scene->name);
     free(list.items);
     return result;
 }

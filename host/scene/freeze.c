@@ -494,6 +494,14 @@ static whit_result check_all(struct scene *scene)
     return result;
 }
 
+/* Said here, whatever the memory was for. */
+static whit_result no_memory(const struct scene *scene, whit_result result)
+{
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(&scene->log, "%s: out of memory for the scene", scene->name);
+    return result;
+}
+
 whit_result scene_freeze(struct scene *scene)
 {
     if (scene->frozen)
@@ -501,11 +509,8 @@ whit_result scene_freeze(struct scene *scene)
     whit_result result = check_all(scene);
     if (result == WHIT_OK)
         result = freeze_add_defaults(scene);
-    if (result != WHIT_OK) {
-        if (result == WHIT_ERROR_MEMORY)
-            log_error(&scene->log, "%s: out of memory checking the scene", scene->name);
-        return result;
-    }
+    if (result != WHIT_OK)
+        return no_memory(scene, result);
     scene->triangle_total = scene->sphere_total = 0;
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         scene->triangle_total += scene->meshes[scene->instances[i].mesh].triangle_count;
@@ -514,6 +519,8 @@ whit_result scene_freeze(struct scene *scene)
     if (!scene->triangle_total && !scene->sphere_total)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "nothing to draw: no triangle is left, the picture shows the background");
+    if (scene->lacks_memory)
+        return no_memory(scene, WHIT_ERROR_MEMORY);
     scene->hash = freeze_hash(scene);
     scene->frozen = true;
     return WHIT_OK;

@@ -304,7 +304,8 @@ whit_result scene_pose_init(const struct scene *scene, double time_s, struct sce
     pose->lights = array_alloc(scene->light_count, sizeof *pose->lights);
     pose->cameras = array_alloc(scene->camera_count, sizeof *pose->cameras);
     if (!nodes || !pose->instances || !pose->lights || !pose->cameras) {
-        log_error(&scene->log, "%s: out of memory for the scene's pose", scene->name);
+        if (scene->frozen) /* before, scene_freeze says it */
+            log_error(&scene->log, "%s: out of memory for the scene's pose", scene->name);
         goto fail;
     }
     result = pose_instances(scene, nodes, pose);

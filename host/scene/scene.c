@@ -164,6 +164,7 @@ uint32_t scene_add_mesh(struct scene *scene, struct scene_mesh mesh)
 
 uint32_t scene_add_node(struct scene *scene, struct scene_node node)
 {
+    scene->lacks_memory |= !node.name;
     if (ARRAY_PUSH(scene->nodes, scene->node_count, scene->node_capacity, node))
         return scene->node_count - 1;
     free(node.name);
@@ -180,6 +181,7 @@ uint32_t scene_add_instance(struct scene *scene, struct scene_instance instance)
 
 uint32_t scene_add_material(struct scene *scene, struct scene_material material)
 {
+    scene->lacks_memory |= !material.name;
     if (ARRAY_PUSH(scene->materials, scene->material_count, scene->material_capacity, material))
         return scene->material_count - 1;
     scene_material_finish(&material);
@@ -218,6 +220,13 @@ uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel)
     return SCENE_NONE;
 }
 
+char *scene_text(struct scene *scene, const char *text)
+{
+    char *copy = string_copy(text);
+    scene->lacks_memory |= text && !copy;
+    return copy;
+}
+
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
 {
     char text[512];
@@ -229,9 +238,11 @@ void scene_note(struct scene *scene, enum scene_note_level level, const char *fo
         log_warning(&scene->log, "%s", text);
     else
         log_info(&scene->log, "%s", text);
-    struct scene_note note = {level, string_copy(text)};
+    struct scene_note note = {level, scene_text(scene, text)};
     if (!note.text)
         return;
-    if (!ARRAY_PUSH(scene->notes, scene->note_count, scene->note_capacity, note))
-        free(note.text);
+    if (ARRAY_PUSH(scene->notes, scene->note_count, scene->note_capacity, note))
+        return;
+    free(note.text);
+    scene->lacks_memory = true;
 }

@@ -259,6 +259,7 @@ struct scene {
     float time_end_s;                      /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;                   /* of all files read */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
+    bool lacks_memory;                     /* for a name or a note: scene_freeze fails */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */
 };
@@ -286,6 +287,9 @@ uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture);
 uint32_t scene_add_light(struct scene *scene, struct scene_light light);
 uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
 uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);
+/* A copy of `text` for one of the scene's records; NULL where there is none, or no memory, which
+   scene_freeze then tells. */
+char *scene_text(struct scene *scene, const char *text);
 /* Kept for the receipt, and logged at once as a warning or as information. */
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
