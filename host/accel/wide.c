@@ -9,6 +9,24 @@
 
 enum { STACK_SIZE = 512 };
 
+/* As fmin and fmax, which would be calls. */
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Whether what begins at `start` may still matter. */
+static bool begins_in_time(const struct wide_walk *walk, double start)
+{
+    return start - INTERVAL_GROWTH * fabs(start) - DENORMAL <=
+           smaller(walk->limit, walk->ray.t_max);
+}
+
 double wide_entry(const struct wide_walk *walk, const float box_lo[3], const float box_hi[3])
 {
     const struct wide_ray *ray = &walk->ray;
@@ -16,7 +34,7 @@ double wide_entry(const struct wide_walk *walk, const float box_lo[3], const flo
     for (int i = 0; i < 3; ++i) {
         lo[i] = (double)box_lo[i] - ray->origin[i];
         hi[i] = (double)box_hi[i] - ray->origin[i];
-        far = fmax(far, fmax(fabs(lo[i]), fabs(hi[i])));
+        far = larger(far, larger(fabs(lo[i]), fabs(hi[i])));
     }
     double growth = far * ray->growth + ray->margin;
     double start = -INFINITY, end = INFINITY;
@@ -27,38 +45,46 @@ double wide_entry(const struct wide_walk *walk, const float box_lo[3], const flo
             continue;
         }
         double a = (lo[i] - growth) / ray->dir[i], b = (hi[i] + growth) / ray->dir[i];
-        start = fmax(start, fmin(a, b));
-        end = fmin(end, fmax(a, b));
+        start = larger(start, smaller(a, b));
+        end = smaller(end, larger(a, b));
     }
-    bool reached =
-        start <= end &&
-        start - INTERVAL_GROWTH * fabs(start) - DENORMAL <= fmin(walk->limit, ray->t_max) &&
-        end + INTERVAL_GROWTH * fabs(end) + DENORMAL >= ray->t_min;
+    bool reached = start <= end && begins_in_time(walk, start) &&
+                   end + INTERVAL_GROWTH * fabs(end) + DENORMAL >= ray->t_min;
     return reached ? start : INFINITY;
 }
 
 typedef void (*leaf_fn)(struct wide_walk *walk, const struct gpu_bvh_node *leaf, uint32_t instance);
 
+/* A node whose box is entered, and where. */
+struct entered {
+    uint32_t node;
+    double entry;
+};
+
+static struct entered enter_node(const struct wide_walk *walk, uint32_t index)
+{
+    const struct gpu_bvh_node *node = &walk->accel->nodes[index];
+    return (struct entered){index, wide_entry(walk, node->lo, node->hi)};
+}
+
 static void walk_tree(struct wide_walk *walk, uint32_t root, leaf_fn leaf, uint32_t instance)
 {
-    uint32_t stack[STACK_SIZE], top = 0;
-    stack[top++] = root;
+    struct entered stack[STACK_SIZE];
+    uint32_t top = 0;
+    stack[top++] = enter_node(walk, root);
     while (top > 0 && !walk->done) {
-        const struct gpu_bvh_node *node = &walk->accel->nodes[stack[--top]];
-        if (wide_entry(walk, node->lo, node->hi) == INFINITY)
+        struct entered at = stack[--top];
+        const struct gpu_bvh_node *node = &walk->accel->nodes[at.node];
+        if (at.entry == INFINITY || !begins_in_time(walk, at.entry))
             continue;
         if (bvh_count(node) > 0) {
             leaf(walk, node, instance);
             continue;
         }
-        const struct gpu_bvh_node *pair = &walk->accel->nodes[node->first];
-        double a = wide_entry(walk, pair[0].lo, pair[0].hi);
-        double b = wide_entry(walk, pair[1].lo, pair[1].hi);
-        uint32_t nearer = b < a ? 1 : 0;
-        if (fmax(a, b) < INFINITY)
-            stack[top++] = node->first + (1 - nearer);
-        if (fmin(a, b) < INFINITY)
-            stack[top++] = node->first + nearer;
+        struct entered a = enter_node(walk, node->first), b = enter_node(walk, node->first + 1);
+        bool b_nearer = b.entry < a.entry;
+        stack[top++] = b_nearer ? a : b;
+        stack[top++] = b_nearer ? b : a;
     }
 }
 
