@@ -4,6 +4,7 @@
 
 #include "app/frames.h"
 #include "app/job.h"
+#include "app/picture.h"
 #include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
@@ -11,11 +12,10 @@ extern const struct cli_command command_render, command_scene, command_trace, co
 
 /* What `whit render` was asked for beside the job. */
 struct render_request {
-    const char *output, *ids, *camera; /* ids, camera: NULL when not given */
-    uint32_t width, height, samples, depth, tile_size;
-    double bailout;  /* 0: every ray is traced */
-    double adaptive; /* 0: off; else `samples` is not used */
-    uint32_t light_samples;
+    const char *output, *ids; /* ids: NULL when not given */
+    struct picture picture;
+    double bailout; /* 0: every ray is traced */
+    uint32_t light_samples, tile_size;
     bool no_shadows, opaque_shadows, schlick;
     const char *effects;   /* NULL: auto */
     struct cost_view view; /* instead of colours */
@@ -27,9 +27,7 @@ struct render_request {
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats);
 
-/* Options that `render` and `scene --effects` share: --aa and --effects of the current option; on
-   nonsense misuse, and false. */
-bool render_read_aa(struct cli_reader *reader, uint32_t *samples, double *adaptive);
+/* --effects of the current option; on nonsense misuse, and false. */
 bool effects_check(struct cli_reader *reader, const char *text);
 
 /* What a picture says about itself: only what decides its pixels, so that the same inputs give the

@@ -1,7 +1,7 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
   app/main.c app/cli.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c app/costs.c app/view_image.c app/frames.c
-  app/effect_list.c app/receipt.c app/receipt_output.c
+  app/effect_list.c app/picture.c app/receipt.c app/receipt_output.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_table.c
   app/render_command.c app/scene_command.c app/trace_command.c app/bvh_command.c app/study.c
   app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)

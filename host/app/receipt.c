@@ -14,21 +14,9 @@ enum { ROUNDS_LEAST = 5, ROUNDS_MOST = 41 };
 static whit_result make_renderer(const struct receipt *receipt, const char *effects,
                                  whit_renderer **out)
 {
-    const struct receipt_request *request = receipt->request;
     const struct job *job = receipt->job;
-    const whit_renderer_params params = {
-        .width = request->width,
-        .height = request->height,
-        .camera = request->camera,
-        .time_s = job->time_s,
-        .samples = request->samples,
-        .adaptive = request->adaptive,
-        .depth = request->depth,
-        .no_bounces = request->depth == 0,
-        .effects = effects,
-        .cancel = &cli_cancel,
-        .time_limit_s = cli_time_left_s(),
-    };
+    whit_renderer_params params = picture_params(receipt->picture, job);
+    params.effects = effects;
     return whit_renderer_create(job->device, job->accel, &params, out);
 }
 
@@ -180,7 +168,7 @@ static int check_promises(const struct receipt *receipt)
     return status;
 }
 
-int receipt_run(struct job *job, const struct receipt_request *request, bool json)
+int receipt_run(struct job *job, const struct picture *picture, bool json)
 {
     struct receipt *receipt = calloc(1, sizeof *receipt);
     if (!receipt) {
@@ -188,7 +176,7 @@ int receipt_run(struct job *job, const struct receipt_request *request, bool jso
         return cli_exit_of(WHIT_ERROR_MEMORY);
     }
     receipt->job = job;
-    receipt->request = request;
+    receipt->picture = picture;
     whit_result result = job_build(job);
     if (result == WHIT_OK)
         result = job_open_device(job);

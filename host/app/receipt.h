@@ -3,13 +3,7 @@
 #define APP_RECEIPT_H
 
 #include "app/bench.h"
-#include "app/job.h"
-
-struct receipt_request {
-    uint32_t width, height, samples, depth;
-    double adaptive;    /* 0: off; else `samples` is not used */
-    const char *camera; /* NULL: the first */
-};
+#include "app/picture.h"
 
 /* Of one effect. */
 struct receipt_row {
@@ -26,7 +20,7 @@ struct receipt_row {
 enum { RECEIPT_ROWS_MOST = 64 };
 struct receipt {
     const struct job *job;
-    const struct receipt_request *request;
+    const struct picture *picture;
     whit_kernel_info kernel;
     struct bench_times frame;
     uint32_t row_count;
@@ -35,7 +29,7 @@ struct receipt {
 
 /* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that
    the scene does not call for has to be the same. */
-int receipt_run(struct job *job, const struct receipt_request *request, bool json);
+int receipt_run(struct job *job, const struct picture *picture, bool json);
 
 /* receipt_output.c */
 int receipt_print_text(const struct receipt *receipt);

@@ -10,16 +10,16 @@ static void print_clean(const char *text)
 
 static void print_head(const struct receipt *receipt)
 {
-    const struct receipt_request *request = receipt->request;
+    const struct picture *picture = receipt->picture;
     whit_device_info device;
     whit_device_get_info(receipt->job->device, &device);
     print_clean(receipt->job->scene_path);
-    printf("\n  picture   %u x %u, ", request->width, request->height);
-    if (request->adaptive > 0.0)
+    printf("\n  picture   %u x %u, ", picture->width, picture->height);
+    if (picture->adaptive > 0.0)
         printf("adaptive samples, ");
     else
-        printf("%u sample%s a pixel, ", request->samples, request->samples == 1 ? "" : "s");
-    printf("depth %u\n", request->depth);
+        printf("%u sample%s a pixel, ", picture->samples, picture->samples == 1 ? "" : "s");
+    printf("depth %u\n", picture->depth);
     printf("  device    %s (%s)\n", device.name, stats_driver(&device));
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
            receipt->kernel.general_instructions, receipt->kernel.bindings,
@@ -90,22 +90,6 @@ static json_t *row_document(const struct receipt_row *row)
     return object;
 }
 
-static json_t *picture_document(const struct receipt *receipt)
-{
-    const struct receipt_request *request = receipt->request;
-    json_t *picture = document_object();
-    document_count(picture, "width", request->width);
-    document_count(picture, "height", request->height);
-    document_text(picture, "camera", request->camera);
-    document_number(picture, "time_s", receipt->job->time_s);
-    if (request->adaptive > 0.0)
-        document_number(picture, "adaptive", request->adaptive);
-    else
-        document_count(picture, "samples", request->samples);
-    document_count(picture, "depth", request->depth);
-    return picture;
-}
-
 int receipt_print_json(const struct receipt *receipt)
 {
     whit_scene_info scene;
@@ -121,7 +105,9 @@ int receipt_print_json(const struct receipt *receipt)
     document_text(device, "driver", info.driver);
     document_text(device, "kind", info.kind);
     document_put(root, "device", device);
-    document_put(root, "picture", picture_document(receipt));
+    json_t *picture = document_object();
+    picture_describe(receipt->picture, receipt->job, picture);
+    document_put(root, "picture", picture);
     document_count(kernel, "instructions", receipt->kernel.instructions);
     document_count(kernel, "general_instructions", receipt->kernel.general_instructions);
     document_count(kernel, "bindings", receipt->kernel.bindings);

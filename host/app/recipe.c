@@ -95,22 +95,22 @@ static char *command_line(const struct job *job, const struct render_request *re
     fputs("whit render", to);
     put_word(to, job->scene_path);
     put_output(to, request->output);
-    fprintf(to, " --size %ux%u", request->width, request->height);
-    if (request->camera) {
+    fprintf(to, " --size %ux%u", request->picture.width, request->picture.height);
+    if (request->picture.camera) {
         fputs(" --camera", to);
-        put_word(to, request->camera);
+        put_word(to, request->picture.camera);
     }
     if (job->time_s != 0.0) {
         fputs(" --time", to);
         put_number(to, job->time_s);
     }
-    if (request->adaptive > 0.0) {
+    if (request->picture.adaptive > 0.0) {
         fputs(" --aa adaptive:", to);
-        put_digits(to, request->adaptive);
+        put_digits(to, request->picture.adaptive);
     } else {
-        fprintf(to, " --aa %u", request->samples);
+        fprintf(to, " --aa %u", request->picture.samples);
     }
-    fprintf(to, " --depth %u", request->depth);
+    fprintf(to, " --depth %u", request->picture.depth);
     if (request->bailout != WHIT_BAILOUT_DEFAULT) {
         fputs(" --bailout", to);
         put_number(to, request->bailout);
@@ -143,15 +143,7 @@ static char *command_line(const struct job *job, const struct render_request *re
 static char *options_line(const struct job *job, const struct render_request *request)
 {
     json_t *options = document_object();
-    document_count(options, "width", request->width);
-    document_count(options, "height", request->height);
-    document_text(options, "camera", request->camera);
-    document_number(options, "time_s", job->time_s);
-    if (request->adaptive > 0.0)
-        document_number(options, "adaptive", request->adaptive);
-    else
-        document_count(options, "samples", request->samples);
-    document_count(options, "depth", request->depth);
+    picture_describe(&request->picture, job, options);
     document_number(options, "bailout", request->bailout);
     document_flag(options, "shadows", !request->no_shadows);
     if (request->opaque_shadows)

@@ -72,33 +72,6 @@ static const struct cli_option options[] = {
     {0, NULL, NULL, NULL},
 };
 
-static bool read_samples(struct cli_reader *reader, uint32_t *samples)
-{
-    static const char *const choices[] = {"1", "4", "16", "64", NULL};
-    uint32_t choice;
-    if (!cli_choice(reader, choices, &choice))
-        return false;
-    *samples = 1u << (2 * choice);
-    return true;
-}
-
-bool render_read_aa(struct cli_reader *reader, uint32_t *samples, double *adaptive)
-{
-    static const char prefix[] = "adaptive:";
-    size_t length = strlen(prefix);
-    if (strncmp(reader->value, prefix, length) != 0) {
-        *adaptive = 0.0;
-        return read_samples(reader, samples);
-    }
-    char *end;
-    double contrast = strtod(reader->value + length, &end);
-    if (end == reader->value + length || *end || !(contrast > 0.0 && contrast <= 1.0))
-        return cli_misuse(reader, "--aa `%s`: after adaptive: a number above 0, up to 1, is needed",
-                          reader->value);
-    *adaptive = contrast;
-    return true;
-}
-
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
 {
@@ -114,26 +87,26 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         request->ids = reader->value;
         break;
     case ID_SIZE:
-        cli_size(reader, &request->width, &request->height);
+        cli_size(reader, &request->picture.width, &request->picture.height);
         break;
     case ID_CAMERA:
-        request->camera = reader->value;
+        request->picture.camera = reader->value;
         break;
     case ID_AA:
-        render_read_aa(reader, &request->samples, &request->adaptive);
+        picture_read_aa(reader, &request->picture);
         break;
     case ID_OPAQUE_SHADOWS:
         request->opaque_shadows = true;
         break;
     case ID_LIGHT_SAMPLES:
-        read_samples(reader, &request->light_samples);
+        picture_read_samples(reader, &request->light_samples);
         break;
     case ID_FRESNEL:
         if (cli_choice(reader, fresnels, &choice))
             request->schlick = choice == 1;
         break;
     case ID_DEPTH:
-        cli_unsigned(reader, 0, DEPTH_MOST, &request->depth);
+        cli_unsigned(reader, 0, DEPTH_MOST, &request->picture.depth);
         break;
     case ID_BAILOUT:
         cli_number(reader, 0.0, 1.0, &request->bailout);
@@ -276,30 +249,17 @@ static whit_result check_camera(const struct job *job, const char *wanted)
 static whit_result create_renderer(struct job *job, const struct render_request *request,
                                    struct frames_progress *progress, whit_renderer **renderer)
 {
-    const whit_renderer_params params = {
-        .width = request->width,
-        .height = request->height,
-        .camera = request->camera,
-        .time_s = job->time_s,
-        .samples = request->samples,
-        .depth = request->depth,
-        .no_bounces = request->depth == 0,
-        .bailout = request->bailout > 0.0 ? request->bailout : -1.0,
-        .no_shadows = request->no_shadows,
-        .adaptive = request->adaptive,
-        .light_samples = request->light_samples,
-        .schlick = request->schlick,
-        .opaque_shadows = request->opaque_shadows,
-        .effects = request->effects,
-        .tile_size = request->tile_size,
-        .cancel = &cli_cancel,
-        .progress = frames_progress_update,
-        .progress_user = progress,
-        .time_limit_s = cli_time_left_s(),
-        .load_path = job->load_path,
-        .traversal = job->traversal,
-        .count = request->view.given || request->counters,
-    };
+    whit_renderer_params params = picture_params(&request->picture, job);
+    params.bailout = request->bailout > 0.0 ? request->bailout : -1.0;
+    params.no_shadows = request->no_shadows;
+    params.light_samples = request->light_samples;
+    params.schlick = request->schlick;
+    params.opaque_shadows = request->opaque_shadows;
+    params.effects = request->effects;
+    params.tile_size = request->tile_size;
+    params.progress = frames_progress_update;
+    params.progress_user = progress;
+    params.count = request->view.given || request->counters;
     return whit_renderer_create(job->device, job->accel, &params, renderer);
 }
 
@@ -355,7 +315,7 @@ static whit_result prepare(struct job *job, const struct render_request *request
 {
     whit_result result = job_load(job);
     if (result == WHIT_OK)
-        result = check_camera(job, request->camera);
+        result = check_camera(job, request->picture.camera);
     if (result == WHIT_OK) {
         job_print_notes(job, true);
         result = job_build(job);
@@ -380,8 +340,8 @@ static void say_done(const struct job *job, const struct render_request *request
         snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
     if (!job->quiet && job->stats == JOB_STATS_NONE)
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
-                request->output, about, request->width, request->height, stats->render_ms * 1e-3,
-                stats->mrays_per_s, device.name);
+                request->output, about, request->picture.width, request->picture.height,
+                stats->render_ms * 1e-3, stats->mrays_per_s, device.name);
 }
 
 static whit_result render_one(struct job *job, const struct render_request *request,
@@ -441,11 +401,9 @@ static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct job job;
-    struct render_request request = {.width = 640,
-                                     .height = 480,
-                                     .samples = 1,
-                                     .depth = DEPTH_DEFAULT,
-                                     .bailout = WHIT_BAILOUT_DEFAULT};
+    struct render_request request = {
+        .picture = {.width = 640, .height = 480, .samples = 1, .depth = DEPTH_DEFAULT},
+        .bailout = WHIT_BAILOUT_DEFAULT};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

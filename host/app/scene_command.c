@@ -456,8 +456,8 @@ static int print_text(const struct job *job, const whit_scene_info *info, bool a
 struct scene_request {
     const char *triangles; /* NULL: none */
     bool json, all, effects;
-    struct receipt_request receipt;
-    bool for_effects; /* an option that needs --effects was given */
+    struct picture picture; /* of --effects */
+    bool for_effects;       /* an option that needs --effects was given */
 };
 
 static int work(struct job *job, const struct scene_request *request)
@@ -469,7 +469,7 @@ static int work(struct job *job, const struct scene_request *request)
     if (result != WHIT_OK)
         return cli_exit_of(result);
     if (request->effects)
-        return receipt_run(job, &request->receipt, request->json);
+        return receipt_run(job, &request->picture, request->json);
     whit_scene_get_info(job->scene, &info);
     if (request->json)
         return print_json(job, &info);
@@ -479,7 +479,7 @@ static int work(struct job *job, const struct scene_request *request)
 static void read_option(struct job *job, struct cli_reader *reader, int id,
                         struct scene_request *request)
 {
-    struct receipt_request *receipt = &request->receipt;
+    struct picture *picture = &request->picture;
     request->for_effects |= id >= ID_SIZE && id <= ID_DEPTH;
     switch (id) {
     case ID_JSON:
@@ -495,16 +495,16 @@ static void read_option(struct job *job, struct cli_reader *reader, int id,
         request->effects = true;
         break;
     case ID_SIZE:
-        cli_size(reader, &receipt->width, &receipt->height);
+        cli_size(reader, &picture->width, &picture->height);
         break;
     case ID_CAMERA:
-        receipt->camera = reader->value;
+        picture->camera = reader->value;
         break;
     case ID_AA:
-        render_read_aa(reader, &receipt->samples, &receipt->adaptive);
+        picture_read_aa(reader, picture);
         break;
     case ID_DEPTH:
-        cli_unsigned(reader, 0, DEPTH_MOST, &receipt->depth);
+        cli_unsigned(reader, 0, DEPTH_MOST, &picture->depth);
         break;
     default:
         job_option(job, reader, id);
@@ -517,7 +517,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct cli_reader reader;
     struct job job;
     struct scene_request request = {
-        .receipt = {.width = 320, .height = 240, .samples = 1, .depth = DEPTH_DEFAULT}};
+        .picture = {.width = 320, .height = 240, .samples = 1, .depth = DEPTH_DEFAULT}};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

@@ -63,14 +63,14 @@ static json_t *picture_document(const struct job *job, const struct render_reque
     json_t *picture = document_object();
     document_text(picture, "file", request->output);
     document_text(picture, "ids", request->ids);
-    document_count(picture, "width", request->width);
-    document_count(picture, "height", request->height);
-    if (request->adaptive > 0.0)
-        document_number(picture, "adaptive", request->adaptive);
+    document_count(picture, "width", request->picture.width);
+    document_count(picture, "height", request->picture.height);
+    if (request->picture.adaptive > 0.0)
+        document_number(picture, "adaptive", request->picture.adaptive);
     else
-        document_count(picture, "samples", request->samples);
+        document_count(picture, "samples", request->picture.samples);
     document_text(picture, "effects", request->effects ? request->effects : "auto");
-    document_count(picture, "depth", request->depth);
+    document_count(picture, "depth", request->picture.depth);
     document_number(picture, "bailout", request->bailout);
     document_number(picture, "time_s", job->time_s);
     return picture;
@@ -180,7 +180,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
     document_put(root, "kernel", kernel_document(figures));
-    if (request->adaptive > 0.0)
+    if (request->picture.adaptive > 0.0)
         document_put(root, "pixels_by_samples", pixels_document(figures));
     if (request->view.given || request->counters)
         document_put(root, "costs", costs_document(figures->render));
@@ -299,14 +299,14 @@ static int print_text(const struct job *job, const struct render_request *reques
            (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count,
            figures->scene.instance_count == 1 ? "" : "s");
     char samples[32] = "adaptive";
-    if (!(request->adaptive > 0.0))
-        snprintf(samples, sizeof samples, "%u", request->samples);
+    if (!(request->picture.adaptive > 0.0))
+        snprintf(samples, sizeof samples, "%u", request->picture.samples);
     printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", request->output,
-           request->width, request->height, samples, request->depth);
+           request->picture.width, request->picture.height, samples, request->picture.depth);
     printf("device     %s (%s)\n", figures->device.name, stats_driver(&figures->device));
     print_times(job, figures);
     print_rays(figures);
-    if (request->adaptive > 0.0)
+    if (request->picture.adaptive > 0.0)
         print_samples(figures);
     print_kernel(figures);
     if (request->view.given || request->counters)
