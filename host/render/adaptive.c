@@ -63,7 +63,7 @@ whit_result adaptive_list(struct renderer *renderer, const struct progress *prog
     uint32_t slots = chunk->block_count * RENDER_BLOCK_PIXELS;
     uint32_t *list = array_alloc(slots, sizeof *list);
     if (!list)
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(renderer, "a list of pixels");
     for (uint32_t slot = 0; slot < slots; ++slot) {
         uint32_t x, y;
         if (render_slot_pixel(renderer, chunk->first_block + slot / RENDER_BLOCK_PIXELS,

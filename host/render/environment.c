@@ -80,7 +80,7 @@ whit_result upload_environment(struct renderer *renderer)
     struct resample job = {.from = environment, .size = size < 2 ? 2 : size};
     job.to = array_alloc_zeroed((size_t)job.size * job.size, 4 * sizeof(float));
     if (!job.to)
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(renderer, "the environment");
     threads_for(0, job.size, resample_row, &job);
     buffers->environment_size = job.size;
     whit_result result =

@@ -72,7 +72,7 @@ whit_result lights_write(struct renderer *renderer)
     const struct scene_pose *pose = &renderer->pose;
     struct gpu_light *lights = array_alloc(pose->light_count, sizeof *lights);
     if (!lights)
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(renderer, "lights");
     for (uint32_t i = 0; i < pose->light_count; ++i)
         lights[i] = make_light(&pose->lights[i], lights_samples(renderer));
     whit_result result = buffer_write(renderer->scene_buffers.shading,

@@ -306,10 +306,8 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     const struct render_params *params = &renderer->params;
     size_t pixels = (size_t)params->width * params->height;
     progress->levels = array_alloc(pixels, sizeof *progress->levels);
-    if (!progress->levels) {
-        log_error(&renderer->log, "out of memory for the samples of pixels");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!progress->levels)
+        return render_no_memory(renderer, "the samples of pixels");
     memset(progress->levels, 1, pixels);
     progress->share = 1.0 / 3.0;
     whit_result result = render_pass(renderer, 4, progress);

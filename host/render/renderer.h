@@ -157,6 +157,8 @@ WHIT_CHECK whit_result brute_sample(struct renderer *renderer, const struct gpu_
 WHIT_CHECK whit_result brute_check_time(struct renderer *renderer);
 
 /* upload.c */
+/* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,

@@ -65,7 +65,7 @@ static whit_result add_use(struct material_upload *up, const struct scene_textur
     uint32_t image_slots = up->use_count;
     if (image == SCENE_NONE || !ARRAY_PUSH(up->uses, up->use_count, up->use_capacity, record) ||
         !ARRAY_PUSH(up->use_images, image_slots, up->use_image_capacity, image))
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(up->renderer, "textures");
     *out = up->use_count - 1;
     return WHIT_OK;
 }
@@ -233,7 +233,7 @@ static whit_result write_image(struct material_upload *up, const struct texel_im
         return buffer_write(texels, at, source->rgba, (uint64_t)width * height * 4);
     uint8_t *half = array_alloc(((size_t)width + 1) / 2 * (((size_t)height + 1) / 2), 4);
     if (!half)
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(up->renderer, "a texture");
     halve_texels(source->rgba, &width, &height, half);
     for (uint32_t i = 1; i < image->halvings; ++i)
         halve_texels(half, &width, &height, half); /* reads ahead of what it writes */
@@ -295,7 +295,7 @@ whit_result material_records_init(struct renderer *renderer, struct material_rec
     struct material_upload up = {.renderer = renderer};
     *records = (struct material_records){0};
     up.materials = array_alloc_zeroed(scene->material_count, sizeof *up.materials);
-    whit_result result = up.materials ? WHIT_OK : WHIT_ERROR_MEMORY;
+    whit_result result = up.materials ? WHIT_OK : render_no_memory(renderer, "materials");
     for (uint32_t i = 0; result == WHIT_OK && i < scene->material_count; ++i)
         result = add_material(&up, i);
     if (result == WHIT_OK)

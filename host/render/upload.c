@@ -97,6 +97,12 @@ static whit_result upload_trees(struct renderer *renderer)
     return result == WHIT_OK ? upload_instances(renderer) : result;
 }
 
+whit_result render_no_memory(const struct renderer *renderer, const char *what)
+{
+    log_error(&renderer->log, "out of memory for %s", what);
+    return WHIT_ERROR_MEMORY;
+}
+
 /* Writes one record of `words` words for a triangle. */
 typedef void (*fill_triangle)(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out);
 
@@ -108,7 +114,7 @@ static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint
     const struct scene *scene = renderer->scene;
     uint32_t *slice = array_alloc(SLICE_WORDS, sizeof *slice);
     if (!slice)
-        return WHIT_ERROR_MEMORY;
+        return render_no_memory(renderer, "triangles");
     uint32_t words = rows_each * 4, used = 0;
     uint64_t at_bytes = (uint64_t)row * ROW_BYTES;
     whit_result result = WHIT_OK;
@@ -279,8 +285,6 @@ whit_result upload_scene(struct renderer *renderer)
         result = upload_shading(renderer);
     if (result == WHIT_OK)
         result = upload_environment(renderer);
-    if (result == WHIT_ERROR_MEMORY)
-        log_error(&renderer->log, "out of memory for the scene's arrays");
     return result;
 }
 
