@@ -73,3 +73,98 @@ mutation(cut_walks_unsaid render_shadow RED cut_walks_through_sheets_are_reporte
 change(shaders/bind/traverse.glsl [[if (ref != REF_DONE)
         hit.status |=]] [[if (false)
         hit.status |=]])
+
+# ---- Boxes, triangles, traversal ----
+
+mutation(t_min_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
+change(shaders/kernel/whitted.comp [[ray.origin, ray.dir, 0.0, FLOAT_LARGEST,]]
+  [[ray.origin, ray.dir, 1e-3, FLOAT_LARGEST,]])
+
+mutation(t_min_of_shadows_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
+change(shaders/bind/lighting.glsl [[origin, to_light, 0.0, distance,]] [[origin, to_light, 1e-3, distance,]])
+
+mutation(contracted_twin peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+change(host/accel/module.cmake [[LINK whit_base whit_scene PkgConfig::GMP)]]
+  [[LINK whit_base whit_scene PkgConfig::GMP)
+set_source_files_properties(accel/traverse.c PROPERTIES COMPILE_OPTIONS
+  "-ffp-contract=fast;$<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-mfma>")]])
+
+mutation(contracted_kernels spirv RED ".* float operations may be contracted"
+  GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
+change(tools/spirv_exact.c [[    put_decorations(&out, words, count, marked);]]
+  [[    (void)put_decorations;]])
+
+# lavapipe rounds fma() twice, so that no picture shows it there.
+mutation(fused_edges_in_kernels spirv RED ".* float operations may be contracted"
+  GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
+change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
+  [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
+
+mutation(fused_edges peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+change(host/accel/intersect.h [[float ea = cx * by - cy * bx;]] [[float ea = fmaf(cx, by, -(cy * bx));]])
+change(host/accel/intersect.h [[float eb = ax * cy - ay * cx;]] [[float eb = fmaf(ax, cy, -(ay * cx));]])
+change(host/accel/intersect.h [[float ec = bx * ay - by * ax;]] [[float ec = fmaf(bx, ay, -(by * ax));]])
+
+mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+change(host/accel/intersect.h [[SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)]] [[SLAB_FAR_SCALE 1.0f]])
+change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
+
+mutation(slab_factor_gone_in_kernels render_trace RED far_sphere_equals_twin)
+change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
+
+mutation(slab_by_fma peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+change(host/accel/intersect.h [[slab_axis(float lo,]] [[slab_axis(float o, float lo,]])
+change(host/accel/intersect.h [[lo * inv_dir;]] [[fmaf(lo + o, inv_dir, -(o * inv_dir));]])
+change(host/accel/intersect.h [[hi * inv_dir;]] [[fmaf(hi + o, inv_dir, -(o * inv_dir));]])
+change(host/accel/intersect.h [[slab_axis(lo.x,]] [[slab_axis(ray->origin.x, lo.x,]])
+change(host/accel/intersect.h [[slab_axis(lo.y,]] [[slab_axis(ray->origin.y, lo.y,]])
+change(host/accel/intersect.h [[slab_axis(lo.z,]] [[slab_axis(ray->origin.z, lo.z,]])
+
+mutation(slab_by_fma_in_kernels render_trace RED far_sphere_equals_twin)
+change(shaders/lib/intersect.glsl [[lo * ray.inv_dir;]]
+  [[(lo + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
+change(shaders/lib/intersect.glsl [[hi * ray.inv_dir;]]
+  [[(hi + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
+
+mutation(reciprocals_clamped peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+change(host/accel/intersect.h [[vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);]]
+  [[vec3_make(fmaxf(fminf(1.0f / dir.x, 1e30f), -1e30f), fmaxf(fminf(1.0f / dir.y, 1e30f), -1e30f),
+      fmaxf(fminf(1.0f / dir.z, 1e30f), -1e30f));]])
+change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
+
+mutation(reciprocals_clamped_in_kernels render_trace RED box_equals_twin)
+change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
+
+mutation(signs_of_directions accel_oracle RED margins_explain_the_float_twin)
+change(host/accel/intersect.h [[ray.inv_dir.x < 0.0f]] [[dir.x < 0.0f]])
+change(host/accel/intersect.h [[ray.inv_dir.y < 0.0f]] [[dir.y < 0.0f]])
+change(host/accel/intersect.h [[ray.inv_dir.z < 0.0f]] [[dir.z < 0.0f]])
+change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
+
+mutation(signs_of_directions_in_kernels render_trace RED box_equals_twin)
+change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
+
+mutation(transform_by_a_sum accel_instance RED far_translations_keep_their_precision)
+change(host/accel/accel_inside.h [[accel_rotate_rows(r0, r1, r2, relative)]]
+  [[vec3_sub(accel_rotate_rows(r0, r1, r2, vec3_load(ray->origin)),
+                                     accel_rotate_rows(r0, r1, r2, origin))]])
+
+mutation(transform_by_a_sum_in_kernels render_trace RED instances_equal_twin)
+change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
+  [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
+
+mutation(ties_undecided accel_stack RED duplicates_give_the_first)
+change(host/accel/traverse.c [[(m->t == hit->t && (instance < hit->instance ||]]
+  [[(false && (instance < hit->instance ||]])
+change(shaders/bind/traverse.glsl [[(m.t == hit.t && (instance < hit.instance ||]]
+  [[(false && (instance < hit.instance ||]])
+
+mutation(ties_undecided_in_kernels render_trace RED soup_equals_twin)
+change(shaders/bind/traverse.glsl [[(m.t == hit.t && (instance < hit.instance ||]]
+  [[(false && (instance < hit.instance ||]])
+
+mutation(stack_without_end accel_stack RED too_deep_trees_are_reported)
+change(host/accel/traverse.c [[if (*top == STACK_SIZE) {]] [[if (false) {]])
+
+mutation(stack_without_end_in_kernels render_cost RED understated_depth_is_reported)
+change(shaders/bind/traverse.glsl [[if (stack.in_memory < SPEC_STACK_SIZE) {]] [[if (true) {]])
