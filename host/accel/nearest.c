@@ -3,17 +3,13 @@
 #include <math.h>
 
 #include "accel/accel_inside.h"
+#include "base/vec.h"
 
 struct query {
     const struct accel *accel;
     struct affine placed; /* object to world, of the instance at hand */
     double p[3], best2;
 };
-
-static double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* Squared distance to the box around a box that is placed: no more than to what is in it. */
 static double box_distance2(const struct query *q, const float lo[3], const float hi[3])
@@ -44,8 +40,9 @@ static double triangle_distance2(const double p[3], double v[3][3])
         bp[k] = p[k] - v[1][k];
         cp[k] = p[k] - v[2][k];
     }
-    double d1 = dot3(ab, ap), d2 = dot3(ac, ap), d3 = dot3(ab, bp), d4 = dot3(ac, bp);
-    double d5 = dot3(ab, cp), d6 = dot3(ac, cp);
+    double d1 = double3_dot(ab, ap), d2 = double3_dot(ac, ap), d3 = double3_dot(ab, bp),
+           d4 = double3_dot(ac, bp);
+    double d5 = double3_dot(ab, cp), d6 = double3_dot(ac, cp);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     double s = 0.0, t = 0.0; /* along ab and ac */
     if (d1 <= 0 && d2 <= 0)

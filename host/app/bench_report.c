@@ -1,85 +1,15 @@
 /* The tables of the report that whit comes from, on whit's scenes of the same sizes. */
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bench.h"
+#include "app/bench_section.h"
 
 /* What the report says; it names no machine like this one. */
 static const double report_cube_fps[2] = {120.0, 40.0}; /* with a tree, without */
 static const double report_build_s[2] = {0.328, 249.8}; /* 7 bins, every position */
 static const double report_build_fps[2] = {2.7, 4.7};
 static const double report_order_fps[3] = {22.0, 33.0, 28.0}; /* none, by distance, by sign */
-
-#define CASES(array) (uint32_t)(sizeof(array) / sizeof((array)[0]))
-
-/* ---- Sections ---- */
-
-struct section {
-    struct bench *bench;
-    json_t *object, *rows, *sentences;
-    struct table table;
-    char said[BENCH_NOTES_MOST][400];
-    uint32_t said_count;
-};
-
-static void section_begin(struct section *section, struct bench *bench, const char *name,
-                          uint32_t steps)
-{
-    *section = (struct section){
-        .bench = bench,
-        .object = document_object(),
-        .rows = document_array(),
-        .sentences = document_array(),
-    };
-    document_text(section->object, "table", name);
-    bench_begin(bench, steps);
-}
-
-/* A sentence below the table. */
-static void say(struct section *section, const char *format, ...) WHIT_PRINTF(2, 3);
-static void say(struct section *section, const char *format, ...)
-{
-    if (section->said_count == BENCH_NOTES_MOST)
-        return;
-    char *text = section->said[section->said_count++];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof section->said[0], format, args);
-    va_end(args);
-    document_append(section->sentences, json_string(text));
-}
-
-/* Prints it, unless it was cut short. */
-static whit_result section_end(struct section *section, const char *title, whit_result result)
-{
-    bench_end(section->bench);
-    document_put(section->object, "rows", section->rows);
-    document_put(section->object, "sentences", section->sentences);
-    if (result != WHIT_OK) {
-        json_decref(section->object);
-        return result;
-    }
-    printf("\n### %s\n\n", title);
-    table_print(&section->table);
-    putchar('\n');
-    for (uint32_t i = 0; i < section->said_count; ++i)
-        printf("- %s\n", section->said[i]);
-    fflush(stdout);
-    document_append(section->bench->sections, section->object);
-    return WHIT_OK;
-}
-
-/* One measured case as a row of JSON, with the report's figure where it has one (else 0). */
-static void keep(struct section *section, const struct bench_case *c, const char *key,
-                 double report)
-{
-    json_t *row = bench_document(c);
-    if (report > 0.0)
-        document_number(row, key, report);
-    document_append(section->rows, row);
-}
 
 /* ---- Trees and none ---- */
 
@@ -112,7 +42,8 @@ static void judge_trees(struct section *section, const struct bench_case *cases)
     double report = report_cube_fps[0] / report_cube_fps[1];
     double ratio = bench_fps(&cases[0]) / bench_fps(&cases[1]);
     int slower = bench_compare(&cases[1].frame, &cases[0].frame);
-    say(section,
+    section_say(
+        section,
         "Cube: %s; with a tree it makes %.2f times as many frames as without (report: %.1f).",
         slower > 0   ? "the report's claim that the tree pays holds here"
         : slower < 0 ? "the report's claim that the tree pays does NOT hold here"
@@ -120,7 +51,8 @@ static void judge_trees(struct section *section, const struct bench_case *cases)
                        "difference beyond the spread",
         ratio, report);
     double estimate_ms = estimated_frame_ms(section->bench, &cases[3]);
-    say(section,
+    section_say(
+        section,
         "34k without a tree is estimated, not measured: the same view in %u x %u pixels took "
         "%.0f ms, times %.0f for the pixels of the full picture. That is %.0f times the frame with "
         "a tree; the report's never finished.",
@@ -166,7 +98,7 @@ static whit_result trees_on_and_off(struct bench *bench)
         row_of_trees(&section, &cases[2], "-", 0.0);
         row_of_trees(&section, &cases[3], "never done", estimated_frame_ms(bench, &cases[3]));
         for (uint32_t i = 0; i < CASES(cases); ++i)
-            keep(&section, &cases[i], "report_fps", i < 2 ? report_cube_fps[i] : 0.0);
+            section_keep(&section, &cases[i], "report_fps", i < 2 ? report_cube_fps[i] : 0.0);
         judge_trees(&section, cases);
     }
     bench_case_finish(cases, CASES(cases));
@@ -257,19 +189,22 @@ static void judge_builds(struct section *section, const struct bench_case *cases
     const struct bench_case *binned = &cases[0], *sweep = &cases[1];
     double binned_ms = bench_median(&binned->build), sweep_ms = bench_median(&sweep->build);
     if (naive->estimated)
-        say(section,
+        section_say(
+            section,
             "sweep-naive was stopped after %g s and is estimated: a landscape of the same kind "
             "with %u "
             "triangles took %.1f ms (fastest of 3), times the square of how many more there are "
             "here, as its work grows (from %u triangles, %.1f ms, it grew as n^%.2f).",
             section->bench->naive_limit_s, naive->sizes[1], naive->sizes_ms[1], naive->sizes[0],
             naive->sizes_ms[0], naive->exponent);
-    say(section,
+    section_say(
+        section,
         "Trying every position in the report's way takes %.0f times as long as 7 bins (report: "
         "%.0f); sorted once it gives the same tree in %.1f times as long.",
         naive->build_ms / binned_ms, report_build_s[1] / report_build_s[0], sweep_ms / binned_ms);
     int faster = bench_compare(&binned->frame, &sweep->frame);
-    say(section,
+    section_say(
+        section,
         "The report's claim that every position makes the faster tree %s: %.2f times the frames "
         "of 7 bins (report: %.2f).",
         faster > 0   ? "holds here"
@@ -342,9 +277,9 @@ static whit_result bins_or_all(struct bench *bench)
         result = measure_naive(bench, &naive);
     if (result == WHIT_OK) {
         rows_of_builds(&section, cases, &naive);
-        keep(&section, &cases[0], "report_fps", report_build_fps[0]);
+        section_keep(&section, &cases[0], "report_fps", report_build_fps[0]);
         keep_naive(&section, &naive);
-        keep(&section, &cases[1], "report_fps", 0.0);
+        section_keep(&section, &cases[1], "report_fps", 0.0);
         judge_builds(&section, cases, &naive);
     }
     bench_case_finish(cases, CASES(cases));
@@ -374,7 +309,7 @@ static void rows_of_orders(struct section *section, const struct bench_case *cas
         table_cell(table, "%.2f", bench_triangle_tests(c));
         table_cell(table, "%.2f", (double)primary->depth_sum / records);
         table_cell(table, "%u", primary->depth);
-        keep(section, c, "report_fps", report_order_fps[i]);
+        section_keep(section, c, "report_fps", report_order_fps[i]);
     }
 }
 
@@ -382,13 +317,14 @@ static void judge_pair(struct section *section, const struct bench_case *cases, 
                        int slower)
 {
     int found = bench_compare(&cases[slower].frame, &cases[faster].frame);
-    say(section, "%s faster than %s, as in the report, %s: %.2f times the frames (report: %.2f).",
-        cases[faster].label, cases[slower].label,
-        found > 0   ? "holds here"
-        : found < 0 ? "does NOT hold here"
-                    : "does NOT hold here, as there is no difference beyond the spread",
-        bench_fps(&cases[faster]) / bench_fps(&cases[slower]),
-        report_order_fps[faster] / report_order_fps[slower]);
+    section_say(section,
+                "%s faster than %s, as in the report, %s: %.2f times the frames (report: %.2f).",
+                cases[faster].label, cases[slower].label,
+                found > 0   ? "holds here"
+                : found < 0 ? "does NOT hold here"
+                            : "does NOT hold here, as there is no difference beyond the spread",
+                bench_fps(&cases[faster]) / bench_fps(&cases[slower]),
+                report_order_fps[faster] / report_order_fps[slower]);
 }
 
 static void judge_orders(struct section *section, const struct bench_case *cases)
@@ -400,11 +336,12 @@ static void judge_orders(struct section *section, const struct bench_case *cases
     for (int i = 0; i < 3; ++i)
         visits[i] = bench_visits(&cases[i]);
     bool most = visits[0] > visits[1] && visits[0] > visits[2];
-    say(section, "Without an order rays open %s: %.2f nodes, %.2f by distance, %.2f by sign.",
-        most ? "the most nodes" : "NOT the most nodes", visits[0], visits[1], visits[2]);
-    say(section,
-        "Depth: the deepest level whose boxes a camera ray looked at, its mean over camera "
-        "rays and the most.");
+    section_say(section,
+                "Without an order rays open %s: %.2f nodes, %.2f by distance, %.2f by sign.",
+                most ? "the most nodes" : "NOT the most nodes", visits[0], visits[1], visits[2]);
+    section_say(section,
+                "Depth: the deepest level whose boxes a camera ray looked at, its mean over camera "
+                "rays and the most.");
 }
 
 static whit_result orders(struct bench *bench)
@@ -438,163 +375,6 @@ static whit_result orders(struct bench *bench)
     return section_end(&section, "8k: three orders of traversal", result);
 }
 
-/* ---- More builders ---- */
-
-static void rows_of_builders(struct section *section, const struct bench_case *cases,
-                             uint32_t count)
-{
-    static const char *const heads[] = {"build",      "ms to build",  "references",
-                                        "SAH cost",   "visits a ray", "triangle tests a ray",
-                                        "ms a frame", "fps",          NULL};
-    struct table *table = &section->table;
-    table_begin(table, heads);
-    for (uint32_t i = 0; i < count; ++i) {
-        const struct bench_case *c = &cases[i];
-        table_row(table);
-        table_cell(table, "%s", c->label);
-        table_ms(table, &c->build);
-        table_cell(table, "%u", c->accel_info.reference_count);
-        table_cell(table, "%.2f", c->accel_info.sah_cost);
-        table_cell(table, "%.2f", bench_visits(c));
-        table_cell(table, "%.2f", bench_triangle_tests(c));
-        table_ms(table, &c->frame);
-        table_cell(table, "%.1f", bench_fps(c));
-        keep(section, c, "", 0.0);
-    }
-}
-
-/* Loads, measures all there is, makes the table. */
-static whit_result measure_builders(struct section *section, const char *scene_name,
-                                    struct bench_scene *scene, struct bench_case *cases,
-                                    uint32_t count)
-{
-    struct bench *bench = section->bench;
-    whit_result result = bench_load(bench, scene_name, false, scene);
-    for (uint32_t i = 0; i < count; ++i)
-        cases[i].scene = scene;
-    if (result == WHIT_OK)
-        result = bench_build(bench, cases, count, bench->runs);
-    if (result == WHIT_OK)
-        result = bench_render(bench, cases, count, bench->runs);
-    if (result == WHIT_OK)
-        result = bench_count(bench, cases, count);
-    if (result == WHIT_OK)
-        rows_of_builders(section, cases, count);
-    return result;
-}
-
-/* A quick run keeps a few of the cases. */
-static uint32_t choose_cases(const struct bench *bench, struct bench_case *cases, uint32_t count,
-                             const char *const *quick)
-{
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        bool wanted = !bench->quick;
-        for (uint32_t k = 0; quick[k]; ++k)
-            wanted = wanted || strcmp(quick[k], cases[i].label) == 0;
-        if (wanted)
-            cases[kept++] = cases[i];
-    }
-    return kept;
-}
-
-static const struct bench_case *find_case(const struct bench_case *cases, uint32_t count,
-                                          const char *label)
-{
-    uint32_t i = 0;
-    while (i + 1 < count && strcmp(cases[i].label, label) != 0)
-        ++i;
-    return &cases[i];
-}
-
-/* The fewest bins that cost at most 2 % more than the best. */
-static void judge_bins(struct section *section, const struct bench_case *cases, uint32_t bin_cases)
-{
-    uint32_t best = 0, enough = 0;
-    for (uint32_t i = 0; i < bin_cases; ++i) {
-        if (cases[i].accel_info.sah_cost < cases[best].accel_info.sah_cost)
-            best = i;
-    }
-    double best_cost = cases[best].accel_info.sah_cost;
-    while (cases[enough].accel_info.sah_cost > 1.02 * best_cost)
-        ++enough;
-    const struct bench_case *sweep = &cases[bin_cases];
-    char fewest[64] = "";
-    if (enough != best)
-        snprintf(fewest, sizeof fewest, "; %s is within 2 %% of it", cases[enough].label);
-    say(section, "Least SAH cost among bins: %s (%.2f)%s. sweep is at %.2f, %.1f %% %s.",
-        cases[best].label, best_cost, fewest, sweep->accel_info.sah_cost,
-        100.0 * fabs(sweep->accel_info.sah_cost / best_cost - 1.0),
-        sweep->accel_info.sah_cost <= best_cost ? "below" : "above");
-}
-
-static whit_result numbers_of_bins(struct bench *bench)
-{
-    struct bench_scene scene = {0};
-    struct section section;
-    struct bench_case cases[] = {
-        {.label = "binned:2", .accel_params.bins = 2},
-        {.label = "binned:4", .accel_params.bins = 4},
-        {.label = "binned:7", .accel_params.bins = 7},
-        {.label = "binned:8", .accel_params.bins = 8},
-        {.label = "binned:16", .accel_params.bins = 16},
-        {.label = "binned:32", .accel_params.bins = 32},
-        {.label = "binned:64", .accel_params.bins = 64},
-        {.label = "sweep", .accel_params.build = WHIT_BUILD_SWEEP},
-    };
-    static const char *const quick[] = {"binned:2", "binned:7", "sweep", NULL};
-    uint32_t count = choose_cases(bench, cases, CASES(cases), quick);
-    section_begin(&section, bench, "bins", count * (2 * bench->runs + 2));
-    whit_result result = measure_builders(&section, "54k", &scene, cases, count);
-    if (result == WHIT_OK)
-        judge_bins(&section, cases, count - 1);
-    bench_case_finish(cases, count);
-    bench_unload(&scene);
-    return section_end(&section, "54k: how many bins", result);
-}
-
-static void judge_spatial(struct section *section, const struct bench_case *sweep,
-                          const struct bench_case *spatial)
-{
-    double references = spatial->accel_info.reference_count;
-    int faster = bench_compare(&sweep->frame, &spatial->frame);
-    say(section,
-        "Spatial splits make %.0f %% more references than there are triangles; rays open %.0f %% "
-        "%s nodes than in the tree of sweep, and the frame %s: %.2f times its frames.",
-        100.0 * (references / (double)spatial->scene->info.mesh_triangle_count - 1.0),
-        100.0 * fabs(bench_visits(spatial) / bench_visits(sweep) - 1.0),
-        bench_visits(spatial) < bench_visits(sweep) ? "fewer" : "more",
-        faster > 0   ? "is faster"
-        : faster < 0 ? "is slower"
-                     : "takes as long, within the spread",
-        bench_fps(spatial) / bench_fps(sweep));
-}
-
-static whit_result spatial_splits(struct bench *bench, const char *scene_name, const char *title)
-{
-    struct bench_scene scene = {0};
-    struct section section;
-    struct bench_case cases[] = {
-        {.label = "binned:7", .accel_params.bins = 7},
-        {.label = "binned"},
-        {.label = "binned+opt", .accel_params.optimize = true},
-        {.label = "sweep", .accel_params.build = WHIT_BUILD_SWEEP},
-        {.label = "sweep+opt", .accel_params = {.build = WHIT_BUILD_SWEEP, .optimize = true}},
-        {.label = "spatial", .accel_params.build = WHIT_BUILD_SPATIAL},
-        {.label = "spatial+opt", .accel_params = {.build = WHIT_BUILD_SPATIAL, .optimize = true}},
-    };
-    static const char *const quick[] = {"sweep", "spatial", NULL};
-    uint32_t count = choose_cases(bench, cases, CASES(cases), quick);
-    section_begin(&section, bench, scene_name, count * (2 * bench->runs + 2));
-    whit_result result = measure_builders(&section, scene_name, &scene, cases, count);
-    if (result == WHIT_OK)
-        judge_spatial(&section, find_case(cases, count, "sweep"),
-                      find_case(cases, count, "spatial"));
-    bench_case_finish(cases, count);
-    bench_unload(&scene);
-    return section_end(&section, title, result);
-}
-
 /* ---- All of it ---- */
 
 static void print_head(const struct bench *bench)
@@ -622,10 +402,11 @@ whit_result bench_report(struct bench *bench)
     if (result == WHIT_OK)
         result = orders(bench);
     if (result == WHIT_OK)
-        result = numbers_of_bins(bench);
+        result = bench_numbers_of_bins(bench);
     if (result == WHIT_OK)
-        result = spatial_splits(bench, "strands", "strands: spatial splits, long thin triangles");
+        result =
+            bench_spatial_splits(bench, "strands", "strands: spatial splits, long thin triangles");
     if (result == WHIT_OK)
-        result = spatial_splits(bench, "atrium", "atrium: spatial splits, an interior");
+        result = bench_spatial_splits(bench, "atrium", "atrium: spatial splits, an interior");
     return result;
 }

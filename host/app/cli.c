@@ -225,6 +225,12 @@ bool cli_can_write(const char *path)
     return true;
 }
 
+void cli_print_clean(const char *text)
+{
+    for (; *text; ++text)
+        putchar((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text);
+}
+
 int cli_finish_stdout(int status)
 {
     errno = 0;

@@ -1,19 +1,12 @@
 #include "app/commands.h"
 #include "app/receipt.h"
 
-/* Names come from files: what would steer the terminal is replaced. */
-static void print_clean(const char *text)
-{
-    for (; *text; ++text)
-        putchar((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text);
-}
-
 static void print_head(const struct receipt *receipt)
 {
     const struct picture *picture = receipt->picture;
     whit_device_info device;
     whit_device_get_info(receipt->job->device, &device);
-    print_clean(receipt->job->scene_path);
+    cli_print_clean(receipt->job->scene_path);
     printf("\n  picture   %u x %u, ", picture->width, picture->height);
     if (picture->adaptive > 0.0)
         printf("adaptive samples, ");
@@ -55,7 +48,7 @@ int receipt_print_text(const struct receipt *receipt)
         const struct receipt_row *row = &receipt->rows[i];
         printf("  %-19s%-8s", row->name, row->compiled ? "yes" : "-");
         print_price(row);
-        print_clean(row->reason);
+        cli_print_clean(row->reason);
         putchar('\n');
     }
     puts("\n  ms of one frame, with the effect less without it, measured in turns; of what is not"

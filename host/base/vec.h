@@ -88,4 +88,25 @@ static inline struct dvec3 dvec3_cross(struct dvec3 a, struct dvec3 b)
     return (struct dvec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/* Three doubles in a row. */
+static inline double double3_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void double3_cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* The zero vector stays zero. */
+static inline void double3_unit(double v[3])
+{
+    double length = sqrt(double3_dot(v, v));
+    for (int i = 0; length > 0.0 && i < 3; ++i)
+        v[i] /= length;
+}
+
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec.h"
 #include "render/renderer.h"
 
 static const double PI = 3.14159265358979323846;
@@ -12,13 +13,6 @@ static void subtract(const double a[3], const double b[3], double out[3])
 {
     for (int i = 0; i < 3; ++i)
         out[i] = a[i] - b[i];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* False for the zero vector and for what is not finite. */
@@ -102,16 +96,16 @@ static bool make_basis(const struct scene_camera *camera, double forward[3], dou
     double wanted[3] = {camera->up[0], camera->up[1], camera->up[2]};
     if (!normalize(wanted))
         wanted[0] = 0.0, wanted[1] = 1.0, wanted[2] = 0.0;
-    cross(forward, wanted, right);
+    double3_cross(forward, wanted, right);
     double sine2 = right[0] * right[0] + right[1] * right[1] + right[2] * right[2];
     if (sine2 < 1e-24) {
         int axis = fabs(forward[2]) < 0.5 ? 2 : 0;
         double other[3] = {axis == 0, 0.0, axis == 2};
-        cross(forward, other, right);
+        double3_cross(forward, other, right);
     }
     if (!normalize(right))
         return false;
-    cross(right, forward, up);
+    double3_cross(right, forward, up);
     return normalize(up);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "scene/freeze.h"
 #include "scene/viewpoint.h"
 
@@ -11,20 +12,6 @@
 struct light_kinds {
     bool key, emitters, exposed;
 };
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void unit(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; length > 0.0 && i < 3; ++i)
-        v[i] /= length;
-}
 
 static void set_color(float out[3], float r, float g, float b)
 {
@@ -77,7 +64,7 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
     double forward[3];
     for (int i = 0; i < 3; ++i)
         forward[i] = viewpoint->target[i] - viewpoint->eye[i];
-    unit(forward);
+    double3_unit(forward);
     for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
         struct scene_light light = {
             .name = scene_text(scene, lamps[k].name),
@@ -114,13 +101,13 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
     double forward[3], right[3], up[3];
     for (int i = 0; i < 3; ++i)
         forward[i] = camera->target[i] - camera->eye[i];
-    unit(forward);
-    cross(forward, camera->up, right);
-    unit(right);
-    cross(right, forward, up);
+    double3_unit(forward);
+    double3_cross(forward, camera->up, right);
+    double3_unit(right);
+    double3_cross(right, forward, up);
     for (int i = 0; i < 3; ++i)
         light.direction[i] = 0.6 * forward[i] + aside * (0.6 * right[i] - 0.9 * up[i]);
-    unit(light.direction);
+    double3_unit(light.direction);
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/vec.h"
 #include "scene/freeze.h"
 
 #define PROBES     1024
@@ -26,11 +27,6 @@ struct probe_list {
 static double luminance(const float rgb[3])
 {
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Corner and edges of a triangle that receives light; its area, or 0 for a lamp. */
@@ -55,7 +51,7 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
         int j = (i + 1) % 3, k = (i + 2) % 3;
         normal[i] = edges[0][j] * edges[1][k] - edges[0][k] * edges[1][j];
     }
-    double length = sqrt(dot(normal, normal));
+    double length = sqrt(double3_dot(normal, normal));
     for (int i = 0; length > 0.0 && i < 3; ++i)
         normal[i] /= length;
     return isfinite(length) ? 0.5 * length : 0.0;
@@ -65,7 +61,7 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
  */
 static double arriving(const struct scene_light *light, const double way[3], double distance)
 {
-    double value = luminance(light->color), along = dot(way, light->direction);
+    double value = luminance(light->color), along = double3_dot(way, light->direction);
     if (light->kind == SCENE_LIGHT_DIRECTIONAL)
         return value;
     if (light->falloff)
@@ -90,17 +86,17 @@ static double brightness_of_emitter(const struct scene_light *light, const doubl
         int j = (i + 1) % 3, k = (i + 2) % 3;
         product[i] = u[j] * v[k] - u[k] * v[j];
     }
-    double area = sqrt(dot(product, product)) / (GRID * GRID);
+    double area = sqrt(double3_dot(product, product)) / (GRID * GRID);
     for (int cell = 0; cell < GRID * GRID; ++cell) {
         double s = (cell % GRID + 0.5) / GRID, t = (cell / GRID + 0.5) / GRID, way[3];
         double share = !triangle || s + t < 1.0 ? 1.0 : s + t > 1.0 ? 0.0 : 0.5;
         for (int i = 0; i < 3; ++i)
             way[i] = point[i] - light->position[i] - s * u[i] - t * v[i];
-        double square = dot(way, way), distance = sqrt(square);
-        double away = distance > 0.0 ? dot(way, light->direction) / distance : 0.0;
+        double square = double3_dot(way, way), distance = sqrt(square);
+        double away = distance > 0.0 ? double3_dot(way, light->direction) / distance : 0.0;
         away = light->two_sided ? fabs(away) : fmax(away, 0.0);
         if (distance > 0.0)
-            sum += share * away * fabs(dot(way, normal)) / (distance * square);
+            sum += share * away * fabs(double3_dot(way, normal)) / (distance * square);
     }
     return luminance(light->color) * area / PI * sum;
 }
@@ -120,11 +116,11 @@ static double brightness_at(const struct scene_pose *pose, const double point[3]
         for (int k = 0; k < 3; ++k)
             way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
                                                             : point[k] - light->position[k];
-        distance = sqrt(dot(way, way));
+        distance = sqrt(double3_dot(way, way));
         for (int k = 0; distance > 0.0 && k < 3; ++k)
             way[k] /= distance;
         if (distance > 0.0)
-            sum += arriving(light, way, distance) * fabs(dot(way, normal));
+            sum += arriving(light, way, distance) * fabs(double3_dot(way, normal));
     }
     return sum;
 }

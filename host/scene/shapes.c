@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "scene/shaper.h"
 
 #define PI         3.14159265358979323846
@@ -385,13 +386,6 @@ struct flake {
     double u[3], w[3]; /* w points away from the parent; u at right angles */
 };
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Nine of the twelve directions of a cuboctahedron: six around the parent's equator, three above;
    the three below would meet the grandparent. */
 static struct flake flake_child(const struct flake *parent, uint32_t child)
@@ -399,7 +393,7 @@ static struct flake flake_child(const struct flake *parent, uint32_t child)
     double polar = child < 6 ? PI / 2.0 : acos(sqrt(2.0 / 3.0));
     double azimuth = child < 6 ? child * PI / 3.0 : PI / 6.0 + (child - 6) * 2.0 * PI / 3.0;
     double v[3];
-    cross(parent->w, parent->u, v);
+    double3_cross(parent->w, parent->u, v);
     struct flake out = {.radius = parent->radius / 3.0};
     double reach = parent->radius + out.radius;
     for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "base/vec.h"
 #include "scene/shaper.h"
 #include "scene/shapes.h"
 
@@ -23,13 +24,6 @@ static void random_direction(uint32_t *state, double out[3])
     out[0] = reach * cos(turn), out[1] = height, out[2] = reach * sin(turn);
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void normalize(double v[3])
 {
     double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -44,7 +38,7 @@ static void add_face(struct shaper *shaper, const double *a, const double *b, co
         ab[i] = b[i] - a[i];
         ac[i] = c[i] - a[i];
     }
-    cross(ab, ac, normal);
+    double3_cross(ab, ac, normal);
     uint32_t first = shaper_vertex(shaper, a, normal, 0.0, 0.0);
     shaper_vertex(shaper, b, normal, 1.0, 0.0);
     shaper_vertex(shaper, c, normal, 0.5, 1.0);
@@ -57,9 +51,9 @@ static void add_needle(struct shaper *shaper, const double middle[3], const doub
 {
     double side[3], up[3], corners[4][3];
     const double axis[3] = {fabs(dir[0]) < 0.6, fabs(dir[0]) >= 0.6, 0.0};
-    cross(dir, axis, side);
+    double3_cross(dir, axis, side);
     normalize(side);
-    cross(dir, side, up);
+    double3_cross(dir, side, up);
     for (int i = 0; i < 3; ++i) {
         corners[3][i] = middle[i] + 0.5 * length * dir[i];
         for (int k = 0; k < 3; ++k) {

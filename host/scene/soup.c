@@ -1,0 +1,185 @@
+#include "scene/soup.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+#define TRIANGLES_MOST 400000u
+#define MOMENTS        9     /* of an animation that the picture is fitted to */
+#define MOVING_MOST    10000 /* instances */
+
+static void put_corner(const struct soup *soup, const struct affine *matrix, const double p[3],
+                       float out[3])
+{
+    double world[3];
+    affine_point(matrix, p, world);
+    for (int i = 0; i < 3; ++i)
+        out[i] = (float)((world[i] - soup->centre[i]) / soup->radius);
+}
+
+static void add_triangles(struct soup *soup, const struct scene *scene,
+                          const struct scene_mesh *mesh, const struct affine *matrix)
+{
+    bool mirrored = affine_determinant(matrix) < 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const struct scene_material *material = &scene->materials[mesh->materials[t]];
+        soup->pictured[soup->count] = material->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE;
+        float *out = soup->corners + 9 * (size_t)soup->count++;
+        for (int i = 0; i < 3; ++i) {
+            const float *p = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + (size_t)i];
+            int at = mirrored ? 2 - i : i;
+            put_corner(soup, matrix, (double[]){(double)p[0], (double)p[1], (double)p[2]},
+                       out + 3 * at);
+        }
+    }
+}
+
+/* Three triangles that touch all eight corners: only good for fitting a picture around them. */
+static void add_box(struct soup *soup, const struct scene_mesh *mesh, const struct affine *matrix)
+{
+    for (uint32_t i = 0; i < 9; ++i) {
+        double p[3];
+        for (uint32_t k = 0; k < 3; ++k)
+            p[k] = (double)((i >> k & 1) ? mesh->hi[k] : mesh->lo[k]);
+        put_corner(soup, matrix, p, soup->corners + 9 * (size_t)soup->fit_count + 3 * i);
+    }
+    soup->fit_count += 3;
+}
+
+static void add_boxes(const struct scene *scene, const struct scene_pose *pose, struct soup *soup)
+{
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        if (scene_mesh_primitives(mesh))
+            add_box(soup, mesh, &pose->instances[i]);
+    }
+}
+
+static void measure(const double lo[3], const double hi[3], struct soup *soup)
+{
+    double radius2 = 0.0;
+    bool empty = lo[0] > hi[0];
+    for (int i = 0; i < 3; ++i) {
+        soup->half[i] = empty ? 0.0 : 0.5 * (hi[i] - lo[i]);
+        soup->centre[i] = empty ? 0.0 : lo[i] + soup->half[i];
+        radius2 += soup->half[i] * soup->half[i];
+    }
+    soup->radius = radius2 > 0.0 && isfinite(radius2) ? sqrt(radius2) : 1.0;
+    for (int i = 0; i < 3; ++i)
+        soup->half[i] /= soup->radius;
+}
+
+/* The scene at even steps of its animation; the first is `now`, borrowed. */
+struct moments {
+    struct scene_pose poses[MOMENTS];
+    uint32_t count;
+    double lo[3], hi[3];
+};
+
+static void moments_finish(struct moments *moments)
+{
+    for (uint32_t i = 1; i < moments->count; ++i)
+        scene_pose_finish(&moments->poses[i]);
+}
+
+static whit_result moments_init(const struct scene *scene, const struct scene_pose *now,
+                                struct moments *out)
+{
+    bool moves = scene->time_end_s > 0.0f && scene->instance_count <= MOVING_MOST;
+    out->poses[0] = *now;
+    out->count = 1;
+    memcpy(out->lo, now->lo, sizeof out->lo);
+    memcpy(out->hi, now->hi, sizeof out->hi);
+    for (uint32_t i = 1; moves && i < MOMENTS; ++i) {
+        double time_s = (double)scene->time_end_s * i / (MOMENTS - 1);
+        whit_result result = scene_pose_init(scene, time_s, &out->poses[i]);
+        if (result != WHIT_OK) {
+            moments_finish(out);
+            return result;
+        }
+        ++out->count;
+        for (int k = 0; k < 3; ++k) {
+            out->lo[k] = fmin(out->lo[k], out->poses[i].lo[k]);
+            out->hi[k] = fmax(out->hi[k], out->poses[i].hi[k]);
+        }
+    }
+    return WHIT_OK;
+}
+
+/* The cell of a cube map. */
+static uint32_t direction_cell(const float p[3])
+{
+    float size[3] = {fabsf(p[0]), fabsf(p[1]), fabsf(p[2])};
+    uint32_t axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+    uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (!(size[axis] > 0.0f))
+        return 0;
+    float scale = 0.5f * SOUP_CELLS / size[axis];
+    uint32_t x = (uint32_t)(p[u] * scale + 0.5f * SOUP_CELLS),
+             y = (uint32_t)(p[v] * scale + 0.5f * SOUP_CELLS);
+    x = x < SOUP_CELLS ? x : SOUP_CELLS - 1;
+    y = y < SOUP_CELLS ? y : SOUP_CELLS - 1;
+    return ((2 * axis + (p[axis] < 0.0f)) * SOUP_CELLS + y) * SOUP_CELLS + x;
+}
+
+static void find_outline(struct soup *soup)
+{
+    float farthest[6 * SOUP_CELLS * SOUP_CELLS];
+    for (uint32_t i = 0; i < 6 * SOUP_CELLS * SOUP_CELLS; ++i)
+        farthest[i] = -1.0f;
+    for (size_t i = 0; i < 3 * (size_t)soup->fit_count; ++i) {
+        const float *p = soup->corners + 3 * i;
+        uint32_t cell = direction_cell(p);
+        float length2 = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+        if (length2 > farthest[cell]) {
+            farthest[cell] = length2;
+            memcpy(soup->outline[cell], p, 3 * sizeof *p);
+        }
+    }
+    for (uint32_t i = 0; i < 6 * SOUP_CELLS * SOUP_CELLS; ++i) {
+        if (farthest[i] >= 0.0f)
+            memmove(soup->outline[soup->outline_count++], soup->outline[i],
+                    sizeof soup->outline[i]);
+    }
+}
+
+void soup_finish(struct soup *soup)
+{
+    free(soup->corners);
+    free(soup->pictured);
+}
+
+whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, struct soup *soup)
+{
+    struct moments moments;
+    uint64_t total = 0;
+    *soup = (struct soup){0};
+    whit_result result = moments_init(scene, pose, &moments);
+    if (result != WHIT_OK)
+        return result;
+    measure(moments.lo, moments.hi, soup);
+    bool spheres = false;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        total += scene->meshes[scene->instances[i].mesh].triangle_count;
+        spheres |= scene->meshes[scene->instances[i].mesh].sphere_count > 0;
+    }
+    soup->whole = total <= TRIANGLES_MOST && !spheres;
+    uint64_t room = (soup->whole ? total : 0) + 3ull * moments.count * scene->instance_count;
+    soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
+    soup->pictured = array_alloc((size_t)room, sizeof *soup->pictured);
+    if (!soup->corners || !soup->pictured) {
+        soup_finish(soup);
+        moments_finish(&moments);
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; soup->whole && i < scene->instance_count; ++i)
+        add_triangles(soup, scene, &scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
+    soup->fit_count = soup->count;
+    for (uint32_t i = soup->whole ? 1 : 0; i < moments.count; ++i)
+        add_boxes(scene, &moments.poses[i], soup);
+    moments_finish(&moments);
+    find_outline(soup);
+    return WHIT_OK;
+}
