@@ -246,10 +246,15 @@ int cli_print_json(json_t *value)
         cli_error("out of memory");
         return EXIT_USAGE;
     }
-    json_dumpf(value, stdout, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    bool whole = json_dumpf(value, stdout,
+                            JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15)) == 0;
     json_decref(value);
     putchar('\n');
-    return cli_finish_stdout(EXIT_FINE);
+    int status = cli_finish_stdout(EXIT_FINE);
+    if (whole || status != EXIT_FINE)
+        return status;
+    cli_error("out of memory");
+    return EXIT_USAGE;
 }
 
 /* ---- Progress ---- */

@@ -133,7 +133,8 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --instances off", to);
     if (request->view.given)
         put_view(to, job, request);
-    if (fclose(to) != 0) {
+    bool lacks_memory = ferror(to) != 0;
+    if (fclose(to) != 0 || lacks_memory) {
         free(text);
         return NULL;
     }

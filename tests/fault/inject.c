@@ -1,0 +1,430 @@
+/* Preloaded into a program: makes its n-th call of one kind fail. Only calls from the program's own
+   code count, and from libraries that are named: what a driver asks for it gets. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <execinfo.h>
+#include <fcntl.h>
+#include <link.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <vulkan/vulkan.h>
+
+#include "fault.h"
+
+#define CALLER ((uintptr_t)__builtin_return_address(0))
+/* The function of this name that would have been called. */
+#define NEXT(type, name)                                                                           \
+    static type next;                                                                              \
+    if (!next)                                                                                     \
+    *(void **)&next = dlsym(RTLD_NEXT, name)
+
+struct range {
+    uintptr_t begin, end;
+};
+
+enum { RANGES_MOST = 16, BLOCKS_MOST = 1 << 18 };
+static struct fault_shared *shared;
+static struct range ranges[RANGES_MOST]; /* first the program */
+static uint32_t range_count;
+static bool lost; /* the device */
+
+/* ---- Who calls ---- */
+
+static bool is_named(const char *path)
+{
+    char list[sizeof shared->from], *rest = list;
+    memcpy(list, shared->from, sizeof list);
+    for (char *part; (part = strtok_r(rest, ",", &rest));)
+        if (strstr(path, part))
+            return true;
+    return false;
+}
+
+static int add_range(struct dl_phdr_info *info, size_t bytes, void *user)
+{
+    (void)bytes;
+    bool *first = user;
+    bool wanted = *first || is_named(info->dlpi_name);
+    *first = false;
+    struct range range = {UINTPTR_MAX, 0};
+    for (int i = 0; wanted && i < info->dlpi_phnum; ++i) {
+        const ElfW(Phdr) *part = &info->dlpi_phdr[i];
+        uintptr_t begin = info->dlpi_addr + part->p_vaddr, end = begin + part->p_memsz;
+        if (part->p_type != PT_LOAD)
+            continue;
+        range.begin = begin < range.begin ? begin : range.begin;
+        range.end = end > range.end ? end : range.end;
+    }
+    if (wanted && range_count < RANGES_MOST)
+        ranges[range_count++] = range;
+    return 0;
+}
+
+__attribute__((constructor)) static void begin(void)
+{
+    const char *number = getenv(FAULT_VARIABLE);
+    bool first = true;
+    if (!number)
+        return;
+    void *memory = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, atoi(number), 0);
+    if (memory == MAP_FAILED)
+        abort();
+    shared = memory;
+    dl_iterate_phdr(add_range, &first);
+}
+
+static bool is_own(uintptr_t caller)
+{
+    return range_count > 0 && caller >= ranges[0].begin && caller < ranges[0].end;
+}
+
+/* After the count: what this asks for does not fail. */
+static void note_callers(void)
+{
+    void *frames[24];
+    int count = backtrace(frames, 24);
+    memset(shared->callers, 0, sizeof shared->callers);
+    for (int i = 0, kept = 0; i < count && kept < FAULT_CALLERS; ++i)
+        if (is_own((uintptr_t)frames[i]))
+            shared->callers[kept++] = (uintptr_t)frames[i] - ranges[0].begin;
+}
+
+static bool fails(enum fault_kind kind, uintptr_t caller, const char *what)
+{
+    bool counts = false;
+    for (uint32_t i = 0; i < range_count; ++i)
+        counts = counts || (caller >= ranges[i].begin && caller < ranges[i].end);
+    if (!counts || shared->kind != kind)
+        return false;
+    if (atomic_fetch_add(&shared->seen, 1) + 1 != shared->at)
+        return false;
+    atomic_fetch_add(&shared->fired, 1);
+    snprintf(shared->what, sizeof shared->what, "%s", what);
+    note_callers();
+    return true;
+}
+
+/* ---- Blocks that the program holds ---- */
+
+static int64_t block_count;
+#ifndef FAULT_NO_ALLOC
+
+/* Open addressing; 0: free, 1: was taken. A lock of its own, so that it may be taken in malloc. */
+static uintptr_t blocks[BLOCKS_MOST];
+static bool blocks_over;
+static atomic_flag blocks_lock = ATOMIC_FLAG_INIT;
+
+static void *note_block(void *block, uintptr_t caller)
+{
+    if (!block || !is_own(caller))
+        return block;
+    while (atomic_flag_test_and_set(&blocks_lock))
+        ;
+    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MOST;
+    while (blocks[at] > 1)
+        at = (at + 1) % BLOCKS_MOST;
+    blocks[at] = (uintptr_t)block;
+    blocks_over = blocks_over || ++block_count > BLOCKS_MOST / 2;
+    atomic_flag_clear(&blocks_lock);
+    return block;
+}
+
+static void forget_block(void *block)
+{
+    if (!block || block_count == 0 || blocks_over)
+        return;
+    while (atomic_flag_test_and_set(&blocks_lock))
+        ;
+    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MOST;
+    for (size_t tries = 0; blocks[at] && tries < BLOCKS_MOST;
+         ++tries, at = (at + 1) % BLOCKS_MOST) {
+        if (blocks[at] != (uintptr_t)block)
+            continue;
+        blocks[at] = 1;
+        --block_count;
+        break;
+    }
+    atomic_flag_clear(&blocks_lock);
+}
+
+#endif
+
+__attribute__((destructor)) static void end(void)
+{
+    if (shared)
+        shared->live = block_count;
+}
+
+/* ---- Memory ---- */
+
+#ifndef FAULT_NO_ALLOC
+
+/* What dlsym itself asks for, before there is a next calloc. */
+static _Alignas(16) char early[4096];
+static size_t early_bytes;
+static __thread bool resolving;
+
+static bool is_early(const void *block)
+{
+    return (const char *)block >= early && (const char *)block < early + sizeof early;
+}
+
+static void *take_early(size_t bytes)
+{
+    void *block = early + early_bytes;
+    early_bytes += (bytes + 15) / 16 * 16;
+    if (early_bytes > sizeof early)
+        abort();
+    return block;
+}
+
+static void *no_memory(void)
+{
+    errno = ENOMEM;
+    return NULL;
+}
+
+#define NEXT_MEMORY(type, name)                                                                    \
+    static type next;                                                                              \
+    if (!next) {                                                                                   \
+        resolving = true;                                                                          \
+        *(void **)&next = dlsym(RTLD_NEXT, name);                                                  \
+        resolving = false;                                                                         \
+    }
+
+void *malloc(size_t bytes)
+{
+    typedef void *(*fn)(size_t);
+    if (resolving)
+        return take_early(bytes);
+    NEXT_MEMORY(fn, "malloc")
+    return fails(FAULT_ALLOC, CALLER, "malloc") ? no_memory() : note_block(next(bytes), CALLER);
+}
+
+void *calloc(size_t count, size_t bytes)
+{
+    typedef void *(*fn)(size_t, size_t);
+    if (resolving)
+        return take_early(count * bytes);
+    NEXT_MEMORY(fn, "calloc")
+    return fails(FAULT_ALLOC, CALLER, "calloc") ? no_memory()
+                                                : note_block(next(count, bytes), CALLER);
+}
+
+void *realloc(void *block, size_t bytes)
+{
+    typedef void *(*fn)(void *, size_t);
+    NEXT_MEMORY(fn, "realloc")
+    if (fails(FAULT_ALLOC, CALLER, "realloc"))
+        return no_memory();
+    forget_block(block);
+    void *moved = next(block, bytes);
+    return note_block(moved ? moved : block, CALLER) == moved ? moved : NULL;
+}
+
+void *aligned_alloc(size_t alignment, size_t bytes)
+{
+    typedef void *(*fn)(size_t, size_t);
+    NEXT_MEMORY(fn, "aligned_alloc")
+    return fails(FAULT_ALLOC, CALLER, "aligned_alloc") ? no_memory()
+                                                       : note_block(next(alignment, bytes), CALLER);
+}
+
+void free(void *block)
+{
+    typedef void (*fn)(void *);
+    if (is_early(block))
+        return;
+    NEXT_MEMORY(fn, "free")
+    forget_block(block);
+    next(block);
+}
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*run)(void *), void *user)
+{
+    typedef int (*fn)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
+    NEXT(fn, "pthread_create");
+    return fails(FAULT_ALLOC, CALLER, "pthread_create") ? EAGAIN : next(thread, how, run, user);
+}
+
+#endif
+
+/* ---- Files that are written ---- */
+
+static bool disk_full(uintptr_t caller, const char *what)
+{
+    bool full = fails(FAULT_WRITE, caller, what);
+    if (full)
+        errno = ENOSPC;
+    return full;
+}
+
+/* Messages and tables are no files, nor are streams in memory. */
+static bool is_file(FILE *stream)
+{
+    return stream && stream != stdout && stream != stderr && fileno(stream) >= 0;
+}
+
+int open(const char *path, int flags, ...)
+{
+    typedef int (*fn)(const char *, int, ...);
+    NEXT(fn, "open");
+    va_list args;
+    va_start(args, flags);
+    mode_t mode = flags & O_CREAT ? va_arg(args, mode_t) : 0;
+    va_end(args);
+    return (flags & O_CREAT) && disk_full(CALLER, "open") ? -1 : next(path, flags, mode);
+}
+
+size_t fwrite(const void *data, size_t bytes, size_t count, FILE *stream)
+{
+    typedef size_t (*fn)(const void *, size_t, size_t, FILE *);
+    NEXT(fn, "fwrite");
+    if (!is_file(stream) || !disk_full(CALLER, "fwrite"))
+        return next(data, bytes, count, stream);
+    stream->_flags |= _IO_ERR_SEEN; /* what ferror tells */
+    return 0;
+}
+
+int fflush(FILE *stream)
+{
+    typedef int (*fn)(FILE *);
+    NEXT(fn, "fflush");
+    return is_file(stream) && disk_full(CALLER, "fflush") ? EOF : next(stream);
+}
+
+int fclose(FILE *stream)
+{
+    typedef int (*fn)(FILE *);
+    NEXT(fn, "fclose");
+    bool written = is_file(stream) && (fcntl(fileno(stream), F_GETFL) & O_ACCMODE) != O_RDONLY;
+    bool full = written && fails(FAULT_WRITE, CALLER, "fclose");
+    int result = next(stream);
+    if (full)
+        errno = ENOSPC;
+    return full ? EOF : result;
+}
+
+int fsync(int file)
+{
+    typedef int (*fn)(int);
+    NEXT(fn, "fsync");
+    return disk_full(CALLER, "fsync") ? -1 : next(file);
+}
+
+int rename(const char *from, const char *to)
+{
+    typedef int (*fn)(const char *, const char *);
+    NEXT(fn, "rename");
+    return disk_full(CALLER, "rename") ? -1 : next(from, to);
+}
+
+/* ---- Vulkan ---- */
+
+/* Nothing works on a device once it is lost, but waiting ends. */
+static bool vulkan_fails(uintptr_t caller, const char *what)
+{
+    bool now = fails(FAULT_VULKAN, caller, what);
+    if (now && shared->code == VK_ERROR_DEVICE_LOST)
+        lost = true;
+    return now || (lost && is_own(caller));
+}
+
+#define VULKAN(name, parameters, arguments)                                                        \
+    VKAPI_ATTR VkResult VKAPI_CALL name parameters                                                 \
+    {                                                                                              \
+        NEXT(PFN_##name, #name);                                                                   \
+        return vulkan_fails(CALLER, #name) ? (VkResult)shared->code : next arguments;              \
+    }
+
+/* What was submitted is not to be destroyed while it runs: these wait, and then fail. */
+#define VULKAN_WAIT(name, parameters, arguments)                                                   \
+    VKAPI_ATTR VkResult VKAPI_CALL name parameters                                                 \
+    {                                                                                              \
+        NEXT(PFN_##name, #name);                                                                   \
+        VkResult result = next arguments;                                                          \
+        return vulkan_fails(CALLER, #name) ? (VkResult)shared->code : result;                      \
+    }
+
+VULKAN(vkEnumerateInstanceVersion, (uint32_t * version), (version))
+VULKAN(vkEnumerateInstanceExtensionProperties,
+       (const char *layer, uint32_t *count, VkExtensionProperties *list), (layer, count, list))
+VULKAN(vkEnumerateInstanceLayerProperties, (uint32_t * count, VkLayerProperties *list),
+       (count, list))
+VULKAN(vkEnumerateDeviceExtensionProperties,
+       (VkPhysicalDevice device, const char *layer, uint32_t *count, VkExtensionProperties *list),
+       (device, layer, count, list))
+VULKAN(vkEnumeratePhysicalDevices, (VkInstance instance, uint32_t *count, VkPhysicalDevice *list),
+       (instance, count, list))
+VULKAN(vkCreateInstance,
+       (const VkInstanceCreateInfo *info, const VkAllocationCallbacks *memory, VkInstance *out),
+       (info, memory, out))
+VULKAN(vkCreateDevice,
+       (VkPhysicalDevice device, const VkDeviceCreateInfo *info,
+        const VkAllocationCallbacks *memory, VkDevice *out),
+       (device, info, memory, out))
+
+/* All that make something from a description of it. */
+#define VULKAN_CREATE(thing)                                                                       \
+    VULKAN(vkCreate##thing,                                                                        \
+           (VkDevice device, const Vk##thing##CreateInfo *info,                                    \
+            const VkAllocationCallbacks *memory, Vk##thing *out),                                  \
+           (device, info, memory, out))
+VULKAN_CREATE(Buffer)
+VULKAN_CREATE(BufferView)
+VULKAN_CREATE(CommandPool)
+VULKAN_CREATE(DescriptorPool)
+VULKAN_CREATE(DescriptorSetLayout)
+VULKAN_CREATE(Fence)
+VULKAN_CREATE(PipelineCache)
+VULKAN_CREATE(PipelineLayout)
+VULKAN_CREATE(QueryPool)
+VULKAN_CREATE(ShaderModule)
+VULKAN(vkCreateComputePipelines,
+       (VkDevice device, VkPipelineCache cache, uint32_t count,
+        const VkComputePipelineCreateInfo *infos, const VkAllocationCallbacks *memory,
+        VkPipeline *out),
+       (device, cache, count, infos, memory, out))
+VULKAN(vkAllocateMemory,
+       (VkDevice device, const VkMemoryAllocateInfo *info, const VkAllocationCallbacks *memory,
+        VkDeviceMemory *out),
+       (device, info, memory, out))
+VULKAN(vkAllocateCommandBuffers,
+       (VkDevice device, const VkCommandBufferAllocateInfo *info, VkCommandBuffer *out),
+       (device, info, out))
+VULKAN(vkAllocateDescriptorSets,
+       (VkDevice device, const VkDescriptorSetAllocateInfo *info, VkDescriptorSet *out),
+       (device, info, out))
+VULKAN(vkBindBufferMemory,
+       (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
+       (device, buffer, memory, offset))
+VULKAN(vkMapMemory,
+       (VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize bytes,
+        VkMemoryMapFlags flags, void **out),
+       (device, memory, offset, bytes, flags, out))
+VULKAN(vkResetCommandPool, (VkDevice device, VkCommandPool pool, VkCommandPoolResetFlags flags),
+       (device, pool, flags))
+VULKAN(vkBeginCommandBuffer, (VkCommandBuffer commands, const VkCommandBufferBeginInfo *info),
+       (commands, info))
+VULKAN(vkEndCommandBuffer, (VkCommandBuffer commands), (commands))
+VULKAN(vkResetFences, (VkDevice device, uint32_t count, const VkFence *fences),
+       (device, count, fences))
+VULKAN(vkQueueSubmit, (VkQueue queue, uint32_t count, const VkSubmitInfo *infos, VkFence fence),
+       (queue, count, infos, fence))
+VULKAN_WAIT(vkWaitForFences,
+            (VkDevice device, uint32_t count, const VkFence *fences, VkBool32 all, uint64_t ns),
+            (device, count, fences, all, ns))
+VULKAN_WAIT(vkDeviceWaitIdle, (VkDevice device), (device))
+VULKAN(vkGetQueryPoolResults,
+       (VkDevice device, VkQueryPool pool, uint32_t first, uint32_t count, size_t bytes, void *data,
+        VkDeviceSize stride, VkQueryResultFlags flags),
+       (device, pool, first, count, bytes, data, stride, flags))
+VULKAN(vkGetPipelineCacheData, (VkDevice device, VkPipelineCache cache, size_t *bytes, void *data),
+       (device, cache, bytes, data))
