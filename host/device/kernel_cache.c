@@ -19,10 +19,11 @@ struct kernel_header {
     uint64_t key[2];
     uint64_t bindings;
     uint32_t instructions, word_count;
+    uint64_t flat;
     uint64_t checksum; /* of all that, with 0 here, and the words */
 };
 
-static const char kernel_magic[8] = {'w', 'h', 'i', 't', 's', 'k', '0', '1'};
+static const char kernel_magic[8] = {'w', 'h', 'i', 't', 's', 'k', '0', '2'};
 static const struct log silent;
 
 /* Of the kernel as it came, its constants, and who fills them in: two hashes from two starts. */
@@ -77,6 +78,7 @@ static bool take_over(const uint64_t key[2], const uint8_t *file, size_t file_by
     *out = (struct kernel_words){
         .specialized = words,
         .word_count = header.word_count,
+        .flat = header.flat != 0,
         .info = {.instructions = header.instructions, .bindings = header.bindings},
     };
     return true;
@@ -104,6 +106,7 @@ void kernel_cache_save(const struct pipeline_params *params, const struct kernel
         .bindings = kernel->info.bindings,
         .instructions = kernel->info.instructions,
         .word_count = (uint32_t)kernel->word_count,
+        .flat = kernel->flat,
     };
     memcpy(header.magic, kernel_magic, sizeof kernel_magic);
     key_of(params, header.key);

@@ -6,6 +6,10 @@
 
 #include "base/array.h"
 
+/* Of a kernel with its constants filled in; making a larger one flat takes longer than its first
+   pipeline then saves. */
+enum { FLAT_INSTRUCTIONS_MOST = 8000 };
+
 static VkDescriptorType descriptor_type(enum binding_kind kind)
 {
     return kind == BINDING_TEXELS ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
@@ -95,21 +99,42 @@ fail:
     return result;
 }
 
-static bool specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
+/* In place of its words the same without calls, where the driver wins more by that than it costs. A
+   kernel that cannot be made flat stays as it is. */
+static void flatten_kernel(struct kernel_words *kernel)
+{
+    uint32_t *flat = NULL;
+    size_t word_count = 0;
+    if (spirv_flatten(kernel->specialized, kernel->word_count, &flat, &word_count)) {
+        free(kernel->specialized);
+        kernel->specialized = flat;
+        kernel->word_count = word_count;
+    }
+    kernel->flat = true;
+}
+
+/* `flat`: for a driver; else only its info is of interest. */
+static bool specialize_kernel(const struct pipeline_params *params, bool flat,
+                              struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
-    if (kernel_cache_load(params, out))
-        return true;
-    *out = (struct kernel_words){.word_count = word_count};
-    if (spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
-                         &out->specialized, &out->word_count) &&
-        spirv_inspect(out->specialized, out->word_count, &out->info)) {
-        kernel_cache_save(params, out);
-        return true;
+    bool kept = kernel_cache_load(params, out);
+    if (!kept) {
+        *out = (struct kernel_words){.word_count = word_count};
+        if (!spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
+                              &out->specialized, &out->word_count) ||
+            !spirv_inspect(out->specialized, out->word_count, &out->info)) {
+            free(out->specialized);
+            *out = (struct kernel_words){.word_count = word_count};
+            return false;
+        }
     }
-    free(out->specialized);
-    *out = (struct kernel_words){.word_count = word_count};
-    return false;
+    bool flattens = flat && !out->flat && out->info.instructions <= FLAT_INSTRUCTIONS_MOST;
+    if (flattens)
+        flatten_kernel(out);
+    if (!kept || flattens)
+        kernel_cache_save(params, out);
+    return true;
 }
 
 static bool specializing_is_off(void)
@@ -123,7 +148,7 @@ static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_para
                            struct kernel_words *kernel)
 {
     struct pipeline_info *info = &pipeline->info;
-    info->specialized = !specializing_is_off() && specialize_kernel(params, kernel);
+    info->specialized = !specializing_is_off() && specialize_kernel(params, true, kernel);
     if (!info->specialized) {
         *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
         if (!specializing_is_off())
@@ -152,7 +177,7 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
 {
     struct kernel_words kernel;
     *info = (struct pipeline_info){0};
-    if (!specialize_kernel(params, &kernel))
+    if (!specialize_kernel(params, false, &kernel))
         return false;
     free(kernel.specialized);
     *info = (struct pipeline_info){

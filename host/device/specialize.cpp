@@ -13,19 +13,31 @@
 namespace
 {
 
-std::vector<uint32_t> run(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                          uint32_t spec_count)
+// Empty when a pass refuses.
+std::vector<uint32_t> run(spvtools::Optimizer &optimizer, const uint32_t *words, size_t word_count)
+{
+    // Without a consumer its remarks would be exceptions; a failure is the caller's to report.
+    optimizer.SetMessageConsumer(
+        [](spv_message_level_t, const char *, const spv_position_t &, const char *) {});
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false); // the build validates every variant
+    std::vector<uint32_t> result;
+    if (!optimizer.Run(words, word_count, &result, options))
+        result.clear();
+    return result;
+}
+
+std::vector<uint32_t> specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                 uint32_t spec_count)
 {
     std::unordered_map<uint32_t, std::vector<uint32_t>> values;
     for (uint32_t i = 0; i < spec_count; ++i)
         values[i] = {spec[i]};
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
-    // Without a consumer its remarks would be exceptions; a failure is the caller's to report.
-    optimizer.SetMessageConsumer(
-        [](spv_message_level_t, const char *, const spv_position_t &, const char *) {});
     // Nothing that moves or merges arithmetic: branches that constants decide, and what then is
-    // never reached or used.
-    optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
+    // never reached or used. Names go first: passes look after every one of them.
+    optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass())
+        .RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
@@ -43,12 +55,36 @@ std::vector<uint32_t> run(const uint32_t *words, size_t word_count, const uint32
         .RegisterPass(spvtools::CreateBlockMergePass())
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass());
-    spvtools::OptimizerOptions options;
-    options.set_run_validator(false); // the build validates every variant
-    std::vector<uint32_t> result;
-    if (!optimizer.Run(words, word_count, &result, options))
-        result.clear();
-    return result;
+    return run(optimizer, words, word_count);
+}
+
+std::vector<uint32_t> flatten(const uint32_t *words, size_t word_count)
+{
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    // Functions that return early are not inlined.
+    optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass())
+        .RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateBlockMergePass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass());
+    return run(optimizer, words, word_count);
+}
+
+// malloc()ed, for C; false when there is nothing, or no memory.
+bool hand_over(const std::vector<uint32_t> &words, uint32_t **out, size_t *out_words)
+{
+    *out = words.empty() ? nullptr
+                         : static_cast<uint32_t *>(std::malloc(words.size() * sizeof words[0]));
+    if (!*out)
+        return false;
+    std::memcpy(*out, words.data(), words.size() * sizeof words[0]);
+    *out_words = words.size();
+    return true;
 }
 
 // Words of the specification (SPIR-V 1.5, 3.32 and 3.20).
@@ -105,14 +141,14 @@ try {
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words)
 try {
-    const std::vector<uint32_t> result = run(words, word_count, spec, spec_count);
-    *out = result.empty() ? nullptr
-                          : static_cast<uint32_t *>(std::malloc(result.size() * sizeof result[0]));
-    if (!*out)
-        return false;
-    std::memcpy(*out, result.data(), result.size() * sizeof result[0]);
-    *out_words = result.size();
-    return true;
+    return hand_over(specialize(words, word_count, spec, spec_count), out, out_words);
+} catch (const std::exception &) {
+    return false;
+}
+
+bool spirv_flatten(const uint32_t *words, size_t word_count, uint32_t **out, size_t *out_words)
+try {
+    return hand_over(flatten(words, word_count), out, out_words);
 } catch (const std::exception &) {
     return false;
 }

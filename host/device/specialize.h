@@ -18,6 +18,12 @@ extern "C" {
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words);
 
+/* A specialized module with all functions inlined, so that locals which callers and callees share
+   become values. Operations as above; what it computes is the same. Twice to four times the
+   instructions, which drivers have to make of it anyway, and more slowly: lavapipe reads a plain
+   scene's kernel in two fifths of the time, one with every effect in two thirds. */
+bool spirv_flatten(const uint32_t *words, size_t word_count, uint32_t **out, size_t *out_words);
+
 /* Of the library that does it; never NULL. */
 const char *spirv_tools_version(void);
 

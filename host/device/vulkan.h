@@ -107,7 +107,8 @@ char *cache_folder(bool make);
 struct kernel_words {
     uint32_t *specialized; /* owned; NULL: as it came */
     size_t word_count;
-    struct spirv_info info;
+    bool flat;              /* see spirv_flatten */
+    struct spirv_info info; /* before it was made flat */
 };
 
 /* kernel_cache.c: specialized kernels of earlier runs. */

@@ -19,10 +19,12 @@
 #include "kernels.h"
 
 enum { HEADER_WORDS = 5, OP_SPEC_FIRST = 48, OP_SPEC_LAST = 52, OP_DECORATE = 71 };
+enum { OP_FUNCTION = 54, OP_CALL = 57 };
 enum { DECORATION_NO_CONTRACTION = 42 };
 
 struct tally {
-    uint32_t instructions, spec_constants, float_operations, exact;
+    uint32_t instructions, spec_constants, float_operations, exact, functions, calls;
+    uint32_t inexact; /* float operations that are not marked */
 };
 
 /* OpFAdd 129, OpFSub 131, OpFMul 133, OpFDiv 136. */
@@ -31,19 +33,29 @@ static bool is_float_operation(uint32_t opcode)
     return opcode == 129 || opcode == 131 || opcode == 133 || opcode == 136;
 }
 
+/* Decorations come before functions, so one way through sees them first. */
 static struct tally tally_of(const uint32_t *words, size_t count)
 {
     struct tally tally = {0};
     size_t at = HEADER_WORDS;
+    bool *marked = calloc(words[3], sizeof *marked); /* the bound of ids */
+    assert_non_null(marked);
     while (at < count) {
         uint32_t opcode = words[at] & 0xffff, length = words[at] >> 16;
         assert_true(length > 0 && length <= count - at);
         ++tally.instructions;
         tally.spec_constants += opcode >= OP_SPEC_FIRST && opcode <= OP_SPEC_LAST;
         tally.float_operations += is_float_operation(opcode);
-        tally.exact += opcode == OP_DECORATE && words[at + 2] == DECORATION_NO_CONTRACTION;
+        tally.functions += opcode == OP_FUNCTION;
+        tally.calls += opcode == OP_CALL;
+        if (opcode == OP_DECORATE && words[at + 2] == DECORATION_NO_CONTRACTION) {
+            ++tally.exact;
+            marked[words[at + 1]] = true;
+        }
+        tally.inexact += is_float_operation(opcode) && !marked[words[at + 2]];
         at += length;
     }
+    free(marked);
     return tally;
 }
 
@@ -69,6 +81,37 @@ static void constants_are_gone_and_floats_stay_exact(void **state)
         assert_int_equal(after.spec_constants, 0);
         assert_true(after.float_operations > 0);
         assert_true(after.exact >= after.float_operations);
+        assert_int_equal(after.inexact, 0);
+    }
+}
+
+/* One function, with the operations of all that it called, as exact, and the same bindings. */
+static void flat_kernels_call_nothing(void **state)
+{
+    (void)state;
+    struct gpu_spec spec = GPU_SPEC_DEFAULTS;
+    spec.SPEC_REFRACTION = spec.SPEC_FILTERS = 0;
+    for (int kernel = 0; kernel < KERNEL_COUNT; ++kernel) {
+        uint32_t *words = NULL, *flat = NULL;
+        size_t count = 0, flat_count = 0;
+        struct spirv_info info, flat_info;
+        assert_true(spirv_specialize(kernels[kernel].words, kernels[kernel].bytes / 4,
+                                     (const uint32_t *)&spec, GPU_SPEC_COUNT, &words, &count));
+        assert_true(spirv_flatten(words, count, &flat, &flat_count));
+        struct tally before = tally_of(words, count), after = tally_of(flat, flat_count);
+        print_message("  %s: %u functions, %u float operations; flat: %u of %u not exact\n",
+                      kernels[kernel].name, before.functions, before.float_operations,
+                      after.inexact, after.float_operations);
+        assert_true(before.functions > 1 && before.calls > 0);
+        assert_int_equal(after.functions, 1);
+        assert_int_equal(after.calls, 0);
+        assert_true(after.float_operations > before.float_operations);
+        assert_int_equal(after.inexact, 0);
+        assert_true(spirv_inspect(words, count, &info));
+        assert_true(spirv_inspect(flat, flat_count, &flat_info));
+        assert_true(flat_info.bindings == info.bindings);
+        free(words);
+        free(flat);
     }
 }
 
@@ -92,6 +135,8 @@ static void nonsense_is_left_to_the_driver(void **state)
     size_t count = 0;
     memset(words, 0x5a, sizeof words);
     assert_false(spirv_specialize(words, 64, NULL, 0, &out, &count));
+    assert_null(out);
+    assert_false(spirv_flatten(words, 64, &out, &count));
     assert_null(out);
 }
 
@@ -182,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constants_are_gone_and_floats_stay_exact),
+        cmocka_unit_test(flat_kernels_call_nothing),
         cmocka_unit_test(what_is_switched_off_is_gone),
         cmocka_unit_test(nonsense_is_left_to_the_driver),
         cmocka_unit_test(bindings_follow_the_constants),
