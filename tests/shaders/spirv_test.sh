@@ -1,5 +1,7 @@
 #!/bin/sh
-# Every kernel, as it is embedded and with its specialization constants set, passes spirv-val.
+# Every kernel, as it is embedded and with its specialization constants set, passes spirv-val. Every
+# float operation of it is rounded as it is written: marked NoContraction, and no fma(), which Vulkan
+# lets a driver round once or twice.
 #     spirv_test.sh KERNEL_DUMP
 set -eu
 folder=$(mktemp -d)
@@ -10,6 +12,23 @@ validations=0
 validate() {
     spirv-val --target-env vulkan1.2 "$1" || { echo "spirv-val refuses $2"; exit 1; }
     validations=$((validations + 1))
+}
+
+# rounded_as_written KERNEL
+rounded_as_written() {
+    spirv-dis --raw-id "$1" | awk -v kernel="$1" '
+        $1 == "OpDecorate" && $3 == "NoContraction" { marked[$2] = 1 }
+        $3 ~ /^Op(F(Negate|Add|Sub|Mul|Div|Rem|Mod)|VectorTimesScalar|VectorTimesMatrix|Dot|Matrix.*|OuterProduct)$/ {
+            operations++
+            if (!marked[$1]) { print kernel ": not NoContraction: " $0; bad++ }
+        }
+        $3 == "OpExtInst" && $6 == "Fma" { print kernel ": " $0; bad++ }
+        END {
+            printf "%s: %d of %d float operations may be contracted\n", kernel, bad, operations
+            exit bad > 0 || operations < 100
+        }' > "$folder/operations" || { head -5 "$folder/operations"
+        echo "FAILED  $(tail -n 1 "$folder/operations")"; exit 1; }
+    tail -n 1 "$folder/operations"
 }
 
 # specialise KERNEL "id:value id:value ...": constants frozen, what they switch off removed.
@@ -30,6 +49,7 @@ for id in $switches; do
 done
 # A constant that a kernel does not use is not in it: spirv-opt passes over that.
 for kernel in "$folder"/*.spv; do
+    rounded_as_written "$kernel"
     validate "$kernel" "$kernel"
     specialise "$kernel" "0:64 2:1$none"
     specialise "$kernel" "0:64 2:64$all"
