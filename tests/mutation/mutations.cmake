@@ -126,7 +126,7 @@ change(shaders/lib/intersect.glsl [[lo * ray.inv_dir;]]
 change(shaders/lib/intersect.glsl [[hi * ray.inv_dir;]]
   [[(hi + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 
-mutation(reciprocals_clamped peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h [[vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);]]
   [[vec3_make(fmaxf(fminf(1.0f / dir.x, 1e30f), -1e30f), fmaxf(fminf(1.0f / dir.y, 1e30f), -1e30f),
       fmaxf(fminf(1.0f / dir.z, 1e30f), -1e30f));]])
@@ -135,7 +135,7 @@ change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, 
 mutation(reciprocals_clamped_in_kernels render_trace RED box_equals_twin)
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
-mutation(signs_of_directions accel_oracle RED margins_explain_the_float_twin)
+mutation(signs_of_directions accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h [[ray.inv_dir.x < 0.0f]] [[dir.x < 0.0f]])
 change(host/accel/intersect.h [[ray.inv_dir.y < 0.0f]] [[dir.y < 0.0f]])
 change(host/accel/intersect.h [[ray.inv_dir.z < 0.0f]] [[dir.z < 0.0f]])

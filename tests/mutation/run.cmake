@@ -149,7 +149,7 @@ build_test("the mutation")
 run_test()
 
 # Why a test failed counts: neither a crash, nor a time-out, nor another check of the same test.
-string(REGEX MATCHALL "FAILED[: ]+[a-z][^\n]+|[^\n]*(ERROR|is not|error:) [^\n]*" why "${out}")
+string(REGEX MATCHALL "FAILED[: ]+[^0-9 \n][^\n]+|[^\n]*(ERROR|is not|error:) [^\n]*" why "${out}")
 list(REMOVE_DUPLICATES why)
 list(JOIN why "\n" why)
 set(wrong "")

@@ -336,6 +336,46 @@ static void ties_go_to_the_smaller_index(void **state)
     world_destroy(&world);
 }
 
+/* A square across each axis, met along that axis at its middle, its borders and its corners, by
+   rays that lie in faces of its box (NUMERICS B3): 0 and -0, from both sides. */
+static void borders_are_met_along_the_axes(void **state)
+{
+    (void)state;
+    uint32_t rays = 0, missed = 0;
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        const uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        float corners[18] = {0};
+        for (uint32_t i = 0; i < 6; ++i) {
+            uint32_t corner = (const uint32_t[]){0, 1, 2, 0, 2, 3}[i];
+            corners[3 * i + axis] = 0.5f;
+            corners[3 * i + u] = corner == 1 || corner == 2 ? 3.0f : -1.0f;
+            corners[3 * i + v] = corner >= 2 ? 3.0f : -1.0f;
+        }
+        struct scene *scene = new_scene();
+        add_instance(scene, mesh_of(2, corners), NULL);
+        struct world world = finish(scene);
+        for (uint32_t way = 0; way < 9 * 8; ++way) {
+            struct gpu_ray ray = {.t_max = INFINITY};
+            struct gpu_hit hit;
+            uint32_t status = 0;
+            float side = way & 1 ? 1.0f : -1.0f;
+            ray.origin[axis] = 0.5f - 4.0f * side;
+            ray.origin[u] = (float)(way / 8 % 3) * 2.0f - 1.0f;
+            ray.origin[v] = (float)(way / 24) * 2.0f - 1.0f;
+            ray.dir[axis] = side;
+            ray.dir[u] = way & 2 ? -0.0f : 0.0f;
+            ray.dir[v] = way & 4 ? -0.0f : 0.0f;
+            traverse_float(world.accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
+                           &status);
+            missed += hit.t != 4.0f;
+            ++rays;
+        }
+        world_destroy(&world);
+    }
+    print_message("  %u of %u rays miss\n", missed, rays);
+    assert_int_equal(missed, 0);
+}
+
 static void senseless_rays_hit_nothing(void **state)
 {
     (void)state;
@@ -361,6 +401,7 @@ int main(void)
         cmocka_unit_test(margins_explain_the_float_twin),
         cmocka_unit_test(one_triangle_is_known),
         cmocka_unit_test(ties_go_to_the_smaller_index),
+        cmocka_unit_test(borders_are_met_along_the_axes),
         cmocka_unit_test(senseless_rays_hit_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
