@@ -1,6 +1,8 @@
 #!/bin/sh
-# --effects of `whit render` and `whit scene`: names, prices, promises.
+# --effects of `whit render` and `whit scene`: names, prices, promises. The third argument is whit over
+# a library whose pictures change with WHIT_TEST_CHANGED_EFFECT.
 . "$(dirname "$0")/common.sh"
+CHANGED=$3
 
 P=$OUT/picture.pfm
 refuse 2 "a misspelt effect" "did you mean .shadows." render "$CUBE" -o "$P" --effects -shadow
@@ -46,4 +48,12 @@ for key in name called compiled reason cost_ms difference; do
         test "$(grep -c "^      \"$key\": " "$OUT/stdout")" -eq \
         "$(grep -c '^      "name": ' "$OUT/stdout")"
 done
+
+WHIT=$CHANGED
+export WHIT_TEST_CHANGED_EFFECT=normal-maps
+refuse 1 "an effect that is not called for changes the picture" \
+    "normal-maps: the scene does not call for it, yet it changes 1 pixels" \
+    scene "$CUBE" --effects --size 32x24 --quiet
+check "its row says so" grep -Eq "^  normal-maps +- .* NOT THE SAME PICTURE" "$OUT/stdout"
+check "no other row does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
 finish

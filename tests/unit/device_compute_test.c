@@ -1,6 +1,5 @@
-#include "device_fixture.h"
+#include "affine_fixture.h"
 
-#include "device_affine.h"
 #include "device_count.h"
 #include "device_spin.h"
 #include "device_texels.h"
@@ -20,22 +19,6 @@ static int close_device(void **state)
     (void)state;
     device_close(device, &messages);
     return 0;
-}
-
-static const enum binding_kind one_storage[] = {BINDING_STORAGE};
-
-static struct pipeline_params affine_params(const uint32_t spec[3])
-{
-    return (struct pipeline_params){
-        .spirv = device_affine,
-        .spirv_bytes = sizeof device_affine,
-        .spec = spec,
-        .spec_count = 3,
-        .bindings = one_storage,
-        .binding_count = 1,
-        .push_bytes = 8,
-        .name = "affine",
-    };
 }
 
 static void constants_reach_the_shader(void **state)
@@ -106,11 +89,7 @@ static void texels_equal_storage(void **state)
 
 static struct pipeline_params count_params(void)
 {
-    return (struct pipeline_params){.spirv = device_count,
-                                    .spirv_bytes = sizeof device_count,
-                                    .bindings = one_storage,
-                                    .binding_count = 1,
-                                    .name = "count"};
+    return storage_params(device_count, sizeof device_count, 1, "count");
 }
 
 static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
@@ -169,12 +148,8 @@ static void fill_and_copy_keep_to_their_range(void **state)
 
 static struct kernel_run spin_make(struct buffer *buffer)
 {
-    struct pipeline_params params = {.spirv = device_spin,
-                                     .spirv_bytes = sizeof device_spin,
-                                     .bindings = one_storage,
-                                     .binding_count = 1,
-                                     .push_bytes = 4,
-                                     .name = "spin"};
+    struct pipeline_params params = storage_params(device_spin, sizeof device_spin, 1, "spin");
+    params.push_bytes = 4;
     return kernel_make(device, &params, &buffer);
 }
 

@@ -1,8 +1,6 @@
 /* Without SPIRV-Tools' help a kernel still runs, and that it goes without is said. The linker puts
    the function below in the place of spirv_specialize. */
-#include "device_fixture.h"
-
-#include "device_affine.h"
+#include "affine_fixture.h"
 
 bool __wrap_spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                              uint32_t spec_count, uint32_t **out, size_t *out_words);
@@ -17,17 +15,9 @@ bool __wrap_spirv_specialize(const uint32_t *words, size_t word_count, const uin
 static void kernels_go_to_the_driver_whole(void **state)
 {
     (void)state;
-    static const enum binding_kind bindings[] = {BINDING_STORAGE};
     static const uint32_t spec[] = {64, 3, 7};
     const uint32_t push[] = {100, 5};
-    const struct pipeline_params params = {.spirv = device_affine,
-                                           .spirv_bytes = sizeof device_affine,
-                                           .spec = spec,
-                                           .spec_count = 3,
-                                           .bindings = bindings,
-                                           .binding_count = 1,
-                                           .push_bytes = 8,
-                                           .name = "affine"};
+    const struct pipeline_params params = affine_params(spec);
     struct messages messages;
     assert_int_equal(setenv("WHIT_NO_CACHE", "1", 1), 0);
     struct device *device = device_open(&messages, false);

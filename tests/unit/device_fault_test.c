@@ -2,9 +2,7 @@
 #include <dirent.h>
 #include <unistd.h>
 
-#include "device_fixture.h"
-
-#include "device_affine.h"
+#include "affine_fixture.h"
 
 /* Everything a user does with a device, once. */
 struct cycle {
@@ -18,16 +16,8 @@ struct cycle {
 
 static whit_result cycle_prepare(struct cycle *cycle)
 {
-    static const enum binding_kind bindings[] = {BINDING_STORAGE};
     static const uint32_t spec[] = {64, 3, 1};
-    struct pipeline_params params = {.spirv = device_affine,
-                                     .spirv_bytes = sizeof device_affine,
-                                     .spec = spec,
-                                     .spec_count = 3,
-                                     .bindings = bindings,
-                                     .binding_count = 1,
-                                     .push_bytes = 8,
-                                     .name = "affine"};
+    struct pipeline_params params = affine_params(spec);
     whit_result result = buffer_create(cycle->device, sizeof cycle->words,
                                        BUFFER_STORAGE | BUFFER_TEXELS, "values", &cycle->buffer);
     if (result == WHIT_OK)

@@ -61,6 +61,19 @@ static inline void device_close(struct device *device, struct messages *messages
     assert_int_equal(messages->validation, 0);
 }
 
+/* A kernel whose one or two bindings are storage buffers; what it takes beside them is added. */
+static inline struct pipeline_params storage_params(const uint32_t *spirv, size_t spirv_bytes,
+                                                    uint32_t binding_count, const char *name)
+{
+    static const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_STORAGE};
+    assert_true(binding_count <= 2);
+    return (struct pipeline_params){.spirv = spirv,
+                                    .spirv_bytes = spirv_bytes,
+                                    .bindings = bindings,
+                                    .binding_count = binding_count,
+                                    .name = name};
+}
+
 struct kernel_run {
     struct pipeline *pipeline;
     struct binding_set *set;

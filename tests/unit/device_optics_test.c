@@ -72,16 +72,12 @@ static struct optics_case *add_angle(double angle, double eta)
 
 static void run_cases(void)
 {
-    static const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_STORAGE};
     assert_true(count > 0);
     struct buffer *in = buffer_make(device, count * sizeof *cases, BUFFER_STORAGE, "cases");
     struct buffer *out = buffer_make(device, count * sizeof *answers, BUFFER_STORAGE, "answers");
     assert_int_equal(buffer_write(in, 0, cases, count * sizeof *cases), WHIT_OK);
-    const struct pipeline_params params = {.spirv = device_optics,
-                                           .spirv_bytes = sizeof device_optics,
-                                           .bindings = bindings,
-                                           .binding_count = 2,
-                                           .name = "optics"};
+    const struct pipeline_params params =
+        storage_params(device_optics, sizeof device_optics, 2, "optics");
     struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);

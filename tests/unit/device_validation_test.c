@@ -1,24 +1,14 @@
 /* The Khronos layer is part of the test suite's requirements: its absence fails these tests. */
-#include "device_fixture.h"
+#include "affine_fixture.h"
 
-#include "device_affine.h"
 #include "device_overrun.h"
-
-static const enum binding_kind one_storage[] = {BINDING_STORAGE};
 
 static void run_affine(struct device *device, bool with_barrier)
 {
     const uint32_t spec[] = {64, 1, 0}, push[] = {64, 0};
     struct buffer *values = buffer_make(device, 256, BUFFER_STORAGE, "values");
     struct buffer *copy = buffer_make(device, 256, BUFFER_HOST, "copy");
-    struct pipeline_params params = {.spirv = device_affine,
-                                     .spirv_bytes = sizeof device_affine,
-                                     .spec = spec,
-                                     .spec_count = 3,
-                                     .bindings = one_storage,
-                                     .binding_count = 1,
-                                     .push_bytes = sizeof push,
-                                     .name = "affine"};
+    struct pipeline_params params = affine_params(spec);
     struct kernel_run run = kernel_make(device, &params, &values);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
@@ -74,12 +64,9 @@ static void write_outside_is_reported(void **state)
         struct messages messages;
         struct device *device = device_open(&messages, true);
         struct buffer *values = buffer_make(device, 16, BUFFER_STORAGE, "values");
-        struct pipeline_params params = {.spirv = device_overrun,
-                                         .spirv_bytes = sizeof device_overrun,
-                                         .bindings = one_storage,
-                                         .binding_count = 1,
-                                         .push_bytes = 4,
-                                         .name = "overrun"};
+        struct pipeline_params params =
+            storage_params(device_overrun, sizeof device_overrun, 1, "overrun");
+        params.push_bytes = 4;
         struct kernel_run run = kernel_make(device, &params, &values);
         struct commands *commands = commands_make(device);
         assert_int_equal(commands_begin(commands), WHIT_OK);

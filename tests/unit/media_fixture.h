@@ -24,27 +24,6 @@ static inline void set_sky(struct scene *scene, float zenith, float horizon, flo
     set_rgb(scene->environment.ground, ground, ground, ground);
 }
 
-/* As add_object, for spheres too, and with the object's index. */
-static inline uint32_t add_body(struct scene *scene, struct scene_mesh mesh,
-                                struct scene_material m, double x, double y, double z)
-{
-    m.name = string_copy("body");
-    uint32_t index = scene_add_material(scene, m);
-    for (uint32_t i = 0; i < mesh.triangle_count + mesh.sphere_count; ++i)
-        mesh.materials[i] = index;
-    mesh.name = string_copy("body");
-    struct scene_node node;
-    scene_node_init(&node, "node", SCENE_NONE);
-    node.translation[0] = x;
-    node.translation[1] = y;
-    node.translation[2] = z;
-    struct scene_instance instance = {.name = string_copy("body"),
-                                      .mesh = scene_add_mesh(scene, mesh),
-                                      .node = scene_add_node(scene, node)};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    return index;
-}
-
 static inline struct scene_mesh empty_mesh(uint32_t vertices, uint32_t triangles)
 {
     struct scene_mesh mesh = {.vertex_count = vertices, .triangle_count = triangles};
@@ -107,7 +86,7 @@ static inline void add_coordinate_wall(struct scene *scene, double z, double sid
     struct scene_material m = material("wall");
     m.model = SCENE_MODEL_UNLIT;
     set_rgb(m.diffuse, 1, 1, 1);
-    add_body(scene, mesh, m, 0, 0, z);
+    add_object(scene, mesh, m, 0, 0, z);
 }
 
 /* Where a coordinate wall was met, by the colour that came from it. */

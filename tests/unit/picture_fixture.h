@@ -69,13 +69,13 @@ static inline void add_lamp(struct scene *scene, double x, double y, double z, f
     assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
 }
 
-/* `mesh` with `m`, moved. */
-static inline void add_object(struct scene *scene, struct scene_mesh mesh, struct scene_material m,
-                              double x, double y, double z)
+/* `mesh` with `m`, moved; the index of the material. */
+static inline uint32_t add_object(struct scene *scene, struct scene_mesh mesh,
+                                  struct scene_material m, double x, double y, double z)
 {
     m.name = string_copy("material");
     uint32_t index = scene_add_material(scene, m);
-    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
+    for (uint32_t i = 0; i < scene_mesh_primitives(&mesh); ++i)
         mesh.materials[i] = index;
     mesh.name = string_copy("object");
     struct scene_node node;
@@ -87,6 +87,7 @@ static inline void add_object(struct scene *scene, struct scene_mesh mesh, struc
                                       .mesh = scene_add_mesh(scene, mesh),
                                       .node = scene_add_node(scene, node)};
     assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    return index;
 }
 
 static inline struct scene_mesh plane(double size)

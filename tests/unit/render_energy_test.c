@@ -8,7 +8,7 @@ static struct scene *furnace(struct scene_mesh mesh, struct scene_material m)
 {
     struct scene *scene = dark_scene((double[]){0.3, 0.5, 4}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
-    add_body(scene, mesh, m, 0, 0, 0);
+    add_object(scene, mesh, m, 0, 0, 0);
     return scene;
 }
 
@@ -64,10 +64,10 @@ static void white_furnace_of_nested_media(void **state)
     struct scene_mesh ball = {0}, ring = {0};
     struct scene *scene = furnace(box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
     assert_int_equal(shape_icosphere(0.6, 3, &ball), WHIT_OK);
-    add_body(scene, ball, clear_glass(1.5f, 1), 0.3, 0, 0);
+    add_object(scene, ball, clear_glass(1.5f, 1), 0.3, 0, 0);
     assert_int_equal(shape_torus(0.5, 0.2, 24, 12, &ring), WHIT_OK);
-    add_body(scene, ring, clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
-    add_body(scene, box(1, 0.5, 0.5), clear_glass(1.2f, 0), 0.3, -0.25, 0.8);
+    add_object(scene, ring, clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
+    add_object(scene, box(1, 0.5, 0.5), clear_glass(1.2f, 0), 0.3, -0.25, 0.8);
     check_furnace("nested", scene);
 }
 
@@ -86,7 +86,7 @@ static void facing_mirrors_end(void **state)
         set_rgb(mirror.reflection, 1, 1, 1);
         set_rgb(mirror.emission, 0.01f, 0.01f, 0.01f);
         for (int i = 0; i < 2; ++i)
-            add_body(scene, box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
+            add_object(scene, box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
         add_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
         const struct render_params params = {
             .width = 15, .height = 15, .depth = depths[d], .bailout = -1.0};
@@ -112,12 +112,12 @@ static struct scene *weak_scene(int which)
     if (which == 0)
         return glass_scene();
     struct scene *scene = furnace(box(1.2, 1.2, 1.2), clear_glass(1.5f, 0));
-    add_body(scene, box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
+    add_object(scene, box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
     struct scene_material shiny = material("shiny");
     set_rgb(shiny.diffuse, 0.5f, 0.5f, 0.5f);
     set_rgb(shiny.specular, 0.5f, 0.5f, 0.5f);
     set_rgb(shiny.reflection, 0.3f, 0.3f, 0.3f);
-    add_body(scene, plane(6), shiny, 0, -0.8, 0);
+    add_object(scene, plane(6), shiny, 0, -0.8, 0);
     add_lamp(scene, 2, 3, 2, 8);
     return scene;
 }

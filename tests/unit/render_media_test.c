@@ -17,8 +17,8 @@ static struct scene *layer_scene(const struct layer *layers, int count)
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = (float)FOV;
     for (int i = 0; i < count; ++i)
-        add_body(scene, box(40, 40, 2 * layers[i].half),
-                 clear_glass(layers[i].ior, layers[i].priority), 0, 0, 0);
+        add_object(scene, box(40, 40, 2 * layers[i].half),
+                   clear_glass(layers[i].ior, layers[i].priority), 0, 0, 0);
     add_coordinate_wall(scene, -4, 8);
     return scene;
 }
@@ -129,8 +129,8 @@ static struct scene *shell_scene(int count)
     set_sky(scene, 1, 1, 1);
     for (int i = 0; i < count; ++i) {
         double side = 10.0 - 0.5 * i;
-        add_body(scene, box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0), 0, 0,
-                 0);
+        add_object(scene, box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0), 0,
+                   0, 0);
     }
     return scene;
 }
@@ -177,7 +177,7 @@ static void open_meshes_stay_finite(void **state)
         mesh.triangle_count = kept;
         struct scene_material m = clear_glass(1.5f, (uint32_t)i);
         set_rgb(m.absorption, 0.1f, 0.2f, 0.0f);
-        add_body(scene, mesh, m, 0.5 * i - 0.5, 0, 0);
+        add_object(scene, mesh, m, 0.5 * i - 0.5, 0, 0);
     }
     const struct render_params params = {.width = 40, .height = 40, .depth = 8, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
@@ -215,25 +215,25 @@ static void camera_knows_its_media(void **state)
     const double inside[3] = {0.1, 0.2, 0.1}, away[3] = {0, 0, -9};
     /* Outside; in a box; in two, of which the inner one is entered last; by priority. */
     struct scene *scene = dark_scene((double[]){0, 0, 5}, away);
-    add_body(scene, box(2, 2, 2), clear_glass(1.5f, 0), 0, 0, 0);
+    add_object(scene, box(2, 2, 2), clear_glass(1.5f, 0), 0, 0, 0);
     check_eye(scene, NULL, 0);
     for (uint32_t high = 0; high < 2; ++high) {
         scene = dark_scene(inside, away);
-        uint32_t inner = add_body(scene, box(2, 2, 2), clear_glass(1.5f, 1), 0, 0, 0);
-        uint32_t outer = add_body(scene, box(3, 3, 3), clear_glass(1.3f, 1 + high), 0, 0, 0);
-        add_body(scene, box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
+        uint32_t inner = add_object(scene, box(2, 2, 2), clear_glass(1.5f, 1), 0, 0, 0);
+        uint32_t outer = add_object(scene, box(3, 3, 3), clear_glass(1.3f, 1 + high), 0, 0, 0);
+        add_object(scene, box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
         check_eye(scene, high ? (uint32_t[]){inner, outer} : (uint32_t[]){outer, inner}, 2);
     }
     /* In a sphere and a thin box, which has no inside. */
     scene = dark_scene(inside, away);
     struct scene_material thin = clear_glass(1.5f, 0);
     thin.thin_walled = true;
-    add_body(scene, box(4, 4, 4), thin, 0, 0, 0);
-    uint32_t round = add_body(scene, ball(1.0), clear_glass(1.5f, 0), 0, 0, 0);
+    add_object(scene, box(4, 4, 4), thin, 0, 0, 0);
+    uint32_t round = add_object(scene, ball(1.0), clear_glass(1.5f, 0), 0, 0, 0);
     check_eye(scene, &round, 1);
     /* Below a sheet that ends nowhere: no majority says inside, and nothing breaks. */
     scene = dark_scene(inside, away);
-    add_body(scene, plane(8), clear_glass(1.33f, 0), 0, 1, 0);
+    add_object(scene, plane(8), clear_glass(1.33f, 0), 0, 1, 0);
     check_eye(scene, NULL, 0);
 }
 
@@ -245,7 +245,7 @@ static void snells_window_is_where_it_should_be(void **state)
     struct scene *scene = dark_scene((double[]){0, -1, 0}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = 2.0f;
     set_sky(scene, 1, 1, 0);
-    add_body(scene, box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
+    add_object(scene, box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
     const struct render_params params = {.width = 101, .height = 101, .depth = 1, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
@@ -326,9 +326,9 @@ static void edges_are_crossed_once(void **state)
         scene->cameras[0].fov_y = (float)FOV;
         set_sky(scene, 1, 1, 1);
         if (way >= 2) /* of lower priority: other surfaces may now be at the same place */
-            add_body(scene, box(0.2, 0.2, 0.2), clear_glass(1.0f, 0), 0, -1, 0);
+            add_object(scene, box(0.2, 0.2, 0.2), clear_glass(1.0f, 0), 0, -1, 0);
         set_rgb(m.absorption, 1, 0.5f, 0);
-        add_body(scene, octahedron ? octahedron_mesh() : box(2, 2, 4), m, 0, 0, octahedron - 1);
+        add_object(scene, octahedron ? octahedron_mesh() : box(2, 2, 4), m, 0, 0, octahedron - 1);
         const struct render_params params = {
             .width = SIDE, .height = SIDE, .depth = 6, .bailout = -1.0};
         struct fixture f = fixture_open(scene, NULL, &params);
@@ -372,8 +372,8 @@ static struct image liquid_picture(double overlap, uint32_t glass_priority, doub
     scene->cameras[0].fov_y = 0.55f;
     set_sky(scene, 0.2f, 0.5f, 0.1f);
     scene->contact = (float)contact;
-    add_body(scene, lathe(glass, 6, 48), clear_glass(1.5f, glass_priority), 0, 0, 0);
-    add_body(scene, lathe(liquid, 4, 48), clear_glass((float)ior, 0), 0, 0, 0);
+    add_object(scene, lathe(glass, 6, 48), clear_glass(1.5f, glass_priority), 0, 0, 0);
+    add_object(scene, lathe(liquid, 4, 48), clear_glass((float)ior, 0), 0, 0, 0);
     add_coordinate_wall(scene, -3, 4);
     const struct render_params params = {.width = 64, .height = 64, .depth = 12, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
