@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/array.h"
 #include "base/file.h"
@@ -10,7 +11,7 @@
 #define FILE_BYTES_MOST ((uint64_t)1 << 30)
 #define SIDE_MOST       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
 
-/* .exr and .pfm: grey spreads to RGB, alpha is dropped. */
+/* .hdr, .exr and .pfm: grey spreads to RGB, alpha is dropped. */
 static whit_result read_image(const struct log *log, const char *path, struct picture *out)
 {
     struct image image = {0};
@@ -59,8 +60,7 @@ static whit_result linearize(const struct log *log, const char *path, struct pic
     return WHIT_OK;
 }
 
-static whit_result read_picture(const struct log *log, const char *path, bool linear,
-                                struct picture *out, uint64_t *file_bytes)
+static whit_result read_picture(const struct log *log, const char *path, struct picture *out)
 {
     uint8_t *data = NULL;
     size_t size_bytes = 0;
@@ -68,14 +68,19 @@ static whit_result read_picture(const struct log *log, const char *path, bool li
     whit_result result = file_read(log, path, FILE_BYTES_MOST, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    *file_bytes = size_bytes;
-    result = picture_decode(data, size_bytes, linear, out, &reason);
+    result = picture_decode(data, size_bytes, out, &reason);
     free(data);
     if (result != WHIT_OK)
         log_error(log, "%s: %s", path, reason);
-    else if (!linear)
+    else
         result = linearize(log, path, out);
     return result;
+}
+
+static uint64_t bytes_of(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (uint64_t)info.st_size : 0;
 }
 
 whit_result load_environment(struct scene *scene, const char *path)
@@ -83,7 +88,6 @@ whit_result load_environment(struct scene *scene, const char *path)
     const struct log *log = &scene->log;
     char extension[16];
     struct picture picture = {0};
-    uint64_t file_bytes = 0;
     whit_result result = WHIT_ERROR_MEMORY;
     char *found = picture_find(path);
     if (!found) {
@@ -91,10 +95,11 @@ whit_result load_environment(struct scene *scene, const char *path)
         return result;
     }
     path_extension(found, extension, sizeof extension);
-    if (strcmp(extension, "exr") == 0 || strcmp(extension, "pfm") == 0)
+    if (strcmp(extension, "hdr") == 0 || strcmp(extension, "exr") == 0 ||
+        strcmp(extension, "pfm") == 0)
         result = read_image(log, found, &picture);
     else
-        result = read_picture(log, found, strcmp(extension, "hdr") == 0, &picture, &file_bytes);
+        result = read_picture(log, found, &picture);
     if (result != WHIT_OK)
         goto fail;
     if (!picture_shrink(&picture, SIDE_MOST)) {
@@ -114,7 +119,7 @@ whit_result load_environment(struct scene *scene, const char *path)
         .name = found,
     };
     scene->has_environment = true;
-    scene->file_bytes += file_bytes;
+    scene->file_bytes += bytes_of(sky->name);
     return WHIT_OK;
 fail:
     picture_finish(&picture);

@@ -10,22 +10,31 @@
 #include "base/array.h"
 #include "base/file.h"
 
-/* stb_image does not always say so. */
-static _Thread_local bool lacks_memory;
+/* stb_image does not always say so. Blocks over the limit are refused: of a PNG it believes every
+   length. */
+static _Thread_local bool lacks_memory, over_limit;
+static _Thread_local uint64_t block_bytes_most;
 
-static void *taken(void *memory)
+static void *take_block(void *block, size_t bytes)
 {
+    if (bytes > block_bytes_most) {
+        over_limit = true;
+        return NULL;
+    }
+    void *memory = realloc(block, bytes);
     lacks_memory |= !memory;
     return memory;
 }
 
-#define STBI_MALLOC(bytes)         taken(malloc(bytes))
-#define STBI_REALLOC(block, bytes) taken(realloc(block, bytes))
+#define STBI_MALLOC(bytes)         take_block(NULL, bytes)
+#define STBI_REALLOC(block, bytes) take_block(block, bytes)
 #define STBI_FREE(block)           free(block)
 #define STBI_NO_STDIO
 #define STBI_NO_PIC
 #define STBI_NO_PSD
 #define STBI_NO_PNM
+#define STBI_NO_HDR /* it never ends on a row that is cut short; image/ reads them */
+#define STBI_NO_LINEAR
 #define STBI_MAX_DIMENSIONS 16384
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -42,10 +51,39 @@ static void *taken(void *memory)
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
-/* 8192 x 8192: what a small file can make us allocate. */
-#define PIXELS_MOST ((uint64_t)1 << 26)
+#define PIXELS_MOST     ((uint64_t)1 << 26)
+/* Decoders believe what a header says and allocate it. No format makes more of its bytes than PNG
+   can: deflate 1032 bytes of one, of 8 pixels each. */
+#define PIXELS_FREE     ((uint64_t)1 << 16)
+#define PIXELS_PER_BYTE ((uint64_t)8 * 1032)
 
-whit_result picture_decode(const uint8_t *data, size_t size_bytes, bool linear, struct picture *out,
+static uint64_t pixels_most(size_t size_bytes)
+{
+    return PIXELS_FREE + PIXELS_PER_BYTE * size_bytes;
+}
+
+static const char too_many[] = "its header tells of more than there is in it";
+
+static const char *why_too_large(int width, int height, size_t size_bytes)
+{
+    uint64_t pixels = (uint64_t)width * (uint64_t)height;
+    if (pixels > PIXELS_MOST)
+        return "it has more than 2^26 pixels";
+    return pixels > pixels_most(size_bytes) ? too_many : NULL;
+}
+
+/* Of a PNG chunk that it does not know stb_image repeats the name, whatever its bytes. */
+static const char *failure_reason(void)
+{
+    const char *reason = stbi_failure_reason();
+    for (const char *at = reason; at && *at; ++at) {
+        if (*at < ' ' || *at > '~')
+            return "damaged";
+    }
+    return reason && *reason ? reason : "damaged";
+}
+
+whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
                            const char **reason)
 {
     *out = (struct picture){0};
@@ -53,19 +91,19 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, bool linear, 
     if (size_bytes > INT_MAX)
         return WHIT_ERROR_INPUT;
     int size = (int)size_bytes, width, height, channels;
+    /* 16 bits of 4 channels, in a buffer that grows by doubling. */
+    block_bytes_most = 16 * pixels_most(size_bytes);
+    lacks_memory = over_limit = false;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return WHIT_ERROR_INPUT;
-    if (width <= 0 || height <= 0 || (uint64_t)width * (uint64_t)height > PIXELS_MOST) {
-        *reason = "it has more than 2^26 pixels";
+    const char *too_large = why_too_large(width, height, size_bytes);
+    if (width <= 0 || height <= 0 || too_large) {
+        *reason = too_large ? too_large : "it is empty";
         return WHIT_ERROR_INPUT;
     }
-    lacks_memory = false;
-    if (linear)
-        out->rgb = stbi_loadf_from_memory(data, size, &width, &height, &channels, 3);
-    else
-        out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
-    if (!out->rgb && !out->rgba) {
-        *reason = stbi_failure_reason() ? stbi_failure_reason() : "damaged";
+    out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
+    if (!out->rgba) {
+        *reason = over_limit ? too_many : failure_reason();
         if (!lacks_memory)
             return WHIT_ERROR_INPUT;
         *reason = "out of memory";

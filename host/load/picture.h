@@ -16,10 +16,11 @@ struct picture {
     float *rgb;    /* 3 a pixel, linear, or NULL */
 };
 
-/* From the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame), or with `linear` a Radiance
-   HDR. WHIT_ERROR_INPUT fills `reason` and logs nothing. */
-WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, bool linear,
-                                      struct picture *out, const char **reason);
+/* `rgba` from the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame). A file whose header
+   tells of more pixels than its bytes could hold in any of these formats is refused before memory
+   is asked for. WHIT_ERROR_INPUT fills `reason` and logs nothing. */
+WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
+                                      const char **reason);
 /* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
 bool picture_shrink(struct picture *picture, uint32_t side_most);
 void picture_finish(struct picture *picture);

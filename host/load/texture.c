@@ -32,7 +32,7 @@ static whit_result decode_file(struct scene *scene, const char *path, struct pic
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;
-    result = picture_decode(data, size_bytes, false, picture, reason);
+    result = picture_decode(data, size_bytes, picture, reason);
     free(data);
     return result;
 }
@@ -75,7 +75,7 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
         free(name);
         return WHIT_OK;
     }
-    whit_result result = data ? picture_decode(data, size_bytes, false, &picture, &why)
+    whit_result result = data ? picture_decode(data, size_bytes, &picture, &why)
                               : decode_file(scene, name, &picture, &why);
     if (result == WHIT_ERROR_MEMORY)
         goto fail;
