@@ -103,16 +103,18 @@ whit_result pfm_load(const struct image_source *source, struct image *image)
         log_error(source->log, "%s: the PFM header is damaged", source->path);
         return WHIT_ERROR_INPUT;
     }
+    /* Before memory is asked for; what overflows here is refused there. */
+    uint64_t needed_bytes = size[0] * size[1] * channels * 4;
+    bool countable = size[0] <= IMAGE_SIDE_MAX && size[1] <= IMAGE_SIDE_MAX;
+    if (countable && source->size_bytes - at < needed_bytes) {
+        log_error(source->log, "%s: cut short: %zu of %llu bytes of pixels", source->path,
+                  source->size_bytes - at, (unsigned long long)needed_bytes);
+        return WHIT_ERROR_INPUT;
+    }
     whit_result result = image_init_loaded(source, image, size[0], size[1], channels, false);
     if (result != WHIT_OK)
         return result;
     size_t row_values = (size_t)image->width * channels;
-    size_t needed_bytes = row_values * image->height * 4;
-    if (source->size_bytes - at < needed_bytes) {
-        log_error(source->log, "%s: cut short: %zu of %zu bytes of pixels", source->path,
-                  source->size_bytes - at, needed_bytes);
-        return WHIT_ERROR_INPUT;
-    }
     const uint8_t *from = source->data + at;
     for (uint32_t y = image->height; y-- > 0;) {
         float *row = image->pixels + y * row_values;

@@ -246,9 +246,28 @@ static bool begin_read(struct job *job, const struct image_source *source)
     return false;
 }
 
+/* libpng allocates a whole chunk before it finds the file cut short; pixels it reads piece by
+   piece. */
+static void check_chunks(struct job *job)
+{
+    enum { MAGIC = 8, HEAD = 8, TAIL = 4 };
+    const struct image_source *source = job->source;
+    for (size_t at = MAGIC; at < source->size_bytes && source->size_bytes - at >= HEAD;) {
+        const uint8_t *head = source->data + at;
+        size_t left = source->size_bytes - at - HEAD, bytes = png_get_uint_32(head);
+        bool fits = left >= TAIL && bytes <= left - TAIL;
+        if (!fits && memcmp(head + 4, "IDAT", 4) != 0)
+            png_error(job->png, "the file is cut short");
+        if (!fits || memcmp(head + 4, "IEND", 4) == 0)
+            return;
+        at += HEAD + bytes + TAIL;
+    }
+}
+
 static void read_info(struct job *job)
 {
     enum { CHUNK_BYTES_MAX = 16 << 20, CHUNK_COUNT_MAX = 1000 };
+    check_chunks(job);
     png_set_read_fn(job->png, job, read_data);
     png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
     png_set_chunk_malloc_max(job->png, CHUNK_BYTES_MAX);
@@ -301,9 +320,23 @@ static void decode_16(const uint8_t *from, struct image *image)
     }
 }
 
+/* A file is not believed that tells of more than deflate could have made of its bytes, 1032 of each
+   at best. */
+static void check_amount(struct job *job)
+{
+    enum { DEFLATE_MOST = 1032 };
+    uint64_t depth = png_get_bit_depth(job->png, job->info);
+    uint64_t bits = (uint64_t)png_get_image_width(job->png, job->info) * depth *
+                    png_get_channels(job->png, job->info);
+    uint64_t bytes = (bits + 7) / 8 * png_get_image_height(job->png, job->info);
+    if (bytes / DEFLATE_MOST > job->source->size_bytes)
+        png_error(job->png, "the file is cut short");
+}
+
 static void read_picture(struct job *job, struct image *image)
 {
     read_info(job);
+    check_amount(job);
     set_transforms(job);
     job->result = image_init_loaded(job->source, image, png_get_image_width(job->png, job->info),
                                     png_get_image_height(job->png, job->info),
