@@ -371,6 +371,18 @@ static bool triangles_match(const struct view *view, const struct mesh_user *use
     return true;
 }
 
+/* Without a tree: every primitive, in the order of the input. */
+static bool bare_check(const struct view *view)
+{
+    if (view->slot_count != view->primitive_count)
+        REFUSE(view, "records of other primitives; count", view->slot_count);
+    for (uint32_t i = 0; i < view->slot_count; ++i) {
+        if (view->primitive(view->user, view->first_slot + i) != i)
+            REFUSE(view, "a record is out of order", view->first_slot + i);
+    }
+    return true;
+}
+
 static whit_result parts_check(const struct view *view, const struct accel *accel)
 {
     if (!view->split)
@@ -411,7 +423,8 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
     }
     if (accel->no_trees) {
         bool bare = stated(&view, "number of nodes", m->node_count, 0) &&
-                    stated(&view, "root", m->root, BVH_EMPTY_REF) && triangles_match(&view, &user);
+                    stated(&view, "root", m->root, BVH_EMPTY_REF) && bare_check(&view) &&
+                    triangles_match(&view, &user);
         return bare ? WHIT_OK : WHIT_ERROR_FAILED;
     }
     struct walk found;
@@ -504,8 +517,21 @@ static whit_result validate_flat(const struct accel *accel)
         .box = mesh_primitive_box,
         .user = &user,
     };
+    if (m->node_count > accel->node_count || m->record_count != accel->record_count ||
+        m->triangle_count > m->record_count) {
+        refuse(&view, "its nodes or records are out of range; records", m->record_count);
+        return WHIT_ERROR_FAILED;
+    }
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        if (accel->instances[i].mesh != accel->scene->instances[i].mesh) {
+            refuse(&view, "an instance does not refer to its mesh", i);
+            return WHIT_ERROR_FAILED;
+        }
+    }
     struct walk found = {0};
-    whit_result result = accel->no_trees ? WHIT_OK : view_check(&view, &found);
+    whit_result result = !accel->no_trees    ? view_check(&view, &found)
+                         : bare_check(&view) ? WHIT_OK
+                                             : WHIT_ERROR_FAILED;
     if (result != WHIT_OK)
         return result;
     uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
