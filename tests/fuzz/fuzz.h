@@ -1,0 +1,49 @@
+/* What the fuzz targets share. Each target is one file that fills in `fuzz_target`; fuzz.c holds
+   the entry point that libFuzzer calls, replay.c a main() that runs files through it instead. */
+#ifndef TESTS_FUZZ_H
+#define TESTS_FUZZ_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+struct scene;
+
+struct fuzz_target {
+    /* One input, exactly size_bytes long for sanitizers. What is wrong is told by fuzz_check. */
+    void (*run)(const uint8_t *data, size_t size_bytes);
+    /* What an input may have allocated at a time, beyond ten times its size. Watched where
+       AddressSanitizer is built in. */
+    uint64_t memory_bytes;
+    void (*prepare)(void); /* once, before the first input; may be NULL */
+};
+extern const struct fuzz_target fuzz_target;
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size_bytes);
+
+/* Prints the text and aborts, which is how libFuzzer learns of a finding. */
+void fuzz_check(bool good, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Writes a file of the run's own folder, in place of the one that was there, and gives its path. */
+const char *fuzz_file(const char *name, const void *data, size_t size_bytes);
+
+/* Counts errors and keeps the last one; every message is formatted. */
+extern const struct log fuzz_log;
+void fuzz_log_clear(void);
+const char *fuzz_log_last(void); /* "" when there was none since */
+/* A call that ended with `result` kept the promise about errors: none on success, else one, which
+   names `path`, or where that is NULL any file by its whole path. Running out of memory is a
+   finding: no input is large enough for it. */
+void fuzz_check_errors(whit_result result, const char *path);
+
+/* Loads a file by its name's extension. A scene that comes out can be given trees that the
+   validator accepts. */
+void fuzz_load(const char *path);
+void fuzz_check_trees(const struct scene *scene);
+
+/* Gives a saved tree the size and the checksum that fit, as who damages it on purpose would. */
+void fuzz_sign_tree(uint8_t *file, size_t size_bytes);
+
+#endif

@@ -1,0 +1,62 @@
+/* A batch of rays of any bits: on the CPU every ray ends, and finds by tree what it finds without.
+ */
+#include "fuzz.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "trees.h"
+
+enum { KIND_COUNT = FUZZ_SCENE_COUNT, BUILD_COUNT = 2, RAYS_MOST = 64, HITS_MOST = 64 };
+
+static struct accel *accels[KIND_COUNT][BUILD_COUNT + 1];
+
+static void prepare(void)
+{
+    static const uint32_t builds[BUILD_COUNT] = {0, 3};
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        struct scene *scene = fuzz_scene_make((enum fuzz_scene)kind);
+        for (int i = 0; i <= BUILD_COUNT; i++) {
+            struct accel_params params = {.validate = true, .flatten = i == BUILD_COUNT};
+            params.mesh = fuzz_bvh_params(i < BUILD_COUNT ? builds[i] : 0);
+            params.instances.thread_count = 1;
+            fuzz_check(accel_create(&fuzz_log, scene, &params, &accels[kind][i]) == WHIT_OK,
+                       "no trees");
+        }
+    }
+}
+
+/* One hit behind the other: each is farther, or the next one in the order of ties. */
+static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
+{
+    struct gpu_hit hit, before;
+    uint32_t status = 0;
+    traverse_next_float(accel, ray, NULL, &hit, &status);
+    for (int i = 0; i < HITS_MOST && hit.primitive != HIT_NONE; i++) {
+        before = hit;
+        traverse_next_float(accel, ray, &before, &hit, &status);
+        fuzz_check(hit.primitive == HIT_NONE || hit.t >= before.t, "%a behind %a", (double)hit.t,
+                   (double)before.t);
+        fuzz_check(memcmp(&hit, &before, sizeof hit) != 0, "the same hit again, at %a",
+                   (double)hit.t);
+    }
+    fuzz_check(status == 0, "status %#x", status);
+}
+
+/* The first byte says where; then records as in a file of rays. */
+static void run(const uint8_t *data, size_t size_bytes)
+{
+    if (size_bytes == 0)
+        return;
+    const struct accel *accel = accels[data[0] % KIND_COUNT][data[0] / KIND_COUNT % 3];
+    size_t count = (size_bytes - 1) / sizeof(struct gpu_ray);
+    for (size_t i = 0; i < count && i < RAYS_MOST; i++) {
+        struct gpu_ray ray;
+        memcpy(&ray, data + 1 + i * sizeof ray, sizeof ray);
+        fuzz_check_ray(accel, &ray);
+        check_sequence(accel, &ray);
+    }
+}
+
+const struct fuzz_target fuzz_target = {
+    .run = run, .prepare = prepare, .memory_bytes = UINT64_C(1) << 20};
