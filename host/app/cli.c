@@ -174,6 +174,7 @@ void cli_catch_interrupts(void)
     sigfillset(&action.sa_mask);
     sigaction(SIGALRM, &action, NULL);
     has_grace_timer = timer_create(CLOCK_MONOTONIC, &event, &grace_timer) == 0;
+    signal(SIGXFSZ, SIG_IGN); /* a file over `ulimit -f` is an error of writing it */
     action.sa_handler = on_interrupt;
     sigaction(SIGTERM, &action, NULL);
     /* Also where it was ignored, as in background jobs of scripts: who sends it there means it. */

@@ -209,13 +209,26 @@ whit_result file_write_begin(const struct log *log, const char *path, struct fil
     return reason == ENOMEM ? WHIT_ERROR_MEMORY : WHIT_ERROR_OUTPUT;
 }
 
+/* Of a stream where something was not written earlier: what is wrong, as another byte tells, for
+   nobody looked then. The file is lost anyway. */
+static int reason_again(FILE *stream)
+{
+    clearerr(stream);
+    errno = 0;
+    if (fputc(0, stream) != EOF && fflush(stream) == 0)
+        return EIO;
+    return errno ? errno : EIO;
+}
+
 /* 0, or the errno of the first thing that went wrong. */
 static int flush_and_close(struct file_write *file)
 {
     int reason = 0;
     errno = 0;
-    if (fflush(file->stream) != 0 || ferror(file->stream))
+    if (fflush(file->stream) != 0)
         reason = errno ? errno : EIO;
+    else if (ferror(file->stream))
+        reason = reason_again(file->stream);
     /* Before the rename, or a power cut could leave the new name on no data. */
     if (!reason && file->temporary_path && fsync(fileno(file->stream)) != 0 && errno != EINVAL)
         reason = errno;

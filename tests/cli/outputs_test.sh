@@ -1,0 +1,89 @@
+#!/bin/sh
+# Outputs that cannot be written: exit code 2, one line that names the file, the old one kept, and
+# nothing left beside it. What runs out of space in the middle too.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/files"
+cd "$OUT/files" || exit 1
+ZERO='\000\000\000\000'
+printf "\000\000\000\076\000\000\200\100$ZERO$ZERO$ZERO\000\000\200\277$ZERO\000\000\200\177" >"$OUT/ray"
+for i in 0 1 2 3 4 5 6 7 8 9; do
+    cat "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray"
+done >"$OUT/rays"
+
+# one_option EXTENSION ARGUMENT...: with the name of an output behind the last argument. ok.pfm may
+# be written besides.
+one_option() {
+    end=$1
+    shift
+    option="$1 ... $(for last; do :; done; echo "$last")"
+    mkdir "folder$end"
+    echo old >file
+    refuse 2 "$option: no such folder" "nowhere/x$end: cannot write: No such" "$@" "nowhere/x$end"
+    refuse 2 "$option: a folder" "folder$end: cannot write: Is a directory" "$@" "folder$end"
+    refuse 2 "$option: a file for a folder" "file/x$end: cannot write: Not a dir" "$@" "file/x$end"
+    refuse 2 "$option: too long a name" "xx$end: cannot write: File name too long" \
+        "$@" "$(printf '%0300d' 0 | tr 0 x)$end"
+    if [ -c /dev/full ]; then
+        ln -s /dev/full "full$end"
+        refuse 2 "$option: a full device" "full$end: cannot write: No space" "$@" "full$end"
+        rm "full$end"
+    fi
+    echo old >"x$end"
+    (
+        ulimit -f 1 # of 512 or 1024 bytes, by shell
+        "$WHIT" "$@" "x$end" >"$OUT/stdout" 2>"$OUT/stderr"
+    )
+    status=$?
+    check "$option: no space left: exit code 2 (got $status)" test $status -eq 2
+    check "$option: says which file" grep -q "^whit: error: .*x$end: cannot write: " "$OUT/stderr"
+    check "$option: in one line" test "$(grep -c . "$OUT/stderr")" -eq 1
+    check "$option: the old file is there" test "$(cat "x$end")" = old
+    rmdir "folder$end"
+    rm -f "x$end" file ok.pfm
+    check "$option: nothing is left" is_empty .
+}
+
+small="--size 96x64 --quiet"
+for end in .png .exr .pfm; do
+    # shellcheck disable=SC2086
+    one_option $end render "$CUBE" $small -o
+done
+# shellcheck disable=SC2086
+one_option .exr render "$CUBE" $small -o ok.pfm --ids
+# shellcheck disable=SC2086
+one_option .png render "$CUBE" $small --view visits -o
+one_option "" trace "$CUBE" --rays "$OUT/rays" --on cpu --quiet -o
+one_option "" scene "$SCENES/spin.json" --quiet --triangles
+one_option .bvh bvh "$SCENES/spin.json" --no-trace --runs 1 --threads 1 --build median --save
+
+refuse 2 "bench --json: no such folder" "nowhere/x: cannot write: No such" \
+    bench report --quick --scenes "$SCENES" --json nowhere/x
+mkdir folder
+refuse 2 "bench --json: a folder" "folder: cannot write: Is a directory" \
+    bench report --quick --scenes "$SCENES" --json folder
+rmdir folder
+
+# In a sequence, frames before the one that fails stay.
+mkdir p.1.pfm
+# shellcheck disable=SC2086
+expect 2 "the second of two frames" render "$SCENES/spin.json" --frames 0-1 --size 96x64 -o p.#.pfm
+check "says which" grep -q "^whit: error: p.1.pfm: cannot write: Is a directory" "$OUT/stderr"
+check "says how many there are" grep -q "1 of 2 frames were written" "$OUT/stderr"
+check "the first is whole" test "$(head -c 2 p.0.pfm)" = PF
+rm -r p.0.pfm p.1.pfm
+
+# Standard output.
+if [ -c /dev/full ]; then
+    for command in "scene $CUBE" "scene $CUBE --json" "devices --json" "bvh $CUBE --no-trace --runs 1" \
+        "render --help" "render $CUBE --size 8x8 -o ok.pfm --stats json" "--version"; do
+        # shellcheck disable=SC2086
+        "$WHIT" $command >/dev/full 2>"$OUT/stderr"
+        status=$?
+        check "$command to a full device: exit code 2 (got $status)" test $status -eq 2
+        check "$command: says so" \
+            grep -q "^whit: error: standard output: cannot write: No space" "$OUT/stderr"
+    done
+    rm -f ok.pfm
+fi
+check "nothing is left" is_empty .
+finish

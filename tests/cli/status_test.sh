@@ -1,0 +1,106 @@
+#!/bin/sh
+# What a kernel reports is exit code 1 and one line, and no picture: sh status_test.sh WHIT SCENES
+# SMALL_STACKS. The last is a whit whose stacks are too small, which nothing else makes overflow.
+. "$(dirname "$0")/common.sh"
+SMALL=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
+mkdir "$OUT/pictures"
+cd "$OUT/pictures" || exit 1
+
+# distrust WHAT PATTERN ARGUMENT...: the render is refused and leaves the old picture.
+distrust() {
+    whom=$1
+    report=$2
+    shift 2
+    echo old >p.exr
+    refuse 1 "$whom" "the result is not to be trusted: .*$report" render "$@" -o p.exr --quiet
+    check "$whom: the old picture is there" test "$(cat p.exr)" = old
+    check "$whom: nothing else is" test "$(ls -A)" = p.exr
+}
+
+# A mirror of 10^12 in a mirror of 10^12 in a mirror of 10^12, in a sky of 10^12.
+cat >"$OUT/mirrors.json" <<END
+{ "environment": 1e12, "ambient": 0, "camera": { "eye": [0.01, 0, 0], "target": [1, 0, 0], "fov": 20 },
+  "lights": [{ "kind": "directional", "direction": [0, -1, 0], "intensity": 1e-6 }],
+  "materials": { "m": { "diffuse": 0, "reflection": 1e12 } },
+  "objects": [
+    { "shape": "box", "size": [0.1, 9, 9], "translation": [2, 0, 0], "material": "m" },
+    { "shape": "box", "size": [0.1, 9, 9], "translation": [-2, 0, 0], "material": "m" } ] }
+END
+where="radiance is not finite: in [1-9][0-9]* pixels so far, the first at [0-9]*,[0-9]*$"
+for options in "" "--aa 4" "--aa adaptive:0.1" "--no-bvh" "--effects all"; do
+    # shellcheck disable=SC2086
+    distrust "infinite radiance $options" "$where" "$OUT/mirrors.json" --size 16x16 $options
+done
+expect 0 "the same mirrors without a second bounce" \
+    render "$OUT/mirrors.json" -o p.exr --size 16x16 --depth 1 --quiet
+rm p.exr
+
+# Glass in glass in glass: eight media are what a ray's list holds.
+nest() {
+    awk -v n="$1" 'BEGIN {
+        printf "{ \"environment\": 1, \"camera\": { \"eye\": [0, 0, 20], \"target\": [0, 0, 0] },"
+        printf "\"materials\": {"
+        for (i = 0; i < n; ++i)
+            printf "%s\"g%d\": { \"diffuse\": 0, \"transmission\": 1, \"ior\": %g }", i ? "," : "", i, 1.1 + i / 50
+        printf "}, \"objects\": ["
+        for (i = 0; i < n; ++i)
+            printf "%s{ \"shape\": \"box\", \"size\": %g, \"material\": \"g%d\" }", i ? "," : "", 9 - i / 2, i
+        printf "] }" }'
+}
+nest 9 >"$OUT/nine.json"
+distrust "nine media" "more media at once" "$OUT/nine.json" --size 8x8 --depth 20
+nest 8 >"$OUT/eight.json"
+expect 0 "eight media" render "$OUT/eight.json" -o p.exr --size 8x8 --depth 20 --quiet
+rm p.exr
+
+# More points of lights than a driver lets a loop have turns: lavapipe 65,535.
+awk 'BEGIN {
+    printf "{ \"camera\": { \"eye\": [0, 2, 3], \"target\": [0, 0, 0] }, \"lights\": ["
+    for (i = 0; i < 1100; ++i)
+        printf "%s{ \"kind\": \"rectangle\", \"position\": [0, 2, 0], \"u\": [1, 0, 0], \"v\": [0, 0, 1] }", i ? "," : ""
+    printf "], \"objects\": [{ \"shape\": \"plane\", \"size\": 4 }] }" }' >"$OUT/lights.json"
+distrust "too many points of lights" "a loop over lights was cut short" \
+    "$OUT/lights.json" --size 8x8 --no-shadows --light-samples 64
+expect 0 "fewer points" \
+    render "$OUT/lights.json" -o p.exr --size 8x8 --no-shadows --light-samples 1 --quiet
+rm p.exr
+
+# More nodes on the way of a ray than that. From the other end it meets the nearest first.
+awk 'BEGIN {
+    n = 40000
+    for (i = 0; i < n; ++i)
+        printf "v -1 -1 %d\nv 1 -1 %d\nv 0 1 %d\n", i, i, i
+    for (i = 0; i < n; ++i)
+        printf "f %d %d %d\n", 3 * i + 1, 3 * i + 2, 3 * i + 3 }' >"$OUT/pile.obj"
+camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001"
+# shellcheck disable=SC2086
+distrust "too many nodes" "a traversal was cut short" \
+    "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --no-shadows $camera
+# shellcheck disable=SC2086
+expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --no-shadows $camera --quiet
+rm p.exr
+
+# The same by `trace`: a ray from z = 65536 the way -z. The twin on the CPU has no such limit.
+ZERO='\000\000\000\000'
+printf "$ZERO$ZERO\000\000\200\107$ZERO$ZERO$ZERO\000\000\200\277\000\000\200\177" >"$OUT/ray"
+echo old >p.exr
+refuse 1 "trace through too many nodes" "not to be trusted: a traversal was cut short" \
+    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet
+check "leaves the old hits" test "$(cat p.exr)" = old
+expect 0 "on the CPU" \
+    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet --on cpu
+check "gives a hit" test "$(wc -c <p.exr)" -eq 32
+rm p.exr
+
+WHIT=$SMALL
+expect 0 "stacks as they should be" render "$SCENES/default.json" -o p.exr --size 32x24 --quiet
+SMALL_STACKS=nodes
+export SMALL_STACKS
+distrust "a small node stack" "the node stack overflowed" "$SCENES/default.json" --size 32x24
+SMALL_STACKS=rays
+distrust "a small ray stack" "the ray stack overflowed" "$SCENES/default.json" --size 32x24
+SMALL_STACKS=nodes
+refuse 1 "trace with a small node stack" "not to be trusted: the node stack overflowed" \
+    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --quiet
+check "leaves the old hits" test "$(cat p.exr)" = old
+finish

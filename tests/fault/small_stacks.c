@@ -1,0 +1,32 @@
+/* Linked into a whit of its own (--wrap): of the kind that SMALL_STACKS names, stacks hold one entry.
+   They are as deep as a scene needs, so that nothing else makes them overflow. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/renderer.h"
+
+uint32_t __real_accel_stack_size(const struct accel *accel);
+uint32_t __wrap_accel_stack_size(const struct accel *accel);
+whit_result __real_media_frame(struct renderer *renderer);
+whit_result __wrap_media_frame(struct renderer *renderer);
+
+static bool is_small(const char *which)
+{
+    const char *value = getenv("SMALL_STACKS");
+    return value && strcmp(value, which) == 0;
+}
+
+uint32_t __wrap_accel_stack_size(const struct accel *accel)
+{
+    uint32_t size = __real_accel_stack_size(accel);
+    return is_small("nodes") ? 1 : size;
+}
+
+/* The last thing that is put into the frame. */
+whit_result __wrap_media_frame(struct renderer *renderer)
+{
+    whit_result result = __real_media_frame(renderer);
+    if (is_small("rays"))
+        renderer->frame.stack_size = 1;
+    return result;
+}
