@@ -1,8 +1,11 @@
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "api/handles.h"
+#include "base/platform.h"
+#include "base/threads.h"
 
 static void describe(const struct device_info *from, whit_device_info *to)
 {
@@ -62,25 +65,24 @@ whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint
     return WHIT_OK;
 }
 
-whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
+static whit_result open_device(const whit_device_params *params, const struct log *log,
                                whit_device **out)
 {
     const whit_device_params defaults = {0};
     if (!params)
         params = &defaults;
     *out = NULL;
-    struct log inner = log_from_public(log);
     whit_device *device = calloc(1, sizeof *device);
     if (!device) {
-        log_error(&inner, "out of memory");
+        log_error(log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    device->log = inner;
+    device->log = *log;
     const struct device_params wanted = {
         .selector = params->selector,
         .validation = params->validation,
     };
-    whit_result result = device_create(&inner, &wanted, &device->device);
+    whit_result result = device_create(log, &wanted, &device->device);
     if (result != WHIT_OK) {
         whit_device_destroy(device);
         return result;
@@ -89,11 +91,147 @@ whit_result whit_device_create(const whit_device_params *params, const whit_log 
     return WHIT_OK;
 }
 
+whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
+                               whit_device **out)
+{
+    struct log inner = log_from_public(log);
+    return open_device(params, &inner, out);
+}
+
+/* ---- In a thread ---- */
+
+struct held_message {
+    struct held_message *next;
+    whit_log_level level;
+    char text[];
+};
+
+/* Keeps messages until the caller's thread asks for them; from then on they pass. Calls of `fn` are
+   one at a time (log_message). */
+struct log_relay {
+    struct log to;
+    bool passes, lost; /* lost: no memory to keep one */
+    struct held_message *first, **end;
+};
+
+static void relay_message(void *user, whit_log_level level, const char *text)
+{
+    struct log_relay *relay = user;
+    if (relay->passes) {
+        relay->to.fn(relay->to.user, level, text);
+        return;
+    }
+    size_t bytes = strlen(text) + 1;
+    struct held_message *held = malloc(sizeof *held + bytes);
+    if (!held) {
+        relay->lost = true;
+        return;
+    }
+    held->next = NULL;
+    held->level = level;
+    memcpy(held->text, text, bytes);
+    *relay->end = held;
+    relay->end = &held->next;
+}
+
+static struct log_relay *relay_create(const struct log *to)
+{
+    struct log_relay *relay = calloc(1, sizeof *relay);
+    if (relay) {
+        relay->to = *to;
+        relay->end = &relay->first;
+    }
+    return relay;
+}
+
+static void relay_pass(struct log_relay *relay)
+{
+    for (const struct held_message *held = relay->first; held; held = held->next)
+        log_message(&relay->to, held->level, "%s", held->text);
+    if (relay->lost)
+        log_error(&relay->to, "out of memory");
+    relay->passes = true;
+}
+
+static void relay_destroy(struct log_relay *relay)
+{
+    if (!relay)
+        return;
+    for (struct held_message *held = relay->first, *next; held; held = next) {
+        next = held->next;
+        free(held);
+    }
+    free(relay);
+}
+
+struct whit_device_opening {
+    whit_device_params params;
+    struct log log; /* into the relay */
+    struct log_relay *relay;
+    struct thread *thread;
+    whit_device *device; /* of the thread until it is joined, as is `result` */
+    whit_result result;
+};
+
+/* Loading drivers takes locks that a child forked meanwhile would never see released. */
+static void open_in_thread(void *context)
+{
+    whit_device_opening *opening = context;
+    platform_hold_forks();
+    opening->result = open_device(&opening->params, &opening->log, &opening->device);
+    platform_release_forks();
+}
+
+whit_device_opening *whit_device_open_begin(const whit_device_params *params, const whit_log *log)
+{
+    struct log to = log_from_public(log);
+    whit_device_opening *opening = calloc(1, sizeof *opening);
+    if (!opening)
+        return NULL;
+    if (params)
+        opening->params = *params;
+    opening->relay = relay_create(&to);
+    opening->log = (struct log){.fn = to.fn ? relay_message : NULL, .level = to.level};
+    opening->log.user = opening->relay;
+    if (opening->relay)
+        opening->thread = thread_start(open_in_thread, opening);
+    if (opening->thread)
+        return opening;
+    relay_destroy(opening->relay);
+    free(opening);
+    return NULL;
+}
+
+whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out)
+{
+    thread_join(opening->thread);
+    whit_result result = opening->result;
+    *out = opening->device;
+    relay_pass(opening->relay);
+    if (*out)
+        (*out)->relay = opening->relay;
+    else
+        relay_destroy(opening->relay);
+    free(opening);
+    return result;
+}
+
+void whit_device_open_abandon(whit_device_opening *opening)
+{
+    if (!opening)
+        return;
+    thread_join(opening->thread);
+    whit_device_destroy(opening->device);
+    relay_destroy(opening->relay);
+    free(opening);
+}
+
 void whit_device_destroy(whit_device *device)
 {
     if (!device)
         return;
     device_destroy(device->device);
+    relay_destroy(device->relay);
     free(device);
 }
 

@@ -22,9 +22,12 @@ struct whit_accel {
     struct log log;
 };
 
+struct log_relay; /* device_api.c */
+
 struct whit_device {
     struct device *device;
     struct log log;
+    struct log_relay *relay; /* behind `log` of a device that a thread opened; else NULL */
 };
 
 struct whit_renderer {

@@ -247,14 +247,24 @@ whit_result job_build(struct job *job)
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 
+static whit_device_params device_params(const struct job *job)
+{
+    return (whit_device_params){.selector = job->device_name, .validation = job->validation};
+}
+
+void job_begin_device(struct job *job)
+{
+    const whit_device_params params = device_params(job);
+    job->opening = whit_device_open_begin(&params, &cli_log);
+}
+
 whit_result job_open_device(struct job *job)
 {
-    const whit_device_params params = {
-        .selector = job->device_name,
-        .validation = job->validation,
-    };
+    const whit_device_params params = device_params(job);
     double start_ms = whit_clock_ms();
-    whit_result result = whit_device_create(&params, &cli_log, &job->device);
+    whit_result result = job->opening ? whit_device_open_end(job->opening, &job->device)
+                                      : whit_device_create(&params, &cli_log, &job->device);
+    job->opening = NULL;
     job->device_ms = whit_clock_ms() - start_ms;
     return result == WHIT_OK ? job_still_wanted() : result;
 }
@@ -270,6 +280,7 @@ int job_check_validation(const struct job *job)
 
 void job_finish(struct job *job)
 {
+    whit_device_open_abandon(job->opening);
     whit_device_destroy(job->device);
     whit_accel_destroy(job->accel);
     whit_scene_destroy(job->scene);

@@ -40,7 +40,8 @@ struct job {
     whit_scene *scene;
     whit_accel *accel;
     whit_device *device;
-    double start_ms, load_ms, accel_ms, device_ms;
+    whit_device_opening *opening;
+    double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
 
 enum job_id {
@@ -125,6 +126,9 @@ bool job_option(struct job *job, struct cli_reader *reader, int id);
 /* Checks options against each other, and starts the clock of --time-limit. */
 bool job_options_done(struct job *job, struct cli_reader *reader);
 
+/* Starts to open the device in a thread, for job_open_device to wait for; what fails is said
+   there, and nowhere if the program ends before. */
+void job_begin_device(struct job *job);
 /* Each step before the next one. Failures were said. */
 whit_result job_load(struct job *job);
 whit_result job_build(struct job *job);

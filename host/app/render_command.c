@@ -227,7 +227,7 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
     return WHIT_ERROR_USAGE;
 }
 
-/* Before any device is started. */
+/* Before trees are built. */
 static whit_result check_camera(const struct job *job, const char *wanted)
 {
     double numbers[CAMERA_NUMBERS];
@@ -313,6 +313,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
 static whit_result prepare(struct job *job, const struct render_request *request,
                            struct frames_progress *progress, whit_renderer **renderer)
 {
+    job_begin_device(job);
     whit_result result = job_load(job);
     if (result == WHIT_OK)
         result = check_camera(job, request->picture.camera);

@@ -137,6 +137,8 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
     whit_result result = open_rays(trace);
     if (result == WHIT_OK)
         result = allocate(trace);
+    if (result == WHIT_OK && trace->on == WHIT_TRACE_DEVICE)
+        job_begin_device(job);
     if (result == WHIT_OK)
         result = job_load(job);
     if (result == WHIT_OK) {

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -161,11 +162,24 @@ static void close_channels(struct child *child)
     close_fd(&child->held_fd);
 }
 
+static pthread_rwlock_t fork_lock = PTHREAD_RWLOCK_INITIALIZER;
+
+void platform_hold_forks(void)
+{
+    pthread_rwlock_rdlock(&fork_lock);
+}
+
+void platform_release_forks(void)
+{
+    pthread_rwlock_unlock(&fork_lock);
+}
+
 static bool start(struct child *child, const struct child_limits *limits,
                   int (*fn)(void *user, void *to, child_write write), void *user)
 {
     if (!open_channels(child))
         return false;
+    pthread_rwlock_wrlock(&fork_lock);
     uint64_t already_bytes = mapped_bytes();
     pid_t parent = getpid();
     /* No handler of the parent may run in the child: it would remove the parent's files. */
@@ -181,6 +195,7 @@ static bool start(struct child *child, const struct child_limits *limits,
         int code = fn(user, &writer, write_reply);
         _exit(writer.over ? EXIT_REPLY : code);
     }
+    pthread_rwlock_unlock(&fork_lock);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     close_fd(&child->held_fd);
     return child->pid > 0;

@@ -49,6 +49,11 @@ enum child_end child_run(const struct child_limits *limits,
                          struct child_reply *reply);
 void child_reply_free(struct child_reply *reply);
 
+/* Between these two, child_run of other threads waits with its fork: around foreign code that holds
+   locks, such as loading a library, which a child would find held for ever. */
+void platform_hold_forks(void);
+void platform_release_forks(void);
+
 bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */
 uint64_t platform_peak_memory_bytes(void);

@@ -73,6 +73,15 @@ if [ -c /dev/full ]; then
     "$WHIT" scene "$CUBE" >/dev/full 2>"$OUT/stderr"
     check "standard output on a full disk: exit code 2" test $? -eq 2
 fi
+# The device comes up while the scene loads: whichever fails, one line says so.
+export WHIT_FAULT=vkCreateDevice:1
+refuse 2 "a device that fails" "vkCreateDevice" render "$CUBE" -o fails.png --size 8x8
+refuse 2 "a scene that fails, and a device" "nowhere.json" render nowhere.json -o fails.png
+refuse 2 "a camera that is not there, and a device" "no camera" render "$CUBE" -o fails.png --camera x
+unset WHIT_FAULT
+refuse 3 "a device that is not there" "no Vulkan device" render "$CUBE" -o fails.png --device nobody
+refuse 2 "a scene that fails" "nowhere.json" render nowhere.json -o fails.png
+check "nothing is written then" test ! -e fails.png
 echo old >keep.png
 refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png --camera nobody
 check "leaves the old file alone" test "$(cat keep.png)" = old

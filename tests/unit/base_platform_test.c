@@ -1,14 +1,17 @@
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
 #include "base/clock.h"
 #include "base/platform.h"
+#include "base/threads.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define HAS_ASAN 1
@@ -44,6 +47,44 @@ static void reply_arrives_whole(void **state)
         child_reply_free(&reply);
         assert_null(reply.data);
     }
+}
+
+static atomic_bool forks_are_held;
+
+static void hold_forks_for_a_while(void *context)
+{
+    atomic_bool *holds = context;
+    const struct timespec while_held = {.tv_nsec = 200 * 1000 * 1000};
+    platform_hold_forks();
+    atomic_store(&forks_are_held, true);
+    atomic_store(holds, true);
+    nanosleep(&while_held, NULL);
+    atomic_store(&forks_are_held, false);
+    platform_release_forks();
+}
+
+/* The child tells what it saw at its start. */
+static int reply_held(void *user, void *to, child_write write)
+{
+    (void)user;
+    uint8_t held = atomic_load(&forks_are_held);
+    return write(to, &held, sizeof held) ? 0 : 3;
+}
+
+static void no_child_while_forks_are_held(void **state)
+{
+    (void)state;
+    atomic_bool holds = false;
+    struct child_reply reply;
+    struct thread *thread = thread_start(hold_forks_for_a_while, &holds);
+    assert_non_null(thread);
+    while (!atomic_load(&holds))
+        continue;
+    assert_int_equal(child_run(&ordinary, reply_held, NULL, &reply), CHILD_DONE);
+    assert_int_equal(reply.size_bytes, 1);
+    assert_int_equal(reply.data[0], 0);
+    child_reply_free(&reply);
+    thread_join(thread);
 }
 
 static void reply_limit_is_exact(void **state)
@@ -214,6 +255,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reply_arrives_whole),
+        cmocka_unit_test(no_child_while_forks_are_held),
         cmocka_unit_test(reply_limit_is_exact),
         cmocka_unit_test(exit_codes_arrive),
         cmocka_unit_test(crashes_are_told_apart),
