@@ -1,0 +1,390 @@
+/* Boxes where they are hardest: a box that a ray does enter, by exact arithmetic, must be entered.
+ */
+#include "hard_fixture.h"
+
+#include <gmp.h>
+
+/* Of each kind; docs/numerics.md quotes a build with more. */
+#ifndef HARD_RAYS
+#define HARD_RAYS 70000
+#endif
+
+/* ---- By exact arithmetic ---- */
+
+/* (a - b) c, three floats. */
+struct product {
+    double a, b, c;
+};
+
+static void set_product(mpq_t out, const struct product *p)
+{
+    mpq_t part;
+    mpq_init(part);
+    mpq_set_d(out, p->a);
+    mpq_set_d(part, p->b);
+    mpq_sub(out, out, part);
+    mpq_set_d(part, p->c);
+    mpq_mul(out, out, part);
+    mpq_clear(part);
+}
+
+/* left <= right. In double each product is off by two roundings, their difference by one. */
+static bool not_above(struct product left, struct product right)
+{
+    double l = (left.a - left.b) * left.c, r = (right.a - right.b) * right.c;
+    if (fabs(l - r) > 0x1p-50 * (fabs(l) + fabs(r)))
+        return l < r;
+    mpq_t exact[2];
+    mpq_inits(exact[0], exact[1], NULL);
+    set_product(exact[0], &left);
+    set_product(exact[1], &right);
+    bool result = mpq_cmp(exact[0], exact[1]) <= 0;
+    mpq_clears(exact[0], exact[1], NULL);
+    return result;
+}
+
+/* Whether the ray is in the closed box somewhere in [t_min, t_max], finite numbers. All planes are
+   at distances (plane - origin) / dir, compared crosswise. */
+static bool enters_exactly(const struct gpu_ray *ray, const float lo[3], const float hi[3],
+                           float t_min, float t_max)
+{
+    struct product near[3], far[3];
+    int count = 0;
+    for (int k = 0; k < 3; ++k) {
+        double o = (double)ray->origin[k], d = (double)ray->dir[k];
+        if (d == 0.0 && !((double)lo[k] <= o && o <= (double)hi[k]))
+            return false;
+        if (d == 0.0)
+            continue;
+        double sign = d < 0.0 ? -1.0 : 1.0;
+        double first = (double)(d < 0.0 ? hi[k] : lo[k]), last = (double)(d < 0.0 ? lo[k] : hi[k]);
+        near[count] = (struct product){sign * first, sign * o, fabs(d)};
+        far[count++] = (struct product){sign * last, sign * o, fabs(d)};
+    }
+    bool entered = t_min <= t_max;
+    for (int i = 0; i < count && entered; ++i) {
+        const struct product from = {(double)t_min, 0.0, far[i].c};
+        const struct product to = {(double)t_max, 0.0, near[i].c};
+        entered = not_above((struct product){near[i].a, near[i].b, 1.0}, to) &&
+                  not_above(from, (struct product){far[i].a, far[i].b, 1.0});
+        for (int j = 0; j < count && entered; ++j)
+            entered = not_above((struct product){near[i].a, near[i].b, far[j].c},
+                                (struct product){far[j].a, far[j].b, near[i].c});
+    }
+    return entered;
+}
+
+/* ---- Rays at boxes ---- */
+
+struct tally {
+    uint64_t rays, entered, missed, false_hits;
+};
+
+static void compare_box(const struct level *level, const struct gpu_ray *ray, const float lo[3],
+                        const float hi[3], struct tally *tally)
+{
+    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    float t_near, t_far, t_max = ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX;
+    bool entered = level_enters(level, &setup, lo, hi, ray->t_min, t_max, &t_near, &t_far);
+    bool exact = enters_exactly(ray, lo, hi, ray->t_min, t_max);
+    ++tally->rays;
+    tally->entered += exact;
+    tally->missed += exact && !entered;
+    tally->false_hits += !exact && entered;
+}
+
+static void tell(const struct level *level, const char *name, const struct tally *tally)
+{
+    print_message("%-10s %-34s %llu of %llu entered boxes missed; %llu of %llu entered in vain\n",
+                  level->name, name, (unsigned long long)tally->missed,
+                  (unsigned long long)tally->entered, (unsigned long long)tally->false_hits,
+                  (unsigned long long)(tally->rays - tally->entered));
+}
+
+struct box_kind {
+    const char *name;
+    float offset, size;
+    int flat;     /* axes on which lo == hi */
+    int parallel; /* axes on which the ray does not move, on a face */
+    float speed;  /* |dir|, about; 0: as it comes */
+    bool wild;    /* not aimed */
+};
+
+static const struct box_kind box_kinds[] = {
+    {"B1 not aimed", 0, 1, 0, 0, 0, true},
+    {"B1 offset 0", 0, 1, 0, 0, 0, false},
+    {"B1 offset 1e3", 1e3f, 1, 0, 0, 0, false},
+    {"B1 offset 1e5", 1e5f, 1, 0, 0, 0, false},
+    {"B2 along one face", 0, 1, 0, 1, 0, false},
+    {"B2 along one face, offset 1e5", 1e5f, 1, 0, 1, 0, false},
+    {"B3 along two faces", 1e3f, 1, 0, 2, 0, false},
+    {"B5 flat on one axis", 0, 1, 1, 0, 0, false},
+    {"B5 flat on one axis, offset 1e5", 1e5f, 1, 1, 0, 0, false},
+    {"B5 flat on two axes", 1e3f, 1, 2, 0, 0, false},
+    {"B5 a point", 1e3f, 1, 3, 0, 0, false},
+    {"B6 direction of 1e-20", 0, 1, 0, 0, 1e-20f, false},
+    {"B6 direction of 1e18", 1e3f, 1, 0, 0, 1e18f, false},
+    {"B6 box of 1e-12", 0, 1e-12f, 0, 0, 0, false},
+    {"B6 box of 1e12", 0, 1e12f, 0, 0, 0, false},
+};
+
+static float pick(float a, float b)
+{
+    return random_bits() % 2 ? a : b;
+}
+
+/* At a corner, a point of an edge or of a face; every fourth from inside or from the surface. */
+static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3], const float hi[3])
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    uint32_t loose = random_bits() % 3, axis = random_bits() % 3;
+    bool inside = random_bits() % 4 == 0;
+    float scale = kind->speed > 0.0f ? kind->speed / kind->size : 1.0f;
+    for (uint32_t k = 0; k < 3; ++k) {
+        float between = lo[k] + (hi[k] - lo[k]) * random_float();
+        float target = (k + axis) % 3 < loose ? between : pick(lo[k], hi[k]);
+        if (kind->wild)
+            target = kind->offset + random_within(3.0f * kind->size);
+        bool still = (k + axis) % 3 < (uint32_t)kind->parallel;
+        ray.origin[k] = inside ? pick(between, lo[k]) : between + random_within(3.0f * kind->size);
+        if (still) {
+            ray.origin[k] = pick(lo[k], hi[k]);
+            ray.dir[k] = pick(0.0f, -0.0f);
+        } else {
+            ray.dir[k] = scale * (target - ray.origin[k]);
+        }
+    }
+    return ray;
+}
+
+static void make_box(const struct box_kind *kind, float lo[3], float hi[3])
+{
+    uint32_t axis = random_bits() % 3;
+    for (uint32_t k = 0; k < 3; ++k) {
+        float middle = kind->offset + random_within(kind->size), half = kind->size * random_float();
+        lo[k] = middle - half;
+        hi[k] = (k + axis) % 3 < (uint32_t)kind->flat ? lo[k] : middle + half;
+    }
+}
+
+static bool moves(const struct gpu_ray *ray)
+{
+    return ray->dir[0] != 0.0f || ray->dir[1] != 0.0f || ray->dir[2] != 0.0f;
+}
+
+/* B1, B2, B3, B5, B6 */
+static void entered_boxes_are_entered(void **state)
+{
+    (void)state;
+    enum { KINDS = sizeof box_kinds / sizeof *box_kinds, RAYS = HARD_RAYS };
+    for (int l = 0; l < LEVELS; ++l) {
+        struct tally all = {0};
+        for (size_t i = 0; i < KINDS; ++i) {
+            struct tally tally = {0};
+            random_state = 11 + i;
+            for (int r = 0; r < RAYS; ++r) {
+                float lo[3], hi[3];
+                make_box(&box_kinds[i], lo, hi);
+                struct gpu_ray ray = ray_at_box(&box_kinds[i], lo, hi);
+                if (moves(&ray))
+                    compare_box(&levels[l], &ray, lo, hi, &tally);
+            }
+            tell(&levels[l], box_kinds[i].name, &tally);
+            assert_true(tally.entered > RAYS / 50);
+            all.rays += tally.rays;
+            all.entered += tally.entered;
+            all.missed += tally.missed;
+            all.false_hits += tally.false_hits;
+        }
+        tell(&levels[l], "all", &all);
+        assert_true(!levels[l].watertight || all.missed == 0);
+    }
+}
+
+/* B4: 27 directions, every zero with either sign. */
+static void signs_of_zeros_do_not_matter(void **state)
+{
+    (void)state;
+    const float lo[3] = {-1, -2, 0}, hi[3] = {1, 0, 3};
+    const float starts[4][3] = {{0, -1, 1}, {-1, 0, 3}, {5, -1, 1}, {1, -2, 0}};
+    uint32_t compared = 0, differ = 0;
+    for (int l = 0; l < LEVELS; ++l)
+        for (uint32_t i = 0; i < 27 * 8 * 4; ++i) {
+            float dir[2][3];
+            uint32_t code = i / 32;
+            for (uint32_t k = 0; k < 3; ++k, code /= 3) {
+                dir[0][k] = (float)(code % 3) - 1.0f;
+                dir[1][k] = dir[0][k] == 0.0f && (i >> k & 1) ? -0.0f : dir[0][k];
+            }
+            const float *start = starts[i / 8 % 4];
+            float t[2][2];
+            bool entered[2];
+            for (int s = 0; s < 2; ++s) {
+                struct ray_setup setup = make_ray_setup(vec3_load(start), vec3_load(dir[s]));
+                entered[s] =
+                    level_enters(&levels[l], &setup, lo, hi, 0.0f, FLT_MAX, &t[s][0], &t[s][1]);
+            }
+            ++compared;
+            differ += entered[0] != entered[1] ||
+                      (entered[0] && (t[0][0] != t[1][0] || t[0][1] != t[1][1]));
+        }
+    print_message("B4 %u of %u differ by the sign of a zero\n", differ, compared);
+    assert_int_equal(differ, 0);
+}
+
+/* B6: t is that of the longer direction, times a power of two. */
+static void lengths_of_directions_scale_t(void **state)
+{
+    (void)state;
+    enum { RAYS = 20000 };
+    uint32_t differ = 0, entered = 0;
+    random_state = 6;
+    for (int l = 0; l < LEVELS; ++l)
+        for (int r = 0; r < RAYS; ++r) {
+            float lo[3], hi[3], t[2][2];
+            bool met[2];
+            make_box(&box_kinds[2], lo, hi);
+            struct gpu_ray ray = ray_at_box(&box_kinds[2], lo, hi);
+            int power = (int)(random_bits() % 120) - 60;
+            for (int s = 0; s < 2; ++s) {
+                struct vec3 dir = vec3_scale(vec3_load(ray.dir), s ? ldexpf(1.0f, power) : 1.0f);
+                struct ray_setup setup = make_ray_setup(vec3_load(ray.origin), dir);
+                met[s] =
+                    level_enters(&levels[l], &setup, lo, hi, 0.0f, FLT_MAX, &t[s][0], &t[s][1]);
+            }
+            entered += met[0];
+            differ += met[0] != met[1] || (met[0] && (t[0][0] != ldexpf(t[1][0], power) ||
+                                                      t[0][1] != ldexpf(t[1][1], power)));
+        }
+    print_message("B6 %u of %u differ by more than a power of two, %u entered\n", differ,
+                  LEVELS * RAYS, entered);
+    assert_int_equal(differ, 0);
+}
+
+/* B8: the interval ends where the box begins, rounded up to a float, or begins where it ends,
+   rounded down. What roundings may take from it is a few units in the last place: two of them from
+   the end, and nothing is lost. */
+static void intervals_are_closed(void **state)
+{
+    (void)state;
+    enum { RAYS = 100000 };
+    for (int l = 0; l < LEVELS; ++l) {
+        struct tally at_end = {0}, near_end = {0}, at_begin = {0};
+        random_state = 8;
+        for (int r = 0; r < RAYS; ++r) {
+            float lo[3], hi[3];
+            make_box(&box_kinds[1 + r % 3], lo, hi);
+            struct gpu_ray ray = ray_at_box(&box_kinds[1 + r % 3], lo, hi);
+            double enter = 0.0, leave = INFINITY;
+            for (int k = 0; k < 3; ++k) {
+                double a = ((double)lo[k] - (double)ray.origin[k]) / (double)ray.dir[k];
+                double b = ((double)hi[k] - (double)ray.origin[k]) / (double)ray.dir[k];
+                enter = fmax(enter, fmin(a, b));
+                leave = fmin(leave, fmax(a, b));
+            }
+            if (!(enter <= leave && enter > 0.0 && leave < (double)FLT_MAX))
+                continue;
+            ray.t_max = nextafterf((float)enter, INFINITY);
+            compare_box(&levels[l], &ray, lo, hi, &at_end);
+            ray.t_max *= 1.0f + 4.0f * FLT_EPSILON;
+            compare_box(&levels[l], &ray, lo, hi, &near_end);
+            ray.t_max = INFINITY;
+            ray.t_min = nextafterf((float)leave, -INFINITY);
+            compare_box(&levels[l], &ray, lo, hi, &at_begin);
+        }
+        tell(&levels[l], "B8 t_max at the entry", &at_end);
+        tell(&levels[l], "B8 t_max 5 ulp behind it", &near_end);
+        tell(&levels[l], "B8 t_min at the exit", &at_begin);
+        assert_true(at_end.entered > RAYS / 4);
+        assert_true(!levels[l].watertight || near_end.missed + at_begin.missed == 0);
+    }
+}
+
+/* B9 and B10: nothing is hit, and no tree is walked for it. */
+static void senseless_rays_cost_nothing(void **state)
+{
+    (void)state;
+    const struct bvh_params params = {0};
+    const float bad[] = {NAN, INFINITY, -INFINITY};
+    struct soup soup = soup_sphere(40, 20);
+    struct scene *scene = soup_scene(&soup);
+    struct accel *accel = soup_accel(scene, &params);
+    for (int l = 0; l < LEVELS; ++l) {
+        uint32_t rays = 0, hits = 0;
+        uint64_t pairs = 0;
+        random_state = 9;
+        for (uint32_t i = 0; i < 3000; ++i) {
+            struct gpu_ray ray = ray_through(random_point(0.5f), random_point(2.0f)), good = ray;
+            const float intervals[3][2] = {{1, 0.5f}, {0, -1}, {2, -INFINITY}};
+            uint32_t what = i % 9;
+            if (what < 3)
+                ray.origin[i / 9 % 3] = bad[what];
+            else if (what < 6)
+                ray.dir[i / 9 % 3] = bad[what - 3];
+            else {
+                ray.t_min = intervals[what - 6][0];
+                ray.t_max = intervals[what - 6][1];
+            }
+            struct gpu_hit hit;
+            struct gpu_cost cost = {0};
+            level_trace(&levels[l], accel, ORDER_DISTANCE, i % 2, &ray, &hit, &cost);
+            ++rays;
+            hits += hit.primitive != HIT_NONE;
+            pairs += cost.pairs;
+            level_trace(&levels[l], accel, ORDER_DISTANCE, false, &good, &hit, NULL);
+            assert_int_not_equal(hit.primitive, HIT_NONE);
+        }
+        print_message("%-10s B9, B10 %u hits of %u senseless rays, %.2f pairs a ray\n",
+                      levels[l].name, hits, rays, (double)pairs / rays);
+        assert_int_equal(hits, 0);
+        assert_true(pairs <= rays);
+    }
+    accel_destroy(accel);
+    scene_destroy(scene);
+    soup_finish(&soup);
+}
+
+/* B11: a hit's t may be less than its box's, by roundings; in which order boxes are visited must
+   not tell. */
+static void orders_do_not_matter(void **state)
+{
+    (void)state;
+    enum { RAYS = 20000 };
+    const struct bvh_params params = {.leaf_limit = 1};
+    struct soup soup = soup_rooms(200);
+    struct scene *scene = soup_scene(&soup);
+    struct accel *accel = soup_accel(scene, &params);
+    for (int l = 0; l < LEVELS; ++l) {
+        uint32_t differ = 0, hits = 0;
+        random_state = 10;
+        for (uint32_t i = 0; i < RAYS; ++i) {
+            struct gpu_ray ray = soup_ray(&soup, &accel->meshes[0].box, 2 * i + 1);
+            struct gpu_hit hit[3];
+            for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order)
+                level_trace(&levels[l], accel, order, false, &ray, &hit[order], NULL);
+            hits += hit[0].primitive != HIT_NONE;
+            differ += memcmp(&hit[0], &hit[1], sizeof *hit) != 0 ||
+                      memcmp(&hit[0], &hit[2], sizeof *hit) != 0;
+        }
+        print_message("%-10s B11 %u of %u rays differ by order, %u hit\n", levels[l].name, differ,
+                      RAYS, hits);
+        assert_int_equal(differ, 0);
+        assert_true(hits > RAYS / 2);
+    }
+    accel_destroy(accel);
+    scene_destroy(scene);
+    soup_finish(&soup);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(entered_boxes_are_entered),
+        cmocka_unit_test(signs_of_zeros_do_not_matter),
+        cmocka_unit_test(lengths_of_directions_scale_t),
+        cmocka_unit_test(intervals_are_closed),
+        cmocka_unit_test(senseless_rays_cost_nothing),
+        cmocka_unit_test(orders_do_not_matter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

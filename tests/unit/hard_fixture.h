@@ -1,0 +1,76 @@
+/* Levels of numerics and what they promise, for the catalogue of hard cases. The letters and
+   numbers in the tests' messages are those of that catalogue: B box, T triangle, W watertight. */
+#ifndef TESTS_HARD_FIXTURE_H
+#define TESTS_HARD_FIXTURE_H
+
+#include "accel_fixture.h"
+
+#include "accel/intersect.h"
+#include "accel/rational.h"
+
+struct level {
+    const char *name;
+    bool watertight; /* no ray gets through a closed surface */
+    bool exact;      /* hits are those of rational.h */
+};
+
+static const struct level levels[] = {
+    {"watertight", true, false},
+};
+
+enum { LEVELS = sizeof levels / sizeof *levels };
+
+/* Where a ray enters and leaves a box, as a tree's walk asks. */
+static inline bool level_enters(const struct level *level, const struct ray_setup *ray,
+                                const float lo[3], const float hi[3], float t_min, float t_max,
+                                float *t_near, float *t_far)
+{
+    (void)level;
+    slab_interval(ray, vec3_sub(vec3_load(lo), ray->origin), vec3_sub(vec3_load(hi), ray->origin),
+                  t_min, t_near, t_far);
+    return *t_near <= *t_far && *t_near <= t_max;
+}
+
+/* One triangle, without a tree. */
+static inline bool level_meets(const struct level *level, const struct gpu_ray *ray,
+                               const struct vec3 v[3], struct gpu_hit *hit)
+{
+    (void)level;
+    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    bool met =
+        intersect_triangle(&setup, vec3_sub(v[0], setup.origin), vec3_sub(v[1], setup.origin),
+                           vec3_sub(v[2], setup.origin), ray->t_min, &hit->t, &hit->u, &hit->v);
+    return met && hit->t <= ray->t_max;
+}
+
+static inline void level_trace(const struct level *level, const struct accel *accel, uint32_t order,
+                               bool any, const struct gpu_ray *ray, struct gpu_hit *hit,
+                               struct gpu_cost *cost)
+{
+    (void)level;
+    uint32_t status = 0;
+    traverse_float(accel, order, ray, any, HIT_NONE, HIT_NONE, hit, cost, &status);
+    assert_int_equal(status, 0);
+}
+
+static inline float random_within(float most)
+{
+    return most * (2.0f * random_float() - 1.0f);
+}
+
+/* In a cube around the origin. */
+static inline struct vec3 random_point(float most)
+{
+    float x = random_within(most), y = random_within(most), z = random_within(most);
+    return vec3_make(x, y, z);
+}
+
+static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    vec3_store(ray.origin, origin);
+    vec3_store(ray.dir, vec3_sub(target, origin));
+    return ray;
+}
+
+#endif
