@@ -1,15 +1,12 @@
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "app/commands.h"
+#include "app/ray_file.h"
 
 enum trace_id { ID_RAYS = JOB_ID_END, ID_ANY, ID_ON };
 
 /* Rays in memory at a time. */
 enum { CHUNK = 1 << 20 };
-_Static_assert(sizeof(whit_ray) == 32 && sizeof(whit_hit) == 32, "records on disk");
 
 static const struct cli_option options[] = {
     {ID_RAYS, "rays", "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax"},
@@ -33,8 +30,7 @@ struct trace {
     const char *rays_path, *output;
     uint32_t on; /* whit_trace_on */
     bool any;
-    FILE *input;
-    uint64_t ray_count; /* 0: not known, for pipes */
+    struct ray_file input;
     uint64_t done_count;
     double trace_ms;
     whit_ray *rays;
@@ -42,57 +38,13 @@ struct trace {
     whit_file *file;
 };
 
-static whit_result refuse_size(const struct trace *trace, uint64_t size_bytes)
-{
-    cli_error("%s: %llu bytes are no whole number of 32-byte rays: the last one, at byte %llu, "
-              "is cut short",
-              trace->rays_path, (unsigned long long)size_bytes,
-              (unsigned long long)(size_bytes - size_bytes % sizeof(whit_ray)));
-    return WHIT_ERROR_INPUT;
-}
-
-/* Before anything slow. */
-static whit_result open_rays(struct trace *trace)
-{
-    struct stat info;
-    errno = 0;
-    trace->input = fopen(trace->rays_path, "rb");
-    if (!trace->input || fstat(fileno(trace->input), &info) != 0) {
-        cli_error("%s: cannot read: %s", trace->rays_path, strerror(errno));
-        return WHIT_ERROR_INPUT;
-    }
-    if (S_ISDIR(info.st_mode)) {
-        cli_error("%s: cannot read: %s", trace->rays_path, strerror(EISDIR));
-        return WHIT_ERROR_INPUT;
-    }
-    if (!S_ISREG(info.st_mode))
-        return WHIT_OK;
-    if ((uint64_t)info.st_size % sizeof(whit_ray) != 0)
-        return refuse_size(trace, (uint64_t)info.st_size);
-    trace->ray_count = (uint64_t)info.st_size / sizeof(whit_ray);
-    return WHIT_OK;
-}
-
-static whit_result read_chunk(struct trace *trace, uint64_t *count)
-{
-    errno = 0;
-    size_t bytes = fread(trace->rays, 1, (size_t)CHUNK * sizeof(whit_ray), trace->input);
-    if (ferror(trace->input)) {
-        cli_error("%s: cannot read: %s", trace->rays_path, strerror(errno ? errno : EIO));
-        return WHIT_ERROR_INPUT;
-    }
-    *count = bytes / sizeof(whit_ray);
-    if (bytes % sizeof(whit_ray) != 0)
-        return refuse_size(trace, trace->done_count * sizeof(whit_ray) + bytes);
-    return WHIT_OK;
-}
-
 static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
                                 struct cli_progress *progress)
 {
     for (;;) {
         uint64_t count;
-        whit_result result = cli_cancel ? WHIT_ERROR_CANCELLED : read_chunk(trace, &count);
+        whit_result result = cli_cancel ? WHIT_ERROR_CANCELLED
+                                        : ray_file_read(&trace->input, trace->rays, CHUNK, &count);
         if (result != WHIT_OK || count == 0)
             return result;
         if (cli_time_over()) {
@@ -108,8 +60,9 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
         if (result != WHIT_OK)
             return result;
         trace->done_count += count;
-        if (trace->ray_count)
-            cli_progress_update(progress, (double)trace->done_count / (double)trace->ray_count);
+        if (trace->input.ray_count)
+            cli_progress_update(progress,
+                                (double)trace->done_count / (double)trace->input.ray_count);
     }
 }
 
@@ -134,7 +87,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
         .load_path = job->load_path,
         .traversal = job->traversal,
     };
-    whit_result result = open_rays(trace);
+    whit_result result = ray_file_open(trace->rays_path, &trace->input);
     if (result == WHIT_OK)
         result = allocate(trace);
     if (result == WHIT_OK && trace->on == WHIT_TRACE_DEVICE)
@@ -235,8 +188,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     job_finish(&job);
     free(trace.rays);
     free(trace.hits);
-    if (trace.input)
-        fclose(trace.input);
+    ray_file_close(&trace.input);
     return status;
 }
 

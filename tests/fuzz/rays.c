@@ -1,10 +1,12 @@
-/* A batch of rays of any bits: on the CPU every ray ends, and finds by tree what it finds without.
- */
+/* A batch of rays of any length and bits: it is read as `whit trace` reads it; on the CPU every ray
+   ends, and finds by tree what it finds without. */
 #include "fuzz.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "app/cli.h"
+#include "app/ray_file.h"
 #include "trees.h"
 
 enum { KIND_COUNT = FUZZ_SCENE_COUNT, BUILD_COUNT = 2, RAYS_MOST = 64, HITS_MOST = 64 };
@@ -43,16 +45,46 @@ static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
     fuzz_check(status == 0, "status %#x", status);
 }
 
-/* The first byte says where; then records as in a file of rays. */
+static uint32_t error_count;
+
+void cli_error(const char *format, ...)
+{
+    (void)format;
+    ++error_count;
+}
+
+/* All rays of the file or one error. */
+static uint64_t read_rays(const uint8_t *data, size_t size_bytes, whit_ray rays[RAYS_MOST])
+{
+    enum { PIECE = 5 };
+    struct ray_file file;
+    uint64_t count = 1, sum = 0;
+    error_count = 0;
+    whit_result result = ray_file_open(fuzz_file("rays.bin", data, size_bytes), &file);
+    while (result == WHIT_OK && count > 0 && sum + PIECE <= RAYS_MOST) {
+        result = ray_file_read(&file, rays + sum, PIECE, &count);
+        sum += count;
+    }
+    ray_file_close(&file);
+    fuzz_check(error_count == (result != WHIT_OK), "%u errors, the result is %d", error_count,
+               (int)result);
+    fuzz_check((result == WHIT_OK) == (size_bytes % sizeof *rays == 0), "%zu bytes: %d", size_bytes,
+               (int)result);
+    fuzz_check(memcmp(rays, data, sum * sizeof *rays) == 0, "other rays than in the file");
+    return sum;
+}
+
+/* The first byte says where; the rest is a file of rays. */
 static void run(const uint8_t *data, size_t size_bytes)
 {
     if (size_bytes == 0)
         return;
     const struct accel *accel = accels[data[0] % KIND_COUNT][data[0] / KIND_COUNT % 3];
-    size_t count = (size_bytes - 1) / sizeof(struct gpu_ray);
-    for (size_t i = 0; i < count && i < RAYS_MOST; i++) {
+    whit_ray rays[RAYS_MOST];
+    uint64_t count = read_rays(data + 1, size_bytes - 1, rays);
+    for (uint64_t i = 0; i < count; i++) {
         struct gpu_ray ray;
-        memcpy(&ray, data + 1 + i * sizeof ray, sizeof ray);
+        memcpy(&ray, &rays[i], sizeof ray);
         fuzz_check_ray(accel, &ray);
         check_sequence(accel, &ray);
     }
