@@ -46,6 +46,8 @@ static bool split(struct gltf *gltf, const uint8_t **json, size_t *json_bytes)
     size_t length = read_u32(file + 8);
     if (length > size)
         return fail_file(gltf, "the GLB is cut short");
+    if (length < GLB_HEADER_BYTES + GLB_CHUNK_BYTES)
+        return fail_file(gltf, "the GLB says that it ends within its header");
     size_t at = GLB_HEADER_BYTES;
     for (uint32_t chunk = 0; length - at >= GLB_CHUNK_BYTES; chunk++) {
         size_t bytes = read_u32(file + at);
