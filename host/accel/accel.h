@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "abi/bvh.h"
+#include "abi/spec.h"
 #include "base/log.h"
 #include "scene/scene.h"
 
@@ -161,12 +162,23 @@ bool accel_filters_vary(const struct accel *accel);
 
 /* ---- Traversal on the CPU ---- */
 
-/* The float twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
-   and the same costs on a device whose arithmetic is IEEE. tests t_min <= t <= t_max; equal t goes
-   to the smaller instance, then primitive. `order`: ORDER_*. `skip_instance`/`skip_primitive`: not
-   hit (HIT_NONE: none). `any`: any hit will do, then only `primitive` != HIT_NONE counts. The ray's
-   cost is added to *cost (stack and depth: the larger one), which may be NULL; STATUS_* bits are
-   or-ed into *status. Without trees it is traverse_brute_float. */
+struct traverse_params {
+    uint32_t order;    /* ORDER_* */
+    uint32_t numerics; /* NUMERICS_* */
+    bool any;          /* any hit will do: then only `primitive` != HIT_NONE counts */
+    bool brute;        /* no tree: every record of every instance */
+    uint32_t skip_instance, skip_primitive; /* not hit; HIT_NONE: none */
+};
+
+/* The twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
+   and the same costs on a device whose arithmetic is IEEE. Tests t_min <= t <= t_max; equal t goes
+   to the smaller instance, then primitive. The ray's cost is added to *cost (stack and depth: the
+   larger one), which may be NULL; STATUS_* bits are or-ed into *status. An accel without trees is
+   always walked by brute force. */
+void traverse_ray(const struct accel *accel, const struct traverse_params *params,
+                  const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
+                  uint32_t *status);
+/* The same at NUMERICS_WATERTIGHT. */
 void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
                     uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
                     struct gpu_cost *cost, uint32_t *status);

@@ -9,10 +9,11 @@
 #include "base/vec.h"
 
 struct ray_setup {
-    struct vec3 origin, above, below, inv_dir;
+    struct vec3 origin, dir, above, below, inv_dir;
     bool negative[3];
     bool dominant_x, dominant_y;
     struct vec3 shear;
+    float far_scale;
 };
 
 #define SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)
@@ -28,7 +29,11 @@ static inline struct vec3 turn_dominant(const struct ray_setup *ray, struct vec3
 
 static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 dir)
 {
-    struct ray_setup ray = {.origin = origin, .above = origin, .below = origin};
+    struct ray_setup ray = {.origin = origin,
+                            .dir = dir,
+                            .above = origin,
+                            .below = origin,
+                            .far_scale = SLAB_FAR_SCALE};
     ray.inv_dir = vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);
     ray.negative[0] = ray.inv_dir.x < 0.0f;
     ray.negative[1] = ray.inv_dir.y < 0.0f;
@@ -40,6 +45,17 @@ static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 di
     struct vec3 turned = turn_dominant(&ray, dir);
     ray.shear = vec3_make(turned.x / turned.z, turned.y / turned.z, 1.0f / turned.z);
     return ray;
+}
+
+/* For NUMERICS_EXACT: quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp).
+   With others no filter decides. */
+static inline void bound_ray_setup(struct ray_setup *ray)
+{
+    float size = fabsf(ray->dir.x);
+    size = fabsf(ray->dir.y) > size ? fabsf(ray->dir.y) : size;
+    size = fabsf(ray->dir.z) > size ? fabsf(ray->dir.z) : size;
+    if (!(size > 1.0f / 1.2676506e+30f && size < 1.2676506e+30f))
+        ray->shear = vec3_make(NAN, NAN, NAN);
 }
 
 #define CLIP_MARGIN (1.0f / 524288.0f)
@@ -74,7 +90,7 @@ static inline void slab_interval(const struct ray_setup *ray, struct vec3 lo, st
     slab_axis(lo.y, hi.y, ray->inv_dir.y, ray->negative[1], &start, &end);
     slab_axis(lo.z, hi.z, ray->inv_dir.z, ray->negative[2], &start, &end);
     *t_near = start;
-    *t_far = end * SLAB_FAR_SCALE;
+    *t_far = end * ray->far_scale;
 }
 
 static inline struct vec3 vec3_smaller(struct vec3 a, struct vec3 b)
@@ -87,6 +103,24 @@ static inline struct vec3 vec3_larger(struct vec3 a, struct vec3 b)
     return vec3_make(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
 }
 
+struct sheared {
+    float ax, ay, bx, by, cx, cy;
+    float ea, eb, ec;
+};
+
+static inline struct sheared shear_triangle(const struct ray_setup *ray, struct vec3 ta,
+                                            struct vec3 tb, struct vec3 tc)
+{
+    struct sheared s;
+    s.ax = ta.x - ray->shear.x * ta.z, s.ay = ta.y - ray->shear.y * ta.z;
+    s.bx = tb.x - ray->shear.x * tb.z, s.by = tb.y - ray->shear.y * tb.z;
+    s.cx = tc.x - ray->shear.x * tc.z, s.cy = tc.y - ray->shear.y * tc.z;
+    s.ea = s.cx * s.by - s.cy * s.bx;
+    s.eb = s.ax * s.cy - s.ay * s.cx;
+    s.ec = s.bx * s.ay - s.by * s.ax;
+    return s;
+}
+
 static inline bool intersect_triangle(const struct ray_setup *ray, struct vec3 a, struct vec3 b,
                                       struct vec3 c, float t_min, float *t, float *u, float *v)
 {
@@ -94,21 +128,16 @@ static inline bool intersect_triangle(const struct ray_setup *ray, struct vec3 a
     slab_interval(ray, vec3_smaller(c, vec3_smaller(a, b)), vec3_larger(c, vec3_larger(a, b)),
                   t_min, &t_near, &t_far);
     struct vec3 ta = turn_dominant(ray, a), tb = turn_dominant(ray, b), tc = turn_dominant(ray, c);
-    float ax = ta.x - ray->shear.x * ta.z, ay = ta.y - ray->shear.y * ta.z;
-    float bx = tb.x - ray->shear.x * tb.z, by = tb.y - ray->shear.y * tb.z;
-    float cx = tc.x - ray->shear.x * tc.z, cy = tc.y - ray->shear.y * tc.z;
-    float ea = cx * by - cy * bx;
-    float eb = ax * cy - ay * cx;
-    float ec = bx * ay - by * ax;
-    bool below = ea < 0.0f || eb < 0.0f || ec < 0.0f;
-    bool above = ea > 0.0f || eb > 0.0f || ec > 0.0f;
-    float det = (ea + eb) + ec;
+    struct sheared s = shear_triangle(ray, ta, tb, tc);
+    bool below = s.ea < 0.0f || s.eb < 0.0f || s.ec < 0.0f;
+    bool above = s.ea > 0.0f || s.eb > 0.0f || s.ec > 0.0f;
+    float det = (s.ea + s.eb) + s.ec;
     float az = ray->shear.z * ta.z, bz = ray->shear.z * tb.z, cz = ray->shear.z * tc.z;
-    float scaled_t = (ea * az + eb * bz) + ec * cz;
+    float scaled_t = (s.ea * az + s.eb * bz) + s.ec * cz;
     float inv_det = 1.0f / det;
     float at = scaled_t * inv_det;
-    *u = eb * inv_det;
-    *v = ec * inv_det;
+    *u = s.eb * inv_det;
+    *v = s.ec * inv_det;
     *t = at > t_near ? at : t_near;
     return !(below && above) && det != 0.0f && at >= t_min && t_near <= t_far;
 }

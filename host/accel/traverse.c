@@ -3,23 +3,27 @@
 
 #include <float.h>
 
+#include "accel/exact.h"
 #include "accel/intersect.h"
+#include "accel/moller.h"
 #include "accel/sphere.h"
 
-#define REF_DONE                  0xffffffffu
-#define REF_ONE_PRIMITIVE         (1u << BVH_COUNT_SHIFT)
+#define REF_DONE          0xffffffffu
+#define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
 /* As in the shader; the product is rounded to float there too. */
-#define SLAB_NEAR_SCALE_INSTANCES (1.0f - 1.0f / 524288.0f)
+#define SLAB_NEAR_SCALE   (1.0f - 1.0f / 524288.0f)
 enum { STACK_SIZE = 512 };
 
 struct walk {
     const struct accel *accel;
-    uint32_t order;
+    const struct gpu_ray *ray; /* world space */
+    uint32_t order, numerics;
     bool any;
     bool next; /* TRAVERSE_NEXT */
     float t_min, hit_before;
     uint32_t skip_instance, skip_primitive;
     struct gpu_hit *hit; /* t is the largest that still counts */
+    float lo, hi;        /* NUMERICS_EXACT: bounds of the hit's key */
     uint32_t triangle;   /* record of the hit */
     struct gpu_cost cost;
     uint32_t status;
@@ -66,6 +70,10 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
                   vec3_sub(vec3_load(a->hi), ray->below), walk->t_min, &a_near, &a_far);
     slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->above),
                   vec3_sub(vec3_load(b->hi), ray->below), walk->t_min, &b_near, &b_far);
+    if (walk->numerics == NUMERICS_EXACT)
+        near_scale = SLAB_NEAR_SCALE;
+    if (walk->numerics == NUMERICS_FAST)
+        near_scale = 1.0f;
     if (near_scale != 1.0f) {
         a_near = a_near * near_scale;
         b_near = b_near * near_scale;
@@ -74,7 +82,7 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     ++walk->cost.pairs;
     if (walk->level > walk->cost.depth)
         walk->cost.depth = walk->level;
-    float t = walk->hit->t;
+    float t = walk->numerics == NUMERICS_EXACT ? walk->hi : walk->hit->t;
     bool hit_a = a_near <= a_far && a_near <= t;
     bool hit_b = b_near <= b_far && b_near <= t;
     uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
@@ -92,7 +100,8 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     return b_first ? ref_b : ref_a;
 }
 
-/* Where a ray meets a primitive, if it does. */
+/* Where a ray meets a primitive, if it does. At NUMERICS_EXACT t, u and v are what is told of it;
+   what decides is the key, the exact t rounded to nearest, in lo..hi. Of spheres t is the key. */
 struct meeting {
     bool met;
     float t, u, v;
@@ -102,6 +111,12 @@ static struct meeting meet_triangle(const struct walk *walk, const struct ray_se
                                     const struct gpu_triangle *triangle)
 {
     struct meeting m;
+    if (walk->numerics == NUMERICS_FAST) {
+        m.met = intersect_moller(ray->origin, ray->dir, vec3_load(triangle->v0),
+                                 vec3_load(triangle->v1), vec3_load(triangle->v2), walk->t_min,
+                                 &m.t, &m.u, &m.v);
+        return m;
+    }
     m.met = intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
                                vec3_sub(vec3_load(triangle->v1), ray->origin),
                                vec3_sub(vec3_load(triangle->v2), ray->origin), walk->t_min, &m.t,
@@ -120,12 +135,13 @@ static struct meeting meet_sphere(const struct walk *walk, const struct ray_setu
     return m;
 }
 
-static bool is_nearer(const struct gpu_hit *hit, const struct meeting *m, uint32_t instance,
+/* Whether t, or the least that it may be, comes before `farthest`, or with it. */
+static bool is_nearer(const struct gpu_hit *hit, float farthest, float t, uint32_t instance,
                       uint32_t primitive)
 {
-    return m->t < hit->t ||
-           (m->t == hit->t && (instance < hit->instance ||
-                               (instance == hit->instance && primitive < hit->primitive)));
+    return t < farthest ||
+           (t == farthest && (instance < hit->instance ||
+                              (instance == hit->instance && primitive < hit->primitive)));
 }
 
 /* TRAVERSE_NEXT: whether a hit comes after the known one. */
@@ -141,7 +157,7 @@ static bool accept_meeting(struct walk *walk, const struct meeting *m, uint32_t 
                            uint32_t instance)
 {
     uint32_t primitive = walk->accel->triangles[record].primitive;
-    if (!m->met || !is_nearer(walk->hit, m, instance, primitive) ||
+    if (!m->met || !is_nearer(walk->hit, walk->hit->t, m->t, instance, primitive) ||
         (walk->next && !is_behind(walk, m->t, instance, primitive)))
         return false;
     walk->hit->t = m->t;
@@ -153,6 +169,97 @@ static bool accept_meeting(struct walk *walk, const struct meeting *m, uint32_t 
     return true;
 }
 
+/* ---- NUMERICS_EXACT ---- */
+
+static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
+
+/* The key of the hit so far, where only its bounds are known. */
+static void settle_hit(struct walk *walk)
+{
+    const struct gpu_triangle *triangle = &walk->accel->triangles[walk->triangle];
+    struct ray_setup ray = ray_at(walk, walk->hit->instance);
+    struct exact_meeting m;
+    exact_meet(ray.origin, ray.dir, vec3_load(triangle->v0), vec3_load(triangle->v1),
+               vec3_load(triangle->v2), &m);
+    walk->lo = m.key;
+    walk->hi = m.key;
+}
+
+/* With a key known. */
+static bool is_nearer_key(struct walk *walk, float key, uint32_t instance, uint32_t primitive)
+{
+    if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)
+        settle_hit(walk);
+    return is_nearer(walk->hit, walk->hi, key, instance, primitive);
+}
+
+/* Whether a primitive with a key of lo..hi may be what is looked for. */
+static bool may_count(const struct walk *walk, float lo, float hi, uint32_t instance,
+                      uint32_t primitive)
+{
+    return !(hi < walk->t_min) && is_nearer(walk->hit, walk->hi, lo, instance, primitive) &&
+           (!walk->next || is_behind(walk, hi, instance, primitive));
+}
+
+static bool keep_exact(struct walk *walk, const struct meeting *m, float lo, float hi,
+                       uint32_t record, uint32_t instance)
+{
+    if (!walk->any) {
+        walk->lo = lo;
+        walk->hi = hi;
+    }
+    walk->hit->t = m->t;
+    walk->hit->u = m->u;
+    walk->hit->v = m->v;
+    walk->hit->primitive = walk->accel->triangles[record].primitive;
+    walk->hit->instance = instance;
+    walk->triangle = record;
+    return true;
+}
+
+static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                                uint32_t instance)
+{
+    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
+    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
+                v2 = vec3_load(triangle->v2);
+    struct exact_bounds bounds;
+    exact_filter(ray, vec3_sub(v0, ray->origin), vec3_sub(v1, ray->origin),
+                 vec3_sub(v2, ray->origin), &bounds);
+    if (bounds.outside || !may_count(walk, bounds.lo, bounds.hi, instance, triangle->primitive))
+        return false;
+    struct meeting m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u, bounds.v};
+    if (bounds.inside && bounds.lo >= walk->t_min && bounds.hi < walk->lo &&
+        (!walk->next || bounds.lo > walk->hit_before))
+        return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance);
+    struct exact_meeting exact;
+    exact_meet(ray->origin, ray->dir, v0, v1, v2, &exact);
+    if (!bounds.inside)
+        m = (struct meeting){true, exact.key, exact.u, exact.v};
+    if (!exact.met || exact.key < walk->t_min ||
+        !is_nearer_key(walk, exact.key, instance, triangle->primitive) ||
+        (walk->next && !is_behind(walk, exact.key, instance, triangle->primitive)))
+        return false;
+    return keep_exact(walk, &m, exact.key, exact.key, record, instance);
+}
+
+static bool accept_sphere_exact(struct walk *walk, const struct meeting *m, uint32_t record,
+                                uint32_t instance)
+{
+    uint32_t primitive = walk->accel->triangles[record].primitive;
+    if (!m->met || !may_count(walk, m->t, m->t, instance, primitive) ||
+        !is_nearer_key(walk, m->t, instance, primitive))
+        return false;
+    return keep_exact(walk, m, m->t, m->t, record, instance);
+}
+
+static bool accept_sphere(struct walk *walk, const struct meeting *m, uint32_t record,
+                          uint32_t instance)
+{
+    return walk->numerics == NUMERICS_EXACT ? accept_sphere_exact(walk, m, record, instance)
+                                            : accept_meeting(walk, m, record, instance);
+}
+
 static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
                         uint32_t instance, bool own)
 {
@@ -160,10 +267,10 @@ static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t
     struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
     bool at_exit = own || !(chord.t_near >= walk->t_min);
     struct meeting m = meet_sphere(walk, ray, &chord, at_exit, own);
-    bool accepted = accept_meeting(walk, &m, record, instance);
+    bool accepted = accept_sphere(walk, &m, record, instance);
     if (walk->next && !accepted && !at_exit) {
         m = meet_sphere(walk, ray, &chord, true, own);
-        accepted = accept_meeting(walk, &m, record, instance);
+        accepted = accept_sphere(walk, &m, record, instance);
     }
     return accepted;
 }
@@ -179,6 +286,8 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
                instance == walk->skip_instance;
     if (triangle->flags & TRIANGLE_SPHERE)
         return test_sphere(walk, ray, record, instance, own) && walk->any;
+    if (walk->numerics == NUMERICS_EXACT)
+        return !own && test_triangle_exact(walk, ray, record, instance) && walk->any;
     struct meeting m = meet_triangle(walk, ray, triangle);
     m.met &= !own;
     return accept_meeting(walk, &m, record, instance) && walk->any;
@@ -210,23 +319,50 @@ static void widen(const struct accel *accel, const struct gpu_instance *i, struc
         widen_ray_setup(ray, vec3_make(i->center_x, i->center_y, i->center_z), i->reach);
 }
 
-static struct ray_setup local_ray(const struct gpu_instance *instance, const struct gpu_ray *ray)
+static struct ray_setup setup_ray(const struct walk *walk, struct vec3 origin, struct vec3 dir)
 {
-    struct gpu_ray local = accel_local_ray(instance, ray);
-    return make_ray_setup(vec3_load(local.origin), vec3_load(local.dir));
+    struct ray_setup ray = make_ray_setup(origin, dir);
+    if (walk->numerics == NUMERICS_FAST)
+        ray.far_scale = 1.0f;
+    if (walk->numerics == NUMERICS_EXACT)
+        bound_ray_setup(&ray);
+    return ray;
 }
 
-static void traverse_instances(struct walk *walk, const struct gpu_ray *ray, uint32_t root)
+static struct ray_setup world_ray(const struct walk *walk)
 {
-    struct ray_setup world = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    return setup_ray(walk, vec3_load(walk->ray->origin), vec3_load(walk->ray->dir));
+}
+
+static struct ray_setup local_ray(const struct walk *walk, const struct gpu_instance *instance)
+{
+    struct gpu_ray local = accel_local_ray(instance, walk->ray);
+    return setup_ray(walk, vec3_load(local.origin), vec3_load(local.dir));
+}
+
+/* No instances to choose among: rays meet the only mesh tree as they are. */
+static bool one_tree(const struct accel *accel)
+{
+    return accel->single_identity || accel->flat;
+}
+
+static struct ray_setup ray_at(const struct walk *walk, uint32_t instance)
+{
+    return one_tree(walk->accel) ? world_ray(walk)
+                                 : local_ray(walk, &walk->accel->instances[instance]);
+}
+
+static void traverse_instances(struct walk *walk, uint32_t root)
+{
+    struct ray_setup world = world_ray(walk);
     uint32_t top = 0, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_pair(walk, &world, SLAB_NEAR_SCALE_INSTANCES, ref, 0, &top);
+            ref = step_pair(walk, &world, SLAB_NEAR_SCALE, ref, 0, &top);
         if (is_leaf(ref)) {
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];
-            struct ray_setup local = local_ray(instance, ray);
+            struct ray_setup local = local_ray(walk, instance);
             widen(walk->accel, instance, &local);
             ++walk->cost.instances;
             uint32_t level = walk->level;
@@ -285,20 +421,14 @@ static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
     to->depth = from->depth > to->depth ? from->depth : to->depth;
 }
 
-/* No instances to choose among: rays meet the only mesh tree as they are. */
-static bool one_tree(const struct accel *accel)
-{
-    return accel->single_identity || accel->flat;
-}
-
-static void traverse_trees(struct walk *walk, const struct gpu_ray *ray)
+static void traverse_trees(struct walk *walk)
 {
     const struct accel *accel = walk->accel;
     if (!one_tree(accel)) {
-        traverse_instances(walk, ray, accel->instance_root);
+        traverse_instances(walk, accel->instance_root);
         return;
     }
-    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    struct ray_setup setup = world_ray(walk);
     uint32_t root = accel->flat ? accel->meshes[0].root : accel->instances[0].root;
     if (root == BVH_EMPTY_REF)
         return;
@@ -307,79 +437,90 @@ static void traverse_trees(struct walk *walk, const struct gpu_ray *ray)
 }
 
 /* Every record of every instance, in this order. */
-static void traverse_records(struct walk *walk, const struct gpu_ray *ray)
+static void traverse_records(struct walk *walk)
 {
     const struct accel *accel = walk->accel;
     bool done = false;
     for (uint32_t i = 0; !done && i < (accel->flat ? 1 : accel->instance_count); ++i) {
         const struct accel_mesh *mesh = &accel->meshes[accel->flat ? 0 : accel->instances[i].mesh];
-        struct ray_setup setup = one_tree(accel)
-                                     ? make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir))
-                                     : local_ray(&accel->instances[i], ray);
+        struct ray_setup setup = ray_at(walk, i);
         walk->cost.instances += !one_tree(accel) && mesh->record_count > 0;
         for (uint32_t k = 0; !done && k < mesh->record_count; ++k)
             done = test_record(walk, &setup, mesh->first_triangle + k, i);
     }
 }
 
-static void begin_walk(struct walk *walk, const struct accel *accel, const struct gpu_ray *ray,
+static void begin_walk(struct walk *walk, const struct accel *accel,
+                       const struct traverse_params *params, const struct gpu_ray *ray,
                        struct gpu_hit *hit)
 {
     walk->accel = accel;
-    walk->order = ORDER_DISTANCE;
-    walk->any = false;
+    walk->ray = ray;
+    walk->order = params->order;
+    walk->numerics = params->numerics;
+    walk->any = params->any;
     walk->next = false;
     walk->t_min = ray->t_min;
-    walk->skip_instance = HIT_NONE;
-    walk->skip_primitive = HIT_NONE;
+    walk->skip_instance = params->skip_instance;
+    walk->skip_primitive = params->skip_primitive;
     walk->hit = hit;
     walk->triangle = 0;
     walk->level = 0;
     walk->cost = (struct gpu_cost){.rays = 1};
     walk->status = 0;
     begin_hit(hit, ray->t_max);
+    walk->lo = hit->t;
+    walk->hi = hit->t;
 }
 
-void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
-                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                    struct gpu_cost *cost, uint32_t *status)
+static void traverse_all(struct walk *walk, bool brute)
+{
+    if (!accel_ray_is_usable(walk->ray))
+        return;
+    if (brute || walk->accel->no_trees)
+        traverse_records(walk);
+    else
+        traverse_trees(walk);
+}
+
+void traverse_ray(const struct accel *accel, const struct traverse_params *params,
+                  const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
+                  uint32_t *status)
 {
     struct walk walk;
-    begin_walk(&walk, accel, ray, hit);
-    walk.order = order;
-    walk.any = any;
-    walk.skip_instance = skip_instance;
-    walk.skip_primitive = skip_primitive;
-    if (accel_ray_is_usable(ray)) {
-        if (accel->no_trees)
-            traverse_records(&walk, ray);
-        else
-            traverse_trees(&walk, ray);
-    }
+    begin_walk(&walk, accel, params, ray, hit);
+    traverse_all(&walk, params->brute);
     end_hit(hit, accel, walk.triangle);
     if (cost)
         add_cost(&walk.cost, cost);
     *status |= walk.status;
 }
 
+void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
+                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
+                    struct gpu_cost *cost, uint32_t *status)
+{
+    const struct traverse_params params = {.order = order,
+                                           .any = any,
+                                           .skip_instance = skip_instance,
+                                           .skip_primitive = skip_primitive};
+    traverse_ray(accel, &params, ray, hit, cost, status);
+}
+
 void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
                          const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
 {
+    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
     struct walk walk;
     struct gpu_hit found;
-    begin_walk(&walk, accel, ray, &found);
+    begin_walk(&walk, accel, &params, ray, &found);
     if (before) {
         walk.next = true;
         walk.hit_before = before->t;
         walk.skip_instance = before->instance;
         walk.skip_primitive = before->primitive;
     }
-    if (accel_ray_is_usable(ray)) {
-        if (accel->no_trees)
-            traverse_records(&walk, ray);
-        else
-            traverse_trees(&walk, ray);
-    }
+    traverse_all(&walk, false);
     end_hit(&found, accel, walk.triangle);
     *hit = found;
     *status |= walk.status;
@@ -387,9 +528,8 @@ void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
 
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, struct gpu_hit *hit)
 {
-    struct walk walk;
-    begin_walk(&walk, accel, ray, hit);
-    if (accel_ray_is_usable(ray))
-        traverse_records(&walk, ray);
-    end_hit(hit, accel, walk.triangle);
+    const struct traverse_params params = {
+        .brute = true, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    uint32_t status = 0;
+    traverse_ray(accel, &params, ray, hit, NULL, &status);
 }

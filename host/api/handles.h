@@ -34,7 +34,8 @@ struct whit_renderer {
     struct renderer *renderer; /* NULL: CPU only */
     struct accel *accel;       /* borrowed */
     const volatile bool *cancel;
-    uint32_t order; /* ORDER_* */
+    uint32_t order;    /* ORDER_* */
+    uint32_t numerics; /* NUMERICS_* */
     struct log log;
 };
 

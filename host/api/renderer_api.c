@@ -140,6 +140,9 @@ static whit_result render_params_from_public(const struct log *log,
         .order = params->traversal == WHIT_TRAVERSAL_SIGN    ? ORDER_SIGN
                  : params->traversal == WHIT_TRAVERSAL_BASIC ? ORDER_BASIC
                                                              : ORDER_DISTANCE,
+        .numerics = params->numerics == WHIT_NUMERICS_FAST    ? NUMERICS_FAST
+                    : params->numerics == WHIT_NUMERICS_EXACT ? NUMERICS_EXACT
+                                                              : NUMERICS_WATERTIGHT,
         .count = params->count,
     };
     whit_result result = effects_from_text(log, params->effects, out);
@@ -178,6 +181,7 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     renderer->accel = accel->accel;
     renderer->cancel = params->cancel;
     renderer->order = inner.order;
+    renderer->numerics = inner.numerics;
     result = device
                  ? renderer_create(&log, device->device, accel->accel, &inner, &renderer->renderer)
                  : pose_on_cpu(accel->accel, params->time_s);
@@ -391,7 +395,6 @@ struct cpu_trace {
     const struct gpu_ray *rays;
     struct gpu_hit *hits;
     uint64_t count;
-    uint32_t order;
     bool any, brute;
     struct cost_sum *costs; /* one a batch, or NULL */
     uint32_t *statuses;     /* one a batch: threads share nothing */
@@ -408,15 +411,20 @@ static void trace_batch(void *context, uint32_t index)
     const struct accel *accel = trace->renderer->accel;
     uint64_t first = (uint64_t)index * CPU_BATCH;
     uint64_t end = first + CPU_BATCH < trace->count ? first + CPU_BATCH : trace->count;
+    const struct traverse_params params = {
+        .order = trace->renderer->order,
+        .numerics = trace->renderer->numerics,
+        .any = trace->any,
+        .brute = trace->brute,
+        .skip_instance = HIT_NONE,
+        .skip_primitive = HIT_NONE,
+    };
     for (uint64_t i = first; i < end; ++i) {
         if ((i & 63) == 0 && cancelled(trace->renderer))
             return;
         struct gpu_cost cost = {0};
-        if (trace->brute)
-            traverse_brute_float(accel, &trace->rays[i], &trace->hits[i]);
-        else
-            traverse_float(accel, trace->order, &trace->rays[i], trace->any, HIT_NONE, HIT_NONE,
-                           &trace->hits[i], trace->costs ? &cost : NULL, &trace->statuses[index]);
+        traverse_ray(accel, &params, &trace->rays[i], &trace->hits[i], trace->costs ? &cost : NULL,
+                     &trace->statuses[index]);
         if (trace->costs)
             cost_add(&trace->costs[index], &cost);
     }
@@ -505,7 +513,6 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
         .count = count,
         .any = any,
         .brute = on == WHIT_TRACE_CPU_BRUTE,
-        .order = renderer->order,
     };
     return trace_on_cpu(renderer, &trace, cost);
 }

@@ -249,6 +249,15 @@ typedef enum whit_traversal {
     WHIT_TRAVERSAL_BASIC, /* as they come */
 } whit_traversal;
 
+/* What decides whether a ray meets a triangle, and which one first: see docs/numerics.md. */
+typedef enum whit_numerics {
+    WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
+    WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
+                            between triangles; hits may depend on the tree */
+    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest; needs
+                            trees when on a device. Spheres: as watertight */
+} whit_numerics;
+
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
     const char *camera;     /* name or index of a camera of the scene, or
@@ -281,6 +290,7 @@ typedef struct whit_renderer_params {
     double time_limit_s;   /* from whit_renderer_create on; 0: none */
     const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
     whit_traversal traversal;
+    whit_numerics numerics;
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 

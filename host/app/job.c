@@ -43,6 +43,23 @@ static void read_traversal(struct job *job, struct cli_reader *reader)
                                        : WHIT_TRAVERSAL_BASIC;
 }
 
+/* In the order of whit_numerics. */
+static const char *const numerics_names[] = {"watertight", "fast", "exact", NULL};
+
+const char *job_numerics_name(whit_numerics numerics)
+{
+    return numerics_names[numerics];
+}
+
+static void read_numerics(struct job *job, struct cli_reader *reader)
+{
+    uint32_t choice;
+    if (cli_choice(reader, numerics_names, &choice))
+        job->numerics = choice == 0   ? WHIT_NUMERICS_WATERTIGHT
+                        : choice == 1 ? WHIT_NUMERICS_FAST
+                                      : WHIT_NUMERICS_EXACT;
+}
+
 static void read_load_path(struct job *job, struct cli_reader *reader)
 {
     static const char *const choices[] = {"auto", "storage", "texel", NULL};
@@ -86,6 +103,9 @@ static bool tree_option(struct job *job, struct cli_reader *reader, int id)
         return true;
     case JOB_TRAVERSAL:
         read_traversal(job, reader);
+        return true;
+    case JOB_NUMERICS:
+        read_numerics(job, reader);
         return true;
     case JOB_LOAD_PATH:
         read_load_path(job, reader);

@@ -30,6 +30,7 @@ struct job {
     whit_build instance_build;
     uint32_t leaf_limit; /* 0: the default */
     whit_traversal traversal;
+    whit_numerics numerics;
     const char *tree_path; /* of saved trees, or NULL */
     uint32_t threads, texture_limit;
     const char *load_path; /* NULL: auto */
@@ -54,6 +55,7 @@ enum job_id {
     JOB_LEAF,
     JOB_TREE,
     JOB_TRAVERSAL,
+    JOB_NUMERICS,
     JOB_INSTANCES,
     JOB_INSTANCE_BUILD,
     JOB_INSTANCE_UPDATE,
@@ -94,6 +96,9 @@ enum job_id {
     {JOB_TRAVERSAL, "traversal", "distance|sign|basic",                                            \
      "which of two nodes comes first: the nearer, by the ray's\n"                                  \
      "sign, as they come (distance)"},                                                             \
+        {JOB_NUMERICS, "numerics", "fast|watertight|exact",                                        \
+         "what decides hits: quick tests that leak, tests that do\n"                               \
+         "not, exact arithmetic (watertight)"},                                                    \
     {                                                                                              \
         JOB_LOAD_PATH, "load-path", "auto|storage|texel", "how kernels read the trees (auto)"      \
     }
@@ -119,6 +124,8 @@ enum job_id {
     {                                                                                              \
         'q', "quiet", NULL, "no notes, no progress, only errors"                                   \
     }
+
+const char *job_numerics_name(whit_numerics numerics);
 
 void job_init(struct job *job);
 /* False when `id` is not one of the shared options. */

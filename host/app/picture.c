@@ -45,6 +45,7 @@ whit_renderer_params picture_params(const struct picture *picture, const struct 
         .time_limit_s = cli_time_left_s(),
         .load_path = job->load_path,
         .traversal = job->traversal,
+        .numerics = job->numerics,
     };
 }
 

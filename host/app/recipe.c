@@ -131,6 +131,8 @@ static char *command_line(const struct job *job, const struct render_request *re
         fprintf(to, " --texture-limit %u", job->texture_limit);
     if (job->flatten)
         fputs(" --instances off", to);
+    if (job->numerics)
+        fprintf(to, " --numerics %s", job_numerics_name(job->numerics));
     if (request->view.given)
         put_view(to, job, request);
     bool lacks_memory = ferror(to) != 0;
@@ -159,6 +161,8 @@ static char *options_line(const struct job *job, const struct render_request *re
         document_count(options, "texture_limit", job->texture_limit);
     if (job->flatten) /* hits are those of triangles in world space: the last bit may differ */
         document_text(options, "instances", "off");
+    if (job->numerics)
+        document_text(options, "numerics", job_numerics_name(job->numerics));
     return document_line(options);
 }
 

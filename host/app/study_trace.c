@@ -25,6 +25,7 @@ static whit_result create_renderers(struct study *study)
         .cancel = &cli_cancel,
         .load_path = study->job.load_path,
         .traversal = study->job.traversal,
+        .numerics = study->job.numerics,
     };
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < study->row_count; ++i) {

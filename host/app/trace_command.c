@@ -86,6 +86,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
         .cancel = &cli_cancel,
         .load_path = job->load_path,
         .traversal = job->traversal,
+        .numerics = job->numerics,
     };
     whit_result result = ray_file_open(trace->rays_path, &trace->input);
     if (result == WHIT_OK)

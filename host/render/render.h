@@ -34,8 +34,9 @@ struct render_params {
     void *progress_user;
     double time_limit_s; /* counted from renderer_create on */
     enum render_load_path load_path;
-    uint32_t order; /* ORDER_* */
-    bool count;     /* count what traversals cost */
+    uint32_t order;    /* ORDER_* */
+    uint32_t numerics; /* NUMERICS_* */
+    bool count;        /* count what traversals cost */
 };
 
 /* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made

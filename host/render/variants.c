@@ -48,6 +48,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_FLAT = accel->flat;
     spec.SPEC_CLIPPED = accel->clipped;
     spec.SPEC_ORDER = renderer->params.order;
+    spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;

@@ -37,6 +37,11 @@
 #define SPHERES_SOME 1u
 #define SPHERES_ONLY 2u /* no triangle at all */
 
+/* What decides hits, see docs/numerics.md. */
+#define NUMERICS_WATERTIGHT 0u
+#define NUMERICS_FAST       1u /* Moeller and Trumbore, plain slabs: leaks */
+#define NUMERICS_EXACT      2u /* as exact arithmetic would */
+
 /*    id  name                 default  meaning */
 #define GPU_SPEC_LIST(X)                                                                           \
     X(0, SPEC_GROUP_SIZE, 64)         /* invocations in a workgroup */                             \
@@ -75,7 +80,8 @@
     X(33, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
     X(34, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
     X(35, SPEC_EMISSION, 1)                                                                        \
-    X(36, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */
+    X(36, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
+    X(37, SPEC_NUMERICS, 0)           /* NUMERICS_* */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

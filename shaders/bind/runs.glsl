@@ -32,8 +32,8 @@ void traverse_runs(const uint mode, vec3 origin, vec3 dir, float t_min, uint fir
                 done = test_record(mode, ray, t_min, record, run.instance, skip_instance,
                                    skip_primitive, hit, waits);
                 if (has_looks(mode) && waits)
-                    done = look_at_record(mode, ray, t_min, record, run.instance, skip_instance,
-                                          skip_primitive, hit);
+                    done = look_at_record(mode, ray, origin, dir, t_min, record, run.instance,
+                                          skip_instance, skip_primitive, hit);
                 record = done ? end : record + 1u;
             } while (record < end);
             if (record < end)

@@ -5,7 +5,9 @@
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
 
+#include "../lib/exact.glsl"
 #include "../lib/intersect.glsl"
+#include "../lib/moller.glsl"
 #include "../lib/sphere.glsl"
 #include "trees.glsl"
 
@@ -29,7 +31,7 @@ const uint TRAVERSE_NEXT = 3u;
 
 float hit_before;
 
-// Whether a hit comes behind the one that is known.
+// Whether a hit comes behind the one that is known; at NUMERICS_EXACT it goes by keys.
 bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint known_primitive)
 {
     return t > hit_before ||
@@ -48,6 +50,7 @@ const float FLOAT_LARGEST = 3.402823466e+38;
 
 struct Hit {
     float t; // largest t that still counts, then that of the hit
+    float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
     float u, v;     // of a sphere: square_from_dir of the normal, object space
     uint triangle;  // record
     uint primitive; // of its mesh, or HIT_NONE
@@ -60,6 +63,8 @@ Hit make_hit(float t_max)
 {
     Hit hit;
     hit.t = t_max < FLOAT_LARGEST ? t_max : FLOAT_LARGEST;
+    hit.lo = hit.t;
+    hit.hi = hit.t;
     hit.u = 0.0;
     hit.v = 0.0;
     hit.triangle = 0u;
@@ -68,6 +73,12 @@ Hit make_hit(float t_max)
     hit.filter_depth = ivec3(0);
     hit.status = 0u;
     return hit;
+}
+
+// What lies behind it does not count.
+float farthest(Hit hit)
+{
+    return SPEC_NUMERICS == NUMERICS_EXACT ? hit.hi : hit.t;
 }
 
 // The node stack. In memory alone (SPEC_SHORT_STACK 0) it is node_stack[base..in_memory). Short, its
@@ -188,8 +199,9 @@ uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
 }
 
 // Extra room for boxes whose rays are transformed below: float error of the transform, relative to
-// t. 1.0 in mesh trees, whose boxes and triangles are tested with one and the same ray.
-const float SLAB_NEAR_SCALE_INSTANCES = 1.0 - 1.0 / 524288.0;
+// t. 1.0 in mesh trees, whose boxes and triangles are tested with one and the same ray, unless the t
+// that boxes are held against is exact and they are not.
+const float SLAB_NEAR_SCALE = 1.0 - 1.0 / 524288.0;
 
 // Whether the ray comes to the second node of a pair first, by `bits` of the first node's count.
 bool second_first(RaySetup ray, uint bits)
@@ -215,14 +227,15 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     float a_near, a_far, b_near, b_far;
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
-    if (near_scale != 1.0) {
-        precise float a_scaled = a_near * near_scale;
-        precise float b_scaled = b_near * near_scale;
+    if (SPEC_NUMERICS == NUMERICS_EXACT ||
+        (SPEC_NUMERICS == NUMERICS_WATERTIGHT && near_scale != 1.0)) {
+        precise float a_scaled = a_near * SLAB_NEAR_SCALE;
+        precise float b_scaled = b_near * SLAB_NEAR_SCALE;
         a_near = a_scaled;
         b_near = b_scaled;
     }
-    bool hit_a = a_near <= a_far && a_near <= hit.t;
-    bool hit_b = b_near <= b_far && b_near <= hit.t;
+    bool hit_a = a_near <= a_far && a_near <= farthest(hit);
+    bool hit_b = b_near <= b_far && b_near <= farthest(hit);
     uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
     uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
     bool b_wanted = false;
@@ -246,14 +259,49 @@ struct Meeting {
     float t, u, v;
     bool front; // met from outside
     bool owned; // of several triangles that share the point one owns it
+    // NUMERICS_EXACT: bounds of the key. Not `sure`: it may be met, and settle() finds out; until then
+    // t, u and v are good where `rounded`.
+    float lo, hi;
+    bool sure, rounded;
 };
+
+Meeting bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
+{
+    ExactBounds bounds = exact_filter(ray, a, b, c);
+    Meeting m;
+    m.met = !bounds.outside && !(bounds.hi < t_min);
+    m.t = bounds.t > t_min ? bounds.t : t_min;
+    m.u = bounds.u;
+    m.v = bounds.v;
+    m.front = !bounds.inside || bounds.front;
+    m.owned = true;
+    m.lo = bounds.lo;
+    m.hi = bounds.hi;
+    m.sure = bounds.inside && bounds.lo >= t_min;
+    m.rounded = bounds.inside;
+    return m;
+}
 
 Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
 {
     Meeting m;
+    if (SPEC_NUMERICS == NUMERICS_FAST) {
+        m.met = intersect_moller(ray.origin, ray.dir, row_vec3(r0), row_vec3(r1), row_vec3(r2),
+                                 t_min, m.t, m.u, m.v, m.front);
+        if (SPEC_FLAT != 0u)
+            m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+        m.owned = true;
+        return m;
+    }
     precise vec3 a = row_vec3(r0) - ray.origin;
     precise vec3 b = row_vec3(r1) - ray.origin;
     precise vec3 c = row_vec3(r2) - ray.origin;
+    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+        m = bound_triangle(ray, t_min, a, b, c);
+        if (SPEC_FLAT != 0u)
+            m.front = !m.rounded || m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+        return m;
+    }
     m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
@@ -275,6 +323,10 @@ Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool o
     m.v = square.y;
     m.front = !at_exit;
     m.owned = true;
+    m.lo = m.t;
+    m.hi = m.t;
+    m.sure = true;
+    m.rounded = true;
     return m;
 }
 
@@ -285,10 +337,12 @@ bool goes_through(const uint mode)
            mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
 }
 
+// At NUMERICS_EXACT: or may be, unless all keys are known.
 bool is_nearer(Meeting m, uint instance, uint primitive, Hit hit)
 {
-    return m.met && (m.t < hit.t ||
-                     (m.t == hit.t && (instance < hit.instance ||
+    float t = SPEC_NUMERICS == NUMERICS_EXACT ? m.lo : m.t;
+    return m.met && (t < farthest(hit) ||
+                     (t == farthest(hit) && (instance < hit.instance ||
                                        (instance == hit.instance && primitive < hit.primitive))));
 }
 
@@ -298,7 +352,8 @@ bool is_reached(const uint mode, Meeting m, uint flags, uint instance, uint prim
 {
     bool reached = is_nearer(m, instance, primitive, hit);
     if (mode == TRAVERSE_NEXT)
-        reached = reached && is_behind(m.t, instance, primitive, skip_instance, skip_primitive);
+        reached = reached && is_behind(SPEC_NUMERICS == NUMERICS_EXACT ? m.hi : m.t, instance,
+                                       primitive, skip_instance, skip_primitive);
     if (mode == TRAVERSE_SHADOW)
         reached = reached && (flags & TRIANGLE_NO_SHADOW) == 0u;
     // Light comes through what the eye sees not.
@@ -334,6 +389,8 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
 void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit hit)
 {
     hit.t = m.t;
+    hit.lo = m.lo;
+    hit.hi = m.hi;
     hit.u = m.u;
     hit.v = m.v;
     hit.triangle = record;
@@ -344,7 +401,8 @@ void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit h
 // Whether some record may have to be looked at before it counts: see look_at_record.
 bool has_looks(const uint mode)
 {
-    return SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+    return SPEC_NUMERICS == NUMERICS_EXACT || SPEC_CUTOUTS != 0u ||
+           (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
            (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
 }
 
@@ -374,6 +432,83 @@ Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip
     return p;
 }
 
+// Where a record's triangle is met, exactly.
+ExactMeeting meet_record(vec3 origin, vec3 dir, uint record)
+{
+    return exact_meet(origin, dir, row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS)),
+                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u)),
+                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u)));
+}
+
+// Replaces the bounds of a meeting by what is exact.
+void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact, inout Meeting m)
+{
+    precise vec3 a = row_vec3(p.r0) - ray.origin;
+    precise vec3 b = row_vec3(p.r1) - ray.origin;
+    precise vec3 c = row_vec3(p.r2) - ray.origin;
+    vec2 sa, sb, sc;
+    vec3 edges;
+    shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
+                   turn_dominant(ray.dominant, c), sa, sb, sc, edges);
+    m.met = m.met && exact.met && exact.key >= t_min;
+    m.owned = owns_its_edges(sa, sb, sc, exact.on_edge, exact.front == (ray.shear.z > 0.0));
+    m.front = exact.front;
+    if (SPEC_FLAT != 0u)
+        m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
+    m.t = m.rounded ? m.t : exact.key;
+    m.u = m.rounded ? m.u : exact.u;
+    m.v = m.rounded ? m.v : exact.v;
+    m.lo = exact.key;
+    m.hi = exact.key;
+}
+
+// The ray as the mesh of an instance sees it.
+void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
+{
+    if (SPEC_INSTANCED != 0u) {
+        InstanceFrame frame = fetch_instance_frame(instance);
+        origin = to_object_point(frame, origin);
+        dir = to_object_dir(frame, dir);
+    }
+}
+
+// NUMERICS_EXACT: the key of a meeting, and of the hit so far where it is needed to tell which of both
+// comes first. `origin`, `dir`: of the ray in world space.
+void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
+            inout Meeting m, inout Hit hit)
+{
+    vec3 from = ray.origin, along = ray.dir;
+    bool own = true, again;
+    do {
+        ExactMeeting exact = meet_record(from, along, record);
+        again = false;
+        if (own) {
+            if (!p.is_sphere)
+                settle_triangle(ray, t_min, p, exact, m);
+            again = m.met && hit.lo < hit.hi && hit.lo <= m.lo && m.lo <= hit.hi;
+            from = origin;
+            along = dir;
+            take_to_instance(again ? hit.instance : 0u, from, along);
+            record = hit.triangle;
+        } else {
+            hit.lo = exact.key;
+            hit.hi = exact.key;
+        }
+        own = false;
+    } while (again);
+}
+
+// The key of a hit, by which TRAVERSE_NEXT goes; but for NUMERICS_EXACT its t.
+float hit_key(Hit hit, vec3 origin, vec3 dir)
+{
+    if (SPEC_NUMERICS != NUMERICS_EXACT)
+        return hit.t;
+    if (hit.lo == hit.hi)
+        return hit.lo;
+    take_to_instance(hit.instance, origin, dir);
+    return meet_record(origin, dir, hit.triangle).key;
+}
+
 // Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
 Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
 {
@@ -392,6 +527,10 @@ Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool
         m.v = p.is_sphere ? on_sphere.v : m.v;
         m.front = p.is_sphere ? on_sphere.front : m.front;
         m.owned = p.is_sphere || m.owned;
+        m.lo = p.is_sphere ? on_sphere.lo : m.lo;
+        m.hi = p.is_sphere ? on_sphere.hi : m.hi;
+        m.sure = p.is_sphere || m.sure;
+        m.rounded = p.is_sphere || m.rounded;
     }
     return m;
 }
@@ -429,6 +568,12 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         waits = accepted && marked;
         if (SPEC_SPHERES != SPHERES_NONE && goes_through(mode))
             waits = waits || (p.is_sphere && chord.met);
+        if (SPEC_NUMERICS == NUMERICS_EXACT) {
+            bool unsure = !m.sure || m.hi >= hit.lo;
+            if (mode == TRAVERSE_NEXT)
+                unsure = unsure || m.lo <= hit_before;
+            waits = waits || (accepted && unsure);
+        }
         accepted = accepted && !waits;
     }
     if (accepted)
@@ -437,9 +582,9 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
 }
 
 // Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
-// end of a sphere behind an end that does.
-bool look_at_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
-                    uint skip_instance, uint skip_primitive, inout Hit hit)
+// end of a sphere behind an end that does. `origin`, `dir`: of the ray in world space.
+bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
+                    uint instance, uint skip_instance, uint skip_primitive, inout Hit hit)
 {
     Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
@@ -447,6 +592,8 @@ bool look_at_record(const uint mode, RaySetup ray, float t_min, uint record, uin
     bool accepted, again;
     do {
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
+        if (SPEC_NUMERICS == NUMERICS_EXACT)
+            settle(ray, origin, dir, t_min, record, p, m, hit);
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
             p.is_sphere)
@@ -499,11 +646,12 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
 }
 
 // Looks at the record at `ref`, and goes on to the next.
-void look_at_leaf(const uint mode, RaySetup ray, float t_min, uint instance, uint skip_instance,
-                  uint skip_primitive, inout uint ref, inout NodeStack stack, inout Hit hit)
+void look_at_leaf(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint instance,
+                  uint skip_instance, uint skip_primitive, inout uint ref, inout NodeStack stack,
+                  inout Hit hit)
 {
-    bool done = look_at_record(mode, ray, t_min, ref & BVH_FIRST_MASK, instance, skip_instance,
-                               skip_primitive, hit);
+    bool done = look_at_record(mode, ray, origin, dir, t_min, ref & BVH_FIRST_MASK, instance,
+                               skip_instance, skip_primitive, hit);
     ref = next_ref(ref, done, stack);
     ref = refill_stack(ref, stack, hit.status);
 }
@@ -520,7 +668,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
         bool waits;
         walk_mesh(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit, waits);
         if (has_looks(mode) && waits)
-            look_at_leaf(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit);
+            look_at_leaf(mode, ray, ray.origin, ray.dir, t_min, 0u, skip_instance, skip_primitive,
+                         ref, stack, hit);
     } while (has_looks(mode) && ref != REF_DONE);
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE)
@@ -548,7 +697,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     do {
         do {
             if (is_inner(ref) && has_room(stack) && !inside)
-                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE_INSTANCES, ref, stack, hit);
+                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE, ref, stack, hit);
         } while (is_inner(ref) && has_room(stack) && !inside);
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;
@@ -586,8 +735,8 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
                        local, mesh_ref, mesh_stack, inside, hit, waits);
         inside = has_looks(mode); // of those that wait
         if (has_looks(mode) && waits)
-            look_at_leaf(mode, local, t_min, ref & BVH_FIRST_MASK, skip_instance, skip_primitive,
-                         mesh_ref, mesh_stack, hit);
+            look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
+                         skip_primitive, mesh_ref, mesh_stack, hit);
     } while (has_looks(mode) && ref != REF_DONE);
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE)

@@ -4,9 +4,11 @@
 #ifndef LIB_INTERSECT_GLSL
 #define LIB_INTERSECT_GLSL
 
+#include "../abi/spec.h"
+
 // What a ray needs at every box and triangle.
 struct RaySetup {
-    vec3 origin;
+    vec3 origin, dir;
     vec3 above, below; // origin plus and less the margin of node boxes: see widen_ray_setup
     vec3 inv_dir;  // infinite where the direction is 0
     bvec3 negative; // inv_dir < 0, so that -0 counts as negative
@@ -25,6 +27,7 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
 {
     RaySetup ray;
     ray.origin = origin;
+    ray.dir = dir;
     ray.above = origin;
     ray.below = origin;
     precise vec3 inv_dir = vec3(1.0) / dir;
@@ -40,6 +43,11 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     shear.z = 1.0 / turned.z;
     shear.x = turned.x / turned.z;
     shear.y = turned.y / turned.z;
+    // Quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp): NaN, with which no
+    // filter decides.
+    float length = abs(turned.z);
+    if (SPEC_NUMERICS == NUMERICS_EXACT && !(length > 7.8886e-31 && length < 1.2676506e+30))
+        shear = vec3(uintBitsToFloat(0x7fc00000u));
     ray.shear = shear;
     return ray;
 }
@@ -85,7 +93,7 @@ void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near
     end = far.z < end ? far.z : end;
     precise float widened = end * SLAB_FAR_SCALE;
     t_near = start;
-    t_far = widened;
+    t_far = SPEC_NUMERICS == NUMERICS_FAST ? end : widened;
 }
 
 // Vertices, the dominant axis last, sheared so that the ray goes along that axis; and for each vertex
@@ -161,6 +169,13 @@ bool owns_edge(vec2 edge, bool left)
                 : edge.y < 0.0 || (edge.y == 0.0 && edge.x < 0.0);
 }
 
+// By which edge functions are 0, and on which side of its edges the triangle is.
+bool owns_its_edges(vec2 sa, vec2 sb, vec2 sc, bvec3 on_edge, bool left)
+{
+    return (!on_edge.x || owns_edge(sc - sb, left)) && (!on_edge.y || owns_edge(sa - sc, left)) &&
+           (!on_edge.z || owns_edge(sb - sa, left));
+}
+
 // Of the triangles around an edge or a vertex that a ray meets exactly, seen from the same side, just
 // one owns the point: the fill rule of rasterizers (Pineda 1988). For what must be counted once.
 bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
@@ -170,10 +185,7 @@ bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
     shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
                    turn_dominant(ray.dominant, c), sa, sb, sc, edges);
     precise float det = (edges.x + edges.y) + edges.z;
-    bool left = det > 0.0;
-    return (edges.x != 0.0 || owns_edge(sc - sb, left)) &&
-           (edges.y != 0.0 || owns_edge(sa - sc, left)) &&
-           (edges.z != 0.0 || owns_edge(sb - sa, left));
+    return owns_its_edges(sa, sb, sc, equal(edges, vec3(0.0)), det > 0.0);
 }
 
 #endif

@@ -14,6 +14,7 @@ _whit() {
         --instance-build) words="sah median" ;;
         --instance-update) words="rebuild refit" ;;
         --load-path) words="auto storage texel" ;;
+        --numerics) words="fast watertight exact" ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
         --view) words="color depth visits boxes tris stack" ;;

@@ -1,0 +1,344 @@
+// Whether a ray meets a triangle, and where, as exact arithmetic says for the given floats:
+// NUMERICS_EXACT. A filter of floats with a proven error bound decides nearly all; what it leaves goes
+// to integers of many digits, which every device computes alike. docs/numerics.md derives the bounds.
+// accel/exact.c is this file in C.
+#ifndef LIB_EXACT_GLSL
+#define LIB_EXACT_GLSL
+
+#include "intersect.glsl"
+
+// ---- The filter ----
+
+const float EXACT_UNIT = 1.0 / 16777216.0;
+const float EXACT_TINY = 7.8886090522101181e-31; // 2^-100: whatever underflows, and more
+const float EXACT_LARGE = 1.2676506002282294e+30;
+
+// What floats can tell. The key is the exact t, rounded to nearest.
+struct ExactBounds {
+    bool outside; // surely missed
+    bool inside;  // surely met, and t, u, v are good
+    bool front;   // where `inside`
+    float t, u, v;
+    float lo, hi; // lo <= key <= hi if it is met
+};
+
+float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+float largest_magnitude(vec3 p)
+{
+    vec3 size = abs(p);
+    return larger(size.x, larger(size.y, size.z));
+}
+
+// Vertices relative to the ray's origin, as for intersect_triangle.
+ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
+{
+    vec3 ta = turn_dominant(ray.dominant, a);
+    vec3 tb = turn_dominant(ray.dominant, b);
+    vec3 tc = turn_dominant(ray.dominant, c);
+    vec2 sa, sb, sc;
+    vec3 edges;
+    shear_triangle(ray, ta, tb, tc, sa, sb, sc, edges);
+    float far = larger(largest_magnitude(a), larger(largest_magnitude(b), largest_magnitude(c)));
+    float size = larger(larger(larger(abs(sa.x), abs(sa.y)), larger(abs(sb.x), abs(sb.y))),
+                        larger(abs(sc.x), abs(sc.y)));
+    // Of sheared coordinates, then of edge functions.
+    precise float off = 12.0 * EXACT_UNIT * far + EXACT_TINY;
+    precise float edge_error =
+        4.125 * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
+    bvec3 below = lessThan(edges, vec3(-edge_error));
+    bvec3 above = greaterThan(edges, vec3(edge_error));
+    precise float det = (edges.x + edges.y) + edges.z;
+    precise float az = ray.shear.z * ta.z;
+    precise float bz = ray.shear.z * tb.z;
+    precise float cz = ray.shear.z * tc.z;
+    precise float scaled_t = (edges.x * az + edges.y * bz) + edges.z * cz;
+    precise float inv_det = 1.0 / det;
+    precise float at = scaled_t * inv_det;
+    precise float weight_b = edges.y * inv_det;
+    precise float weight_c = edges.z * inv_det;
+    float z_lo = smaller(az, smaller(bz, cz));
+    float z_hi = larger(az, larger(bz, cz));
+    precise float z_error = 40.0 * EXACT_UNIT * larger(abs(z_lo), abs(z_hi)) + EXACT_TINY;
+    precise float weights_error = (3.25 * edge_error) * abs(inv_det);
+    precise float t_error = weights_error * (z_hi - z_lo) + z_error;
+    ExactBounds bounds;
+    bounds.outside = any(below) && any(above);
+    bounds.inside = (all(below) || all(above)) && abs(det) < EXACT_LARGE &&
+                    abs(at) < EXACT_LARGE && weights_error < 0.25;
+    bounds.front = (det > 0.0) == (ray.shear.z > 0.0);
+    bounds.t = at;
+    bounds.u = weight_b;
+    bounds.v = weight_c;
+    precise float t_lo = at - t_error;
+    precise float t_hi = at + t_error;
+    precise float any_lo = z_lo - z_error;
+    precise float any_hi = z_hi + z_error;
+    bool known = any_lo <= any_hi; // not NaN
+    bounds.lo = bounds.inside ? t_lo : known ? any_lo : uintBitsToFloat(0xff800000u);
+    bounds.hi = bounds.inside ? t_hi : known ? any_hi : uintBitsToFloat(0x7f800000u);
+    return bounds;
+}
+
+// ---- The exact test: integers of 54 digits of 16 bits, in units of 2^-447 ----
+//
+// A float is m 2^(e - 150), m < 2^24 and 1 <= e <= 254; so a product of three is an integer below
+// 2^72 times 2^(e1 + e2 + e3 - 3) such units. The largest shift is 759: the last digit touched is 52.
+
+const int WIDE_DIGITS = 54;
+const int WIDE_D = 0; // e_a, then D = e_a + e_b + e_c
+const int WIDE_B = 1;
+const int WIDE_C = 2;
+const int WIDE_N = 3;
+const int POINT_DIR = 0;
+const int POINT_ORIGIN = 1;
+const int POINT_A = 2;
+const int POINT_B = 3;
+const int POINT_C = 4;
+
+ivec4 wide[WIDE_DIGITS]; // one column an integer
+uvec3 wide_mantissa[5];  // sign in the top bit
+ivec3 wide_exponent[5];
+
+void decode_point(int at, vec3 p)
+{
+    uvec3 bits = floatBitsToUint(p);
+    uvec3 exponent = bits >> 23 & 255u;
+    bvec3 normal = notEqual(exponent, uvec3(0u));
+    wide_mantissa[at] =
+        (bits & 0x80000000u) | (bits & 0x7fffffu) | mix(uvec3(0u), uvec3(0x800000u), normal);
+    wide_exponent[at] = ivec3(mix(uvec3(1u), exponent, normal));
+}
+
+// Between which exponents the values that are not 0 lie: which digits are in use. Clears them.
+ivec2 find_range()
+{
+    int lo = 254, hi = 1, dir_lo = 254, dir_hi = 1;
+    for (int k = 0; k < 5; k++) {
+        for (int i = 0; i < 3; i++) {
+            bool some = (wide_mantissa[k][i] & 0x7fffffffu) != 0u;
+            int e = wide_exponent[k][i];
+            if (k == POINT_DIR) {
+                dir_lo = some ? min(dir_lo, e) : dir_lo;
+                dir_hi = some ? max(dir_hi, e) : dir_hi;
+            } else {
+                lo = some ? min(lo, e) : lo;
+                hi = some ? max(hi, e) : hi;
+            }
+        }
+    }
+    ivec2 range = ivec2((min(dir_lo, lo) + lo + lo - 3) >> 4,
+                        ((max(dir_hi, hi) + hi + hi - 3) >> 4) + 6);
+    for (int i = range.x; i <= range.y; i++)
+        wide[i] = ivec4(0);
+    return range;
+}
+
+// p.i q.j r.k, or less it.
+void add_product(int target, ivec3 points, int i, int j, int k, bool negative)
+{
+    uint p = wide_mantissa[points.x][i], q = wide_mantissa[points.y][j],
+         r = wide_mantissa[points.z][k];
+    bool minus = negative != ((p ^ q ^ r) >> 31 != 0u);
+    p &= 0x7fffffffu;
+    q &= 0x7fffffffu;
+    r &= 0x7fffffffu;
+    int shift =
+        wide_exponent[points.x][i] + wide_exponent[points.y][j] + wide_exponent[points.z][k] - 3;
+    uint pq_high, pq_low, word0, word1, word2, above, carry;
+    umulExtended(p, q, pq_high, pq_low);
+    umulExtended(pq_low, r, word1, word0);
+    umulExtended(pq_high, r, word2, above);
+    word1 = uaddCarry(word1, above, carry);
+    word2 += carry;
+    uint bits = uint(shift) & 15u, back = 16u - bits; // shifts by 32 have no meaning
+    word2 = word2 << bits | word1 >> 16 >> back;
+    word1 = word1 << bits | word0 >> 16 >> back;
+    word0 = word0 << bits;
+    if (p != 0u && q != 0u && r != 0u) {
+        int to = shift >> 4, sign = minus ? -1 : 1;
+        wide[to][target] += sign * int(word0 & 0xffffu);
+        wide[to + 1][target] += sign * int(word0 >> 16);
+        wide[to + 2][target] += sign * int(word1 & 0xffffu);
+        wide[to + 3][target] += sign * int(word1 >> 16);
+        wide[to + 4][target] += sign * int(word2 & 0xffffu);
+        wide[to + 5][target] += sign * int(word2 >> 16);
+    }
+}
+
+// One determinant of three points after the other: e_a = d.(b x c) about the origin, so
+// det(d, b, c) - det(d, b, o) - det(d, o, c), and so on; and N = a.(b x c), likewise.
+void add_determinants()
+{
+    const ivec4 determinants[13] = ivec4[13](
+        ivec4(POINT_DIR, POINT_B, POINT_C, WIDE_D), ivec4(POINT_DIR, POINT_B, POINT_ORIGIN, -1 - WIDE_D),
+        ivec4(POINT_DIR, POINT_ORIGIN, POINT_C, -1 - WIDE_D), ivec4(POINT_DIR, POINT_C, POINT_A, WIDE_B),
+        ivec4(POINT_DIR, POINT_C, POINT_ORIGIN, -1 - WIDE_B), ivec4(POINT_DIR, POINT_ORIGIN, POINT_A, -1 - WIDE_B),
+        ivec4(POINT_DIR, POINT_A, POINT_B, WIDE_C), ivec4(POINT_DIR, POINT_A, POINT_ORIGIN, -1 - WIDE_C),
+        ivec4(POINT_DIR, POINT_ORIGIN, POINT_B, -1 - WIDE_C), ivec4(POINT_A, POINT_B, POINT_C, WIDE_N),
+        ivec4(POINT_ORIGIN, POINT_B, POINT_C, -1 - WIDE_N), ivec4(POINT_A, POINT_ORIGIN, POINT_C, -1 - WIDE_N),
+        ivec4(POINT_A, POINT_B, POINT_ORIGIN, -1 - WIDE_N)); // last: target, or -1 - target: less
+    for (int n = 0; n < 39; n++) {
+        ivec4 determinant = determinants[n / 3];
+        bool negative = determinant.w < 0;
+        int target = negative ? -1 - determinant.w : determinant.w;
+        int i = n % 3, j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+        add_product(target, determinant.xyz, i, j, k, negative);
+        add_product(target, determinant.xyz, i, k, j, !negative);
+    }
+}
+
+// Carries; digits are 0..65535 then, of two's complement, and the first integer is D. Signs of all, and
+// that of e_a.
+void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
+{
+    ivec4 carry = ivec4(0), some = ivec4(0);
+    int carry_a = 0, some_a = 0;
+    for (int i = range.x; i <= range.y; i++) {
+        ivec4 digits = wide[i];
+        int a = digits[WIDE_D] + carry_a;
+        carry_a = a >> 16;
+        some_a |= a & 0xffff;
+        digits[WIDE_D] += digits[WIDE_B] + digits[WIDE_C];
+        digits += carry;
+        carry = digits >> 16;
+        digits &= 0xffff;
+        some |= digits;
+        wide[i] = digits;
+    }
+    sign_a = carry_a < 0 ? -1 : some_a != 0 ? 1 : 0;
+    signs = mix(ivec4(notEqual(some, ivec4(0))), ivec4(-1), lessThan(carry, ivec4(0)));
+}
+
+// What is negative is negated. The first digits that are not 0, of D and N.
+ivec2 make_positive(ivec2 range, ivec4 signs)
+{
+    bool flip = signs[WIDE_D] < 0;
+    bvec4 flips = bvec4(flip, flip, flip, signs[WIDE_N] < 0);
+    ivec4 carry = ivec4(1);
+    ivec2 top = range.xx;
+    for (int i = range.x; i <= range.y; i++) {
+        ivec4 inverse = (~wide[i] & 0xffff) + carry;
+        carry = inverse >> 16;
+        ivec4 digits = mix(wide[i], inverse & 0xffff, flips);
+        wide[i] = digits;
+        top.x = digits[WIDE_D] != 0 ? i : top.x;
+        top.y = digits[WIDE_N] != 0 ? i : top.y;
+    }
+    return top;
+}
+
+uint digit_at(ivec2 range, int k, int i)
+{
+    return i >= range.x && i <= range.y ? uint(wide[clamp(i, 0, WIDE_DIGITS - 1)][k]) : 0u;
+}
+
+// 32 bits from digit `top` down, after `shift` < 16 bits.
+uint leading_bits(ivec2 range, int k, int top, uint shift)
+{
+    uint bits = digit_at(range, k, top) << 16 | digit_at(range, k, top - 1);
+    return bits << shift | digit_at(range, k, top - 2) >> (16u - shift);
+}
+
+// Of 16.
+uint leading_zeros(ivec2 range, int k, int top)
+{
+    return uint(clamp(15 - findMSB(digit_at(range, k, top)), 0, 15));
+}
+
+// Sign of N - factor D 2^shift, where factor < 2^26 and both terms nearly agree.
+int compare_product(ivec2 range, uint factor, int shift)
+{
+    uint bits = uint(shift) & 15u;
+    int moved = shift >> 4, borrow = 0, more = 0;
+    uint low = factor << bits, f2 = factor >> 16 >> (16u - bits);
+    uint f0 = low & 0xffffu, f1 = low >> 16, carry = 0u, d1 = 0u, d2 = 0u;
+    for (int i = range.x; i <= range.y + 3; i++) {
+        uint d0 = digit_at(range, WIDE_D, i);
+        uint p0 = f0 * d0, p1 = f1 * d1, p2 = f2 * d2;
+        uint sum = (p0 & 0xffffu) + (p1 & 0xffffu) + (p2 & 0xffffu) + carry;
+        carry = (sum >> 16) + (p0 >> 16) + (p1 >> 16) + (p2 >> 16);
+        int difference = int(digit_at(range, WIDE_N, i + moved)) - int(sum & 0xffffu) - borrow;
+        borrow = difference < 0 ? 1 : 0;
+        more |= difference & 0xffff;
+        if (i < range.x + moved) // of N, below all of the product
+            more |= int(digit_at(range, WIDE_N, i));
+        d2 = d1;
+        d1 = d0;
+    }
+    return borrow != 0 ? -1 : more != 0 ? 1 : 0;
+}
+
+// N / D, both positive, to nearest, ties to even.
+float round_quotient(ivec2 range, int top_d, int top_n)
+{
+    uint zeros_n = leading_zeros(range, WIDE_N, top_n);
+    uint zeros_d = leading_zeros(range, WIDE_D, top_d);
+    uint rest = leading_bits(range, WIDE_N, top_n, zeros_n) >> 1;
+    uint by = leading_bits(range, WIDE_D, top_d, zeros_d) >> 1;
+    uint quotient = 0u;
+    for (int n = 0; n < 28; n++) {
+        bool one = rest >= by;
+        quotient = quotient << 1 | (one ? 1u : 0u);
+        rest = (one ? rest - by : rest) << 1;
+    }
+    // t is quotient 2^(scale - 27), but for 2 in the last place.
+    int scale = 16 * (top_n - top_d) - int(zeros_n) + int(zeros_d);
+    int drop = quotient >> 27 != 0u ? 4 : 3;
+    int biased = scale + drop + 123;
+    if (biased < 1)
+        drop += 1 - biased;
+    uint mantissa = drop < 32 ? quotient >> uint(min(drop, 31)) : 0u;
+    int side = compare_product(range, 2u * mantissa + 1u, scale - 27 + drop - 1);
+    bool up = side > 0 || (side == 0 && (mantissa & 1u) != 0u);
+    uint bits = biased < 1 ? mantissa : uint(min(biased, 255)) << 23 | (mantissa & 0x7fffffu);
+    bits += up ? 1u : 0u;
+    return uintBitsToFloat(biased > 254 ? 0x7f800000u : bits);
+}
+
+struct ExactMeeting {
+    bool met; // t >= 0, the closed triangle, not edge-on; false where the key exceeds the largest float
+    bool front;
+    float key, u, v;
+    bvec3 on_edge; // which edge functions are 0
+};
+
+ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
+{
+    decode_point(POINT_DIR, dir);
+    decode_point(POINT_ORIGIN, origin);
+    decode_point(POINT_A, v0);
+    decode_point(POINT_B, v1);
+    decode_point(POINT_C, v2);
+    ivec2 range = find_range();
+    add_determinants();
+    ivec4 signs;
+    int sign_a;
+    carry_digits(range, signs, sign_a);
+    ivec3 edges = ivec3(sign_a, signs[WIDE_B], signs[WIDE_C]);
+    int d = signs[WIDE_D], n = signs[WIDE_N];
+    ivec2 top = make_positive(range, signs);
+    uint zeros = leading_zeros(range, WIDE_D, top.x);
+    float whole = float(leading_bits(range, WIDE_D, top.x, zeros));
+    ExactMeeting m;
+    precise float u = float(leading_bits(range, WIDE_B, top.x, zeros)) / whole;
+    precise float v = float(leading_bits(range, WIDE_C, top.x, zeros)) / whole;
+    m.u = u;
+    m.v = v;
+    m.front = d < 0;
+    m.on_edge = equal(edges, ivec3(0));
+    m.key = n == 0 ? 0.0 : round_quotient(range, top.x, top.y);
+    bool mixed = any(lessThan(edges, ivec3(0))) && any(greaterThan(edges, ivec3(0)));
+    m.met = !mixed && d != 0 && (n == 0 || n == d) && m.key < uintBitsToFloat(0x7f800000u);
+    return m;
+}
+
+#endif
