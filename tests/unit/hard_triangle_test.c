@@ -223,7 +223,8 @@ static void what_has_no_point_is_not_met(void **state)
     rational_destroy(rational);
 }
 
-/* T6: both ends count, for closest and any hits. */
+/* T6: both ends count, for closest and any hits. The watertight test holds t_min against t as it is
+   before it is moved into the triangle's box: where it was moved, the beginning may be past it. */
 static void ends_of_intervals_count(void **state)
 {
     (void)state;
@@ -261,6 +262,7 @@ static void ends_of_intervals_count(void **state)
                       levels[l].name, wrong_end, wrong_begin, hits);
         assert_int_equal(wrong_end, 0);
         assert_true(!levels[l].exact || wrong_begin == 0);
+        assert_true(wrong_begin * 20 < hits);
         assert_true(hits > RAYS / 2);
     }
     accel_destroy(accel);
