@@ -113,12 +113,21 @@ static void flatten_kernel(struct kernel_words *kernel)
     kernel->flat = true;
 }
 
-/* `flat`: for a driver; else only its info is of interest. */
-static bool specialize_kernel(const struct pipeline_params *params, bool flat,
+enum kernel_use {
+    KERNEL_TO_COUNT, /* its info alone */
+    KERNEL_TO_RUN,
+    KERNEL_WITH_CALLS, /* to run, not flat */
+};
+
+static bool specialize_kernel(const struct pipeline_params *params, enum kernel_use use,
                               struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
     bool kept = kernel_cache_load(params, out);
+    if (kept && out->flat && use == KERNEL_WITH_CALLS) {
+        free(out->specialized);
+        kept = false;
+    }
     if (!kept) {
         *out = (struct kernel_words){.word_count = word_count};
         if (!spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
@@ -129,7 +138,8 @@ static bool specialize_kernel(const struct pipeline_params *params, bool flat,
             return false;
         }
     }
-    bool flattens = flat && !out->flat && out->info.instructions <= FLAT_INSTRUCTIONS_MOST;
+    bool flattens =
+        use == KERNEL_TO_RUN && !out->flat && out->info.instructions <= FLAT_INSTRUCTIONS_MOST;
     if (flattens)
         flatten_kernel(out);
     if (!kept || flattens)
@@ -148,7 +158,10 @@ static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_para
                            struct kernel_words *kernel)
 {
     struct pipeline_info *info = &pipeline->info;
-    info->specialized = !specializing_is_off() && specialize_kernel(params, true, kernel);
+    /* GPU-assisted checks make of a flat kernel what lavapipe refuses (VK_ERROR_UNKNOWN). */
+    enum kernel_use use =
+        pipeline->device->validation_of_shaders ? KERNEL_WITH_CALLS : KERNEL_TO_RUN;
+    info->specialized = !specializing_is_off() && specialize_kernel(params, use, kernel);
     if (!info->specialized) {
         *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
         if (!specializing_is_off())
@@ -177,7 +190,7 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
 {
     struct kernel_words kernel;
     *info = (struct pipeline_info){0};
-    if (!specialize_kernel(params, false, &kernel))
+    if (!specialize_kernel(params, KERNEL_TO_COUNT, &kernel))
         return false;
     free(kernel.specialized);
     *info = (struct pipeline_info){
