@@ -101,9 +101,12 @@ change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
   [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
 
 mutation(fused_edges peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h [[float ea = cx * by - cy * bx;]] [[float ea = fmaf(cx, by, -(cy * bx));]])
-change(host/accel/intersect.h [[float eb = ax * cy - ay * cx;]] [[float eb = fmaf(ax, cy, -(ay * cx));]])
-change(host/accel/intersect.h [[float ec = bx * ay - by * ax;]] [[float ec = fmaf(bx, ay, -(by * ax));]])
+change(host/accel/intersect.h [[s.ea = s.cx * s.by - s.cy * s.bx;]]
+  [[s.ea = fmaf(s.cx, s.by, -(s.cy * s.bx));]])
+change(host/accel/intersect.h [[s.eb = s.ax * s.cy - s.ay * s.cx;]]
+  [[s.eb = fmaf(s.ax, s.cy, -(s.ay * s.cx));]])
+change(host/accel/intersect.h [[s.ec = s.bx * s.ay - s.by * s.ax;]]
+  [[s.ec = fmaf(s.bx, s.ay, -(s.by * s.ax));]])
 
 mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
 change(host/accel/intersect.h [[SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)]] [[SLAB_FAR_SCALE 1.0f]])
@@ -154,13 +157,13 @@ change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
   [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
 
 mutation(ties_undecided accel_stack RED duplicates_give_the_first)
-change(host/accel/traverse.c [[(m->t == hit->t && (instance < hit->instance ||]]
+change(host/accel/traverse.c [[(t == farthest && (instance < hit->instance ||]]
   [[(false && (instance < hit->instance ||]])
-change(shaders/bind/traverse.glsl [[(m.t == hit.t && (instance < hit.instance ||]]
+change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
 mutation(ties_undecided_in_kernels render_trace RED soup_equals_twin)
-change(shaders/bind/traverse.glsl [[(m.t == hit.t && (instance < hit.instance ||]]
+change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
 mutation(stack_without_end accel_stack RED too_deep_trees_are_reported)
