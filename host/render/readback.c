@@ -1,6 +1,7 @@
 /* Pictures from the device to the host. */
 #include "render/renderer.h"
 
+#include <math.h>
 #include <string.h>
 
 bool readback_is_late(const struct renderer *renderer)
@@ -36,6 +37,31 @@ static whit_result read_listed(struct renderer *renderer, const struct progress 
         for (size_t i = 0; i < n; ++i) {
             if (adaptive_draws(progress, first + at + i))
                 memcpy(&renderer->color.pixels[4 * (first + at + i)], pixels[i], sizeof pixels[i]);
+        }
+    }
+    return WHIT_OK;
+}
+
+whit_result readback_non_finite(struct renderer *renderer, uint32_t *x, uint32_t *y,
+                                uint32_t *count)
+{
+    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    float pixels[READ_SLICE][4];
+    uint64_t held = (uint64_t)renderer->params.width * p->band_rows;
+    *x = *y = *count = 0;
+    for (uint64_t at = 0; at < held; at += READ_SLICE) {
+        uint64_t n = held - at < READ_SLICE ? held - at : READ_SLICE;
+        whit_result result =
+            buffer_read(p->pixels, at * sizeof *pixels, pixels, n * sizeof *pixels);
+        if (result != WHIT_OK)
+            return result;
+        for (uint64_t i = 0; i < n; ++i) {
+            if (isfinite(pixels[i][0]) && isfinite(pixels[i][1]) && isfinite(pixels[i][2]))
+                continue;
+            if ((*count)++ == 0) {
+                *x = (uint32_t)((at + i) % renderer->params.width);
+                *y = (uint32_t)((at + i) / renderer->params.width) + p->band_y;
+            }
         }
     }
     return WHIT_OK;

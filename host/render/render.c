@@ -4,6 +4,7 @@
 #include "render/render.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +20,16 @@ enum {
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_TARGET_MS = 40.0;
 static const double SUBMISSION_LIMIT_MS = 100.0;
+
+/* Where pixels are not finite, of those drawn so far. Nothing where none is: a ray was lost whose
+   weight was no number. */
+static void describe_non_finite(struct renderer *renderer, char *text, size_t text_bytes)
+{
+    uint32_t x, y, count;
+    text[0] = 0;
+    if (readback_non_finite(renderer, &x, &y, &count) == WHIT_OK && count > 0)
+        snprintf(text, text_bytes, ": in %u pixels so far, the first at %u,%u", count, x, y);
+}
 
 whit_result status_check(struct renderer *renderer)
 {
@@ -37,10 +48,16 @@ whit_result status_check(struct renderer *renderer)
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
     };
+    char text[1024] = "", where[96] = "";
+    if (word & STATUS_NON_FINITE)
+        describe_non_finite(renderer, where, sizeof where);
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
+        size_t used = strlen(text);
         if (word & reasons[i].bit)
-            log_error(&renderer->log, "the result is not to be trusted: %s", reasons[i].text);
+            snprintf(text + used, sizeof text - used, "%s%s%s", used ? "; " : "", reasons[i].text,
+                     reasons[i].bit == STATUS_NON_FINITE ? where : "");
     }
+    log_error(&renderer->log, "the result is not to be trusted: %s", text);
     return WHIT_ERROR_STATUS;
 }
 
@@ -263,6 +280,7 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
     uint32_t rows =
         left < renderer->pixel_buffers.band_rows ? left : renderer->pixel_buffers.band_rows;
     uint32_t across = pixels_blocks_across(params->width);
+    renderer->pixel_buffers.band_y = band_y;
     uint32_t block = band_y / 8 * across, end = block + pixels_blocks_across(rows) * across;
     while (block < end) {
         uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;

@@ -28,6 +28,7 @@ struct pixel_buffers {
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* work list of camera rays; NULL when not adaptive */
     struct buffer *status;
+    uint32_t band_y;      /* first row that they hold now */
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
     uint32_t stack_size;  /* rays of one pixel */
@@ -247,6 +248,9 @@ bool readback_is_late(const struct renderer *renderer);
    statistics. Ids are those of the first pass. */
 WHIT_CHECK whit_result readback_band(struct renderer *renderer, const struct progress *progress,
                                      uint32_t band_y, uint32_t rows);
+/* How many pixels of the band are not finite as yet, and in the picture the first of them. */
+WHIT_CHECK whit_result readback_non_finite(struct renderer *renderer, uint32_t *x, uint32_t *y,
+                                           uint32_t *count);
 
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
 void stats_clear(struct render_stats *stats);

@@ -8,6 +8,8 @@
 
 /* Transforms end in floats on the device, so must their inverses. */
 #define LARGEST_ENTRY 1e30
+/* That of shaders/bind/light.glsl, which takes no more of what arrives. */
+#define LIGHT_MOST    1e24f
 
 static const char *text_of(const char *name)
 {
@@ -105,7 +107,7 @@ static uint32_t mend_material(struct scene_material *m)
 {
     const float huge = 1e30f;
     uint32_t count = mend_rgb(m->ambient, huge, 1.0f) + mend_rgb(m->diffuse, huge, 0.7f) +
-                     mend_rgb(m->specular, huge, 0.0f) + mend_rgb(m->emission, huge, 0.0f) +
+                     mend_rgb(m->specular, huge, 0.0f) + mend_rgb(m->emission, LIGHT_MOST, 0.0f) +
                      mend_rgb(m->reflection, huge, 0.0f) + mend_rgb(m->transmission, huge, 0.0f) +
                      mend_rgb(m->absorption, huge, 0.0f);
     count += mend(&m->shininess, 0.0f, 1e6f, 32.0f);
@@ -344,18 +346,21 @@ static bool usable_light(const struct scene_light *light)
     return finite && (!scene_light_is_flat(light) || (area > 0.0 && isfinite(area)));
 }
 
-static void mend_light(struct scene_light *light)
+/* Returns how many values of its colour had to change. */
+static uint32_t mend_light(struct scene_light *light)
 {
+    uint32_t count = 0;
     double *d = light->direction;
     double length = length_of(d);
     for (int i = 0; i < 3; ++i) {
         d[i] = length > 0.0 && isfinite(length) ? d[i] / length : -(double)(i == 1);
-        light->color[i] = fmaxf(light->color[i], 0.0f);
+        count += mend(&light->color[i], 0.0f, LIGHT_MOST, 0.0f);
     }
     if (!(light->range > 0.0f) || !isfinite(light->range))
         light->range = 0.0f;
     mend(&light->cos_outer, -1.0f, 1.0f, 0.70710678f);
     mend(&light->cos_inner, light->cos_outer, 1.0f, 1.0f);
+    return count;
 }
 
 static whit_result check_lights(struct scene *scene)
@@ -370,7 +375,11 @@ static whit_result check_lights(struct scene *scene)
         struct scene_light *light = &scene->lights[i];
         set_emitter_direction(light);
         if (usable_light(light)) {
-            mend_light(light);
+            uint32_t count = mend_light(light);
+            if (count)
+                scene_note(scene, SCENE_NOTE_WARNING,
+                           "light %u `%s`: %u values of its colour out of range were mended", i,
+                           text_of(light->name), count);
             scene->lights[kept++] = *light;
             continue;
         }

@@ -130,7 +130,7 @@ void add_turn(uint slot, uint turn, gpu_light light, uint point, Surface s, Opti
                                   : o.highlight * blinn_highlight(cos_half, o.shininess);
         reflected += highlight;
     }
-    wanted = wanted && max(reflected.r, max(reflected.g, reflected.b)) > 0.0;
+    wanted = wanted && !(reflected.r + reflected.g + reflected.b <= 0.0); // NaN is: it must be seen
     vec3 share = vec3(0.0);
     if (wanted) {
         share = light_share(slot, turn, s, lit.receiver, at, above, status);

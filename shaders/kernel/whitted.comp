@@ -11,9 +11,11 @@
 layout(local_size_x_id = 0) in;
 
 // Whether a child of this weight is traced; what is cut is counted, with the pixel's average weight.
-bool traced(vec3 weight, bool deep, inout gpu_counts count)
+bool traced(vec3 weight, bool deep, inout gpu_counts count, inout uint status)
 {
     float largest = largest_of(weight);
+    if (any(isnan(weight))) // which is not traced, and so not seen in the sum
+        status |= STATUS_NON_FINITE;
     bool small = !(largest >= frame.bailout);
     float share = largest > 0.0 ? largest * chunk.sample_weight : 0.0;
     count.cut_depth += uint(deep && largest > 0.0);
@@ -48,7 +50,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
         // A shading normal may bend the ray back to its own side: then straight on.
         if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
-        if (passes && traced(weight, deep, count)) {
+        if (passes && traced(weight, deep, count, status)) {
             push_beyond(slot, c, dir, weight, steps, o.thin ? ray.media : c.after, RAY_REFRACTED,
                         count, status);
             count.refracted++;
@@ -56,7 +58,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
     }
     if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) {
         vec3 weight = ray.weight * o.straight;
-        if (traced(weight, deep, count))
+        if (traced(weight, deep, count, status))
             push_beyond(slot, c, ray.dir, weight, steps, ray.media, ray.kind, count, status);
     }
     if (SPEC_REFLECTION != 0u) {
@@ -64,7 +66,7 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
         vec3 dir = reflect(ray.dir, s.ns);
         if (dot(dir, s.ng) <= 0.0)
             dir = reflect(ray.dir, s.ng);
-        if (traced(weight, deep, count)) {
+        if (traced(weight, deep, count, status)) {
             if (SPEC_SECONDARY != 0u)
                 push_ray(slot, count.stack, offset_origin(s.p, s.error, s.ng), normalize(dir),
                          weight, steps, c.before, RAY_REFLECTED, hit.instance, hit.primitive,
@@ -81,7 +83,7 @@ void push_through(uint slot, Ray ray, Crossing c, inout gpu_counts count, inout 
         return;
     uint steps = ray.steps + 1u;
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(steps) > frame.depth;
-    if (traced(ray.weight, deep, count)) {
+    if (traced(ray.weight, deep, count, status)) {
         push_beyond(slot, c, ray.dir, ray.weight, steps, c.after, RAY_REFRACTED, count, status);
         count.refracted++;
     }
@@ -204,11 +206,11 @@ void main()
     if (met)
         radiance = shade_hit(slot, ray, hit, count, status);
 
-    if (any(isnan(radiance)) || any(isinf(radiance)))
-        status |= STATUS_NON_FINITE;
     vec4 sum = vec4(radiance * chunk.sample_weight, 1.0);
     if (stacked || chunk.sample_index != 0u)
         sum.rgb += pixels[pixel].rgb;
+    if (any(isnan(sum.rgb)) || any(isinf(sum.rgb)))
+        status |= STATUS_NON_FINITE;
     pixels[pixel] = sum;
     counts[pixel] = count;
     if (!stacked && !listed && chunk.sample_index == 0u)
