@@ -1,5 +1,5 @@
-/* Linked into a whit of its own (--wrap): of the kind that SMALL_STACKS names, stacks hold one entry.
-   They are as deep as a scene needs, so that nothing else makes them overflow. */
+/* Linked into a whit of its own (--wrap): of the kind that SMALL_STACKS names, stacks hold one
+   entry. They are as deep as a scene needs, so that nothing else makes them overflow. */
 #include <stdlib.h>
 #include <string.h>
 

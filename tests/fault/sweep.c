@@ -40,7 +40,7 @@ struct sweep {
     bool may_leak;
     struct content printed;
     int expect;
-    uint32_t first, every, shown;
+    uint32_t every, shown;
     char **command;
     uint32_t runs, failed, fine, defects;
 };
@@ -320,8 +320,6 @@ static void read_options(struct sweep *sweep, int argc, char **argv)
             sweep->expect = atoi(value);
         else if (strcmp(name, "--say") == 0)
             sweep->say = value;
-        else if (strcmp(name, "--first") == 0)
-            sweep->first = (uint32_t)atoi(value);
         else if (strcmp(name, "--every") == 0)
             sweep->every = (uint32_t)atoi(value);
         else if (strcmp(name, "--show") == 0)
@@ -347,14 +345,14 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: fault_sweep INJECT KIND [options] -- COMMAND...\n");
         return 2;
     }
-    struct sweep sweep = {.inject = argv[1], .expect = 2, .first = 1, .every = 1, .shown = SHOWN};
+    struct sweep sweep = {.inject = argv[1], .expect = 2, .every = 1, .shown = SHOWN};
     share(&sweep);
     read_kind(&sweep, argv[2]);
     read_options(&sweep, argc, argv);
     make_folder(folder);
     run_without_fault(&sweep);
     uint32_t calls = atomic_load(&sweep.shared->seen);
-    for (uint32_t at = sweep.first; at <= calls; at += sweep.every)
+    for (uint32_t at = 1; at <= calls; at += sweep.every)
         check_run(&sweep, at);
     remove_folder(&sweep, folder);
     printf("%u of %u runs wrong; %u calls, one in %u made to fail: %u ended in an error, %u went "
