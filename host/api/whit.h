@@ -254,8 +254,8 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
     WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
                             between triangles; hits may depend on the tree */
-    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest; needs
-                            trees when on a device. Spheres: as watertight */
+    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest;
+                            needs trees when on a device. Spheres: as watertight */
 } whit_numerics;
 
 typedef struct whit_renderer_params {
