@@ -181,6 +181,8 @@ whit_result camera_frame(const struct log *log, const struct scene_pose *pose, c
     scale_to_float(right, half * aspect, frame->right);
     scale_to_float(up, half, frame->up);
     frame->width = width;
+    frame->inv_width = 1.0f / (float)width;
+    frame->inv_height = 1.0f / (float)height;
     frame->height = height;
     frame->lens_radius = *kind == CAMERA_LENS ? camera.lens_radius : 0.0f;
     frame->focus_distance = (float)focus;
@@ -301,16 +303,30 @@ static void camera_line(const struct gpu_frame *frame, uint32_t kind, const floa
     }
 }
 
+/* inverse_square_root of shaders/lib/angles.glsl. */
+static float inverse_square_root(float x)
+{
+    float y, half_x = 0.5f * x;
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = 0x5f375a86u - (bits >> 1);
+    memcpy(&y, &bits, sizeof y);
+    for (int i = 0; i < 4; ++i)
+        y = y * (1.5f - (half_x * y) * y);
+    return y;
+}
+
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
                 const struct gpu_chunk *sample, struct gpu_ray *ray)
 {
-    const float at[2] = {((float)x + sample->sample_xy[0]) / (float)frame->width * 2.0f - 1.0f,
-                         ((float)y + sample->sample_xy[1]) / (float)frame->height * 2.0f - 1.0f};
+    const float at[2] = {
+        (((float)x + sample->sample_xy[0]) * 2.0f - (float)frame->width) * frame->inv_width,
+        (((float)y + sample->sample_xy[1]) * 2.0f - (float)frame->height) * frame->inv_height};
     float dir[3];
     camera_line(frame, kind, sample->lens_xy, at, ray->origin, dir);
-    float size = sqrtf((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
+    float shorten = inverse_square_root((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
     for (int i = 0; i < 3; ++i)
-        ray->dir[i] = dir[i] / size;
+        ray->dir[i] = dir[i] * shorten;
     ray->t_min = 0.0f;
     ray->t_max = INFINITY;
 }

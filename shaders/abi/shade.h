@@ -153,8 +153,10 @@ struct gpu_frame {
     gpu_float focus_distance; /* along `forward` */
     gpu_uint light_samples;   /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
+    gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
+    gpu_float pad0, pad1;
 };
-GPU_ASSERT_SIZE(gpu_frame, 192)
+GPU_ASSERT_SIZE(gpu_frame, 208)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest

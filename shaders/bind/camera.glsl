@@ -35,16 +35,17 @@ void camera_line(vec2 at, out vec3 origin, out vec3 dir)
     }
 }
 
-// camera_ray of render/camera.c is this in C, bit for bit: so no normalize(), whose bits are the
-// driver's choice.
+// camera_ray of render/camera.c is this in C, bit for bit: sums, differences and products alone, which
+// all devices round alike.
 Ray camera_ray(uvec2 pixel)
 {
+    precise vec2 twice = (vec2(pixel) + chunk.sample_xy) * 2.0; // exact, as the difference is
     precise vec2 at =
-        (vec2(pixel) + chunk.sample_xy) / vec2(frame.width, frame.height) * 2.0 - 1.0;
+        (twice - vec2(frame.width, frame.height)) * vec2(frame.inv_width, frame.inv_height);
     vec3 origin, dir;
     camera_line(at, origin, dir);
-    precise float size = sqrt((dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z);
-    precise vec3 unit = dir / size;
+    precise float squared = (dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z;
+    precise vec3 unit = dir * inverse_square_root(squared);
     Ray ray;
     ray.origin = origin;
     ray.dir = unit;

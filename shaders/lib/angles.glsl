@@ -21,6 +21,20 @@ vec2 sine_cosine_pi(float a)
     return vec2(a < 0.0 ? -turned.x : turned.x, turned.y);
 }
 
+// 1 / sqrt(x) within 2 ulp, by products and differences alone: no driver's choice is in it. Newton's
+// steps from a guess by the exponent (Lomont 2003, "Fast inverse square root").
+// inverse_square_root of render/camera.c is this in C, bit for bit.
+float inverse_square_root(float x)
+{
+    precise float y = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1));
+    precise float half_x = 0.5 * x;
+    y = y * (1.5 - (half_x * y) * y);
+    y = y * (1.5 - (half_x * y) * y);
+    y = y * (1.5 - (half_x * y) * y);
+    y = y * (1.5 - (half_x * y) * y);
+    return y;
+}
+
 // Angle of (x, y) from the x axis, -pi..pi; 0 for (0, 0). The polynomial is off by at most 2e-8
 // (Abramowitz and Stegun 1964, 4.4.49).
 float angle_of(float x, float y)
