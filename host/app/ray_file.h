@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "whit.h"
+#include "api/whit.h"
 
 struct ray_file {
     const char *path; /* borrowed */
