@@ -183,6 +183,7 @@ static void settle_hit(struct walk *walk)
                vec3_load(triangle->v2), &m);
     walk->lo = m.key;
     walk->hi = m.key;
+    walk->hit->t = m.key;
 }
 
 /* With a key known. */
@@ -234,6 +235,7 @@ static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, 
         return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance);
     struct exact_meeting exact;
     exact_meet(ray->origin, ray->dir, v0, v1, v2, &exact);
+    m.t = exact.key;
     if (!bounds.inside)
         m = (struct meeting){true, exact.key, exact.u, exact.v};
     if (!exact.met || exact.key < walk->t_min ||
@@ -481,6 +483,8 @@ static void traverse_all(struct walk *walk, bool brute)
         traverse_records(walk);
     else
         traverse_trees(walk);
+    if (walk->numerics == NUMERICS_EXACT && !walk->any && walk->lo < walk->hi)
+        settle_hit(walk);
 }
 
 void traverse_ray(const struct accel *accel, const struct traverse_params *params,

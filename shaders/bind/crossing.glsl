@@ -114,7 +114,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
     bool more = frame.nested != 0u;
     do {
         if (more) {
-            hit_before = hit_key(hit, ray.origin, ray.dir);
+            hit_before = hit.t;
             hit = traverse(TRAVERSE_NEXT, ray.origin, ray.dir, 0.0, reach, frame.root,
                            hit.instance, hit.primitive);
             if (SPEC_COUNT != 0u)

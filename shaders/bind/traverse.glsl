@@ -455,7 +455,7 @@ void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact,
     m.front = exact.front;
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
-    m.t = m.rounded ? m.t : exact.key;
+    m.t = exact.key;
     m.u = m.rounded ? m.u : exact.u;
     m.v = m.rounded ? m.v : exact.v;
     m.lo = exact.key;
@@ -491,6 +491,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
             take_to_instance(again ? hit.instance : 0u, from, along);
             record = hit.triangle;
         } else {
+            hit.t = exact.key;
             hit.lo = exact.key;
             hit.hi = exact.key;
         }
@@ -498,15 +499,23 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
     } while (again);
 }
 
-// The key of a hit, by which TRAVERSE_NEXT goes; but for NUMERICS_EXACT its t.
-float hit_key(Hit hit, vec3 origin, vec3 dir)
+// NUMERICS_EXACT: the t of a hit is its key, which nothing may have asked for so far.
+void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
 {
-    if (SPEC_NUMERICS != NUMERICS_EXACT)
-        return hit.t;
-    if (hit.lo == hit.hi)
-        return hit.lo;
-    take_to_instance(hit.instance, origin, dir);
-    return meet_record(origin, dir, hit.triangle).key;
+    bool loose = hit.lo < hit.hi;
+    if (loose) {
+        take_to_instance(hit.instance, origin, dir);
+        uint row = hit.triangle * TRIANGLE_ROWS;
+        loose = !round_t(origin, dir, row_vec3(fetch_triangle_row(row)),
+                         row_vec3(fetch_triangle_row(row + 1u)),
+                         row_vec3(fetch_triangle_row(row + 2u)), hit.t);
+    }
+    while (loose) { // no `if`: on lavapipe only loops leave out what no ray needs
+        hit.t = meet_record(origin, dir, hit.triangle).key;
+        loose = false;
+    }
+    hit.lo = hit.t;
+    hit.hi = hit.t;
 }
 
 // Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
@@ -777,6 +786,8 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
             widen_ray_setup(ray, fetch_mesh_center(0u), fetch_mesh_reach(0u));
         traverse_mesh(mode, ray, t_min, root, skip_instance, skip_primitive, hit);
     }
+    if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
+        finish_hit(origin, dir, hit);
     return hit;
 }
 

@@ -104,55 +104,66 @@ const int POINT_A = 2;
 const int POINT_B = 3;
 const int POINT_C = 4;
 
-ivec4 wide[WIDE_DIGITS]; // one column an integer
-uvec3 wide_mantissa[5];  // sign in the top bit
-ivec3 wide_exponent[5];
+int wide[4 * WIDE_DIGITS]; // one integer after the other
+uint wide_mantissa[15]; // x, y, z of POINT_*; sign in the top bit
+int wide_exponent[15];
+
+ivec4 load_digits(int i)
+{
+    return ivec4(wide[i], wide[i + WIDE_DIGITS], wide[i + 2 * WIDE_DIGITS],
+                 wide[i + 3 * WIDE_DIGITS]);
+}
+
+void store_digits(int i, ivec4 digits)
+{
+    wide[i] = digits.x;
+    wide[i + WIDE_DIGITS] = digits.y;
+    wide[i + 2 * WIDE_DIGITS] = digits.z;
+    wide[i + 3 * WIDE_DIGITS] = digits.w;
+}
 
 void decode_point(int at, vec3 p)
 {
     uvec3 bits = floatBitsToUint(p);
     uvec3 exponent = bits >> 23 & 255u;
     bvec3 normal = notEqual(exponent, uvec3(0u));
-    wide_mantissa[at] =
+    uvec3 mantissa =
         (bits & 0x80000000u) | (bits & 0x7fffffu) | mix(uvec3(0u), uvec3(0x800000u), normal);
-    wide_exponent[at] = ivec3(mix(uvec3(1u), exponent, normal));
+    ivec3 power = ivec3(mix(uvec3(1u), exponent, normal));
+    for (int i = 0; i < 3; i++) {
+        wide_mantissa[3 * at + i] = mantissa[i];
+        wide_exponent[3 * at + i] = power[i];
+    }
 }
 
 // Between which exponents the values that are not 0 lie: which digits are in use. Clears them.
 ivec2 find_range()
 {
     int lo = 254, hi = 1, dir_lo = 254, dir_hi = 1;
-    for (int k = 0; k < 5; k++) {
-        for (int i = 0; i < 3; i++) {
-            bool some = (wide_mantissa[k][i] & 0x7fffffffu) != 0u;
-            int e = wide_exponent[k][i];
-            if (k == POINT_DIR) {
-                dir_lo = some ? min(dir_lo, e) : dir_lo;
-                dir_hi = some ? max(dir_hi, e) : dir_hi;
-            } else {
-                lo = some ? min(lo, e) : lo;
-                hi = some ? max(hi, e) : hi;
-            }
-        }
+    for (int i = 0; i < 15; i++) {
+        bool some = (wide_mantissa[i] & 0x7fffffffu) != 0u, of_dir = i < 3;
+        int e = wide_exponent[i];
+        dir_lo = some && of_dir ? min(dir_lo, e) : dir_lo;
+        dir_hi = some && of_dir ? max(dir_hi, e) : dir_hi;
+        lo = some && !of_dir ? min(lo, e) : lo;
+        hi = some && !of_dir ? max(hi, e) : hi;
     }
     ivec2 range = ivec2((min(dir_lo, lo) + lo + lo - 3) >> 4,
                         ((max(dir_hi, hi) + hi + hi - 3) >> 4) + 6);
     for (int i = range.x; i <= range.y; i++)
-        wide[i] = ivec4(0);
+        store_digits(i, ivec4(0));
     return range;
 }
 
-// p.i q.j r.k, or less it.
-void add_product(int target, ivec3 points, int i, int j, int k, bool negative)
+// The product of three numbers by index, or less it.
+void add_product(int target, ivec3 at, bool negative)
 {
-    uint p = wide_mantissa[points.x][i], q = wide_mantissa[points.y][j],
-         r = wide_mantissa[points.z][k];
+    uint p = wide_mantissa[at.x], q = wide_mantissa[at.y], r = wide_mantissa[at.z];
     bool minus = negative != ((p ^ q ^ r) >> 31 != 0u);
     p &= 0x7fffffffu;
     q &= 0x7fffffffu;
     r &= 0x7fffffffu;
-    int shift =
-        wide_exponent[points.x][i] + wide_exponent[points.y][j] + wide_exponent[points.z][k] - 3;
+    int shift = wide_exponent[at.x] + wide_exponent[at.y] + wide_exponent[at.z] - 3;
     uint pq_high, pq_low, word0, word1, word2, above, carry;
     umulExtended(p, q, pq_high, pq_low);
     umulExtended(pq_low, r, word1, word0);
@@ -164,35 +175,36 @@ void add_product(int target, ivec3 points, int i, int j, int k, bool negative)
     word1 = word1 << bits | word0 >> 16 >> back;
     word0 = word0 << bits;
     if (p != 0u && q != 0u && r != 0u) {
-        int to = shift >> 4, sign = minus ? -1 : 1;
-        wide[to][target] += sign * int(word0 & 0xffffu);
-        wide[to + 1][target] += sign * int(word0 >> 16);
-        wide[to + 2][target] += sign * int(word1 & 0xffffu);
-        wide[to + 3][target] += sign * int(word1 >> 16);
-        wide[to + 4][target] += sign * int(word2 & 0xffffu);
-        wide[to + 5][target] += sign * int(word2 >> 16);
+        int to = target * WIDE_DIGITS + (shift >> 4), sign = minus ? -1 : 1;
+        wide[to] += sign * int(word0 & 0xffffu);
+        wide[to + 1] += sign * int(word0 >> 16);
+        wide[to + 2] += sign * int(word1 & 0xffffu);
+        wide[to + 3] += sign * int(word1 >> 16);
+        wide[to + 4] += sign * int(word2 & 0xffffu);
+        wide[to + 5] += sign * int(word2 >> 16);
     }
 }
 
-// One determinant of three points after the other: e_a = d.(b x c) about the origin, so
-// det(d, b, c) - det(d, b, o) - det(d, o, c), and so on; and N = a.(b x c), likewise.
+// The six products of each of thirteen determinants of three points. e_a = d.(b x c) about the origin:
+// det(d, b, c) - det(d, o, c) - det(d, b, o), and so on; and N = a.(b x c), likewise.
 void add_determinants()
 {
-    const ivec4 determinants[13] = ivec4[13](
-        ivec4(POINT_DIR, POINT_B, POINT_C, WIDE_D), ivec4(POINT_DIR, POINT_B, POINT_ORIGIN, -1 - WIDE_D),
-        ivec4(POINT_DIR, POINT_ORIGIN, POINT_C, -1 - WIDE_D), ivec4(POINT_DIR, POINT_C, POINT_A, WIDE_B),
-        ivec4(POINT_DIR, POINT_C, POINT_ORIGIN, -1 - WIDE_B), ivec4(POINT_DIR, POINT_ORIGIN, POINT_A, -1 - WIDE_B),
-        ivec4(POINT_DIR, POINT_A, POINT_B, WIDE_C), ivec4(POINT_DIR, POINT_A, POINT_ORIGIN, -1 - WIDE_C),
-        ivec4(POINT_DIR, POINT_ORIGIN, POINT_B, -1 - WIDE_C), ivec4(POINT_A, POINT_B, POINT_C, WIDE_N),
-        ivec4(POINT_ORIGIN, POINT_B, POINT_C, -1 - WIDE_N), ivec4(POINT_A, POINT_ORIGIN, POINT_C, -1 - WIDE_N),
-        ivec4(POINT_A, POINT_B, POINT_ORIGIN, -1 - WIDE_N)); // last: target, or -1 - target: less
-    for (int n = 0; n < 39; n++) {
-        ivec4 determinant = determinants[n / 3];
-        bool negative = determinant.w < 0;
-        int target = negative ? -1 - determinant.w : determinant.w;
-        int i = n % 3, j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-        add_product(target, determinant.xyz, i, j, k, negative);
-        add_product(target, determinant.xyz, i, k, j, !negative);
+    for (int n = 0; n < 78; n++) {
+        int row = n < 54 ? n / 18 : WIDE_N, part = n < 54 ? n / 6 % 3 : n / 6 - 9;
+        ivec3 points = ivec3(POINT_DIR, POINT_A + (row == 2 ? 0 : row + 1),
+                             POINT_A + (row == 0 ? 2 : row - 1));
+        int moved = part == 0 ? 0 : part + 1; // 1, 2 or 3: the point that gives way to the origin
+        if (row == WIDE_N) {
+            points = ivec3(POINT_A, POINT_B, POINT_C);
+            moved = part;
+        }
+        points.x = moved == 1 ? POINT_ORIGIN : points.x;
+        points.y = moved == 2 ? POINT_ORIGIN : points.y;
+        points.z = moved == 3 ? POINT_ORIGIN : points.z;
+        bool odd = (n & 1) != 0;
+        int i = (n >> 1) % 3, j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+        ivec3 at = 3 * points + ivec3(i, odd ? k : j, odd ? j : k);
+        add_product(row, at, (part != 0) != odd);
     }
 }
 
@@ -203,7 +215,7 @@ void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
     ivec4 carry = ivec4(0), some = ivec4(0);
     int carry_a = 0, some_a = 0;
     for (int i = range.x; i <= range.y; i++) {
-        ivec4 digits = wide[i];
+        ivec4 digits = load_digits(i);
         int a = digits[WIDE_D] + carry_a;
         carry_a = a >> 16;
         some_a |= a & 0xffff;
@@ -212,7 +224,7 @@ void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
         carry = digits >> 16;
         digits &= 0xffff;
         some |= digits;
-        wide[i] = digits;
+        store_digits(i, digits);
     }
     sign_a = carry_a < 0 ? -1 : some_a != 0 ? 1 : 0;
     signs = mix(ivec4(notEqual(some, ivec4(0))), ivec4(-1), lessThan(carry, ivec4(0)));
@@ -226,10 +238,11 @@ ivec2 make_positive(ivec2 range, ivec4 signs)
     ivec4 carry = ivec4(1);
     ivec2 top = range.xx;
     for (int i = range.x; i <= range.y; i++) {
-        ivec4 inverse = (~wide[i] & 0xffff) + carry;
+        ivec4 digits = load_digits(i);
+        ivec4 inverse = (~digits & 0xffff) + carry;
         carry = inverse >> 16;
-        ivec4 digits = mix(wide[i], inverse & 0xffff, flips);
-        wide[i] = digits;
+        digits = mix(digits, inverse & 0xffff, flips);
+        store_digits(i, digits);
         top.x = digits[WIDE_D] != 0 ? i : top.x;
         top.y = digits[WIDE_N] != 0 ? i : top.y;
     }
@@ -238,7 +251,7 @@ ivec2 make_positive(ivec2 range, ivec4 signs)
 
 uint digit_at(ivec2 range, int k, int i)
 {
-    return i >= range.x && i <= range.y ? uint(wide[clamp(i, 0, WIDE_DIGITS - 1)][k]) : 0u;
+    return i >= range.x && i <= range.y ? uint(wide[k * WIDE_DIGITS + clamp(i, 0, WIDE_DIGITS - 1)]) : 0u;
 }
 
 // 32 bits from digit `top` down, after `shift` < 16 bits.
@@ -339,6 +352,113 @@ ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
     bool mixed = any(lessThan(edges, ivec3(0))) && any(greaterThan(edges, ivec3(0)));
     m.met = !mixed && d != 0 && (n == 0 || n == d) && m.key < uintBitsToFloat(0x7f800000u);
     return m;
+}
+
+// ---- t in pairs of floats ----
+//
+// Nearly always enough to round it as the integers would, for a small part of their price. A pair is
+// its sum, the second float being a rounding error of the first (Dekker 1971, "A floating-point
+// technique for extending the available precision"). Products of pairs are off by 2^-43 of themselves,
+// sums by 2^-46 of their terms.
+
+vec2 pair_sum(float a, float b) // exact (Knuth's two-sum)
+{
+    precise float s = a + b;
+    precise float from_b = s - a;
+    precise float error = (a - (s - from_b)) + (b - from_b);
+    return vec2(s, error);
+}
+
+vec2 pair_split(float a)
+{
+    precise float c = 4097.0 * a;
+    precise float high = c - (c - a);
+    precise float low = a - high;
+    return vec2(high, low);
+}
+
+vec2 pair_product(float a, float b) // exact, but for underflow
+{
+    vec2 as = pair_split(a), bs = pair_split(b);
+    precise float p = a * b;
+    precise float error = ((as.x * bs.x - p) + as.x * bs.y + as.y * bs.x) + as.y * bs.y;
+    return vec2(p, error);
+}
+
+vec2 pair_times(vec2 a, vec2 b)
+{
+    vec2 p = pair_product(a.x, b.x);
+    precise float low = p.y + (a.x * b.y + a.y * b.x);
+    return pair_sum(p.x, low);
+}
+
+vec2 pair_plus(vec2 a, vec2 b)
+{
+    vec2 s = pair_sum(a.x, b.x);
+    precise float low = s.y + (a.y + b.y);
+    return pair_sum(s.x, low);
+}
+
+struct PairVector {
+    vec2 x, y, z;
+};
+
+PairVector pair_difference(vec3 a, vec3 b) // exact
+{
+    return PairVector(pair_sum(a.x, -b.x), pair_sum(a.y, -b.y), pair_sum(a.z, -b.z));
+}
+
+vec3 magnitudes(PairVector v)
+{
+    return abs(vec3(v.x.x, v.y.x, v.z.x));
+}
+
+PairVector pair_cross(PairVector a, PairVector b)
+{
+    PairVector n;
+    n.x = pair_plus(pair_times(a.y, b.z), -pair_times(a.z, b.y));
+    n.y = pair_plus(pair_times(a.z, b.x), -pair_times(a.x, b.z));
+    n.z = pair_plus(pair_times(a.x, b.y), -pair_times(a.y, b.x));
+    return n;
+}
+
+vec2 pair_dot(PairVector a, PairVector b)
+{
+    return pair_plus(pair_plus(pair_times(a.x, b.x), pair_times(a.y, b.y)),
+                     pair_times(a.z, b.z));
+}
+
+// t = (v0 - origin).n / dir.n of a triangle that is met, rounded to nearest; false: not sure.
+bool round_t(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out float key)
+{
+    PairVector from = pair_difference(v0, origin);
+    PairVector e1 = pair_difference(v1, v0), e2 = pair_difference(v2, v0);
+    PairVector along = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
+    PairVector n = pair_cross(e1, e2);
+    vec2 top = pair_dot(from, n), bottom = pair_dot(along, n);
+    precise float first = top.x / bottom.x;
+    vec2 back = pair_product(first, bottom.x);
+    precise float rest = ((top.x - back.x) - back.y) + (top.y - first * bottom.y);
+    precise float second = rest / bottom.x;
+    vec2 t = pair_sum(first, second);
+    // The error of both terms, by the sizes of what they are sums of.
+    vec3 m1 = magnitudes(e1), m2 = magnitudes(e2);
+    precise vec3 mn = m1.yzx * m2.zxy + m1.zxy * m2.yzx;
+    precise float top_size = dot(magnitudes(from), mn);
+    precise float bottom_size = dot(abs(dir), mn);
+    const float relative = 1.0 / 274877906944.0, absolute = 1.0e-25; // 2^-38; underflows
+    precise float top_error = top_size * relative + absolute;
+    precise float bottom_error = bottom_size * relative + absolute;
+    precise float error = top_error / abs(bottom.x) +
+                          abs(t.x) * (bottom_error / abs(bottom.x) + relative);
+    float largest = larger(larger(largest_magnitude(dir), largest_magnitude(magnitudes(from))),
+                           larger(largest_magnitude(m1), largest_magnitude(m2)));
+    uint bits = floatBitsToUint(t.x);
+    float next = uintBitsToFloat(t.y > 0.0 ? bits + 1u : bits - 1u); // t.x > 0
+    precise float to_middle = 0.5 * abs(next - t.x);
+    precise float off = abs(t.y) + error;
+    key = t.x;
+    return largest < 1073741824.0 && t.x > 1.0e-15 && abs(bottom.x) > 1.0e-20 && off < to_middle;
 }
 
 #endif

@@ -5,17 +5,20 @@
 
 #include "accel_fixture.h"
 
+#include "accel/exact.h"
 #include "accel/intersect.h"
 #include "accel/rational.h"
 
 struct level {
     const char *name;
+    uint32_t numerics; /* NUMERICS_* */
     bool watertight; /* no ray gets through a closed surface */
     bool exact;      /* hits are those of rational.h */
 };
 
 static const struct level levels[] = {
-    {"watertight", true, false},
+    {"watertight", NUMERICS_WATERTIGHT, true, false},
+    {"exact", NUMERICS_EXACT, true, true},
 };
 
 enum { LEVELS = sizeof levels / sizeof *levels };
@@ -35,8 +38,13 @@ static inline bool level_enters(const struct level *level, const struct ray_setu
 static inline bool level_meets(const struct level *level, const struct gpu_ray *ray,
                                const struct vec3 v[3], struct gpu_hit *hit)
 {
-    (void)level;
     struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    if (level->numerics == NUMERICS_EXACT) {
+        struct exact_meeting exact;
+        exact_meet(setup.origin, setup.dir, v[0], v[1], v[2], &exact);
+        *hit = (struct gpu_hit){.t = exact.key, .u = exact.u, .v = exact.v};
+        return exact.met && exact.key >= ray->t_min && exact.key <= ray->t_max;
+    }
     bool met =
         intersect_triangle(&setup, vec3_sub(v[0], setup.origin), vec3_sub(v[1], setup.origin),
                            vec3_sub(v[2], setup.origin), ray->t_min, &hit->t, &hit->u, &hit->v);
@@ -47,9 +55,13 @@ static inline void level_trace(const struct level *level, const struct accel *ac
                                bool any, const struct gpu_ray *ray, struct gpu_hit *hit,
                                struct gpu_cost *cost)
 {
-    (void)level;
+    const struct traverse_params params = {.order = order,
+                                           .numerics = level->numerics,
+                                           .any = any,
+                                           .skip_instance = HIT_NONE,
+                                           .skip_primitive = HIT_NONE};
     uint32_t status = 0;
-    traverse_float(accel, order, ray, any, HIT_NONE, HIT_NONE, hit, cost, &status);
+    traverse_ray(accel, &params, ray, hit, cost, &status);
     assert_int_equal(status, 0);
 }
 

@@ -129,6 +129,8 @@ static void lens_rays_meet_in_focus(void **state)
     struct gpu_frame frame = {.eye = {1, 2, 3},
                               .width = 30,
                               .height = 20,
+                              .inv_width = 1.0f / 30.0f,
+                              .inv_height = 1.0f / 20.0f,
                               .right = {0.9f, 0, 0},
                               .up = {0, 0.6f, 0},
                               .forward = {0, 0, -1},
