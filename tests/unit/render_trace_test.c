@@ -1,59 +1,5 @@
 /* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
-#include "render_fixture.h"
-
-enum { RAYS = 20000 };
-
-/* A vertex or a point of an edge of a random triangle in world space, where tests break. */
-static void aim(const struct fixture *f, const struct scene_pose *pose, uint32_t *state,
-                double out[3])
-{
-    const struct scene *scene = f->scene;
-    uint32_t i = fixture_random(state) % scene->instance_count;
-    const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-    uint32_t triangle = fixture_random(state) % mesh->triangle_count;
-    double s = fixture_random(state) & 1 ? 0.0 : 0.5 + 0.5 * (double)fixture_signed(state);
-    const float *a = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle]];
-    const float *b = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + 1]];
-    double at[3];
-    for (int k = 0; k < 3; ++k)
-        at[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
-    affine_point(&pose->instances[i], at, out);
-}
-
-/* A quarter each: random, aimed, axis-parallel, short. */
-static void make_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t seed)
-{
-    struct scene_pose pose;
-    assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
-    uint32_t state = seed;
-    for (uint32_t i = 0; i < RAYS; ++i) {
-        struct gpu_ray *ray = &rays[i];
-        double target[3];
-        aim(f, &pose, &state, target);
-        *ray = (struct gpu_ray){.t_max = INFINITY};
-        for (int k = 0; k < 3; ++k) {
-            double center = 0.5 * (pose.lo[k] + pose.hi[k]);
-            double size = pose.hi[k] - pose.lo[k] + 1e-3;
-            ray->origin[k] = (float)(center + size * 1.5 * (double)fixture_signed(&state));
-            ray->dir[k] =
-                i % 4 == 0 ? fixture_signed(&state) : (float)(target[k] - (double)ray->origin[k]);
-        }
-        if (i % 4 == 2) {
-            uint32_t axis = fixture_random(&state) % 3;
-            for (uint32_t k = 0; k < 3; ++k) {
-                if (k != axis) {
-                    ray->origin[k] = (float)target[k];
-                    ray->dir[k] = i & 8 ? -0.0f : 0.0f;
-                }
-            }
-        }
-        if (i % 4 == 3) {
-            ray->t_min = 0.25f;
-            ray->t_max = 1.0f;
-        }
-    }
-    scene_pose_finish(&pose);
-}
+#include "ray_fixture.h"
 
 /* A ray is blocked up to t_max just when its closest hit is that near; a third of the rays end
    exactly there, or one float before. */
@@ -65,7 +11,7 @@ static void check_any_against_closest(struct fixture *f, const char *label)
     struct gpu_hit *any = array_alloc(MANY, sizeof *any);
     assert_true(rays && closest && any);
     for (uint32_t i = 0; i < MANY / RAYS; ++i)
-        make_rays(f, rays + (size_t)i * RAYS, 1000 + i);
+        aim_rays(f, rays + (size_t)i * RAYS, 1000 + i);
     for (uint32_t i = 0; i < MANY; ++i)
         rays[i].t_max = INFINITY;
     assert_int_equal(renderer_trace(f->renderer, rays, MANY, false, closest, NULL), WHIT_OK);
@@ -99,7 +45,7 @@ static void check_rays(struct fixture *f, const char *label)
     assert_non_null(rays);
     assert_non_null(device);
     assert_non_null(any);
-    make_rays(f, rays, 7);
+    aim_rays(f, rays, 7);
     assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, device, NULL), WHIT_OK);
     assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any, NULL), WHIT_OK);
     uint32_t hits = 0, twin_bad = 0, brute_bad = 0, any_bad = 0, status = 0;

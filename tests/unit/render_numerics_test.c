@@ -1,0 +1,249 @@
+/* The numeric levels on the device: against the C twin, bit for bit; `exact` against rational
+   arithmetic; what `fast` lacks. */
+#include "ray_fixture.h"
+
+#include "accel/rational.h"
+#include "render_scenes.h"
+#include "sphere_fixture.h"
+
+static const char *const names[] = {
+    [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_FAST] = "fast", [NUMERICS_EXACT] = "exact"};
+enum { LEVELS = 3 };
+
+/* Rays whose closest hits or costs differ from the twin's; any hits that are none of the closest.
+ */
+static uint32_t count_unlike_twin(const struct fixture *f, uint32_t numerics,
+                                  const struct gpu_ray *rays, struct gpu_hit *hits)
+{
+    struct gpu_hit *any = array_alloc(RAYS, sizeof *any);
+    struct gpu_cost *costs = array_alloc(RAYS, sizeof *costs);
+    assert_true(any && costs);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, hits, costs), WHIT_OK);
+    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any, NULL), WHIT_OK);
+    struct traverse_params params = {
+        .numerics = numerics, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    uint32_t bad = 0, any_bad = 0, cost_bad = 0, met = 0, status = 0;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_hit twin;
+        struct gpu_cost cost = {0};
+        traverse_ray(f->accel, &params, &rays[i], &twin, &cost, &status);
+        met += twin.primitive != HIT_NONE;
+        bad += memcmp(&twin, &hits[i], sizeof twin) != 0;
+        any_bad += (any[i].primitive != HIT_NONE) != (twin.primitive != HIT_NONE);
+        cost_bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
+    }
+    print_message(
+        "  %s: %u rays, %u hit; %u unlike the twin, %u by their costs, %u any hits unlike "
+        "the closest\n",
+        names[numerics], RAYS, met, bad, cost_bad, any_bad);
+    assert_true(met > RAYS / 10);
+    assert_int_equal(status, 0);
+    free(any);
+    free(costs);
+    return bad + cost_bad + any_bad;
+}
+
+static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_ray *rays,
+                                      const struct gpu_hit *hits)
+{
+    struct rational *rational = rational_create(f->accel);
+    assert_non_null(rational);
+    uint32_t bad = 0, undecided = 0, on_edges = 0;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct rational_hit truth;
+        rational_trace(rational, &rays[i], NULL, &truth);
+        undecided += truth.undecided;
+        on_edges += truth.edges != 0;
+        bad += !truth.undecided && (truth.t != hits[i].t || truth.primitive != hits[i].primitive ||
+                                    truth.instance != hits[i].instance);
+    }
+    print_message("  %u of %u unlike rational arithmetic, %u exactly on edges, %u not decided\n",
+                  bad, RAYS - undecided, on_edges, undecided);
+    rational_destroy(rational);
+    return bad;
+}
+
+static void check_levels(struct scene *scene, const struct accel_params *accel_params)
+{
+    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    assert_true(rays && hits);
+    struct render_params params = {.width = 16, .height = 16, .count = true};
+    struct fixture f = fixture_open(scene, accel_params, &params);
+    aim_rays(&f, rays, 7);
+    for (uint32_t level = 0; level < LEVELS; ++level) {
+        renderer_destroy(f.renderer);
+        params.numerics = level;
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
+                         WHIT_OK);
+        assert_int_equal(count_unlike_twin(&f, level, rays, hits), 0);
+        if (level == NUMERICS_EXACT)
+            assert_int_equal(count_unlike_rational(&f, rays, hits), 0);
+    }
+    fixture_close(&f);
+    free(rays);
+    free(hits);
+}
+
+static void one_mesh(void **state)
+{
+    (void)state;
+    check_levels(terrain_scene(), NULL);
+}
+
+static void instances(void **state)
+{
+    (void)state;
+    check_levels(ring_scene(), NULL);
+}
+
+static void one_tree_over_instances(void **state)
+{
+    (void)state;
+    check_levels(ring_scene(), &(struct accel_params){.flatten = true});
+}
+
+static void split_triangles(void **state)
+{
+    (void)state;
+    check_levels(terrain_scene(),
+                 &(struct accel_params){.mesh = {.builder = BVH_SPATIAL, .spatial_alpha = 1e-9f}});
+}
+
+/* Keys that tie: the same triangle many times, in one mesh and in instances at one place. */
+static void ties(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_terrain(10.0, 2.0, 4, 3, &mesh), WHIT_OK);
+    struct scene *scene = fixture_scene(mesh);
+    for (int i = 0; i < 20; ++i)
+        fixture_place(scene, NULL);
+    check_levels(scene, NULL);
+}
+
+/* Balls through terrain: order among what is decided in both ways. aim_rays aims at triangles. */
+static struct scene *spheres_among_triangles(void)
+{
+    struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
+    struct scene *scene = terrain_scene();
+    balls.name = string_copy("balls");
+    struct scene_instance instance = {
+        .name = string_copy("balls"), .mesh = scene_add_mesh(scene, balls), .node = SCENE_NONE};
+    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    return scene;
+}
+
+static void spheres(void **state)
+{
+    (void)state;
+    check_levels(spheres_among_triangles(), NULL);
+}
+
+/* Rays from inside a sphere, at vertices and edges. */
+static void only_fast_leaks(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(2.0, 80, 40, &mesh), WHIT_OK);
+    struct scene *scene = fixture_scene(mesh);
+    fixture_place(scene, NULL);
+    struct render_params params = {.width = 16, .height = 16};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    assert_true(rays && hits);
+    aim_rays(&f, rays, 21);
+    uint32_t state_random = 5;
+    for (uint32_t i = 0; i < RAYS; ++i) { /* those that are aimed, from inside */
+        rays[i].t_min = 0.0f;
+        rays[i].t_max = INFINITY;
+        for (int k = 0; k < 3; ++k) {
+            float target = rays[i].origin[k] + rays[i].dir[k];
+            rays[i].origin[k] = 0.5f * fixture_signed(&state_random);
+            rays[i].dir[k] = i % 4 % 2 ? target - rays[i].origin[k] : fixture_signed(&state_random);
+        }
+    }
+    uint32_t leaks[LEVELS] = {0};
+    for (uint32_t level = 0; level < LEVELS; ++level) {
+        renderer_destroy(f.renderer);
+        params.numerics = level;
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
+                         WHIT_OK);
+        assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, hits, NULL), WHIT_OK);
+        for (uint32_t i = 0; i < RAYS; ++i)
+            leaks[level] += hits[i].primitive == HIT_NONE;
+        print_message("  %s: %u of %u rays leak\n", names[level], leaks[level], RAYS);
+    }
+    assert_true(leaks[NUMERICS_FAST] > 0); /* or the rays are not hard */
+    assert_int_equal(leaks[NUMERICS_WATERTIGHT], 0);
+    assert_int_equal(leaks[NUMERICS_EXACT], 0);
+    fixture_close(&f);
+    free(rays);
+    free(hits);
+}
+
+static void refused_without_trees(void **state)
+{
+    (void)state;
+    struct scene *scene = terrain_scene();
+    struct fixture f =
+        fixture_open(scene, &(struct accel_params){.mesh = {.builder = BVH_NONE}}, NULL);
+    const struct render_params params = {.width = 16, .height = 16, .numerics = NUMERICS_EXACT};
+    struct renderer *renderer;
+    const struct log silent = {0};
+    assert_int_equal(renderer_create(&silent, f.device, f.accel, &params, &renderer),
+                     WHIT_ERROR_USAGE);
+    assert_null(renderer);
+    fixture_close(&f);
+}
+
+/* Glass rings over ground: shadows through filters, media, all kinds of traversals. */
+static void pictures_agree(void **state)
+{
+    (void)state;
+    struct render_params params = {
+        .width = 96, .height = 64, .depth = 6, .camera = glass_camera, .bailout = -1.0};
+    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    struct image pictures[LEVELS];
+    for (uint32_t level = 0; level < LEVELS; ++level) {
+        renderer_destroy(f.renderer);
+        params.numerics = level;
+        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
+                         WHIT_OK);
+        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+        assert_int_equal(renderer_read_color(f.renderer, &pictures[level]), WHIT_OK);
+    }
+    const float *watertight = pictures[NUMERICS_WATERTIGHT].pixels;
+    for (uint32_t level = 0; level < LEVELS; ++level) {
+        const float *other = pictures[level].pixels;
+        uint32_t differ = 0, count = params.width * params.height;
+        for (uint32_t i = 0; i < count; ++i) {
+            bool same = true;
+            for (uint32_t k = 0; k < 3; ++k)
+                same = same && fabsf(other[4 * i + k] - watertight[4 * i + k]) <= 1e-3f;
+            differ += !same;
+        }
+        print_message("  %s: %u of %u pixels differ by more than 1e-3\n", names[level], differ,
+                      count);
+        assert_true(differ < count / 200);
+        image_finish(&pictures[level]);
+    }
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_mesh),
+        cmocka_unit_test(instances),
+        cmocka_unit_test(one_tree_over_instances),
+        cmocka_unit_test(split_triangles),
+        cmocka_unit_test(ties),
+        cmocka_unit_test(spheres),
+        cmocka_unit_test(only_fast_leaks),
+        cmocka_unit_test(refused_without_trees),
+        cmocka_unit_test(pictures_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
