@@ -89,6 +89,10 @@ whit_result brute_create(struct renderer *renderer)
     struct listing l = {0};
     if (!renderer->accel->no_trees)
         return WHIT_OK;
+    if (renderer->params.numerics == NUMERICS_EXACT) { /* keys do not outlive a dispatch */
+        log_error(&renderer->log, "exact numerics need trees on a device");
+        return WHIT_ERROR_USAGE;
+    }
     whit_result result = WHIT_OK;
     if (!list_all(renderer->accel, &l) || !list_nothing(&l)) {
         log_error(&renderer->log, "out of memory for the list of what rays test");
