@@ -1,10 +1,12 @@
 /* Milliseconds of a whole picture: load, trees, and frames with camera rays only, with shadows, and
    with the full Whitted ray tree, interleaved.
 
-       bench_frame SCENE [--size WxH] [--runs N] [--device D]
+       bench_frame SCENE [--size WxH] [--runs N] [--device D] [--levels]
 
-   Printed are medians and half the width of the middle half of the runs, wall clock and CPU time of
-   all threads. The first frame of each kind, which compiles, is shown apart. Uses whit.h alone. */
+   With --levels each at every numeric level, with the median of what the runs of a level take of
+   the run of the level before it, by CPU time. Printed are medians and half the width of the middle
+   half of the runs, wall clock and CPU time of all threads. The first frame of each kind, which
+   compiles, is shown apart. Uses whit.h alone. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +14,14 @@
 
 #include "whit.h"
 
-enum { RUNS_MAX = 99, KINDS = 3 };
+enum { RUNS_MAX = 99, KINDS = 3, LEVELS = 3 };
+
+/* By whit_numerics. */
+static const char *const level_names[] = {"watertight", "fast", "exact"};
 
 struct kind {
     const char *name;
+    whit_numerics numerics;
     bool no_bounces, no_shadows;
     whit_renderer *renderer;
     double first_ms, wall_ms[RUNS_MAX], cpu_ms[RUNS_MAX];
@@ -73,19 +79,56 @@ static void print_kind(struct kind *kind, int runs)
     const whit_stats *s = &kind->stats;
     double rays =
         (double)(s->rays_primary + s->rays_shadow + s->rays_reflected + s->rays_refracted);
-    printf("  %-13s %8.1f ms +- %5.1f   CPU %8.1f ms +- %5.1f   %5.2f Mray, %6.2f Mray/s   "
+    printf("  %-13s %-10s %8.1f ms +- %5.1f   CPU %8.1f ms +- %5.1f   %5.2f Mray, %6.2f Mray/s   "
            "compile %.0f ms, first frame %.0f ms\n",
-           kind->name, wall, wall_spread, cpu, cpu_spread, rays * 1e-6, rays / wall * 1e-3,
-           s->compile_ms, kind->first_ms);
+           kind->name, level_names[kind->numerics], wall, wall_spread, cpu, cpu_spread, rays * 1e-6,
+           rays / wall * 1e-3, s->compile_ms, kind->first_ms);
 }
 
-static bool bench(const char *path, const char *selector, whit_renderer_params params, int runs)
+/* Of the CPU time of a level that of the level before it: medians of pairs, with the middle half.
+ */
+static void print_ratio(const char *name, const struct kind *level, const struct kind *before,
+                        int runs)
+{
+    double ratios[RUNS_MAX], spread;
+    for (int i = 0; i < runs; ++i)
+        ratios[i] = level->cpu_ms[i] / before->cpu_ms[i];
+    double ratio = median(ratios, runs, &spread);
+    printf("  %-13s %s takes %5.1f %% +- %.1f of the CPU time of %s\n", name,
+           level_names[level->numerics], 100.0 * ratio, 100.0 * spread,
+           level_names[before->numerics]);
+}
+
+/* fast, watertight, exact: each against the one before, before print_kind sorts the runs. */
+static void print_levels(const struct kind *kinds, int runs)
+{
+    for (int k = 0; k < KINDS; ++k) {
+        print_ratio(kinds[k].name, &kinds[k + KINDS], &kinds[k], runs);
+        print_ratio(kinds[k].name, &kinds[k + 2 * KINDS], &kinds[k + KINDS], runs);
+    }
+}
+
+static void name_levels(struct kind *kinds)
+{
+    static const whit_numerics levels[LEVELS] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_WATERTIGHT,
+                                                 WHIT_NUMERICS_EXACT};
+    for (int i = 0; i < LEVELS * KINDS; ++i) {
+        kinds[i] = kinds[i % KINDS];
+        kinds[i].numerics = levels[i / KINDS];
+    }
+}
+
+static bool bench(const char *path, const char *selector, whit_renderer_params params, int runs,
+                  bool all_levels)
 {
     const whit_log log = {.fn = print_message, .level = WHIT_LOG_WARNING};
-    static struct kind kinds[KINDS] = {
+    static struct kind kinds[KINDS * LEVELS] = {
         {.name = "camera rays", .no_bounces = true, .no_shadows = true},
         {.name = "with shadows", .no_bounces = true},
         {.name = "full Whitted"}};
+    int count = all_levels ? KINDS * LEVELS : KINDS;
+    if (all_levels)
+        name_levels(kinds);
     whit_scene *scene = NULL;
     whit_accel *accel = NULL;
     whit_device *device = NULL;
@@ -96,13 +139,14 @@ static bool bench(const char *path, const char *selector, whit_renderer_params p
     double built = whit_clock_ms();
     const whit_device_params device_params = {.selector = selector};
     fine = fine && whit_device_create(&device_params, &log, &device) == WHIT_OK;
-    for (int k = 0; fine && k < KINDS; ++k) {
+    for (int k = 0; fine && k < count; ++k) {
         params.no_bounces = kinds[k].no_bounces;
         params.no_shadows = kinds[k].no_shadows;
+        params.numerics = kinds[k].numerics;
         fine = whit_renderer_create(device, accel, &params, &kinds[k].renderer) == WHIT_OK;
     }
     for (int i = -1; fine && i < runs; ++i) {
-        for (int k = 0; fine && k < KINDS; ++k)
+        for (int k = 0; fine && k < count; ++k)
             fine = run(&kinds[k], i);
     }
     if (fine) {
@@ -116,10 +160,12 @@ static bool bench(const char *path, const char *selector, whit_renderer_params p
         printf("  load %.1f ms, trees %.1f ms, peak memory %.0f MiB, files %.1f MiB\n",
                loaded - start, built - loaded, (double)whit_peak_memory_bytes() / 1048576.0,
                (double)info.file_bytes / 1048576.0);
-        for (int k = 0; k < KINDS; ++k)
+        if (all_levels)
+            print_levels(kinds, runs);
+        for (int k = 0; k < count; ++k)
             print_kind(&kinds[k], runs);
     }
-    for (int k = 0; k < KINDS; ++k)
+    for (int k = 0; k < count; ++k)
         whit_renderer_destroy(kinds[k].renderer);
     whit_device_destroy(device);
     whit_accel_destroy(accel);
@@ -132,6 +178,7 @@ int main(int argc, char **argv)
     const char *path = NULL, *selector = NULL;
     whit_renderer_params params = {.width = 1280, .height = 720};
     int runs = 7;
+    bool all_levels = false;
     for (int i = 1; i < argc; ++i) {
         if (strcmp(argv[i], "--size") == 0 && i + 1 < argc)
             sscanf(argv[++i], "%ux%u", &params.width, &params.height);
@@ -139,12 +186,15 @@ int main(int argc, char **argv)
             runs = atoi(argv[++i]);
         else if (strcmp(argv[i], "--device") == 0 && i + 1 < argc)
             selector = argv[++i];
+        else if (strcmp(argv[i], "--levels") == 0)
+            all_levels = true;
         else
             path = argv[i];
     }
     if (!path || runs < 1 || runs > RUNS_MAX) {
-        fprintf(stderr, "usage: bench_frame SCENE [--size WxH] [--runs N] [--device D]\n");
+        fprintf(stderr,
+                "usage: bench_frame SCENE [--size WxH] [--runs N] [--device D] [--levels]\n");
         return 2;
     }
-    return bench(path, selector, params, runs) ? 0 : 1;
+    return bench(path, selector, params, runs, all_levels) ? 0 : 1;
 }
