@@ -115,6 +115,8 @@ struct accel_params {
        for the one it has. */
     enum accel_update update;
     bool validate;
+    uint32_t stack_floor;  /* accel_stack_size is not below it: the size is part of a kernel, and so
+                              scenes of different depth share one */
     bool flatten;          /* one tree for the whole scene, in world space */
     const char *tree_file; /* mesh trees from bvh_file.c instead of building them; NULL: build */
 };

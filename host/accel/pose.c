@@ -363,5 +363,6 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
 uint32_t accel_stack_size(const struct accel *accel)
 {
     uint32_t depth = accel->mesh_depth + (accel->single_identity ? 0 : accel->instance_depth);
-    return depth > 0 ? depth : 1;
+    uint32_t least = accel->params.stack_floor > 1 ? accel->params.stack_floor : 1;
+    return depth > least ? depth : least;
 }

@@ -417,6 +417,65 @@ WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, con
    measured. */
 double whit_trace_device_ms(const whit_renderer *renderer);
 
+/* ---- Hard cases ---- */
+
+/* Meshes and rays at which ray tracers fail, traced at every level of numerics, on the device and
+   by its twin, and held against exact arithmetic: docs/numerics.md, "whit hard". */
+
+typedef struct whit_hard_params {
+    uint32_t rays;    /* of a row: at least 512, for the hash; 0: 20000 */
+    uint32_t levels;  /* bits 1u << whit_numerics; 0: all of them */
+    uint32_t threads; /* on the CPU; 0: one a core */
+    const volatile bool *cancel;
+    double time_limit_s; /* 0: none */
+    void (*progress)(void *user, double done);
+    void *progress_user;
+} whit_hard_params;
+
+/* One level at one case. Every count is of `rays`. */
+typedef struct whit_hard_row {
+    const char *name;  /* "sphere from inside" */
+    const char *place; /* "1e5", "as vertices, x1e-6" */
+    whit_numerics numerics;
+    uint64_t rays;
+    uint64_t hits;       /* exactly */
+    uint64_t undecided;  /* rays that came by a sphere: they count as nothing below */
+    uint64_t misses;     /* of rays that hit, exactly */
+    uint64_t leaks;      /* misses of rays that start inside a closed surface; of others, those that
+                            pass neither an outline nor an open edge */
+    uint64_t false_hits; /* of rays that miss, exactly */
+    uint64_t other_ids;  /* another primitive than exactly */
+    uint64_t wrong_keys; /* the right one, but t is not the exact t's rounding */
+    uint64_t wrong; /* of misses, false hits and wrong ids: no bound of float errors excuses them */
+    uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
+    uint64_t self_hits;   /* on the surface that the ray started from */
+    uint64_t differing;   /* rays whose hits on the device and of the twin differ by a bit */
+    double ulp_most;      /* error of t, in floats between it and the exact one's rounding */
+    double device_ms, twin_ms; /* of `rays`; device: < 0 where not measured */
+    bool unanswered; /* the device said that its hits are not to be trusted, as where a driver ends
+                        long loops: the twin's are judged */
+    bool promised;   /* that there are no leaks: false for cracks that are there */
+    bool kept;       /* all that the level promises */
+} whit_hard_row;
+
+typedef struct whit_hard_report {
+    whit_hard_row *rows;
+    uint32_t row_count;
+    uint64_t hash;       /* of the exact identities of a fixed set of rays; 0 for a user's scene */
+    uint64_t hash_met;   /* of the device's at WHIT_NUMERICS_EXACT; 0 when not traced */
+    uint32_t broken;     /* rows that did not keep a promise */
+    uint32_t unanswered; /* rows without an answer of the device */
+    /* Of a user's scene, vertices with equal coordinates being one. */
+    uint64_t triangles, edges, open_edges, crowded_edges, flipped_edges, duplicates;
+} whit_hard_report;
+
+/* `scene` NULL: the built-in cases. `device` NULL: the twin's hits are judged. WHIT_OK also where
+   promises are broken: see `broken`. */
+WHIT_CHECK whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
+                                     const whit_hard_params *params, const whit_log *log,
+                                     whit_hard_report **out);
+void whit_hard_report_destroy(whit_hard_report *report);
+
 /* ---- Images ---- */
 
 typedef struct whit_image_info {

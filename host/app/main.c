@@ -4,7 +4,8 @@
 #include "app/commands.h"
 
 static const struct cli_command *const commands[] = {
-    &command_render, &command_scene, &command_trace, &command_bvh, &command_bench, &command_devices,
+    &command_render, &command_scene, &command_trace,   &command_bvh,
+    &command_bench,  &command_hard,  &command_devices,
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -37,6 +37,8 @@ struct render_params {
     uint32_t order;    /* ORDER_* */
     uint32_t numerics; /* NUMERICS_* */
     bool count;        /* count what traversals cost */
+    /* Most rays that renderer_trace will be given, so that buffers need not be larger; 0: any. */
+    uint32_t trace_rays;
 };
 
 /* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made

@@ -21,12 +21,21 @@ void trace_finish(struct trace_state *trace)
     *trace = (struct trace_state){0};
 }
 
+/* Pieces grow fourfold: a capacity is the first one times a power of 4. */
+static uint32_t choose_capacity(uint32_t most_rays)
+{
+    uint32_t capacity = TRACE_FIRST;
+    while (capacity < TRACE_CAPACITY && (most_rays == 0 || capacity < most_rays))
+        capacity *= 4;
+    return capacity;
+}
+
 static whit_result prepare(struct renderer *renderer, bool any)
 {
     struct trace_state *trace = &renderer->trace;
     whit_result result = WHIT_OK;
     if (!trace->rays) {
-        trace->capacity = TRACE_CAPACITY;
+        trace->capacity = choose_capacity(renderer->params.trace_rays);
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
                                BUFFER_STORAGE | BUFFER_HOST, "rays", &trace->rays);
     }

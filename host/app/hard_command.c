@@ -1,0 +1,127 @@
+#include "app/commands.h"
+#include "app/hard.h"
+
+enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS };
+
+enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
+
+static const struct cli_option options[] = {
+    {JOB_NUMERICS, "numerics", "fast|watertight|exact", "this level alone (all three)"},
+    {ID_RAYS, "rays", "N", "rays of each row of the table, at least 512 (20000)"},
+    {ID_QUICK, "quick", NULL, "512 rays a row"},
+    {ID_JSON, "json", "FILE", "the table as JSON"},
+    JOB_OPTION_DEVICE,
+    {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)"},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
+    {'q', "quiet", NULL, "no notes, no progress, only errors"},
+    {0, NULL, NULL, NULL},
+};
+
+static whit_result find_out(struct hard *hard)
+{
+    struct job *job = &hard->job;
+    whit_result result = WHIT_OK;
+    job_begin_device(job);
+    if (job->scene_path)
+        result = job_load(job);
+    if (result == WHIT_OK && job->scene_path)
+        job_print_notes(job, false);
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    cli_progress_init(&hard->progress, job->quiet);
+    hard->params.threads = job->threads;
+    hard->params.cancel = &cli_cancel;
+    hard->params.time_limit_s = cli_time_left_s();
+    hard->params.progress = cli_progress_update;
+    hard->params.progress_user = &hard->progress;
+    if (result == WHIT_OK)
+        result =
+            whit_hard_run(job->device, job->scene, &hard->params, &cli_log_errors, &hard->report);
+    cli_progress_finish(&hard->progress);
+    return result;
+}
+
+static int work(struct hard *hard)
+{
+    whit_result result = find_out(hard);
+    if (result == WHIT_OK && hard->json_path)
+        result = hard_save_json(hard);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    int status = hard_print(hard);
+    const whit_hard_report *report = hard->report;
+    if (report->unanswered)
+        cli_warning("%u of %u rows: the device gave no answer, its twin's hits are judged",
+                    report->unanswered, report->row_count);
+    if (status == EXIT_FINE && report->broken) {
+        cli_error("%u of %u rows break a promise of their level", report->broken,
+                  report->row_count);
+        status = EXIT_DIFFERS;
+    }
+    return status == EXIT_FINE ? job_check_validation(&hard->job) : status;
+}
+
+static void read_option(struct cli_reader *reader, int id, struct hard *hard)
+{
+    if (id == ID_JSON)
+        hard->json_path = reader->value;
+    else if (id == ID_QUICK)
+        hard->params.rays = RAYS_QUICK;
+    else if (id == ID_RAYS)
+        cli_unsigned(reader, RAYS_LEAST, RAYS_MOST, &hard->params.rays);
+    else if (job_option(&hard->job, reader, id) && id == JOB_NUMERICS)
+        hard->params.levels = 1u << hard->job.numerics;
+}
+
+static bool check_request(struct cli_reader *reader, struct hard *hard)
+{
+    if (reader->status >= 0)
+        return false;
+    if (!cli_no_dash(reader, "--json", hard->json_path, "for a pipe give /dev/stdout"))
+        return false;
+    if (hard->json_path && !cli_can_write(hard->json_path)) {
+        reader->status = EXIT_USAGE;
+        return false;
+    }
+    if (reader->positional)
+        return job_options_done(&hard->job, reader);
+    cli_limit_time(hard->job.time_limit_s);
+    return true;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct hard hard = {.report = NULL};
+    job_init(&hard.job);
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &hard);
+    if (!check_request(&reader, &hard))
+        return reader.status;
+    int status = work(&hard);
+    whit_hard_report_destroy(hard.report);
+    job_finish(&hard.job);
+    return status;
+}
+
+const struct cli_command command_hard = {
+    .name = "hard",
+    .arguments = "[SCENE] [options]",
+    .summary = "Tortures the three levels of numerics, and counts what they get wrong.",
+    .details =
+        "Without a scene: the built-in cases. With one: rays at its edges and vertices, along\n"
+        "axes, in its planes, grazing, from far away and from its surface; then its triangles\n"
+        "scaled, moved, turned and mirrored, as vertices (rounded to float: another mesh) and as\n"
+        "instances. Misses at outlines and beside open edges are no leaks. Columns, all against "
+        "exact arithmetic: misses of\n"
+        "rays that hit; leaks, those that got out of a closed surface; false hits; wrong\n"
+        "primitives; sure, errors beyond the bound of floats; double hits where exactly there is\n"
+        "one; hits on the surface that a ray left; the largest error of t, in floats; rays whose\n"
+        "hits differ by a bit between the device and its twin on the CPU. Exit code 1 when a\n"
+        "promise of a level is broken: no leaks and no sure errors (watertight), every hit exact\n"
+        "(exact), equal bits (both); fast promises nothing.\n",
+    .options = options,
+    .run = run,
+};

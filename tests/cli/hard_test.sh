@@ -1,0 +1,59 @@
+#!/bin/sh
+# `whit hard`: the table, its promises, JSON, options. sh TEST WHIT SCENES LEAKY UNIT_TEST
+. "$(dirname "$0")/common.sh"
+LEAKY=$3
+HASH=$(sed -n 's/^#define HASH UINT64_C(0x\(.*\))$/\1/p' "$4")
+mkdir "$OUT/files"
+J=$OUT/files/hard.json
+
+expect 0 "the built-in cases" hard --quick --quiet --json "$J"
+check "a table with all levels" \
+    test "$(grep -c '^all  *\(fast\|watertight\|exact\) ' "$OUT/stdout")" -eq 3
+check "no promise is broken" grep -q "^promises   0 of 105 rows broke one$" "$OUT/stdout"
+check "the hash is the one that is stored" \
+    grep -q "^hash       $HASH .*, met by the device$" "$OUT/stdout"
+check "and in the JSON, met" test "$(grep -c "\"hash\(_met\)*\": \"$HASH\"" "$J")" -eq 2
+sum() {
+    awk -v level="\"$1\"" -v key="\"$2\":" \
+        '$1 == "\"numerics\":" { on = $2 == level "," } on && $1 == key { n += $2 } END { print n + 0 }' "$J"
+}
+for level in fast watertight exact; do
+    check "$level: 35 rows of 512 rays" test "$(sum $level rays)" -eq 17920
+    check "$level: device and twin have the same bits" test "$(sum $level differing)" -eq 0
+done
+check "fast leaks ($(sum fast leaks))" test "$(sum fast leaks)" -gt 100
+check "watertight: nothing is wrong" test "$(sum watertight wrong)" -eq 0
+check "exact: nothing is missed" test "$(sum exact misses)" -eq 0
+check "exact: no other primitive" test "$(sum exact other_ids)" -eq 0
+if command -v python3 >/dev/null; then
+    check "the JSON is well-formed" python3 -m json.tool "$J" /dev/null
+fi
+
+expect 0 "one level" hard --quick --quiet --numerics watertight
+check "is that level alone" test "$(grep -c ' \(fast\|exact\)  ' "$OUT/stdout")" -eq 0
+expect 0 "a scene" hard "$CUBE" --quick --quiet --numerics watertight --json "$J"
+check "its surface" grep -q "^surface    12 triangles, 18 edges: 0 open" "$OUT/stdout"
+check "its variants" grep -q "instance + 1e7" "$OUT/stdout"
+check "no hash" test "$(grep -c '^hash' "$OUT/stdout")" -eq 0
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 3\n' >"$OUT/open.obj"
+expect 0 "an open mesh with a duplicate" hard "$OUT/open.obj" --quick --quiet --numerics watertight
+check "is described" grep -q "^surface    3 triangles, .* 1 duplicate" "$OUT/stdout"
+
+"$LEAKY" hard --quick --quiet --numerics watertight --json "$J" >"$OUT/stdout" 2>"$OUT/stderr"
+check "a twin that loses rays: exit code 1" test $? -eq 1
+check "says so" grep -q "^whit: error: .* rows break a promise" "$OUT/stderr"
+check "and where" grep -q " NO$" "$OUT/stdout"
+check "the table is in the JSON all the same" grep -q '"kept": false' "$J"
+
+rm "$J"
+refuse 2 "too few rays" "from 512 to" hard --rays 10
+refuse 2 "no such level" "fast, exact" hard --numerics best
+refuse 2 "JSON to a pipe" "/dev/stdout" hard --json -
+refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
+refuse 2 "no such scene" "missing.json" hard "$OUT/missing.json" --quiet
+refuse 2 "unknown option" "did you mean .--quick." hard --quik
+refuse 5 "a time limit" "time limit" hard --rays 200000 --quiet --time-limit 0.5 --json "$J"
+check "no file was left" is_empty "$OUT/files"
+expect 0 "help" hard --help
+check "help names the promise" grep -q "promise" "$OUT/stdout"
+finish

@@ -1,0 +1,248 @@
+/* The cases of `whit hard`: that they are what they say, on every machine the same, and that the
+   judge sees what is wrong. */
+#include "accel_fixture.h"
+
+#include "accel/hard.h"
+#include "base/hash.h"
+
+enum { RAYS = 512, THREADS = 2 };
+
+/* Of the exact identities of the first RAYS rays of every case: what `whit hard` prints, and every
+   device has to meet. */
+#define HASH UINT64_C(0xba50b88c9ca5e19d)
+
+struct shots {
+    struct hard_scene hard;
+    struct hard_topology topology;
+    struct hard_ray rays[RAYS];
+    struct rational_hit exact[RAYS];
+    struct gpu_hit hits[RAYS];
+};
+
+static struct shots *shots_make(const struct hard_case *hard, uint64_t seed)
+{
+    struct shots *shots = calloc(1, sizeof *shots);
+    assert_non_null(shots);
+    assert_int_equal(hard_scene_init(&silent, hard, &shots->hard), WHIT_OK);
+    assert_int_equal(hard_topology_init(shots->hard.scene, &shots->topology), WHIT_OK);
+    for (uint32_t i = 0; i < RAYS; ++i)
+        shots->rays[i] = hard_ray_make(&shots->hard, shots->hard.rays, seed, i);
+    assert_int_equal(hard_trace_exact(&shots->hard, shots->rays, RAYS, THREADS, shots->exact),
+                     WHIT_OK);
+    return shots;
+}
+
+static void shots_free(struct shots *shots)
+{
+    hard_topology_finish(&shots->topology);
+    hard_scene_finish(&shots->hard);
+    free(shots);
+}
+
+static struct hard_tally shots_judge(const struct shots *shots, uint32_t numerics)
+{
+    const struct hard_judgement judgement = {.hard = &shots->hard,
+                                             .topology = &shots->topology,
+                                             .rays = shots->rays,
+                                             .exact = shots->exact,
+                                             .hits = shots->hits,
+                                             .numerics = numerics,
+                                             .count = RAYS};
+    struct hard_tally tally;
+    assert_int_equal(hard_judge(&judgement, THREADS, &tally), WHIT_OK);
+    assert_int_equal(tally.rays, RAYS);
+    return tally;
+}
+
+static uint32_t count_hits(const struct shots *shots)
+{
+    uint32_t hits = 0;
+    for (uint32_t i = 0; i < RAYS; ++i)
+        hits += shots->exact[i].primitive != HIT_NONE;
+    return hits;
+}
+
+/* No triangle was dropped: closed meshes are closed. */
+static void check_case(const struct hard_case *hard, const struct shots *shots)
+{
+    const struct hard_topology *t = &shots->topology;
+    bool closed =
+        hard->mesh <= HARD_UNWELDED || hard->mesh == HARD_CUBE || hard->mesh == HARD_OCTAHEDRON;
+    assert_int_equal(shots->hard.scene->note_count > 0 &&
+                         strstr(shots->hard.scene->notes[0].text, "dropped") != NULL,
+                     false);
+    if (closed) {
+        assert_int_equal(t->open_edges + t->crowded_edges + t->flipped_edges + t->duplicates, 0);
+        assert_int_equal(2 * t->edges, 3 * t->triangles);
+    }
+    if (shots->hard.truth == HARD_MUST_HIT)
+        assert_int_equal(count_hits(shots), RAYS);
+    if (shots->hard.truth == HARD_MUST_MISS)
+        assert_int_equal(count_hits(shots), 0);
+    if (shots->hard.truth == HARD_ORACLE && hard->rays != HARD_LISTED)
+        assert_in_range(count_hits(shots), RAYS / 3, RAYS);
+}
+
+static void cases_are_what_they_say(void **state)
+{
+    (void)state;
+    uint32_t count;
+    uint64_t hash = HASH_START, leaks[3] = {0}, wrong[3] = {0};
+    const struct hard_case *cases = hard_cases(&count);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct shots *shots = shots_make(&cases[i], i + 1);
+        hash = hard_hash(hash, shots->exact, RAYS);
+        check_case(&cases[i], shots);
+        for (uint32_t numerics = 0; numerics < 3; ++numerics) {
+            assert_int_equal(
+                hard_trace_twin(&shots->hard, numerics, shots->rays, RAYS, THREADS, shots->hits),
+                WHIT_OK);
+            struct hard_tally tally = shots_judge(shots, numerics);
+            leaks[numerics] += cases[i].not_promised ? 0 : tally.leaks;
+            wrong[numerics] += tally.wrong;
+            assert_true(hard_promise_kept(numerics, !cases[i].not_promised, &tally));
+        }
+        shots_free(shots);
+    }
+    print_message(
+        "%u cases of %u rays: leaks %llu watertight, %llu fast, %llu exact; wrong %llu, "
+        "%llu, %llu; hash %016llx\n",
+        count, (uint32_t)RAYS, (unsigned long long)leaks[NUMERICS_WATERTIGHT],
+        (unsigned long long)leaks[NUMERICS_FAST], (unsigned long long)leaks[NUMERICS_EXACT],
+        (unsigned long long)wrong[NUMERICS_WATERTIGHT], (unsigned long long)wrong[NUMERICS_FAST],
+        (unsigned long long)wrong[NUMERICS_EXACT], (unsigned long long)hash);
+    assert_int_equal(hash, HASH);
+    assert_true(leaks[NUMERICS_FAST] > 0); /* the cases are hard */
+    assert_true(wrong[NUMERICS_FAST] > 0);
+}
+
+/* A hit that is taken away, put elsewhere or made up is seen, and breaks the promise. */
+static void the_judge_sees(void **state)
+{
+    (void)state;
+    static const struct hard_case sphere = {"sphere", HARD_SPHERE, HARD_AIMED, 0, 1, false, false};
+    struct shots *shots = shots_make(&sphere, 1);
+    for (uint32_t numerics = 0; numerics < 3; numerics += NUMERICS_EXACT) {
+        assert_int_equal(
+            hard_trace_twin(&shots->hard, numerics, shots->rays, RAYS, THREADS, shots->hits),
+            WHIT_OK);
+        struct hard_tally before = shots_judge(shots, numerics);
+        assert_true(hard_promise_kept(numerics, true, &before));
+        assert_int_equal(before.leaks, 0);
+        struct gpu_hit kept = shots->hits[7];
+        shots->hits[7] =
+            (struct gpu_hit){.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
+        struct hard_tally after = shots_judge(shots, numerics);
+        assert_int_equal(after.misses, 1);
+        assert_int_equal(after.leaks, 1);
+        assert_false(hard_promise_kept(numerics, true, &after));
+        shots->hits[7] = kept;
+        shots->hits[7].primitive =
+            (kept.primitive + 1000) % (uint32_t)shots->hard.scene->triangle_total;
+        after = shots_judge(shots, numerics);
+        if (shots->exact[7].primitive == kept.primitive) {
+            assert_int_equal(after.other_ids, before.other_ids + 1);
+            assert_true(numerics != NUMERICS_EXACT || !hard_promise_kept(numerics, true, &after));
+        }
+        shots->hits[7] = kept;
+    }
+    assert_int_equal(hard_count_differing(shots->hits, shots->hits, RAYS), 0);
+    struct gpu_hit other[RAYS];
+    memcpy(other, shots->hits, sizeof other);
+    other[3].u += 1e-7f;
+    assert_int_equal(hard_count_differing(shots->hits, other, RAYS), 1);
+    shots_free(shots);
+}
+
+/* The convex body is left without a hit; a hit made up is a self-hit. */
+static void self_hits_are_seen(void **state)
+{
+    (void)state;
+    static const struct hard_case body = {
+        "octahedron", HARD_OCTAHEDRON, HARD_LEAVING, 1e3, 1, false, false};
+    struct shots *shots = shots_make(&body, 3);
+    for (uint32_t i = 0; i < RAYS; ++i)
+        shots->hits[i] =
+            (struct gpu_hit){.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
+    assert_int_equal(shots_judge(shots, NUMERICS_EXACT).self_hits, 0);
+    shots->hits[5] = (struct gpu_hit){.t = 1.0f, .primitive = 2, .instance = 0};
+    struct hard_tally tally = shots_judge(shots, NUMERICS_EXACT);
+    assert_int_equal(tally.self_hits, 1);
+    assert_int_equal(tally.false_hits, 1);
+    assert_false(hard_promise_kept(NUMERICS_EXACT, true, &tally));
+    shots_free(shots);
+}
+
+/* A cube of 12 triangles, unwelded, after `change`. */
+static struct hard_topology topology_of(void (*change)(struct soup *soup))
+{
+    const double size[3] = {1, 2, 3};
+    struct scene_mesh mesh;
+    assert_int_equal(shape_box(size, &mesh), WHIT_OK);
+    struct soup soup = soup_of_mesh("box", &mesh);
+    change(&soup);
+    struct scene *scene = soup_scene(&soup);
+    struct hard_topology topology;
+    assert_int_equal(hard_topology_init(scene, &topology), WHIT_OK);
+    scene_destroy(scene);
+    soup_finish(&soup);
+    return topology;
+}
+
+static void leave(struct soup *soup)
+{
+    (void)soup;
+}
+
+static void drop_last(struct soup *soup)
+{
+    --soup->count;
+}
+
+static void flip_first(struct soup *soup)
+{
+    float kept[3];
+    memcpy(kept, &soup->positions[0], sizeof kept);
+    memcpy(&soup->positions[0], &soup->positions[3], sizeof kept);
+    memcpy(&soup->positions[3], kept, sizeof kept);
+}
+
+static void repeat_first(struct soup *soup)
+{
+    memcpy(&soup->positions[9 * (size_t)(soup->count - 1)], soup->positions, 9 * sizeof(float));
+}
+
+static void expect_topology(void (*change)(struct soup *soup), uint64_t open, uint64_t crowded,
+                            uint64_t flipped, uint64_t duplicates)
+{
+    struct hard_topology t = topology_of(change);
+    uint32_t touched = 0;
+    for (uint32_t i = 0; i < t.triangles; ++i)
+        touched += t.open[i];
+    assert_int_equal(t.open_edges, open);
+    assert_int_equal(t.crowded_edges, crowded);
+    assert_int_equal(t.flipped_edges, flipped);
+    assert_int_equal(t.duplicates, duplicates);
+    assert_int_equal(touched > 0, open + crowded > 0);
+    hard_topology_finish(&t);
+}
+
+static void surfaces_are_described(void **state)
+{
+    (void)state;
+    expect_topology(leave, 0, 0, 0, 0);
+    expect_topology(drop_last, 3, 0, 0, 0);
+    expect_topology(flip_first, 0, 0, 3, 0);
+    expect_topology(repeat_first, 3, 3, 0, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cases_are_what_they_say),
+        cmocka_unit_test(the_judge_sees),
+        cmocka_unit_test(self_hits_are_seen),
+        cmocka_unit_test(surfaces_are_described),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
