@@ -44,7 +44,7 @@ enum hard_rays {
     HARD_CROSS,   /* HARD_CUBE: along axes and planes from points of its lattice */
     HARD_FLAT,    /* in a triangle's plane, along its edges and across */
     HARD_GRAZING, /* 2^-4 to 2^-24 above a triangle's plane */
-    HARD_FAR,     /* from 2^6 to 2^18 sizes away */
+    HARD_FAR,     /* from 2^6 to 2^12 sizes away */
     HARD_LEAVING, /* off the surface: from a point moved by its error bound, as secondary rays */
     HARD_LISTED,  /* HARD_ANCHORS */
     HARD_MIXED,   /* around, axial, flat, grazing, far, leaving by turns */

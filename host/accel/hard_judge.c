@@ -347,6 +347,7 @@ bool hard_promise_kept(uint32_t numerics, bool promised, const struct hard_tally
     if (numerics == NUMERICS_FAST)
         return true;
     if (numerics == NUMERICS_EXACT)
-        return tally->misses == 0 && tally->false_hits == 0 && tally->other_ids == 0;
+        return tally->misses == 0 && tally->false_hits == 0 && tally->other_ids == 0 &&
+               tally->wrong_keys == 0;
     return tally->wrong == 0 && (!promised || tally->leaks == 0);
 }

@@ -276,7 +276,7 @@ static void make_grazing(const struct hard_scene *hard, uint64_t *state, struct 
 static void make_far(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;
-    double origin[3], away = 1.0 / power_of_half(6 + draw(state) % 13u), size = 0.0;
+    double origin[3], away = 1.0 / power_of_half(6 + draw(state) % 7u), size = 0.0;
     draw_target(hard, true, state, &target);
     for (int k = 0; k < 3; ++k)
         size = fmax(size, hard->hi[k] - hard->lo[k]);

@@ -14,14 +14,21 @@ _Static_assert((uint32_t)WHIT_NUMERICS_WATERTIGHT == NUMERICS_WATERTIGHT &&
                "levels are handed on as they are");
 
 /* Seeds are the cases' numbers: the hash is of the first rays of each. */
-enum { LEVELS = 3, RAYS_DEFAULT = 20000, RAYS_HASHED = 512, RENDERER_SIDE = 16 };
+enum {
+    LEVELS = 3,
+    RAYS_DEFAULT = 20000,
+    RAYS_HASHED = 512,
+    PIECE = 1 << 20, /* rays in memory */
+    RENDERER_SIDE = 16,
+};
 
 struct hard_run {
     const whit_hard_params *params;
     struct log log;
     struct device *device; /* NULL: the twin alone */
     uint32_t levels;
-    uint64_t ray_count;
+    uint64_t ray_count; /* of a row */
+    uint64_t piece;     /* of them in memory now */
     double deadline_ms; /* 0: none */
     whit_hard_report *report;
     uint32_t row_capacity;
@@ -33,7 +40,7 @@ struct hard_run {
 
 static whit_result allocate(struct hard_run *run)
 {
-    size_t count = (size_t)run->ray_count;
+    size_t count = (size_t)(run->ray_count < PIECE ? run->ray_count : PIECE);
     run->rays = array_alloc(count, sizeof *run->rays);
     run->plain = array_alloc(count, sizeof *run->plain);
     run->exact = array_alloc(count, sizeof *run->exact);
@@ -42,7 +49,7 @@ static whit_result allocate(struct hard_run *run)
     run->report = calloc(1, sizeof *run->report);
     if (run->rays && run->plain && run->exact && run->hits && run->twin && run->report)
         return WHIT_OK;
-    log_error(&run->log, "out of memory for %llu rays", (unsigned long long)run->ray_count);
+    log_error(&run->log, "out of memory for %llu rays", (unsigned long long)count);
     return WHIT_ERROR_MEMORY;
 }
 
@@ -83,7 +90,7 @@ static whit_result trace_on_device(struct hard_run *run, const struct hard_scene
                                          .height = RENDERER_SIDE,
                                          .cancel = run->params->cancel,
                                          .numerics = numerics,
-                                         .trace_rays = (uint32_t)run->ray_count};
+                                         .trace_rays = (uint32_t)run->piece};
     struct held_log held = {""};
     const struct log log = {.fn = hold_back, .user = &held};
     struct renderer *renderer = NULL;
@@ -91,12 +98,12 @@ static whit_result trace_on_device(struct hard_run *run, const struct hard_scene
     if (result == WHIT_OK) /* some drivers finish a kernel when it first runs */
         result = renderer_trace(renderer, run->plain, 1, false, run->hits, NULL);
     if (result == WHIT_OK)
-        result = renderer_trace(renderer, run->plain, run->ray_count, false, run->hits, NULL);
+        result = renderer_trace(renderer, run->plain, run->piece, false, run->hits, NULL);
     *cut = result == WHIT_ERROR_STATUS;
     if (*cut)
         result = WHIT_OK;
     else if (result == WHIT_OK)
-        *device_ms = renderer_trace_device_ms(renderer);
+        *device_ms += renderer_trace_device_ms(renderer);
     else if (held.text[0])
         log_error(&run->log, "%s", held.text);
     renderer_destroy(renderer);
@@ -114,89 +121,115 @@ static uint64_t hash_hits(uint64_t value, const struct gpu_hit *hits, uint64_t c
     return value;
 }
 
-static void fill_row(whit_hard_row *row, const struct hard_tally *tally)
+static void add_tally(whit_hard_row *row, const struct hard_tally *tally)
 {
-    row->rays = tally->rays;
-    row->hits = tally->hits;
-    row->undecided = tally->undecided;
-    row->misses = tally->misses;
-    row->leaks = tally->leaks;
-    row->false_hits = tally->false_hits;
-    row->other_ids = tally->other_ids;
-    row->wrong_keys = tally->wrong_keys;
-    row->wrong = tally->wrong;
-    row->double_hits = tally->double_hits;
-    row->self_hits = tally->self_hits;
-    row->ulp_most = tally->ulp_most;
+    row->rays += tally->rays;
+    row->hits += tally->hits;
+    row->undecided += tally->undecided;
+    row->misses += tally->misses;
+    row->leaks += tally->leaks;
+    row->false_hits += tally->false_hits;
+    row->other_ids += tally->other_ids;
+    row->wrong_keys += tally->wrong_keys;
+    row->wrong += tally->wrong;
+    row->double_hits += tally->double_hits;
+    row->self_hits += tally->self_hits;
+    row->ulp_most = tally->ulp_most > row->ulp_most ? tally->ulp_most : row->ulp_most;
 }
 
-/* The rays in run->rays at one level. Names of the row are the caller's. */
-static whit_result add_row(struct hard_run *run, const struct hard_scene *hard,
-                           const struct hard_topology *topology, uint32_t numerics,
-                           const whit_hard_row *names)
+/* The rays in run->rays at one level. */
+static whit_result trace_level(struct hard_run *run, const struct hard_scene *hard,
+                               const struct hard_topology *topology, whit_hard_row *row)
 {
     struct hard_judgement judgement = {.hard = hard,
                                        .topology = topology,
                                        .rays = run->rays,
                                        .exact = run->exact,
                                        .hits = run->twin,
-                                       .numerics = numerics,
-                                       .count = run->ray_count};
-    whit_hard_row row = *names;
+                                       .numerics = (uint32_t)row->numerics,
+                                       .count = run->piece};
     struct hard_tally tally;
-    row.numerics = (whit_numerics)numerics;
-    row.device_ms = -1.0;
+    bool cut = false, first = row->rays == 0;
     double start_ms = clock_ms();
-    whit_result result =
-        hard_trace_twin(hard, numerics, run->rays, run->ray_count, run->params->threads, run->twin);
-    row.twin_ms = clock_ms() - start_ms;
+    whit_result result = hard_trace_twin(hard, judgement.numerics, run->rays, run->piece,
+                                         run->params->threads, run->twin);
+    row->twin_ms += clock_ms() - start_ms;
     if (result == WHIT_OK && run->device)
-        result = trace_on_device(run, hard, numerics, &row.device_ms, &row.unanswered);
-    bool answered = run->device && !row.unanswered;
+        result = trace_on_device(run, hard, judgement.numerics, &row->device_ms, &cut);
+    bool answered = run->device && !cut;
     if (answered)
         judgement.hits = run->hits;
     if (result == WHIT_OK)
         result = hard_judge(&judgement, run->params->threads, &tally);
     if (result != WHIT_OK)
         return result;
-    fill_row(&row, &tally);
+    row->unanswered |= cut;
     if (answered)
-        row.differing = hard_count_differing(run->hits, run->twin, run->ray_count);
-    row.kept = hard_promise_kept(numerics, row.promised, &tally) &&
-               (numerics == NUMERICS_FAST || row.differing == 0);
-    run->report->broken += !row.kept;
-    run->report->unanswered += row.unanswered;
-    if (run->device && numerics == NUMERICS_EXACT && run->report->hash)
+        row->differing += hard_count_differing(run->hits, run->twin, run->piece);
+    if (first && run->device && run->report->hash && row->numerics == WHIT_NUMERICS_EXACT)
         run->report->hash_met =
             hash_hits(run->report->hash_met, answered ? run->hits : NULL, RAYS_HASHED);
-    if (ARRAY_PUSH(run->report->rows, run->report->row_count, run->row_capacity, row))
+    add_tally(row, &tally);
+    return WHIT_OK;
+}
+
+static whit_result keep_row(struct hard_run *run, whit_hard_row *row)
+{
+    const struct hard_tally tally = {.misses = row->misses,
+                                     .leaks = row->leaks,
+                                     .false_hits = row->false_hits,
+                                     .other_ids = row->other_ids,
+                                     .wrong_keys = row->wrong_keys,
+                                     .wrong = row->wrong};
+    row->kept = hard_promise_kept((uint32_t)row->numerics, row->promised, &tally) &&
+                (row->numerics == WHIT_NUMERICS_FAST || row->differing == 0);
+    if (!run->device || row->unanswered)
+        row->device_ms = -1.0;
+    run->report->broken += !row->kept;
+    run->report->unanswered += row->unanswered;
+    if (ARRAY_PUSH(run->report->rows, run->report->row_count, run->row_capacity, *row))
         return WHIT_OK;
     log_error(&run->log, "out of memory");
     return WHIT_ERROR_MEMORY;
 }
 
+static void make_rays(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
+                      uint64_t seed, uint64_t first)
+{
+    run->piece = run->ray_count - first < PIECE ? run->ray_count - first : PIECE;
+    for (uint64_t i = 0; i < run->piece; ++i) {
+        run->rays[i] = hard_ray_make(hard, kind, seed, first + i);
+        run->plain[i] = run->rays[i].ray;
+    }
+}
+
+/* All rays of a row at every level. Names of the rows are the caller's. */
 static whit_result shoot(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
                          uint64_t seed, const whit_hard_row *names)
 {
-    static const uint32_t order[LEVELS] = {NUMERICS_FAST, NUMERICS_WATERTIGHT, NUMERICS_EXACT};
-    struct hard_topology topology = {0};
-    for (uint64_t i = 0; i < run->ray_count; ++i) {
-        run->rays[i] = hard_ray_make(hard, kind, seed, i);
-        run->plain[i] = run->rays[i].ray;
+    static const whit_numerics order[LEVELS] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_WATERTIGHT,
+                                                WHIT_NUMERICS_EXACT};
+    whit_hard_row rows[LEVELS];
+    struct hard_topology topology;
+    whit_result result = hard_topology_init(hard->scene, &topology);
+    for (int l = 0; l < LEVELS; ++l) {
+        rows[l] = *names;
+        rows[l].numerics = order[l];
     }
-    whit_result result =
-        hard_trace_exact(hard, run->rays, run->ray_count, run->params->threads, run->exact);
-    if (result == WHIT_OK)
-        result = hard_topology_init(hard->scene, &topology);
-    if (result == WHIT_OK && run->report->hash)
-        run->report->hash = hard_hash(run->report->hash, run->exact, RAYS_HASHED);
-    for (int l = 0; result == WHIT_OK && l < LEVELS; ++l) {
-        if (!(run->levels >> order[l] & 1u))
-            continue;
-        result = still_wanted(run);
-        if (result == WHIT_OK)
-            result = add_row(run, hard, &topology, order[l], names);
+    for (uint64_t first = 0; result == WHIT_OK && first < run->ray_count; first += PIECE) {
+        make_rays(run, hard, kind, seed, first);
+        result = hard_trace_exact(hard, run->rays, run->piece, run->params->threads, run->exact);
+        if (result == WHIT_OK && first == 0 && run->report->hash)
+            run->report->hash = hard_hash(run->report->hash, run->exact, RAYS_HASHED);
+        for (int l = 0; result == WHIT_OK && l < LEVELS; ++l) {
+            result = still_wanted(run);
+            if (result == WHIT_OK && (run->levels >> order[l] & 1u))
+                result = trace_level(run, hard, &topology, &rows[l]);
+        }
     }
+    for (int l = 0; result == WHIT_OK && l < LEVELS; ++l)
+        if (run->levels >> order[l] & 1u)
+            result = keep_row(run, &rows[l]);
     hard_topology_finish(&topology);
     return result;
 }
@@ -213,12 +246,15 @@ static whit_result run_cases(struct hard_run *run)
     uint32_t count;
     const struct hard_case *cases = hard_cases(&count);
     whit_result result = WHIT_OK;
-    run->report->hash = run->report->hash_met = HASH_START;
+    bool all = run->params->filter == NULL;
+    run->report->hash = run->report->hash_met = all ? HASH_START : 0;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         const whit_hard_row names = {.name = cases[i].name,
                                      .place = place_of(cases[i].offset),
                                      .promised = !cases[i].not_promised};
         struct hard_scene hard;
+        if (!all && !strstr(names.name, run->params->filter))
+            continue;
         say_progress(run, (double)i / count);
         result = hard_scene_init(&run->log, &cases[i], &hard);
         if (result != WHIT_OK)
@@ -228,6 +264,10 @@ static whit_result run_cases(struct hard_run *run)
     }
     if (!run->device || !(run->levels >> NUMERICS_EXACT & 1u))
         run->report->hash_met = 0;
+    if (result == WHIT_OK && run->report->row_count == 0) {
+        log_error(&run->log, "no case has `%s` in its name", run->params->filter);
+        result = WHIT_ERROR_USAGE;
+    }
     return result;
 }
 

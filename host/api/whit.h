@@ -423,9 +423,11 @@ double whit_trace_device_ms(const whit_renderer *renderer);
    by its twin, and held against exact arithmetic: docs/numerics.md, "whit hard". */
 
 typedef struct whit_hard_params {
-    uint32_t rays;    /* of a row: at least 512, for the hash; 0: 20000 */
-    uint32_t levels;  /* bits 1u << whit_numerics; 0: all of them */
-    uint32_t threads; /* on the CPU; 0: one a core */
+    uint32_t rays;      /* of a row: at least 512, for the hash; 0: 20000 */
+    uint32_t levels;    /* bits 1u << whit_numerics; 0: all of them */
+    uint32_t threads;   /* on the CPU; 0: one a core */
+    const char *filter; /* of the built-in cases those with this in their name; NULL: all, and then
+                           there is a hash */
     const volatile bool *cancel;
     double time_limit_s; /* 0: none */
     void (*progress)(void *user, double done);

@@ -1,13 +1,14 @@
 #include "app/commands.h"
 #include "app/hard.h"
 
-enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS };
+enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS, ID_CASE };
 
 enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
 
 static const struct cli_option options[] = {
     {JOB_NUMERICS, "numerics", "fast|watertight|exact", "this level alone (all three)"},
     {ID_RAYS, "rays", "N", "rays of each row of the table, at least 512 (20000)"},
+    {ID_CASE, "case", "TEXT", "of the built-in cases those with TEXT in their name"},
     {ID_QUICK, "quick", NULL, "512 rays a row"},
     {ID_JSON, "json", "FILE", "the table as JSON"},
     JOB_OPTION_DEVICE,
@@ -66,6 +67,8 @@ static void read_option(struct cli_reader *reader, int id, struct hard *hard)
 {
     if (id == ID_JSON)
         hard->json_path = reader->value;
+    else if (id == ID_CASE)
+        hard->params.filter = reader->value;
     else if (id == ID_QUICK)
         hard->params.rays = RAYS_QUICK;
     else if (id == ID_RAYS)
@@ -84,6 +87,8 @@ static bool check_request(struct cli_reader *reader, struct hard *hard)
         reader->status = EXIT_USAGE;
         return false;
     }
+    if (reader->positional && hard->params.filter)
+        return cli_misuse(reader, "--case is of the built-in cases, not of a scene");
     if (reader->positional)
         return job_options_done(&hard->job, reader);
     cli_limit_time(hard->job.time_limit_s);

@@ -45,6 +45,15 @@ static void print_heading(const struct hard *hard, struct widths widths)
            "double", "self", "ulp", "device ms", "twin ms", "differ", "kept");
 }
 
+static const char *verdict_of(const whit_hard_row *row)
+{
+    if (!row->kept)
+        return "NO";
+    if (row->unanswered)
+        return "no answer";
+    return row->numerics == WHIT_NUMERICS_FAST ? "-" : "yes";
+}
+
 static void print_row(const whit_hard_row *row, const whit_hard_row *before, struct widths widths)
 {
     bool again =
@@ -58,10 +67,7 @@ static void print_row(const whit_hard_row *row, const whit_hard_row *before, str
         printf("%11.2f", row->device_ms);
     else
         printf("%11s", "-");
-    printf("%10.2f%8llu  %s\n", row->twin_ms, whole(row->differing),
-           row->numerics == WHIT_NUMERICS_FAST ? "-"
-           : row->kept                         ? "yes"
-                                               : "NO");
+    printf("%10.2f%8llu  %s\n", row->twin_ms, whole(row->differing), verdict_of(row));
 }
 
 /* Sums over all rows of a level. */
@@ -85,6 +91,7 @@ static void print_sum(const whit_hard_report *report, whit_numerics numerics, st
         sum.twin_ms += row->twin_ms;
         sum.differing += row->differing;
         sum.kept &= row->kept;
+        sum.unanswered |= row->unanswered;
     }
     if (sum.rays)
         print_row(&sum, NULL, widths);

@@ -35,6 +35,8 @@ expect 0 "a scene" hard "$CUBE" --quick --quiet --numerics watertight --json "$J
 check "its surface" grep -q "^surface    12 triangles, 18 edges: 0 open" "$OUT/stdout"
 check "its variants" grep -q "instance + 1e7" "$OUT/stdout"
 check "no hash" test "$(grep -c '^hash' "$OUT/stdout")" -eq 0
+expect 0 "some cases" hard --case grid --quick --quiet --numerics fast
+check "are those alone" test "$(grep -c ' fast  ' "$OUT/stdout")" -eq 4
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 3\n' >"$OUT/open.obj"
 expect 0 "an open mesh with a duplicate" hard "$OUT/open.obj" --quick --quiet --numerics watertight
 check "is described" grep -q "^surface    3 triangles, .* 1 duplicate" "$OUT/stdout"
@@ -51,6 +53,8 @@ refuse 2 "no such level" "fast, exact" hard --numerics best
 refuse 2 "JSON to a pipe" "/dev/stdout" hard --json -
 refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
 refuse 2 "no such scene" "missing.json" hard "$OUT/missing.json" --quiet
+refuse 2 "no such case" "in its name" hard --case goblin --quiet
+refuse 2 "a case of a scene" "not of a scene" hard "$CUBE" --case grid
 refuse 2 "unknown option" "did you mean .--quick." hard --quik
 refuse 5 "a time limit" "time limit" hard --rays 200000 --quiet --time-limit 0.5 --json "$J"
 check "no file was left" is_empty "$OUT/files"

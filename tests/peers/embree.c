@@ -1,4 +1,4 @@
-/* Embree's answers: robust, one ray at a time. */
+/* Embree's answers, one ray at a time. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,10 +6,11 @@
 
 #ifndef PEERS_EMBREE
 
-struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose)
+struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose, bool robust)
 {
     (void)scene;
     (void)pose;
+    (void)robust;
     return NULL;
 }
 
@@ -60,14 +61,15 @@ static bool add_instance(const struct embree *embree, const struct scene_mesh *m
     return made;
 }
 
-struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose)
+struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose, bool robust)
 {
     struct embree *embree = calloc(1, sizeof *embree);
     if (!embree)
         return NULL;
     embree->device = rtcNewDevice("threads=2");
     embree->scene = rtcNewScene(embree->device);
-    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+    if (robust)
+        rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
     bool made = true;
     for (uint32_t i = 0; made && i < scene->instance_count; ++i)
         made =

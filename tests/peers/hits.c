@@ -304,7 +304,7 @@ static bool bench_open(struct bench *bench, const struct options *options)
             renderer_create(&peers_log, bench->device, bench->accel, &render_params,
                             &bench->renderer) == WHIT_OK;
     if (ready)
-        bench->embree = embree_create(bench->scene, &bench->pose);
+        bench->embree = embree_create(bench->scene, &bench->pose, true);
     return ready;
 }
 

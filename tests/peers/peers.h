@@ -36,7 +36,7 @@ struct embree;
 
 /* NULL where it is not built in or does not start. Meshes are placed in world space in float, so
    that its triangles of moved instances differ from whit's by that rounding. */
-struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose);
+struct embree *embree_create(const struct scene *scene, const struct scene_pose *pose, bool robust);
 void embree_destroy(struct embree *embree);
 /* Only t and ids of the hit are set. */
 void embree_trace(const struct embree *embree, const struct gpu_ray *ray, struct gpu_hit *hit);

@@ -1,0 +1,189 @@
+/* hard RAYS: the rays of `whit hard` at edges and vertices from inside closed spheres, at offsets
+   0, 1e3 and 1e5, by whit's levels and by Embree as it comes and ROBUST, all beside exact
+   arithmetic. Fails where a level breaks its promise, or where `fast` leaks nothing: then the rays
+   are no test. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/hard.h"
+#include "base/array.h"
+#include "base/threads.h"
+#include "peers.h"
+
+enum { PIECE = 1 << 18, CHUNK = 4096, THREADS = 2 };
+enum { FAST, WATERTIGHT, EXACT, EMBREE, EMBREE_ROBUST, TRACERS };
+
+static const char *const names[TRACERS] = {"fast", "watertight", "exact", "Embree",
+                                           "Embree ROBUST"};
+static const uint32_t levels[] = {NUMERICS_FAST, NUMERICS_WATERTIGHT, NUMERICS_EXACT};
+
+static void print_error(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "hard: %s\n", message);
+}
+
+static const struct log errors = {.fn = print_error};
+
+struct bench {
+    struct hard_scene hard;
+    struct hard_topology topology;
+    struct embree *embree[2]; /* as it comes, robust; NULL: not installed */
+    struct hard_ray *rays;
+    struct rational_hit *exact;
+    struct gpu_hit *hits;
+    uint64_t count; /* rays in memory */
+    const struct embree *asked;
+    struct hard_tally tallies[TRACERS];
+};
+
+static void embree_chunk(void *user, uint32_t chunk)
+{
+    const struct bench *bench = user;
+    uint64_t first = (uint64_t)chunk * CHUNK;
+    uint64_t end = first + CHUNK < bench->count ? first + CHUNK : bench->count;
+    for (uint64_t i = first; i < end; ++i)
+        embree_trace(bench->asked, &bench->rays[i].ray, &bench->hits[i]);
+}
+
+static uint32_t chunks_of(uint64_t count)
+{
+    return (uint32_t)((count + CHUNK - 1) / CHUNK);
+}
+
+/* Embree's ids are those of geometries, which are instances, and of triangles. */
+static void count_embree(struct bench *bench, int tracer)
+{
+    struct hard_tally *tally = &bench->tallies[tracer];
+    bench->asked = bench->embree[tracer - EMBREE];
+    threads_for(THREADS, chunks_of(bench->count), embree_chunk, bench);
+    for (uint64_t i = 0; i < bench->count; ++i) {
+        const struct gpu_hit *hit = &bench->hits[i];
+        bool hits = bench->exact[i].primitive != HIT_NONE, met = hit->primitive != HIT_NONE;
+        ++tally->rays;
+        tally->misses += hits && !met;
+        tally->other_ids += hits && met && hit->primitive != bench->exact[i].primitive;
+    }
+}
+
+static bool count_level(struct bench *bench, int tracer)
+{
+    const struct hard_judgement judgement = {.hard = &bench->hard,
+                                             .topology = &bench->topology,
+                                             .rays = bench->rays,
+                                             .exact = bench->exact,
+                                             .hits = bench->hits,
+                                             .numerics = levels[tracer],
+                                             .count = bench->count};
+    struct hard_tally *sum = &bench->tallies[tracer], tally;
+    if (hard_trace_twin(&bench->hard, levels[tracer], bench->rays, bench->count, THREADS,
+                        bench->hits) != WHIT_OK ||
+        hard_judge(&judgement, THREADS, &tally) != WHIT_OK)
+        return false;
+    sum->rays += tally.rays;
+    sum->misses += tally.misses;
+    sum->leaks += tally.leaks;
+    sum->false_hits += tally.false_hits;
+    sum->other_ids += tally.other_ids;
+    sum->wrong_keys += tally.wrong_keys;
+    sum->wrong += tally.wrong;
+    return true;
+}
+
+static bool shoot(struct bench *bench, uint64_t seed, uint64_t ray_count)
+{
+    for (uint64_t first = 0; first < ray_count; first += PIECE) {
+        bench->count = ray_count - first < PIECE ? ray_count - first : PIECE;
+        for (uint64_t i = 0; i < bench->count; ++i)
+            bench->rays[i] = hard_ray_make(&bench->hard, bench->hard.rays, seed, first + i);
+        if (hard_trace_exact(&bench->hard, bench->rays, bench->count, THREADS, bench->exact) !=
+            WHIT_OK)
+            return false;
+        for (int tracer = FAST; tracer <= EXACT; ++tracer)
+            if (!count_level(bench, tracer))
+                return false;
+        for (int tracer = EMBREE; tracer < TRACERS; ++tracer)
+            if (bench->embree[tracer - EMBREE])
+                count_embree(bench, tracer);
+    }
+    return true;
+}
+
+/* 0: every level kept its promise, and `fast` leaked. */
+static int print_rows(const struct bench *bench, double offset)
+{
+    int failed = 0;
+    for (int tracer = FAST; tracer < TRACERS; ++tracer) {
+        const struct hard_tally *t = &bench->tallies[tracer];
+        char wrong[24] = "-";
+        if (t->rays == 0) {
+            printf("%-8g%-16s%12s\n", offset, names[tracer], "not installed");
+            continue;
+        }
+        if (tracer <= EXACT) {
+            snprintf(wrong, sizeof wrong, "%llu", (unsigned long long)t->wrong);
+            failed |= !hard_promise_kept(levels[tracer], true, t);
+        }
+        printf("%-8g%-16s%12llu%12llu%13.2e%16llu%10s\n", offset, names[tracer],
+               (unsigned long long)t->rays, (unsigned long long)t->misses,
+               (double)t->misses / (double)t->rays, (unsigned long long)t->other_ids, wrong);
+    }
+    if (bench->tallies[FAST].misses == 0) {
+        printf("FAILED: `fast` leaks nothing: these rays test nothing\n");
+        failed = 1;
+    }
+    return failed;
+}
+
+static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t seed,
+                    uint64_t ray_count)
+{
+    memset(bench->tallies, 0, sizeof bench->tallies);
+    if (hard_scene_init(&errors, hard, &bench->hard) != WHIT_OK)
+        return 1;
+    int failed = hard_topology_init(bench->hard.scene, &bench->topology) != WHIT_OK;
+    for (int i = 0; i < 2; ++i)
+        bench->embree[i] = embree_create(bench->hard.scene, &bench->hard.pose, i == 1);
+    if (!failed)
+        failed = !shoot(bench, seed, ray_count) || print_rows(bench, hard->offset);
+    for (int i = 0; i < 2; ++i)
+        embree_destroy(bench->embree[i]);
+    hard_topology_finish(&bench->topology);
+    hard_scene_finish(&bench->hard);
+    return failed;
+}
+
+int main(int argc, char **argv)
+{
+    uint64_t ray_count = argc == 2 ? strtoull(argv[1], NULL, 10) : 0;
+    struct bench bench = {.count = 0};
+    uint32_t case_count;
+    int failed = 0, done = 0;
+    const struct hard_case *cases = hard_cases(&case_count);
+    bench.rays = array_alloc(PIECE, sizeof *bench.rays);
+    bench.exact = array_alloc(PIECE, sizeof *bench.exact);
+    bench.hits = array_alloc(PIECE, sizeof *bench.hits);
+    if (ray_count == 0 || !bench.rays || !bench.exact || !bench.hits) {
+        fprintf(stderr, "usage: hard RAYS\n");
+        return 2;
+    }
+    printf("%-8s%-16s%12s%12s%13s%16s%10s\n", "offset", "tracer", "rays", "misses", "of rays",
+           "other triangle", "wrong");
+    for (uint32_t i = 0; i < case_count; ++i) {
+        const struct hard_case *hard = &cases[i];
+        if (hard->mesh != HARD_SPHERE || hard->rays != HARD_AIMED || hard->instanced ||
+            hard->offset > 1e5)
+            continue;
+        failed |= run_case(&bench, hard, i + 1, ray_count);
+        ++done;
+    }
+    free(bench.rays);
+    free(bench.exact);
+    free(bench.hits);
+    if (failed || done == 0)
+        printf("FAILED\n");
+    return failed || done == 0;
+}
