@@ -79,9 +79,9 @@ struct hard_scene {
 
 WHIT_CHECK whit_result hard_scene_init(const struct log *log, const struct hard_case *hard,
                                        struct hard_scene *out);
-/* A scene of the user's at time 0; `scene` is borrowed. */
+/* A scene of the user's at one time; `scene` is borrowed. */
 WHIT_CHECK whit_result hard_scene_borrow(const struct log *log, const struct scene *scene,
-                                         struct hard_scene *out);
+                                         double time_s, struct hard_scene *out);
 /* A frozen scene of one mesh, which is taken over; `place` NULL: where it is. */
 WHIT_CHECK whit_result hard_scene_of_mesh(const struct log *log, const char *name,
                                           struct scene_mesh *mesh, const struct affine *place,

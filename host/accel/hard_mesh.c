@@ -405,12 +405,14 @@ static void set_reach(const struct hard_case *hard, struct hard_scene *out)
    kernels serve them. */
 enum { STACK_FLOOR = 48 };
 
-static whit_result pose_and_build(const struct log *log, struct hard_scene *hard)
+static whit_result pose_and_build(const struct log *log, double time_s, struct hard_scene *hard)
 {
     const struct accel_params params = {.stack_floor = STACK_FLOOR};
-    whit_result result = scene_pose_init(hard->scene, 0.0, &hard->pose);
+    whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
     if (result == WHIT_OK)
         result = accel_create(log, hard->scene, &params, &hard->accel);
+    if (result == WHIT_OK && time_s != 0.0)
+        result = accel_pose(hard->accel, &hard->pose);
     memcpy(hard->lo, hard->pose.lo, sizeof hard->lo);
     memcpy(hard->hi, hard->pose.hi, sizeof hard->hi);
     return result;
@@ -424,16 +426,16 @@ whit_result hard_scene_init(const struct log *log, const struct hard_case *hard,
     whit_result result = make_scene(log, hard, &out->owned);
     out->scene = out->owned;
     if (result == WHIT_OK)
-        result = pose_and_build(log, out);
+        result = pose_and_build(log, 0.0, out);
     if (result != WHIT_OK)
         hard_scene_finish(out);
     return result;
 }
 
 /* What is known of any scene. */
-static whit_result take_scene(const struct log *log, struct hard_scene *out)
+static whit_result take_scene(const struct log *log, double time_s, struct hard_scene *out)
 {
-    whit_result result = pose_and_build(log, out);
+    whit_result result = pose_and_build(log, time_s, out);
     for (int k = 0; k < 3; ++k) {
         out->middle[k] = 0.5 * (out->lo[k] + out->hi[k]);
         out->reach[k] = 0.25 * (out->hi[k] - out->lo[k]);
@@ -443,7 +445,7 @@ static whit_result take_scene(const struct log *log, struct hard_scene *out)
     return result;
 }
 
-whit_result hard_scene_borrow(const struct log *log, const struct scene *scene,
+whit_result hard_scene_borrow(const struct log *log, const struct scene *scene, double time_s,
                               struct hard_scene *out)
 {
     *out = (struct hard_scene){.scene = scene, .rays = HARD_AROUND, .truth = HARD_ORACLE};
@@ -451,7 +453,7 @@ whit_result hard_scene_borrow(const struct log *log, const struct scene *scene,
         log_error(log, "%s: no triangles to shoot at", scene->name);
         return WHIT_ERROR_INPUT;
     }
-    return take_scene(log, out);
+    return take_scene(log, time_s, out);
 }
 
 /* ---- Variants of a scene ---- */
@@ -542,7 +544,7 @@ whit_result hard_scene_vary(const struct log *log, const struct hard_scene *give
         return WHIT_OK;
     }
     out->scene = out->owned;
-    return result == WHIT_OK ? take_scene(log, out) : result;
+    return result == WHIT_OK ? take_scene(log, 0.0, out) : result;
 }
 
 void hard_scene_finish(struct hard_scene *hard)

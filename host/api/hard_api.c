@@ -316,7 +316,7 @@ static whit_result run_scene(struct hard_run *run, const struct scene *scene)
                                            HARD_GRAZING, HARD_FAR,   HARD_LEAVING};
     const uint32_t count = sizeof kinds / sizeof *kinds;
     struct hard_scene given;
-    whit_result result = hard_scene_borrow(&run->log, scene, &given);
+    whit_result result = hard_scene_borrow(&run->log, scene, 0.0, &given);
     if (result != WHIT_OK)
         return result;
     result = describe_surface(run, scene);

@@ -478,6 +478,22 @@ WHIT_CHECK whit_result whit_hard_run(whit_device *device, const whit_scene *scen
                                      whit_hard_report **out);
 void whit_hard_report_destroy(whit_hard_report *report);
 
+typedef struct whit_hard_view_params {
+    uint32_t width, height; /* 0: 640 x 480 */
+    const char *camera;     /* as in whit_renderer_params */
+    double time_s;
+    whit_numerics numerics;
+    uint32_t threads;
+} whit_hard_view_params;
+/* What camera rays hit, as grey lit from the eye; red where that is wrong: a leak, or beyond the
+   bounds of the level's errors; yellow where it is another primitive than exactly, or none, within
+   them. Cut-outs count as solid. `scene` NULL: the sphere of the built-in cases. `wrong_pixels`
+   and `other_pixels` count the two. Other arguments as for whit_hard_run. */
+WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
+                                      const whit_hard_view_params *params, const whit_log *log,
+                                      uint64_t *wrong_pixels, uint64_t *other_pixels,
+                                      whit_image **out);
+
 /* ---- Images ---- */
 
 typedef struct whit_image_info {

@@ -7,7 +7,9 @@
 struct hard {
     struct job job;
     whit_hard_params params;
-    const char *json_path; /* NULL: none */
+    whit_hard_view_params view;
+    const char *json_path, *output; /* NULL: none */
+    bool drawn;                     /* a picture instead of the table */
     whit_hard_report *report;
     struct cli_progress progress;
     double seconds; /* that it took */

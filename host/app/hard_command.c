@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/hard.h"
 
-enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS, ID_CASE };
+enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS, ID_CASE, ID_VIEW, ID_SIZE, ID_CAMERA };
 
 enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
 
@@ -11,6 +11,14 @@ static const struct cli_option options[] = {
     {ID_CASE, "case", "TEXT", "of the built-in cases those with TEXT in their name"},
     {ID_QUICK, "quick", NULL, "512 rays a row"},
     {ID_JSON, "json", "FILE", "the table as JSON"},
+    {ID_VIEW, "view", "leaks",
+     "instead of the table a picture of what camera rays hit:\n"
+     "red where that is wrong, yellow where another triangle is\n"
+     "within the error of floats; by itself of watertight"},
+    {'o', "output", "FILE", "of the picture: .png .exr .pfm"},
+    {ID_SIZE, "size", "WxH", "of the picture (640x480)"},
+    {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`"},
+    JOB_OPTION_TIME,
     JOB_OPTION_DEVICE,
     {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)"},
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
@@ -19,17 +27,21 @@ static const struct cli_option options[] = {
     {0, NULL, NULL, NULL},
 };
 
-static whit_result find_out(struct hard *hard)
+static whit_result prepare(struct job *job)
 {
-    struct job *job = &hard->job;
     whit_result result = WHIT_OK;
     job_begin_device(job);
     if (job->scene_path)
         result = job_load(job);
     if (result == WHIT_OK && job->scene_path)
         job_print_notes(job, false);
-    if (result == WHIT_OK)
-        result = job_open_device(job);
+    return result == WHIT_OK ? job_open_device(job) : result;
+}
+
+static whit_result find_out(struct hard *hard)
+{
+    struct job *job = &hard->job;
+    whit_result result = prepare(job);
     cli_progress_init(&hard->progress, job->quiet);
     hard->params.threads = job->threads;
     hard->params.cancel = &cli_cancel;
@@ -41,6 +53,41 @@ static whit_result find_out(struct hard *hard)
             whit_hard_run(job->device, job->scene, &hard->params, &cli_log_errors, &hard->report);
     cli_progress_finish(&hard->progress);
     return result;
+}
+
+static whit_result draw(struct hard *hard, uint64_t *wrong, uint64_t *other)
+{
+    struct job *job = &hard->job;
+    whit_image *image = NULL;
+    hard->view.time_s = job->time_s;
+    hard->view.numerics = job->numerics;
+    hard->view.threads = job->threads;
+    whit_result result = prepare(job);
+    if (result == WHIT_OK)
+        result = whit_hard_view(job->device, job->scene, &hard->view, &cli_log_errors, wrong, other,
+                                &image);
+    if (result == WHIT_OK)
+        result = job_still_wanted();
+    if (result == WHIT_OK)
+        result = whit_image_save(image, hard->output, NULL, 0, &cli_log);
+    whit_image_destroy(image);
+    return result;
+}
+
+static int work_view(struct hard *hard)
+{
+    uint64_t wrong = 0, other = 0;
+    whit_result result = draw(hard, &wrong, &other);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    printf("%s: %s: %llu pixels wrong (red), %llu with another triangle within the error of floats "
+           "(yellow)\n",
+           hard->output, job_numerics_name(hard->job.numerics), (unsigned long long)wrong,
+           (unsigned long long)other);
+    int status = cli_finish_stdout(EXIT_FINE);
+    if (status == EXIT_FINE && wrong && hard->job.numerics != WHIT_NUMERICS_FAST)
+        status = EXIT_DIFFERS;
+    return status == EXIT_FINE ? job_check_validation(&hard->job) : status;
 }
 
 static int work(struct hard *hard)
@@ -65,16 +112,44 @@ static int work(struct hard *hard)
 
 static void read_option(struct cli_reader *reader, int id, struct hard *hard)
 {
+    static const char *const views[] = {"leaks", NULL};
+    uint32_t choice;
     if (id == ID_JSON)
         hard->json_path = reader->value;
     else if (id == ID_CASE)
         hard->params.filter = reader->value;
+    else if (id == ID_VIEW)
+        hard->drawn = cli_choice(reader, views, &choice);
+    else if (id == 'o')
+        hard->output = reader->value;
+    else if (id == ID_SIZE)
+        cli_size(reader, &hard->view.width, &hard->view.height);
+    else if (id == ID_CAMERA)
+        hard->view.camera = reader->value;
     else if (id == ID_QUICK)
         hard->params.rays = RAYS_QUICK;
     else if (id == ID_RAYS)
         cli_unsigned(reader, RAYS_LEAST, RAYS_MOST, &hard->params.rays);
     else if (job_option(&hard->job, reader, id) && id == JOB_NUMERICS)
         hard->params.levels = 1u << hard->job.numerics;
+}
+
+static bool check_view(struct cli_reader *reader, const struct hard *hard)
+{
+    if (hard->drawn != (hard->output != NULL))
+        return cli_misuse(reader, "--view leaks and -o FILE go together");
+    if (!hard->drawn && (hard->view.width || hard->view.camera || hard->job.has_time))
+        return cli_misuse(reader, "--size, --camera and --time are of --view leaks");
+    if (hard->drawn && (hard->json_path || hard->params.rays || hard->params.filter))
+        return cli_misuse(reader, "--view leaks makes a picture, and no table");
+    if (!hard->drawn)
+        return true;
+    if (!whit_image_format_known(hard->output, false))
+        return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", hard->output);
+    if (cli_can_write(hard->output))
+        return true;
+    reader->status = EXIT_USAGE;
+    return false;
 }
 
 static bool check_request(struct cli_reader *reader, struct hard *hard)
@@ -87,6 +162,8 @@ static bool check_request(struct cli_reader *reader, struct hard *hard)
         reader->status = EXIT_USAGE;
         return false;
     }
+    if (!check_view(reader, hard))
+        return false;
     if (reader->positional && hard->params.filter)
         return cli_misuse(reader, "--case is of the built-in cases, not of a scene");
     if (reader->positional)
@@ -105,7 +182,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         read_option(&reader, id, &hard);
     if (!check_request(&reader, &hard))
         return reader.status;
-    int status = work(&hard);
+    int status = hard.drawn ? work_view(&hard) : work(&hard);
     whit_hard_report_destroy(hard.report);
     job_finish(&hard.job);
     return status;

@@ -330,3 +330,20 @@ void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32
     ray->t_min = 0.0f;
     ray->t_max = INFINITY;
 }
+
+whit_result render_camera_rays(const struct log *log, const struct scene_pose *pose,
+                               const char *camera, uint32_t width, uint32_t height,
+                               struct gpu_ray *rays)
+{
+    struct gpu_frame frame = {0};
+    struct gpu_chunk sample = {0};
+    uint32_t kind;
+    whit_result result = camera_frame(log, pose, camera, width, height, &frame, &kind);
+    if (result != WHIT_OK)
+        return result;
+    camera_sample(&frame, 0, 1, &sample);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            camera_ray(&frame, kind, x, y, &sample, rays++);
+    return WHIT_OK;
+}

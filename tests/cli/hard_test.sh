@@ -47,6 +47,18 @@ check "says so" grep -q "^whit: error: .* rows break a promise" "$OUT/stderr"
 check "and where" grep -q " NO$" "$OUT/stdout"
 check "the table is in the JSON all the same" grep -q '"kept": false' "$J"
 
+# From the middle of the sphere along an axis: rays in the planes of edges.
+V="--view leaks --size 201x151 --camera 0,0,0,1,0,0,0,1,0,90"
+# shellcheck disable=SC2086
+expect 0 "a picture at fast" hard $V --numerics fast -o "$OUT/fast.png" --quiet
+red=$(sed -n 's/.*: fast: \([0-9]*\) pixels wrong.*/\1/p' "$OUT/stdout")
+check "has leaks in it ($red)" test "$red" -gt 0
+# shellcheck disable=SC2086
+expect 0 "a picture at watertight" hard $V -o "$OUT/watertight.png" --quiet
+check "has none" grep -q ": watertight: 0 pixels wrong" "$OUT/stdout"
+expect 0 "a picture of a scene" hard "$CUBE" --view leaks --size 64x48 -o "$OUT/cube.pfm" --quiet
+check "is of that size" test "$(head -c 8 "$OUT/cube.pfm" | tr '\n' ' ')" = "PF 64 48"
+
 rm "$J"
 refuse 2 "too few rays" "from 512 to" hard --rays 10
 refuse 2 "no such level" "fast, exact" hard --numerics best
@@ -55,6 +67,12 @@ refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
 refuse 2 "no such scene" "missing.json" hard "$OUT/missing.json" --quiet
 refuse 2 "no such case" "in its name" hard --case goblin --quiet
 refuse 2 "a case of a scene" "not of a scene" hard "$CUBE" --case grid
+refuse 2 "a view without a file" "go together" hard --view leaks
+refuse 2 "a file without a view" "go together" hard -o "$OUT/files/x.png"
+refuse 2 "a view and a table" "no table" hard --view leaks -o "$OUT/files/x.png" --quick
+refuse 2 "another view" "leaks is needed" hard --view depth -o "$OUT/files/x.png"
+refuse 2 "a picture of no kind" "pictures are" hard --view leaks -o "$OUT/files/x.gif"
+refuse 2 "a size of nothing" "are of --view" hard --size 9x9
 refuse 2 "unknown option" "did you mean .--quick." hard --quik
 refuse 5 "a time limit" "time limit" hard --rays 200000 --quiet --time-limit 0.5 --json "$J"
 check "no file was left" is_empty "$OUT/files"

@@ -17,7 +17,10 @@ _whit() {
         --numerics) words="fast watertight exact" ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
-        --view) words="color depth visits boxes tris stack" ;;
+        --view)
+            words="color depth visits boxes tris stack"
+            [ "${COMP_WORDS[1]}" = hard ] && words=leaks
+            ;;
         --view-rays) words="primary shadow reflected refracted all" ;;
         --traversal) words="distance sign basic" ;;
         esac

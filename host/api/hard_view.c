@@ -1,0 +1,164 @@
+/* Pictures of where levels of numerics are wrong. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "accel/hard.h"
+#include "api/handles.h"
+#include "base/array.h"
+
+enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
+
+static const float red[3] = {1.0f, 0.0f, 0.0f}, yellow[3] = {1.0f, 0.7f, 0.0f};
+
+struct view {
+    const whit_hard_view_params *params;
+    struct log log;
+    struct hard_scene hard;
+    struct hard_topology topology;
+    uint32_t width, height;
+    struct hard_ray *rays;
+    struct gpu_ray *plain;
+    struct rational_hit *exact;
+    struct gpu_hit *hits;
+    uint64_t wrong, other;
+};
+
+static whit_result open_scene(struct view *view, const whit_scene *scene)
+{
+    uint32_t count;
+    if (!scene)
+        return hard_scene_init(&view->log, hard_cases(&count), &view->hard);
+    return hard_scene_borrow(&view->log, scene->scene, view->params->time_s, &view->hard);
+}
+
+/* The built-in sphere is seen from outside here. */
+static whit_result prepare(struct view *view)
+{
+    size_t count = (size_t)view->width * view->height;
+    view->hard.truth = HARD_ORACLE;
+    view->rays = array_alloc(count, sizeof *view->rays);
+    view->plain = array_alloc(count, sizeof *view->plain);
+    view->exact = array_alloc(count, sizeof *view->exact);
+    view->hits = array_alloc(count, sizeof *view->hits);
+    if (!view->rays || !view->plain || !view->exact || !view->hits) {
+        log_error(&view->log, "out of memory for %u x %u rays", view->width, view->height);
+        return WHIT_ERROR_MEMORY;
+    }
+    whit_result result = render_camera_rays(&view->log, &view->hard.pose, view->params->camera,
+                                            view->width, view->height, view->plain);
+    for (size_t i = 0; result == WHIT_OK && i < count; ++i)
+        view->rays[i] = (struct hard_ray){view->plain[i], HIT_NONE, HIT_NONE};
+    return result == WHIT_OK ? hard_topology_init(view->hard.scene, &view->topology) : result;
+}
+
+static whit_result trace(struct view *view, struct device *device)
+{
+    const struct render_params params = {.width = RENDERER_SIDE,
+                                         .height = RENDERER_SIDE,
+                                         .time_s = view->params->time_s,
+                                         .numerics = (uint32_t)view->params->numerics};
+    uint64_t count = (uint64_t)view->width * view->height;
+    struct renderer *renderer = NULL;
+    whit_result result =
+        hard_trace_exact(&view->hard, view->rays, count, view->params->threads, view->exact);
+    if (result == WHIT_OK && !device)
+        return hard_trace_twin(&view->hard, params.numerics, view->rays, count,
+                               view->params->threads, view->hits);
+    if (result == WHIT_OK)
+        result = renderer_create(&view->log, device, view->hard.accel, &params, &renderer);
+    if (result == WHIT_OK)
+        result = renderer_trace(renderer, view->plain, count, false, view->hits, NULL);
+    renderer_destroy(renderer);
+    return result;
+}
+
+/* |cosine| between ray and normal, on a dark ground. */
+static float headlight(const struct gpu_ray *ray, const struct gpu_hit *hit)
+{
+    double dir[3], n[3] = {(double)hit->ng_x, (double)hit->ng_y, (double)hit->ng_z};
+    if (hit->primitive == HIT_NONE)
+        return 0.02f;
+    for (int k = 0; k < 3; ++k)
+        dir[k] = (double)ray->dir[k];
+    double3_unit(dir);
+    double3_unit(n);
+    return (float)(0.05 + 0.6 * fabs(double3_dot(dir, n)));
+}
+
+static whit_result paint(struct view *view, struct image *image)
+{
+    whit_result result = WHIT_OK;
+    size_t count = (size_t)view->width * view->height;
+    for (size_t i = 0; result == WHIT_OK && i < count; ++i) {
+        float *to = &image->pixels[3 * i];
+        const struct gpu_hit *hit = &view->hits[i];
+        const struct rational_hit *exact = &view->exact[i];
+        to[0] = to[1] = to[2] = headlight(&view->plain[i], hit);
+        if (exact->undecided ||
+            (hit->primitive == exact->primitive && hit->instance == exact->instance))
+            continue;
+        const struct hard_judgement judgement = {.hard = &view->hard,
+                                                 .topology = &view->topology,
+                                                 .rays = &view->rays[i],
+                                                 .exact = exact,
+                                                 .hits = hit,
+                                                 .numerics = (uint32_t)view->params->numerics,
+                                                 .count = 1};
+        struct hard_tally tally;
+        result = hard_judge(&judgement, 1, &tally);
+        bool wrong = result == WHIT_OK && tally.leaks + tally.wrong > 0;
+        const float *color = wrong ? red : yellow;
+        view->wrong += wrong;
+        view->other += !wrong;
+        for (int k = 0; k < 3; ++k)
+            to[k] = color[k];
+    }
+    return result;
+}
+
+static void finish(struct view *view)
+{
+    hard_topology_finish(&view->topology);
+    hard_scene_finish(&view->hard);
+    free(view->rays);
+    free(view->plain);
+    free(view->exact);
+    free(view->hits);
+}
+
+whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
+                           const whit_hard_view_params *params, const whit_log *log,
+                           uint64_t *wrong_pixels, uint64_t *other_pixels, whit_image **out)
+{
+    const whit_hard_view_params defaults = {0};
+    struct view view = {.params = params ? params : &defaults, .log = log_from_public(log)};
+    *out = NULL;
+    view.width = view.params->width ? view.params->width : WIDTH_DEFAULT;
+    view.height = view.params->height ? view.params->height : HEIGHT_DEFAULT;
+    if (view.width > SIDE_MAX || view.height > SIDE_MAX) {
+        log_error(&view.log, "%u x %u: at most %d on a side", view.width, view.height, SIDE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    whit_image *image = calloc(1, sizeof *image);
+    whit_result result =
+        image ? image_init(&image->image, view.width, view.height, 3, false) : WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK)
+        log_error(&view.log, "out of memory");
+    if (result == WHIT_OK)
+        result = open_scene(&view, scene);
+    if (result == WHIT_OK)
+        result = prepare(&view);
+    if (result == WHIT_OK)
+        result = trace(&view, device ? device->device : NULL);
+    if (result == WHIT_OK)
+        result = paint(&view, &image->image);
+    finish(&view);
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    *wrong_pixels = view.wrong;
+    *other_pixels = view.other;
+    *out = image;
+    return WHIT_OK;
+}
