@@ -76,8 +76,8 @@ WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct ima
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
 
-/* The first sample's camera ray of every pixel of a picture, row by row; `camera` as in params. Those
-   of the kernels, bit for bit. */
+/* The first sample's camera ray of every pixel of a picture, row by row; `camera` as in params.
+   Those of the kernels, bit for bit. */
 WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct scene_pose *pose,
                                           const char *camera, uint32_t width, uint32_t height,
                                           struct gpu_ray *rays);
