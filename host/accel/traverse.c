@@ -100,8 +100,8 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     return b_first ? ref_b : ref_a;
 }
 
-/* Where a ray meets a primitive, if it does. At NUMERICS_EXACT t, u and v are what is told of it;
-   what decides is the key, the exact t rounded to nearest, in lo..hi. Of spheres t is the key. */
+/* Where a ray meets a primitive, if it does. At NUMERICS_EXACT what decides is the key, the exact t
+   rounded to nearest, in lo..hi; it is the t of a finished hit. Of spheres t is the key. */
 struct meeting {
     bool met;
     float t, u, v;

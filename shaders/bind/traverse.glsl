@@ -455,7 +455,7 @@ void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact,
     m.front = exact.front;
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
-    m.t = exact.key;
+    m.t = m.rounded ? m.t : exact.key;
     m.u = m.rounded ? m.u : exact.u;
     m.v = m.rounded ? m.v : exact.v;
     m.lo = exact.key;
@@ -491,7 +491,6 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
             take_to_instance(again ? hit.instance : 0u, from, along);
             record = hit.triangle;
         } else {
-            hit.t = exact.key;
             hit.lo = exact.key;
             hit.hi = exact.key;
         }
@@ -499,10 +498,13 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
     } while (again);
 }
 
-// NUMERICS_EXACT: the t of a hit is its key, which nothing may have asked for so far.
+// NUMERICS_EXACT: makes the t of a hit its key, which nothing may have asked for so far. Not for
+// shading, which does with less and would pay for it on every ray.
 void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
 {
     bool loose = hit.lo < hit.hi;
+    if (!loose)
+        hit.t = hit.lo;
     if (loose) {
         take_to_instance(hit.instance, origin, dir);
         uint row = hit.triangle * TRIANGLE_ROWS;
@@ -786,8 +788,6 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
             widen_ray_setup(ray, fetch_mesh_center(0u), fetch_mesh_reach(0u));
         traverse_mesh(mode, ray, t_min, root, skip_instance, skip_primitive, hit);
     }
-    if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
-        finish_hit(origin, dir, hit);
     return hit;
 }
 

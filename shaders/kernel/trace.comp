@@ -72,10 +72,15 @@ vec3 geometric_normal(Hit hit)
 Hit trace(const uint mode, uint index)
 {
     gpu_ray ray = rays[index];
-    if (SPEC_BRUTE == BRUTE_OFF)
-        return traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
-                        HIT_NONE);
-    Hit hit = make_hit(ray.t_max);
+    Hit hit;
+    if (SPEC_BRUTE == BRUTE_OFF) {
+        hit = traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
+                       HIT_NONE);
+        if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
+            finish_hit(ray.origin, ray.dir, hit);
+        return hit;
+    }
+    hit = make_hit(ray.t_max);
     hit.triangle = HIT_NONE;
     gpu_hit before = hits[index];
     if (batch.begin == 0u && before.primitive != HIT_NONE) {
