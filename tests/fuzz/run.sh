@@ -39,7 +39,7 @@ run_one() {
     [ "$target" != scene ] || set -- "$@" scenes
     [ ! -f "tests/fuzz/$target.dict" ] || set -- "-dict=tests/fuzz/$target.dict" "$@"
     "$folder/build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len=4096 \
-        -rss_limit_mb=2048 -timeout=10 -print_final_stats=1 \
+        -seed=1 -rss_limit_mb=2048 -timeout=10 -print_final_stats=1 \
         -artifact_prefix="$folder/found-$target-" "$@" >"$folder/$target.log" 2>&1
 }
 

@@ -12,8 +12,8 @@
 struct level {
     const char *name;
     uint32_t numerics; /* NUMERICS_* */
-    bool watertight; /* no ray gets through a closed surface */
-    bool exact;      /* hits are those of rational.h */
+    bool watertight;   /* no ray gets through a closed surface */
+    bool exact;        /* hits are those of rational.h */
 };
 
 static const struct level levels[] = {
