@@ -512,10 +512,8 @@ void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
                          row_vec3(fetch_triangle_row(row + 1u)),
                          row_vec3(fetch_triangle_row(row + 2u)), hit.t);
     }
-    while (loose) { // no `if`: on lavapipe only loops leave out what no ray needs
+    if (loose)
         hit.t = meet_record(origin, dir, hit.triangle).key;
-        loose = false;
-    }
     hit.lo = hit.t;
     hit.hi = hit.t;
 }
