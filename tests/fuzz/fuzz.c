@@ -18,6 +18,11 @@
 #if defined(__SANITIZE_ADDRESS__)
 #define WATCH_MEMORY 1
 #endif
+#if defined(WATCH_MEMORY) && defined(__has_include)
+#if !__has_include(<sanitizer/allocator_interface.h>)
+#undef WATCH_MEMORY /* GCC brings the sanitizer without this header */
+#endif
+#endif
 #ifdef WATCH_MEMORY
 #include <sanitizer/allocator_interface.h>
 #endif
