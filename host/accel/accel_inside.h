@@ -130,7 +130,8 @@ uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance);
 void accel_posing_destroy(struct accel_posing *posing);
 
 /* Of a tree that is known to be one: whether points all over each primitive are in the leaves that
-   hold it (bvh_validate_parts.c). `primitive` numbers the record in a slot of `triangles`. */
+   hold it, and its records are alike (bvh_validate_parts.c). `primitive` numbers the record in a
+   slot of `triangles`. */
 WHIT_CHECK whit_result accel_validate_parts(const struct log *log, const char *name,
                                             const struct gpu_bvh_node *nodes, uint32_t node_count,
                                             const struct gpu_triangle *triangles,

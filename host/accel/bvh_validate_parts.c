@@ -1,6 +1,7 @@
-/* Split triangles: is all of each in the leaves that hold it? By points on it, and without the
-   clipper that made the parts. */
+/* Split triangles: is all of each in the leaves that hold it, and is it the same triangle in each of
+   them? By points on it, and without the clipper that made the parts. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "accel/accel_inside.h"
 #include "base/array.h"
@@ -43,27 +44,49 @@ static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh
     return inside;
 }
 
+/* Of a primitive: the points that its leaves hold, and one past the slot that was met first. */
+struct seen {
+    uint32_t points, slot;
+};
+
+/* Else its hit would be that of the record that the ray happens to meet. */
+static bool is_same_record(const struct log *log, const char *name,
+                           const struct gpu_triangle *triangles, struct seen *seen, uint32_t slot)
+{
+    if (seen->slot == 0)
+        seen->slot = slot + 1;
+    if (memcmp(&triangles[seen->slot - 1], &triangles[slot], sizeof *triangles) == 0)
+        return true;
+    log_error(log, "%s: two records of one primitive differ (%u)", name, slot);
+    return false;
+}
+
 whit_result accel_validate_parts(const struct log *log, const char *name,
                                  const struct gpu_bvh_node *nodes, uint32_t node_count,
                                  const struct gpu_triangle *triangles, uint32_t primitive_count,
                                  uint32_t (*primitive)(const void *user, uint32_t slot),
                                  const void *user)
 {
-    uint32_t *seen = array_alloc_zeroed(primitive_count, sizeof *seen);
+    struct seen *seen = array_alloc_zeroed(primitive_count, sizeof *seen);
     if (!seen) {
         log_error(log, "%s: out of memory for validation", name);
         return WHIT_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; i < node_count; ++i) {
-        for (uint32_t k = 0; i != 1 && k < bvh_count(&nodes[i]); ++k) {
+    bool same = true;
+    for (uint32_t i = 0; same && i < node_count; ++i) {
+        for (uint32_t k = 0; same && i != 1 && k < bvh_count(&nodes[i]); ++k) {
             uint32_t slot = nodes[i].first + k;
-            seen[primitive(user, slot)] |= points_inside(&triangles[slot], &nodes[i]);
+            struct seen *of = &seen[primitive(user, slot)];
+            of->points |= points_inside(&triangles[slot], &nodes[i]);
+            same = is_same_record(log, name, triangles, of, slot);
         }
     }
     uint32_t first_bad = 0;
-    while (first_bad < primitive_count && seen[first_bad] == (1u << POINTS) - 1)
+    while (first_bad < primitive_count && seen[first_bad].points == (1u << POINTS) - 1)
         ++first_bad;
     free(seen);
+    if (!same)
+        return WHIT_ERROR_FAILED;
     if (first_bad == primitive_count)
         return WHIT_OK;
     log_error(log, "%s: a part of a primitive is in none of its leaves (%u)", name, first_bad);
