@@ -1,5 +1,5 @@
-/* Split triangles: is all of each in the leaves that hold it, and is it the same triangle in each of
-   them? By points on it, and without the clipper that made the parts. */
+/* Split triangles: is all of each in the leaves that hold it, and is it the same triangle in each
+   of them? By points on it, and without the clipper that made the parts. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,8 +3,9 @@ whit_module(load
     gltf.c gltf_json.c gltf_buffer.c gltf_accessor.c gltf_texture.c gltf_material.c gltf_geometry.c
     gltf_nodes.c gltf_animation.c
     scene_file.c scene_reader.c scene_materials.c scene_objects.c scene_shapes.c scene_models.c
-    scene_range.c scene_transform.c scene_animation.c texture.c environment.c picture.c
-  LINK whit_base whit_image whit_scene assimp::assimp PkgConfig::JANSSON PkgConfig::STB)
+    scene_range.c scene_transform.c scene_animation.c texture.c environment.c picture.c jpeg.c
+  LINK whit_base whit_image whit_scene assimp::assimp PkgConfig::JANSSON JPEG::JPEG
+    PkgConfig::STB)
 
 # stb_image shifts signed numbers, which is harmless and not ours; addresses stay checked.
 if(WHIT_SANITIZE)

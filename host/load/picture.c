@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "load/jpeg.h"
 
 /* stb_image does not always say so. Blocks over the limit are refused: of a PNG it believes every
    length. */
@@ -30,12 +31,14 @@ static void *take_block(void *block, size_t bytes)
 #define STBI_REALLOC(block, bytes) take_block(block, bytes)
 #define STBI_FREE(block)           free(block)
 #define STBI_NO_STDIO
+#define STBI_NO_JPEG /* of a damaged one it writes anywhere */
 #define STBI_NO_PIC
 #define STBI_NO_PSD
 #define STBI_NO_PNM
 #define STBI_NO_HDR /* it never ends on a row that is cut short; image/ reads them */
 #define STBI_NO_LINEAR
-#define STBI_MAX_DIMENSIONS 16384
+#define SIDE_MOST           16384
+#define STBI_MAX_DIMENSIONS SIDE_MOST
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 /* Functions declared and never defined are reported at the end of the file: no pop helps there. */
@@ -64,11 +67,15 @@ static uint64_t pixels_most(size_t size_bytes)
 
 static const char too_many[] = "its header tells of more than there is in it";
 
-static const char *why_too_large(int width, int height, size_t size_bytes)
+const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes)
 {
-    uint64_t pixels = (uint64_t)width * (uint64_t)height;
+    uint64_t pixels = (uint64_t)width * height;
+    if (pixels == 0)
+        return "it is empty";
     if (pixels > PIXELS_MOST)
         return "it has more than 2^26 pixels";
+    if (width > SIDE_MOST || height > SIDE_MOST)
+        return "a side has more than 16384 pixels";
     return pixels > pixels_most(size_bytes) ? too_many : NULL;
 }
 
@@ -90,15 +97,18 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
     *reason = "it is not a picture that whit reads (PNG, JPEG, BMP, TGA, GIF)";
     if (size_bytes > INT_MAX)
         return WHIT_ERROR_INPUT;
+    if (jpeg_is(data, size_bytes))
+        return jpeg_decode(data, size_bytes, out, reason);
     int size = (int)size_bytes, width, height, channels;
     /* 16 bits of 4 channels, in a buffer that grows by doubling. */
     block_bytes_most = 16 * pixels_most(size_bytes);
     lacks_memory = over_limit = false;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return WHIT_ERROR_INPUT;
-    const char *too_large = why_too_large(width, height, size_bytes);
-    if (width <= 0 || height <= 0 || too_large) {
-        *reason = too_large ? too_large : "it is empty";
+    const char *refused = picture_why_refused((uint32_t)(width > 0 ? width : 0),
+                                              (uint32_t)(height > 0 ? height : 0), size_bytes);
+    if (refused) {
+        *reason = refused;
         return WHIT_ERROR_INPUT;
     }
     out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);

@@ -1,5 +1,5 @@
-/* Foreign picture files into pixels, through stb_image; and finding files whose names were written
-   on a system with other ideas about case and slashes. */
+/* Foreign picture files into pixels, through libjpeg and stb_image; and finding files whose names
+   were written on a system with other ideas about case and slashes. */
 #ifndef LOAD_PICTURE_H
 #define LOAD_PICTURE_H
 
@@ -21,6 +21,8 @@ struct picture {
    is asked for. WHIT_ERROR_INPUT fills `reason` and logs nothing. */
 WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
                                       const char **reason);
+/* Why a file of so many bytes, whose header tells of these sides, is refused; NULL: it is not. */
+const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes);
 /* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
 bool picture_shrink(struct picture *picture, uint32_t side_most);
 void picture_finish(struct picture *picture);

@@ -1,5 +1,5 @@
 /* Pictures: PNG, EXR, PFM and HDR as whit reads them, with their recipes, and what textures may be,
-   by stb_image. */
+   by libjpeg and stb_image. */
 #include "fuzz.h"
 
 #include <stdlib.h>

@@ -1,0 +1,255 @@
+/* JPEG: pixels of files by two encoders, and what becomes of damaged ones. */
+#include "load_model_fixture.h"
+
+#include <jpeglib.h>
+
+#include "load/picture.h"
+#include "stb_write_fixture.h"
+
+enum { WIDTH = 37, HEIGHT = 21, FLIPS = 2000, SCANS = 250 };
+
+struct bytes {
+    uint8_t *data;
+    size_t count;
+};
+
+/* Smooth, as JPEG likes it, and other in every channel. */
+static uint8_t texel(int x, int y, int channel)
+{
+    int values[] = {40 + 5 * x, 220 - 7 * y, 60 + 2 * x + 3 * y, 200 - 2 * x};
+    return (uint8_t)values[channel];
+}
+
+static void fill(uint8_t *pixels, int channels)
+{
+    for (int i = 0; i < WIDTH * HEIGHT * channels; i++)
+        pixels[i] = texel(i / channels % WIDTH, i / channels / WIDTH, i % channels);
+}
+
+static void append(void *user, void *data, int size)
+{
+    struct bytes *bytes = user;
+    bytes->data = realloc(bytes->data, bytes->count + (size_t)size);
+    assert_non_null(bytes->data);
+    memcpy(bytes->data + bytes->count, data, (size_t)size);
+    bytes->count += (size_t)size;
+}
+
+/* Half the colours where quality is 90 or less. */
+static struct bytes write_stb(int quality)
+{
+    uint8_t pixels[WIDTH * HEIGHT * 3];
+    struct bytes bytes = {0};
+    fill(pixels, 3);
+    assert_true(stbi_write_jpg_to_func(append, &bytes, WIDTH, HEIGHT, 3, pixels, quality));
+    return bytes;
+}
+
+struct options {
+    int channels;
+    J_COLOR_SPACE space, stored;
+    bool progressive;
+    unsigned restart;
+};
+
+static struct bytes write_libjpeg(struct options options)
+{
+    uint8_t pixels[WIDTH * HEIGHT * 4];
+    unsigned char *data = NULL;
+    unsigned long count = 0;
+    struct jpeg_compress_struct info;
+    struct jpeg_error_mgr errors;
+    fill(pixels, options.channels);
+    info.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&info);
+    jpeg_mem_dest(&info, &data, &count);
+    info.image_width = WIDTH;
+    info.image_height = HEIGHT;
+    info.input_components = options.channels;
+    info.in_color_space = options.space;
+    jpeg_set_defaults(&info);
+    jpeg_set_colorspace(&info, options.stored);
+    jpeg_set_quality(&info, 95, TRUE);
+    info.restart_interval = options.restart;
+    if (options.progressive)
+        jpeg_simple_progression(&info);
+    jpeg_start_compress(&info, TRUE);
+    for (int y = 0; y < HEIGHT; y++) {
+        JSAMPROW row = pixels + y * WIDTH * options.channels;
+        assert_int_equal(jpeg_write_scanlines(&info, &row, 1), 1);
+    }
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    return (struct bytes){data, count};
+}
+
+static struct bytes progressive_file(void)
+{
+    return write_libjpeg((struct options){3, JCS_RGB, JCS_YCbCr, true, 0});
+}
+
+/* Adobe's CMYK, which libjpeg writes, has inverted inks. */
+static int expected(int x, int y, int channel, int channels)
+{
+    if (channel == 3)
+        return 255;
+    if (channels == 4)
+        return (texel(x, y, channel) * texel(x, y, 3) + 127) / 255;
+    return texel(x, y, channels == 1 ? 0 : channel);
+}
+
+/* Decodes and frees. */
+static void check(struct bytes bytes, int channels, int off_most)
+{
+    struct picture picture;
+    const char *reason = "";
+    int off = 0;
+    assert_int_equal(picture_decode(bytes.data, bytes.count, &picture, &reason), WHIT_OK);
+    assert_true(picture.width == WIDTH && picture.height == HEIGHT);
+    for (int i = 0; i < WIDTH * HEIGHT * 4; i++) {
+        int wanted = expected(i / 4 % WIDTH, i / 4 / WIDTH, i % 4, channels);
+        int error = abs(picture.rgba[i] - wanted);
+        off = error > off ? error : off;
+    }
+    print_message("off by at most %d of 255, of %d allowed\n", off, off_most);
+    assert_true(off <= off_most);
+    picture_finish(&picture);
+    free(bytes.data);
+}
+
+static void jpegs_have_their_pixels(void **state)
+{
+    (void)state;
+    check(write_stb(95), 3, 3);
+    check(write_stb(90), 3, 8);
+    check(write_libjpeg((struct options){3, JCS_RGB, JCS_YCbCr, false, 0}), 3, 6);
+    check(progressive_file(), 3, 6);
+    check(write_libjpeg((struct options){3, JCS_RGB, JCS_RGB, false, 2}), 3, 3);
+    check(write_libjpeg((struct options){1, JCS_GRAYSCALE, JCS_GRAYSCALE, false, 0}), 1, 3);
+    check(write_libjpeg((struct options){4, JCS_CMYK, JCS_CMYK, false, 0}), 4, 3);
+    check(write_libjpeg((struct options){4, JCS_CMYK, JCS_YCCK, false, 0}), 4, 6);
+}
+
+/* Whether it decodes; what is told must agree. */
+static bool decodes(const uint8_t *data, size_t size_bytes, const char **reason)
+{
+    struct picture picture;
+    uint8_t *exact = malloc(size_bytes ? size_bytes : 1); /* sanitizers see its end */
+    assert_non_null(exact);
+    memcpy(exact, data, size_bytes);
+    whit_result result = picture_decode(exact, size_bytes, &picture, reason);
+    free(exact);
+    assert_true(result == WHIT_OK || (result == WHIT_ERROR_INPUT && **reason));
+    assert_int_equal(result == WHIT_OK, picture.rgba != NULL);
+    picture_finish(&picture);
+    return result == WHIT_OK;
+}
+
+static void cut_jpegs_are_refused(void **state)
+{
+    (void)state;
+    struct bytes files[] = {write_stb(95), progressive_file()};
+    for (size_t i = 0; i < 2; i++) {
+        const char *reason = "";
+        for (size_t length = 0; length < files[i].count; length++)
+            assert_false(decodes(files[i].data, length, &reason));
+        print_message("0 of %zu cut files decode; the last: %s\n", files[i].count, reason);
+        free(files[i].data);
+    }
+}
+
+static void changed_jpegs_end(void **state)
+{
+    (void)state;
+    struct bytes files[] = {write_stb(95), progressive_file()};
+    srand(3);
+    for (size_t i = 0; i < 2; i++) {
+        int decoded = 0;
+        for (int k = 0; k < FLIPS; k++) {
+            const char *reason = "";
+            size_t at = (size_t)rand() % files[i].count;
+            uint8_t kept = files[i].data[at];
+            files[i].data[at] = (uint8_t)rand();
+            decoded += decodes(files[i].data, files[i].count, &reason);
+            files[i].data[at] = kept;
+        }
+        print_message("%d of %d changed files decode\n", decoded, FLIPS);
+        assert_true(decoded < FLIPS);
+        free(files[i].data);
+    }
+}
+
+/* Where `marker` stands, from `at` on. */
+static size_t find(const struct bytes *bytes, uint8_t marker, size_t at)
+{
+    for (; at + 1 < bytes->count; at++)
+        if (bytes->data[at] == 0xff && bytes->data[at + 1] == marker)
+            return at;
+    fail_msg("no marker %#x", marker);
+    return 0;
+}
+
+static void check_reason(const struct bytes *bytes, const char *wanted)
+{
+    const char *reason = "";
+    assert_false(decodes(bytes->data, bytes->count, &reason));
+    if (!strstr(reason, wanted))
+        fail_msg("`%s` is not in `%s`", wanted, reason);
+}
+
+/* Little to read and much to do. */
+static void greedy_jpegs_are_refused(void **state)
+{
+    (void)state;
+    struct bytes file = write_stb(95);
+    uint8_t *sides = file.data + find(&file, 0xc0, 0) + 5; /* height, width: 2 bytes each */
+    memcpy(sides, (uint8_t[]){0x3f, 0xff, 0x3f, 0xff}, 4);
+    check_reason(&file, "more than 2^26 pixels");
+    memcpy(sides, (uint8_t[]){0x0f, 0xf0, 0x40, 1}, 4);
+    check_reason(&file, "a side has more than 16384");
+    memcpy(sides, (uint8_t[]){0x20, 0, 0x20, 0}, 4);
+    check_reason(&file, "more than there is in it");
+    free(file.data);
+
+    /* One scan and its tables, over and over. */
+    file = progressive_file();
+    size_t begin = find(&file, 0xc4, find(&file, 0xda, 0));
+    size_t end = find(&file, 0xc4, find(&file, 0xda, begin));
+    struct bytes longer = {0};
+    append(&longer, file.data, (int)begin);
+    for (int i = 0; i < SCANS; i++)
+        append(&longer, file.data + begin, (int)(end - begin));
+    append(&longer, file.data + end, (int)(file.count - end));
+    check_reason(&longer, "too many scans");
+    free(longer.data);
+    free(file.data);
+}
+
+static void damaged_textures_are_named(void **state)
+{
+    struct fixture *fixture = *state;
+    struct bytes file = write_stb(95);
+    const char *path = fixture_write(fixture, "cut.jpg", file.data, file.count / 2);
+    uint32_t index;
+    assert_int_equal(load_texture(fixture->scene, path, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_memory_equal(fixture->scene->textures[index].rgba, "\377\0\377\377", 4);
+    assert_true(fixture_noted(fixture, path));
+    assert_true(fixture_noted(fixture, "magenta takes its place"));
+    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(load_environment(fixture->scene, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, path));
+    free(file.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jpegs_have_their_pixels),
+        cmocka_unit_test(cut_jpegs_are_refused),
+        cmocka_unit_test(changed_jpegs_end),
+        cmocka_unit_test(greedy_jpegs_are_refused),
+        cmocka_unit_test_setup_teardown(damaged_textures_are_named, fixture_begin, fixture_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
