@@ -4,31 +4,44 @@
 #include "image/image.h"
 
 struct sums {
-    double squares;
+    double squares, relative_squares, differences[3];
     uint64_t terms;
 };
 
+void image_read_pixel(const struct image *image, size_t index, float rgba[4])
+{
+    const float *pixel = image->pixels + index * image->channels;
+    for (uint32_t c = 0; c < 3; ++c)
+        rgba[c] = pixel[image->channels < 3 ? 0 : c];
+    rgba[3] = image->channels == 4 ? pixel[3] : 1.0f;
+}
+
+/* Integers also need as many channels. */
 static bool same_kind(const struct image *a, const struct image *b)
 {
-    return a->width == b->width && a->height == b->height && a->channels == b->channels &&
-           !a->pixels == !b->pixels && !a->words == !b->words;
+    return a->width == b->width && a->height == b->height && !a->pixels == !b->pixels &&
+           !a->words == !b->words && (!a->words || a->channels == b->channels);
 }
 
-static bool is_finite(const float *pixel, uint32_t channels)
+static whit_result refuse(const struct log *log, const struct image *a, const struct image *b)
 {
-    for (uint32_t c = 0; c < channels; ++c) {
-        if (!isfinite(pixel[c]))
-            return false;
-    }
-    return true;
+    log_error(log, "the pictures cannot be compared: %u x %u with %u %s against %u x %u with %u %s",
+              a->width, a->height, a->channels, a->words ? "integers" : "floats", b->width,
+              b->height, b->channels, b->words ? "integers" : "floats");
+    return WHIT_ERROR_INPUT;
 }
 
-/* Alpha, the fourth channel, is not encoded. */
-static bool is_over_1_255(const float *a, const float *b, uint32_t channels)
+static bool is_finite(const float rgba[4])
+{
+    return isfinite(rgba[0]) && isfinite(rgba[1]) && isfinite(rgba[2]) && isfinite(rgba[3]);
+}
+
+/* Alpha is not encoded. */
+static bool is_over_1_255(const float a[4], const float b[4])
 {
     /* Pictures with 8 bits that lie one step apart are not over it. */
     const float limit = 1.0f / 255.0f + 1e-6f;
-    for (uint32_t c = 0; c < channels; ++c) {
+    for (uint32_t c = 0; c < 4; ++c) {
         float difference =
             c == 3 ? a[c] - b[c] : image_srgb_from_linear(a[c]) - image_srgb_from_linear(b[c]);
         if (fabsf(difference) > limit)
@@ -37,30 +50,33 @@ static bool is_over_1_255(const float *a, const float *b, uint32_t channels)
     return false;
 }
 
-static void add_colours(const float *a, const float *b, uint32_t channels,
-                        struct image_difference *out, struct sums *sums)
+static void add_colours(const float a[4], const float b[4], struct image_difference *out,
+                        struct sums *sums)
 {
-    uint32_t colours = channels < 3 ? channels : 3;
-    for (uint32_t c = 0; c < colours; ++c) {
-        double difference = (double)a[c] - (double)b[c];
+    for (uint32_t c = 0; c < 3; ++c) {
+        double reference = a[c], difference = (double)b[c] - reference;
         sums->squares += difference * difference;
+        sums->relative_squares +=
+            difference * difference / (reference * reference + IMAGE_RELATIVE_FLOOR);
+        sums->differences[c] += difference;
         out->largest = fmax(out->largest, fabs(difference));
     }
-    sums->terms += colours;
+    ++sums->terms;
 }
 
-static void compare_pixel(const float *a, const float *b, uint32_t channels,
-                          struct image_difference *out, struct sums *sums)
+static void compare_pixel(const float a[4], const float b[4], struct image_difference *out,
+                          struct sums *sums)
 {
-    bool finite_a = is_finite(a, channels), finite_b = is_finite(b, channels);
-    bool differ = memcmp(a, b, channels * sizeof(float)) != 0;
+    bool finite_a = is_finite(a), finite_b = is_finite(b);
+    bool differ = memcmp(a, b, 4 * sizeof(float)) != 0;
     out->nonfinite_a += !finite_a;
     out->nonfinite_b += !finite_b;
     out->differing_pixels += differ;
     if (finite_a && finite_b)
-        add_colours(a, b, channels, out, sums);
-    if (differ && (!finite_a || !finite_b || is_over_1_255(a, b, channels)))
-        ++out->over_1_255;
+        add_colours(a, b, out, sums);
+    bool unlike = differ && !(finite_a && finite_b);
+    out->nonfinite_differing += unlike;
+    out->over_1_255 += unlike || (differ && is_over_1_255(a, b));
 }
 
 static void compare_words(const uint32_t *a, const uint32_t *b, uint32_t channels,
@@ -73,29 +89,58 @@ static void compare_words(const uint32_t *a, const uint32_t *b, uint32_t channel
     ++out->differing_pixels;
     ++out->over_1_255;
     out->largest = 1.0;
-    sums->squares += 1.0;
+    sums->squares += 3.0;
+}
+
+static void divide(const struct sums *sums, struct image_difference *out)
+{
+    double terms = sums->terms ? (double)sums->terms : 1.0;
+    out->rmse = sqrt(sums->squares / (3.0 * terms));
+    out->relative_mse = sums->relative_squares / (3.0 * terms);
+    for (int c = 0; c < 3; ++c)
+        out->mean[c] = sums->differences[c] / terms;
 }
 
 whit_result image_compare(const struct log *log, const struct image *a, const struct image *b,
                           struct image_difference *out)
 {
     *out = (struct image_difference){0};
-    if (!same_kind(a, b)) {
-        log_error(log,
-                  "the pictures cannot be compared: %u x %u with %u %s against %u x %u with %u %s",
-                  a->width, a->height, a->channels, a->words ? "integers" : "floats", b->width,
-                  b->height, b->channels, b->words ? "integers" : "floats");
-        return WHIT_ERROR_INPUT;
-    }
+    if (!same_kind(a, b))
+        return refuse(log, a, b);
     struct sums sums = {0};
     out->pixel_count = (uint64_t)a->width * a->height;
     for (size_t i = 0; i < out->pixel_count; ++i) {
-        size_t at = i * a->channels;
-        if (a->pixels)
-            compare_pixel(a->pixels + at, b->pixels + at, a->channels, out, &sums);
-        else if (a->words)
+        float p[4], q[4];
+        if (a->words) {
+            size_t at = i * a->channels;
             compare_words(a->words + at, b->words + at, a->channels, out, &sums);
+        } else if (a->pixels) {
+            image_read_pixel(a, i, p);
+            image_read_pixel(b, i, q);
+            compare_pixel(p, q, out, &sums);
+        }
     }
-    out->rmse = sums.terms ? sqrt(sums.squares / (double)sums.terms) : 0.0;
+    divide(&sums, out);
+    return WHIT_OK;
+}
+
+whit_result image_subtract(const struct log *log, const struct image *a, const struct image *b,
+                           struct image *out)
+{
+    *out = (struct image){0};
+    if (!same_kind(a, b) || !a->pixels)
+        return refuse(log, a, b);
+    whit_result result = image_init(out, a->width, a->height, 3, false);
+    if (result != WHIT_OK)
+        return result;
+    size_t count = (size_t)a->width * a->height;
+    for (size_t i = 0; i < count; ++i) {
+        float p[4], q[4];
+        image_read_pixel(a, i, p);
+        image_read_pixel(b, i, q);
+        bool finite = is_finite(p) && is_finite(q);
+        for (uint32_t c = 0; c < 3; ++c)
+            out->pixels[3 * i + c] = finite ? q[c] - p[c] : NAN;
+    }
     return WHIT_OK;
 }

@@ -29,6 +29,24 @@ void heat_color(double share, uint8_t codes[3])
     }
 }
 
+/* From one end over the middle to the other; its own, none of the published ones. */
+static const uint8_t sides[2][3][3] = {
+    {{0xf4, 0xf4, 0xf4}, {0x5c, 0x9f, 0xd6}, {0x0a, 0x2c, 0x6e}},
+    {{0xf4, 0xf4, 0xf4}, {0xe0, 0x8a, 0x3c}, {0x66, 0x24, 0x06}},
+};
+
+void heat_signed_color(double share, uint8_t codes[3])
+{
+    double at = share > 0.0 ? fmin(share, 1.0) : share < 0.0 ? fmin(-share, 1.0) : 0.0;
+    const uint8_t(*side)[3] = sides[share > 0.0];
+    int below = at < 0.5 ? 0 : 1;
+    double part = 2.0 * at - below;
+    for (int c = 0; c < 3; ++c) {
+        double low = side[below][c], high = side[below + 1][c];
+        codes[c] = (uint8_t)(low + (high - low) * part + 0.5);
+    }
+}
+
 /* Up to the next of a few leading digits. */
 static double round_up(double value)
 {
@@ -122,40 +140,89 @@ static void ramp_init(struct ramp *ramp)
         ramp->linear[code] = image_linear_from_srgb((float)code / 255.0f);
 }
 
-static void put_heat(const struct ramp *ramp, float value, double scale, float *to)
+struct painter {
+    struct ramp ramp;
+    double scale;
+    bool is_signed;
+};
+
+static void put_heat(const struct painter *painter, float value, float *to)
 {
     uint8_t codes[3];
     if (!isfinite(value)) {
         to[0] = to[1] = to[2] = NAN;
         return;
     }
-    heat_color((double)value / scale, codes);
+    double share = (double)value / painter->scale;
+    if (painter->is_signed)
+        heat_signed_color(share, codes);
+    else
+        heat_color(share, codes);
     for (int c = 0; c < 3; ++c)
-        to[c] = ramp->linear[codes[c]];
+        to[c] = painter->ramp.linear[codes[c]];
+}
+
+/* Of three channels the one farthest from 0, with its sign. */
+static float farthest(const float *pixel)
+{
+    float value = pixel[0];
+    for (int c = 1; c < 3; ++c)
+        value = !(fabsf(value) >= fabsf(pixel[c])) || isnan(pixel[c]) ? pixel[c] : value;
+    return value;
+}
+
+static float value_at(const struct image *values, size_t i)
+{
+    const float *pixel = values->pixels + i * values->channels;
+    return values->channels < 3 ? pixel[0] : farthest(pixel);
+}
+
+static whit_result signed_scale(const struct image *values, double *scale)
+{
+    struct image distances;
+    whit_result result = image_init(&distances, values->width, values->height, 1, false);
+    if (result != WHIT_OK)
+        return result;
+    for (size_t i = 0; i < (size_t)values->width * values->height; ++i)
+        distances.pixels[i] = fabsf(value_at(values, i));
+    *scale = image_heat_scale(&distances);
+    image_finish(&distances);
+    return WHIT_OK;
+}
+
+static bool can_paint(const struct image *values, const struct heat_params *params)
+{
+    bool channels = values->channels == 1 || (params->is_signed && values->channels >= 3);
+    return values->pixels && channels && params->scale >= 0.0 && isfinite(params->scale);
 }
 
 whit_result image_heat(const struct image *values, const struct heat_params *params,
                        struct image *out)
 {
     *out = (struct image){0};
-    if (!values->pixels || values->channels != 1 || !(params->scale >= 0.0) ||
-        !isfinite(params->scale))
+    if (!can_paint(values, params))
         return WHIT_ERROR_USAGE;
-    struct ramp ramp;
     struct legend legend;
-    double scale = params->scale > 0.0 ? params->scale : image_heat_scale(values);
-    legend_init(&legend, values->width, params->title, params->unit, scale);
+    struct painter painter = {.scale = params->scale, .is_signed = params->is_signed};
+    whit_result result = WHIT_OK;
+    if (!(painter.scale > 0.0) && params->is_signed)
+        result = signed_scale(values, &painter.scale);
+    else if (!(painter.scale > 0.0))
+        painter.scale = image_heat_scale(values);
+    legend_init(&legend, values->width, params->title, params->unit, painter.scale);
+    legend.is_signed = params->is_signed;
     if (values->height > UINT32_MAX - legend.height)
         return WHIT_ERROR_MEMORY;
-    whit_result result = image_init(out, legend.width, values->height + legend.height, 3, false);
+    if (result == WHIT_OK)
+        result = image_init(out, legend.width, values->height + legend.height, 3, false);
     if (result != WHIT_OK)
         return result;
-    ramp_init(&ramp);
-    legend_draw(&legend, ramp.linear, values->height, out);
+    ramp_init(&painter.ramp);
+    legend_draw(&legend, painter.ramp.linear, values->height, out);
     uint32_t left = (legend.width - values->width) / 2;
     for (uint32_t y = 0; y < values->height; ++y) {
         for (uint32_t x = 0; x < values->width; ++x)
-            put_heat(&ramp, values->pixels[(size_t)y * values->width + x], scale,
+            put_heat(&painter, value_at(values, (size_t)y * values->width + x),
                      out->pixels + 3 * ((size_t)y * out->width + left + x));
     }
     return WHIT_OK;

@@ -177,6 +177,36 @@ whit_result image_save(const struct log *log, const struct image *image, const c
     return result;
 }
 
+whit_result image_encode_png(const struct log *log, const struct image *image,
+                             const struct image_text *texts, uint32_t text_count, uint8_t **data,
+                             size_t *size_bytes)
+{
+    static const char name[] = "memory.png";
+    char *bytes = NULL;
+    *data = NULL;
+    *size_bytes = 0;
+    whit_result result = check_savable(log, image, name);
+    if (result != WHIT_OK)
+        return result;
+    struct image_target target = {.log = log,
+                                  .path = name,
+                                  .stream = open_memstream(&bytes, size_bytes),
+                                  .texts = texts,
+                                  .text_count = texts ? text_count : 0};
+    if (!target.stream)
+        return WHIT_ERROR_MEMORY;
+    result = png_write(&target, image);
+    bool whole = !ferror(target.stream);
+    whole = fclose(target.stream) == 0 && whole;
+    if (result == WHIT_OK && !whole)
+        result = WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK)
+        free(bytes);
+    else
+        *data = (uint8_t *)bytes;
+    return result;
+}
+
 /* By content: names lie. */
 static enum format format_of_data(const uint8_t *data, size_t size_bytes)
 {

@@ -133,11 +133,16 @@ struct bar {
     uint32_t left, width; /* pixels of the picture */
 };
 
-static void draw_bar(const struct canvas *canvas, const struct bar *bar)
+static void draw_bar(const struct legend *legend, const struct canvas *canvas,
+                     const struct bar *bar)
 {
     for (uint32_t x = 0; x < bar->width; ++x) {
         uint8_t codes[3];
-        heat_color(bar->width > 1 ? (double)x / (bar->width - 1) : 0.0, codes);
+        double share = bar->width > 1 ? (double)x / (bar->width - 1) : 0.0;
+        if (legend->is_signed)
+            heat_signed_color(2.0 * share - 1.0, codes);
+        else
+            heat_color(share, codes);
         fill(canvas, bar->left + x, canvas->top + BAR_TOP * canvas->zoom, 1,
              BAR_ROWS * canvas->zoom, codes);
     }
@@ -149,7 +154,10 @@ static void draw_number(const struct legend *legend, const struct canvas *canvas
 {
     static const uint8_t ink[3] = {INK, INK, INK};
     uint32_t width = text_width(text) * canvas->zoom, last = bar->width - canvas->zoom;
-    uint32_t at = (uint32_t)((double)last * fmin(value / legend->scale, 1.0) + 0.5);
+    double share = fmin(value / legend->scale, 1.0);
+    if (legend->is_signed)
+        share = 0.5 * (share + 1.0);
+    uint32_t at = (uint32_t)((double)last * share + 0.5);
     fill(canvas, bar->left + at, canvas->top + (BAR_TOP + BAR_ROWS) * canvas->zoom, canvas->zoom,
          TICK_ROWS * canvas->zoom, ink);
     uint32_t left = at > width / 2 ? at - width / 2 : 0;
@@ -173,15 +181,19 @@ static void draw_ticks(const struct legend *legend, const struct canvas *canvas,
     char last[32], text[32];
     snprintf(last, sizeof last, "%g", legend->scale);
     uint32_t number_width = (text_width(last) + 14) * canvas->zoom;
-    uint32_t most = bar->width / number_width < 10 ? bar->width / number_width : 10;
+    uint32_t room = legend->is_signed ? bar->width / 2 : bar->width;
+    uint32_t most = room / number_width < 10 ? room / number_width : 10;
     double step = tick_step(legend->scale / (most ? most : 1) * (1.0 - 1e-9));
-    double end = legend->scale * (1.0 - 1.5 * number_width / (double)bar->width);
+    double end = legend->scale * (1.0 - 1.5 * number_width / (double)room);
     draw_number(legend, canvas, bar, 0.0, "0");
-    for (uint32_t i = 1; i < 16 && i * step < end; ++i) {
-        snprintf(text, sizeof text, "%g", i * step);
-        draw_number(legend, canvas, bar, i * step, text);
+    for (int side = legend->is_signed ? -1 : 1; side <= 1; side += 2) {
+        for (uint32_t i = 1; i < 16 && i * step < end; ++i) {
+            snprintf(text, sizeof text, "%g", side * (i * step));
+            draw_number(legend, canvas, bar, side * (i * step), text);
+        }
+        snprintf(text, sizeof text, "%g", side * legend->scale);
+        draw_number(legend, canvas, bar, side * legend->scale, text);
     }
-    draw_number(legend, canvas, bar, legend->scale, last);
 }
 
 void legend_draw(const struct legend *legend, const float linear[256], uint32_t top,
@@ -195,6 +207,6 @@ void legend_draw(const struct legend *legend, const float linear[256], uint32_t 
     draw_text(&canvas, bar.left, TITLE_TOP, legend->title);
     draw_text(&canvas, bar.left + bar.width - text_width(legend->unit) * canvas.zoom, TITLE_TOP,
               legend->unit);
-    draw_bar(&canvas, &bar);
+    draw_bar(legend, &canvas, &bar);
     draw_ticks(legend, &canvas, &bar);
 }

@@ -8,7 +8,8 @@ enum { LEGEND_TEXT_MAX = 128 };
 struct legend {
     uint32_t width, height; /* pixels of the strip; at least as wide as the picture */
     uint32_t zoom;          /* pixels of the picture for one of the font */
-    double scale;
+    double scale;           /* at the right end */
+    bool is_signed; /* the left end is -scale, in the colours of heat_signed_color; else 0 */
     char title[LEGEND_TEXT_MAX], unit[LEGEND_TEXT_MAX];
 };
 

@@ -33,6 +33,7 @@ static void equal_pictures(void **state)
     assert_int_equal(difference.over_1_255, 0);
     assert_int_equal(difference.nonfinite_a, 1);
     assert_int_equal(difference.nonfinite_b, 1);
+    assert_int_equal(difference.nonfinite_differing, 0);
     assert_true(difference.rmse == 0.0 && difference.largest == 0.0);
     image_finish(&a);
     image_finish(&b);
@@ -88,12 +89,65 @@ static void nonfinite_counts_but_does_not_spread(void **state)
     struct image_difference difference = compare(&a, &b);
     assert_int_equal(difference.nonfinite_a, 1);
     assert_int_equal(difference.nonfinite_b, 1);
+    assert_int_equal(difference.nonfinite_differing, 2);
     assert_int_equal(difference.differing_pixels, 3);
     assert_int_equal(difference.over_1_255, 3);
     assert_true(difference.largest == 0.25);
     assert_true(fabs(difference.rmse - sqrt(0.0625 / 3.0)) < 1e-12);
     image_finish(&a);
     image_finish(&b);
+}
+
+/* By hand: what is relative to the reference, and on which side of it the other one is. */
+static void means_are_those_of_the_formulas(void **state)
+{
+    (void)state;
+    struct image a, b, difference_image;
+    assert_int_equal(image_init(&a, 2, 1, 3, false), WHIT_OK);
+    b = copy_of(&a);
+    const float from[6] = {0.5f, 0.25f, 0.0f, 2.0f, 0.0f, 1.0f};
+    const float to[6] = {0.75f, 0.25f, 0.125f, 1.0f, 0.0f, 1.5f};
+    memcpy(a.pixels, from, sizeof from);
+    memcpy(b.pixels, to, sizeof to);
+    struct image_difference difference = compare(&a, &b);
+    double relative = 0.0625 / 0.26 + 0.015625 / 0.01 + 1.0 / (4.0 + 0.01) + 0.25 / (1.0 + 0.01);
+    assert_true(fabs(difference.relative_mse - relative / 6.0) < 1e-12);
+    assert_true(fabs(difference.rmse - sqrt((0.0625 + 0.015625 + 1.0 + 0.25) / 6.0)) < 1e-12);
+    assert_true(difference.mean[0] == -0.375 && difference.mean[1] == 0.0);
+    assert_true(difference.mean[2] == 0.3125 && difference.largest == 1.0);
+    struct image_difference back = compare(&b, &a);
+    assert_true(back.mean[0] == 0.375 && back.rmse == difference.rmse);
+    assert_true(back.relative_mse != difference.relative_mse);
+    b.pixels[4] = NAN;
+    assert_int_equal(image_subtract(NULL, &a, &b, &difference_image), WHIT_OK);
+    assert_true(difference_image.pixels[0] == 0.25f && difference_image.pixels[2] == 0.125f);
+    assert_true(isnan(difference_image.pixels[3]) && isnan(difference_image.pixels[5]));
+    image_finish(&difference_image);
+    image_finish(&a);
+    image_finish(&b);
+}
+
+/* Grey is as three equal channels, no alpha is as one of 1. */
+static void channels_may_differ(void **state)
+{
+    (void)state;
+    struct image grey = fixture_floats(5, 4, 1), colours[2];
+    for (uint32_t i = 0; i < 2; ++i) {
+        uint32_t channels = 3 + i;
+        assert_int_equal(image_init(&colours[i], 5, 4, channels, false), WHIT_OK);
+        for (uint32_t at = 0; at < 20 * channels; ++at)
+            colours[i].pixels[at] = at % channels == 3 ? 1.0f : grey.pixels[at / channels];
+        assert_int_equal(compare(&grey, &colours[i]).differing_pixels, 0);
+    }
+    assert_int_equal(compare(&colours[0], &colours[1]).differing_pixels, 0);
+    colours[0].pixels[3 * 7 + 2] += 0.5f;
+    colours[1].pixels[4 * 9 + 3] = 0.5f;
+    struct image_difference difference = compare(&colours[1], &colours[0]);
+    assert_int_equal(difference.differing_pixels, 2);
+    assert_true(fabs(difference.largest - 0.5) < 1e-6 && difference.mean[0] == 0.0);
+    image_finish(&grey);
+    image_finish(&colours[0]);
+    image_finish(&colours[1]);
 }
 
 static void integers_differ_or_not(void **state)
@@ -115,16 +169,22 @@ static void unlike_pictures_are_refused(void **state)
 {
     struct fixture *fixture = *state;
     struct image a = fixture_floats(4, 3, 3),
-                 other[4] = {
-                     fixture_floats(3, 4, 3), fixture_floats(4, 3, 4), fixture_words(4, 3, 3), {0}};
-    for (int i = 0; i < 4; ++i) {
-        struct image_difference difference;
+                 other[3] = {fixture_floats(3, 4, 3), fixture_words(4, 3, 3), {0}};
+    struct image ids = fixture_words(4, 3, 2), out;
+    struct image_difference difference;
+    for (int i = 0; i < 3; ++i) {
         assert_int_equal(image_compare(&fixture->log, &a, &other[i], &difference),
                          WHIT_ERROR_INPUT);
-        assert_int_equal(fixture->errors, i + 1);
-        image_finish(&other[i]);
+        assert_int_equal(image_subtract(&fixture->log, &a, &other[i], &out), WHIT_ERROR_INPUT);
+        assert_int_equal(fixture->errors, 2 * i + 2);
+        assert_null(out.pixels);
     }
+    assert_int_equal(image_compare(NULL, &ids, &other[1], &difference), WHIT_ERROR_INPUT);
+    assert_int_equal(image_subtract(NULL, &ids, &ids, &out), WHIT_ERROR_INPUT);
+    for (int i = 0; i < 3; ++i)
+        image_finish(&other[i]);
     image_finish(&a);
+    image_finish(&ids);
 }
 
 static void srgb_curve(void **state)
@@ -149,6 +209,8 @@ int main(void)
         cmocka_unit_test(differences_are_measured),
         cmocka_unit_test(one_step_of_8_bits_is_not_over),
         cmocka_unit_test(nonfinite_counts_but_does_not_spread),
+        cmocka_unit_test(means_are_those_of_the_formulas),
+        cmocka_unit_test(channels_may_differ),
         cmocka_unit_test(integers_differ_or_not),
         cmocka_unit_test_setup_teardown(unlike_pictures_are_refused, fixture_begin, fixture_end),
         cmocka_unit_test(srgb_curve),

@@ -59,6 +59,15 @@ static void colors_between_are_near(void **state)
     }
 }
 
+static double light_of(const uint8_t codes[3])
+{
+    const double weights[3] = {0.2126, 0.7152, 0.0722};
+    double light = 0.0;
+    for (int c = 0; c < 3; ++c)
+        light += weights[c] * (double)image_linear_from_srgb((float)codes[c] / 255.0f);
+    return light;
+}
+
 /* Brighter is more, also for who sees no colours. */
 static void brightness_rises(void **state)
 {
@@ -67,13 +76,57 @@ static void brightness_rises(void **state)
     for (int i = 0; i <= 100; ++i) {
         uint8_t codes[3];
         heat_color(i / 100.0, codes);
-        double light = 0.0;
-        const double weights[3] = {0.2126, 0.7152, 0.0722};
-        for (int c = 0; c < 3; ++c)
-            light += weights[c] * (double)image_linear_from_srgb((float)codes[c] / 255.0f);
-        assert_true(light > before);
-        before = light;
+        assert_true(light_of(codes) > before);
+        before = light_of(codes);
     }
+}
+
+/* Both sides darken away from 0, blue on one, brown on the other. */
+static void signed_colors_have_two_sides(void **state)
+{
+    (void)state;
+    uint8_t zero[3], below[3], above[3], beyond[3];
+    heat_signed_color(0.0, zero);
+    double before[2] = {light_of(zero), light_of(zero)};
+    for (int i = 1; i <= 100; ++i) {
+        heat_signed_color(i * -0.01, below);
+        heat_signed_color(i * 0.01, above);
+        assert_true(light_of(below) < before[0] && light_of(above) < before[1]);
+        before[0] = light_of(below);
+        before[1] = light_of(above);
+        assert_true(below[2] > below[0] && above[0] > above[2]);
+    }
+    heat_signed_color(-7.0, beyond);
+    assert_memory_equal(beyond, below, 3);
+    heat_signed_color((double)NAN, beyond);
+    assert_memory_equal(beyond, zero, 3);
+}
+
+static void signed_pictures_show_the_farthest_channel(void **state)
+{
+    (void)state;
+    struct image values, heat;
+    assert_int_equal(image_init(&values, 200, 2, 3, false), WHIT_OK);
+    for (int i = 0; i < 400; ++i)
+        values.pixels[3 * i + 1] = i == 8 ? 0.5f : -0.25f;
+    values.pixels[0] = 0.375f;
+    values.pixels[3 * 5 + 2] = NAN;
+    const struct heat_params params = {.is_signed = true, .title = "b - a"};
+    assert_int_equal(image_heat(&values, &params, &heat), WHIT_OK);
+    const float *left = heat.pixels + 3 * (size_t)((heat.width - 200) / 2);
+    assert_true(left[0] > left[2]); /* 0.375 */
+    assert_true(left[3] < left[5]); /* -0.25 */
+    assert_true(isnan(left[3 * 5]));
+    uint8_t codes[3]; /* of 399 distances one in 200 is over 0.375; 0.4 reads well */
+    heat_signed_color(-0.25 / 0.4, codes);
+    assert_true(fabsf(left[4] - image_linear_from_srgb((float)codes[1] / 255.0f)) < 1e-6f);
+    /* The bar of the legend goes from one side to the other. */
+    const float *bar = heat.pixels + 3 * (size_t)heat.width * (2 + 20);
+    assert_true(bar[3 * 5] < bar[3 * 5 + 2]);
+    assert_true(bar[3 * (heat.width - 6)] > bar[3 * (heat.width - 6) + 2]);
+    assert_true(bar[3 * (heat.width / 2)] > 0.8f);
+    image_finish(&values);
+    image_finish(&heat);
 }
 
 static void the_scale_ignores_the_brightest_200th(void **state)
@@ -216,6 +269,8 @@ int main(void)
         cmocka_unit_test(colors_are_those_of_viridis),
         cmocka_unit_test(colors_between_are_near),
         cmocka_unit_test(brightness_rises),
+        cmocka_unit_test(signed_colors_have_two_sides),
+        cmocka_unit_test(signed_pictures_show_the_farthest_channel),
         cmocka_unit_test(the_scale_ignores_the_brightest_200th),
         cmocka_unit_test(the_scale_of_few_or_no_values),
         cmocka_unit_test_setup_teardown(the_file_has_the_codes_of_the_table, fixture_begin,

@@ -1,0 +1,29 @@
+/* How different two pictures look when they are shown in turns. */
+#ifndef IMAGE_FLIP_H
+#define IMAGE_FLIP_H
+
+#include "image/image.h"
+
+/* A screen of 0.7 m with 3840 pixels, seen from 0.7 m: 3840 pi / 180. */
+#define FLIP_PIXELS_PER_DEGREE 67.02064327658226
+enum { FLIP_PIXELS_PER_DEGREE_MOST = 1000 };
+
+struct flip_summary {
+    double mean, largest; /* of the map */
+};
+
+/* LDR-FLIP: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, "FLIP: A
+   Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
+   2020, with its erratum (Y is normalised by 116). HDR-FLIP is not here: pictures are taken as a
+   PNG shows them, clamped to [0, 1], what is not finite as magenta, but not rounded to 8 bits.
+   Alpha has no part in it.
+
+   *map has one channel, 0 (looks the same) to 1; 1 is reached by green beside blue, black beside
+   white is 0.9674. Swapping the pictures changes nothing. WHIT_ERROR_USAGE when sizes differ, for
+   integers, and for `pixels_per_degree` (0: FLIP_PIXELS_PER_DEGREE) outside 1 to
+   FLIP_PIXELS_PER_DEGREE_MOST. Takes about 52 bytes a pixel meanwhile. */
+WHIT_CHECK whit_result image_flip(const struct image *a, const struct image *b,
+                                  double pixels_per_degree, struct image *map,
+                                  struct flip_summary *summary);
+
+#endif
