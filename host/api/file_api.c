@@ -77,3 +77,8 @@ double whit_clock_ms(void)
 {
     return clock_ms();
 }
+
+double whit_clock_cpu_ms(void)
+{
+    return clock_cpu_ms();
+}

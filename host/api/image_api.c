@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "image/flip.h"
 #include "image/heat.h"
 
 void whit_image_get_info(const whit_image *image, whit_image_info *info)
@@ -24,18 +25,41 @@ const uint32_t *whit_image_words(const whit_image *image)
     return image->image.words;
 }
 
+/* Release with free(); NULL when memory runs out, which is logged. */
+static struct image_text *texts_from_public(const struct log *log, const char *path,
+                                            const whit_text *texts, uint32_t text_count)
+{
+    struct image_text *copies = calloc(text_count ? text_count : 1, sizeof *copies);
+    if (!copies)
+        log_error(log, "%s: out of memory", path);
+    for (uint32_t i = 0; copies && i < text_count; ++i)
+        copies[i] = (struct image_text){.key = texts[i].key, .value = texts[i].value};
+    return copies;
+}
+
 whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts,
                             uint32_t text_count, const whit_log *log)
 {
     struct log inner = log_from_public(log);
-    struct image_text *copies = calloc(text_count ? text_count : 1, sizeof *copies);
-    if (!copies) {
-        log_error(&inner, "%s: out of memory", path);
+    struct image_text *copies = texts_from_public(&inner, path, texts, text_count);
+    if (!copies)
         return WHIT_ERROR_MEMORY;
-    }
-    for (uint32_t i = 0; i < text_count; ++i)
-        copies[i] = (struct image_text){.key = texts[i].key, .value = texts[i].value};
     whit_result result = image_save(&inner, &image->image, path, copies, text_count);
+    free(copies);
+    return result;
+}
+
+whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
+                                  uint32_t text_count, const whit_log *log, uint8_t **data,
+                                  size_t *size_bytes)
+{
+    struct log inner = log_from_public(log);
+    struct image_text *copies = texts_from_public(&inner, "a PNG in memory", texts, text_count);
+    *data = NULL;
+    if (!copies)
+        return WHIT_ERROR_MEMORY;
+    whit_result result =
+        image_encode_png(&inner, &image->image, copies, text_count, data, size_bytes);
     free(copies);
     return result;
 }
@@ -109,8 +133,77 @@ whit_result whit_image_heat(const whit_image *values, const whit_heat_params *pa
         .scale = params->scale,
         .title = params->title,
         .unit = params->unit,
+        .is_signed = params->is_signed,
     };
     whit_result result = image_heat(&values->image, &inner, &image->image);
+    if (result != WHIT_OK) {
+        whit_image_destroy(image);
+        return result;
+    }
+    *out = image;
+    return WHIT_OK;
+}
+
+static whit_result compare_by_flip(const whit_image *a, const whit_image *b,
+                                   const whit_compare_params *params, whit_difference *out,
+                                   whit_image **flip_map)
+{
+    struct flip_summary flip;
+    whit_image *map = calloc(1, sizeof *map);
+    if (!map)
+        return WHIT_ERROR_MEMORY;
+    whit_result result =
+        image_flip(&a->image, &b->image, params->pixels_per_degree, &map->image, &flip);
+    out->flip_mean = flip.mean;
+    out->flip_largest = flip.largest;
+    if (result == WHIT_OK && flip_map)
+        *flip_map = map;
+    else
+        whit_image_destroy(map);
+    return result;
+}
+
+whit_result whit_image_compare(const whit_image *a, const whit_image *b,
+                               const whit_compare_params *params, const whit_log *log,
+                               whit_difference *out, whit_image **flip_map)
+{
+    const whit_compare_params defaults = {0};
+    struct log inner = log_from_public(log);
+    struct image_difference found;
+    if (!params)
+        params = &defaults;
+    if (flip_map)
+        *flip_map = NULL;
+    *out = (whit_difference){0};
+    whit_result result = image_compare(&inner, &a->image, &b->image, &found);
+    if (result != WHIT_OK)
+        return result;
+    *out = (whit_difference){
+        .pixel_count = found.pixel_count,
+        .differing_pixels = found.differing_pixels,
+        .over_1_255 = found.over_1_255,
+        .nonfinite_a = found.nonfinite_a,
+        .nonfinite_b = found.nonfinite_b,
+        .nonfinite_differing = found.nonfinite_differing,
+        .rmse = found.rmse,
+        .relative_mse = found.relative_mse,
+        .largest = found.largest,
+        .mean = {found.mean[0], found.mean[1], found.mean[2]},
+    };
+    if (params->no_flip || !a->image.pixels)
+        return WHIT_OK;
+    return compare_by_flip(a, b, params, out, flip_map);
+}
+
+whit_result whit_image_subtract(const whit_image *a, const whit_image *b, const whit_log *log,
+                                whit_image **out)
+{
+    struct log inner = log_from_public(log);
+    *out = NULL;
+    whit_image *image = calloc(1, sizeof *image);
+    if (!image)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = image_subtract(&inner, &a->image, &b->image, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

@@ -530,12 +530,53 @@ typedef struct whit_heat_params {
     double scale;      /* 0: whit_image_heat_scale */
     const char *title; /* of the legend, or NULL; ASCII, shortened when it does not fit */
     const char *unit;  /* of the numbers, at the legend's right end, or NULL */
+    bool is_signed;    /* from -scale (blue) over 0 (white) to scale (brown); of three channels the
+                          one farthest from 0 */
 } whit_heat_params;
 /* The 99.5th percentile, rounded up to a number that reads well; of the largest value where that
    is 0; 1 where all are. */
 double whit_image_heat_scale(const whit_image *values);
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
+
+/* How `b` differs from `a`, the reference; over RGB, linear, unless said otherwise. Grey counts as
+   three equal channels, a missing alpha as 1. Of hit identities only pixel_count and
+   differing_pixels mean something. */
+typedef struct whit_difference {
+    uint64_t pixel_count;
+    uint64_t differing_pixels; /* by any bit, alpha included */
+    uint64_t over_1_255;       /* a channel is more than 1/255 apart as displayed (8-bit sRGB) */
+    uint64_t nonfinite_a, nonfinite_b; /* pixels; they are left out of what follows, up to flip */
+    uint64_t nonfinite_differing;      /* of differing_pixels those not finite in one or both */
+    double rmse;                       /* root of the mean squared error */
+    double relative_mse;               /* mean of (b - a)^2 / (a^2 + 0.01) */
+    double largest;                    /* of any channel */
+    double mean[3];                    /* of b - a: above 0 where b is brighter */
+    /* LDR-FLIP (Andersson et al. 2020): 0, looks the same, to 1; of pictures as displayed, clamped
+       to [0, 1], with what is not finite as magenta. */
+    double flip_mean, flip_largest;
+} whit_difference;
+/* A screen of 0.7 m with 3840 pixels, seen from 0.7 m. */
+#define WHIT_FLIP_PIXELS_PER_DEGREE 67.02064327658226
+typedef struct whit_compare_params {
+    bool no_flip;             /* leave FLIP out, which takes most of the time: both are 0 then */
+    double pixels_per_degree; /* of who looks at the pictures, 1 to 1000;
+                                 0: WHIT_FLIP_PIXELS_PER_DEGREE */
+} whit_compare_params;
+/* WHIT_ERROR_INPUT when sizes or kinds differ. `flip_map`: NULL, or gets FLIP of each pixel as one
+   channel (NULL without FLIP). */
+WHIT_CHECK whit_result whit_image_compare(const whit_image *a, const whit_image *b,
+                                          const whit_compare_params *params, const whit_log *log,
+                                          whit_difference *out, whit_image **flip_map);
+/* b - a, linear RGB, for whit_image_heat with is_signed, or to be saved as it is: NAN where either
+   is not finite. */
+WHIT_CHECK whit_result whit_image_subtract(const whit_image *a, const whit_image *b,
+                                           const whit_log *log, whit_image **out);
+
+/* The bytes of a PNG, as whit_image_save writes it; free() them. */
+WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
+                                             uint32_t text_count, const whit_log *log,
+                                             uint8_t **data, size_t *size_bytes);
 
 /* ---- Files ---- */
 
@@ -554,6 +595,7 @@ WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_
 void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);
 double whit_clock_ms(void);
+double whit_clock_cpu_ms(void); /* used by all threads of this process */
 
 #ifdef __cplusplus
 }

@@ -34,6 +34,7 @@ struct cli_command {
     const char *summary;   /* one line, for the list of commands */
     const char *details;   /* paragraphs below the options; may be NULL */
     const struct cli_option *options;
+    bool takes_two; /* arguments that are no options; else one */
     int (*run)(const struct cli_command *command, int argc, char **argv);
 };
 
@@ -44,7 +45,8 @@ struct cli_reader {
     char **argv;
     const struct cli_option *option; /* the current one */
     const char *value;
-    const char *positional; /* the one argument that is not an option, or NULL */
+    const char *positional; /* the first argument that is not an option, or NULL */
+    const char *second;     /* the second one, where the command takes two */
     bool done;              /* with `status`: no more options, or an error, or help was printed */
     int status;             /* < 0: go on with the work; else exit with it */
 };

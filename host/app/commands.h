@@ -8,7 +8,7 @@
 #include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
-    command_devices, command_bench, command_hard;
+    command_devices, command_bench, command_hard, command_compare;
 
 /* What `whit render` was asked for beside the job. */
 struct render_request {

@@ -134,6 +134,17 @@ void document_numbers(json_t *object, const char *key, const double *values, uin
     document_put(object, key, array);
 }
 
+whit_result document_save(json_t *value, const char *path)
+{
+    char *text = json_dumps(value, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    if (!text)
+        out_of_memory();
+    json_decref(value);
+    whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
+    free(text);
+    return result;
+}
+
 char *document_line(json_t *value)
 {
     char *text = json_dumps(value, JSON_COMPACT | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));

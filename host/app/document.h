@@ -8,6 +8,8 @@
 
 #include <jansson.h>
 
+#include "api/whit.h"
+
 json_t *document_object(void);
 json_t *document_array(void);
 void document_append(json_t *array, json_t *value);                /* takes over `value` */
@@ -22,6 +24,8 @@ void document_flag(json_t *object, const char *key, bool value);
 void document_hash(json_t *object, const char *key, uint64_t value); /* 16 hex digits */
 void document_floats(json_t *object, const char *key, const float *values, uint32_t count);
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
+/* Writes it to a file, indented. Takes over `value`. */
+WHIT_CHECK whit_result document_save(json_t *value, const char *path);
 /* In one line; free() it. Takes over `value`. */
 char *document_line(json_t *value);
 

@@ -191,13 +191,5 @@ whit_result hard_save_json(const struct hard *hard)
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
     document_put(out, "rows", rows);
-    char *text = json_dumps(out, JSON_INDENT(2) | JSON_PRESERVE_ORDER);
-    json_decref(out);
-    if (!text) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
-    whit_result result = whit_file_write(hard->json_path, text, strlen(text), &cli_log);
-    free(text);
-    return result;
+    return document_save(out, hard->json_path);
 }

@@ -5,7 +5,7 @@
 
 static const struct cli_command *const commands[] = {
     &command_render, &command_scene, &command_trace,   &command_bvh,
-    &command_bench,  &command_hard,  &command_devices,
+    &command_bench,  &command_hard,  &command_compare, &command_devices,
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -105,11 +105,14 @@ static void unknown_option(struct cli_reader *reader)
 
 static int take_positional(struct cli_reader *reader, const char *word)
 {
-    if (reader->positional) {
+    const char **place = &reader->positional;
+    if (reader->command->takes_two && reader->positional)
+        place = &reader->second;
+    if (*place) {
         cli_misuse(reader, "`%s` is one argument too many", word);
         return 0;
     }
-    reader->positional = word;
+    *place = word;
     return 1;
 }
 

@@ -31,28 +31,20 @@ static whit_result time_frame(whit_renderer *renderer, double *ms)
     return result;
 }
 
-static void compare(const whit_image *a, const whit_image *b, struct receipt_row *row)
-{
-    whit_image_info info;
-    whit_image_get_info(a, &info);
-    const float *x = whit_image_floats(a), *y = whit_image_floats(b);
-    size_t count = (size_t)info.width * info.height;
-    for (size_t i = 0; i < count; ++i) {
-        const float *p = x + i * info.channels, *q = y + i * info.channels;
-        row->pixels += memcmp(p, q, info.channels * sizeof *p) != 0;
-        for (uint32_t c = 0; c < info.channels; ++c)
-            row->largest = fmax(row->largest, fabs((double)p[c] - (double)q[c]));
-    }
-}
-
 static whit_result compare_pictures(whit_renderer *a, whit_renderer *b, struct receipt_row *row)
 {
+    const whit_compare_params params = {.no_flip = true};
+    whit_difference found;
     whit_image *x = NULL, *y = NULL;
     whit_result result = whit_renderer_image(a, WHIT_AOV_COLOR, &x);
     if (result == WHIT_OK)
         result = whit_renderer_image(b, WHIT_AOV_COLOR, &y);
     if (result == WHIT_OK)
-        compare(x, y, row);
+        result = whit_image_compare(x, y, &params, &cli_log, &found, NULL);
+    if (result == WHIT_OK) {
+        row->pixels = found.differing_pixels;
+        row->largest = found.largest;
+    }
     whit_image_destroy(x);
     whit_image_destroy(y);
     return result;

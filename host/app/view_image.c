@@ -84,7 +84,7 @@ static whit_result heat_map(const struct cost_view *view, const struct view_figu
     return result;
 }
 
-static bool is_png(const char *path)
+bool view_is_png(const char *path)
 {
     const char *dot = strrchr(path, '.');
     return dot && strcasecmp(dot, ".png") == 0;
@@ -102,7 +102,7 @@ whit_result view_image(whit_renderer *renderer, const struct cost_view *view, co
         return result;
     find_figures(values, figures);
     figures->scale = view->scale > 0.0 ? view->scale : whit_image_heat_scale(values);
-    if (!is_png(output)) {
+    if (!view_is_png(output)) {
         *out = values;
         return WHIT_OK;
     }

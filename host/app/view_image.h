@@ -29,6 +29,9 @@ struct view_figures {
     double mean, most, scale; /* over pixels; scale: of the heat map, used or not */
 };
 
+/* True for files that get colours in place of numbers. */
+bool view_is_png(const char *path);
+
 /* The numbers of the picture just rendered: as a heat map with legend for a .png, as they are for
    other files. */
 WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct cost_view *view,

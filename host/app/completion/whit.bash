@@ -15,6 +15,7 @@ _whit() {
         --instance-update) words="rebuild refit" ;;
         --load-path) words="auto storage texel" ;;
         --numerics) words="fast watertight exact" ;;
+        --metric) words="rmse relmse largest mean over differing flip" ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
         --view)

@@ -1,0 +1,383 @@
+#include "app/commands.h"
+#include "app/document.h"
+#include <math.h>
+
+enum compare_id { ID_TOLERANCE = 256, ID_METRIC, ID_DIFF, ID_FLIP, ID_JSON, ID_PPD };
+
+static const struct cli_option options[] = {
+    {ID_TOLERANCE, "tolerance", "X", "exit code 1 when the metric is over X"},
+    {ID_METRIC, "metric", "NAME",
+     "which one --tolerance is for, and the only one that is printed:\n"
+     "rmse relmse largest mean over differing flip (flip; of hit\n"
+     "identities differing)"},
+    {ID_DIFF, "diff", "FILE",
+     "B - A: .png as colours, blue where B is darker, brown where it is\n"
+     "brighter; .exr .pfm as linear numbers"},
+    {ID_FLIP, "flip", "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers"},
+    {ID_JSON, "json", "FILE", "all metrics as JSON"},
+    {ID_PPD, "ppd", "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)"},
+    {'q', "quiet", NULL, "print nothing but errors"},
+    {0, NULL, NULL, NULL},
+};
+
+enum metric {
+    METRIC_RMSE,
+    METRIC_RELMSE,
+    METRIC_LARGEST,
+    METRIC_MEAN,
+    METRIC_OVER, /* from here on also of pixels that are not finite */
+    METRIC_DIFFERING,
+    METRIC_FLIP,
+    METRIC_COUNT
+};
+static const char *const metric_names[] = {"rmse", "relmse",    "largest", "mean",
+                                           "over", "differing", "flip",    NULL};
+
+struct compare {
+    const char *paths[2];
+    const char *diff, *flip, *json; /* or NULL */
+    bool has_tolerance, has_metric, quiet;
+    double tolerance;
+    uint32_t metric;
+    whit_compare_params params;
+    whit_image *images[2], *flip_map;
+    whit_image_info info;
+    whit_difference found;
+};
+
+/* ---- Figures ---- */
+
+static double share_of(const struct compare *compare, uint64_t pixels)
+{
+    return (double)pixels / (double)compare->found.pixel_count;
+}
+
+static double value_of(const struct compare *compare, uint32_t metric)
+{
+    const whit_difference *found = &compare->found;
+    switch (metric) {
+    case METRIC_RMSE:
+        return found->rmse;
+    case METRIC_RELMSE:
+        return found->relative_mse;
+    case METRIC_LARGEST:
+        return found->largest;
+    case METRIC_MEAN:
+        return (found->mean[0] + found->mean[1] + found->mean[2]) / 3.0;
+    case METRIC_OVER:
+        return share_of(compare, found->over_1_255);
+    case METRIC_DIFFERING:
+        return share_of(compare, found->differing_pixels);
+    default:
+        return found->flip_mean;
+    }
+}
+
+static double resolution_of(const struct compare *compare)
+{
+    double given = compare->params.pixels_per_degree;
+    return given > 0.0 ? given : WHIT_FLIP_PIXELS_PER_DEGREE;
+}
+
+static void print_metric(const struct compare *compare, uint32_t metric)
+{
+    const whit_difference *found = &compare->found;
+    unsigned long long pixels = found->pixel_count;
+    printf("  %-10s %.6g", metric_names[metric], value_of(compare, metric));
+    if (metric == METRIC_MEAN)
+        printf("  (B - A: red %.6g, green %.6g, blue %.6g)", found->mean[0], found->mean[1],
+               found->mean[2]);
+    else if (metric == METRIC_OVER)
+        printf("  (%llu of %llu pixels more than 1/255 apart as displayed)",
+               (unsigned long long)found->over_1_255, pixels);
+    else if (metric == METRIC_DIFFERING)
+        printf("  (%llu of %llu pixels not the same)", (unsigned long long)found->differing_pixels,
+               pixels);
+    else if (metric == METRIC_FLIP)
+        printf("  (mean; largest %.6g; %.2f pixels a degree)", found->flip_largest,
+               resolution_of(compare));
+    putchar('\n');
+}
+
+static void print_head(const struct compare *compare)
+{
+    const whit_image_info *info = &compare->info;
+    printf("A ");
+    cli_print_clean(compare->paths[0]);
+    printf("\nB ");
+    cli_print_clean(compare->paths[1]);
+    printf("\n  %u x %u pixels%s\n", info->width, info->height,
+           info->integers ? ", hit identities" : "");
+}
+
+static int print_text(const struct compare *compare)
+{
+    const whit_difference *found = &compare->found;
+    if (compare->quiet)
+        return EXIT_FINE;
+    if (compare->has_metric) {
+        print_metric(compare, compare->metric);
+        return cli_finish_stdout(EXIT_FINE);
+    }
+    print_head(compare);
+    for (uint32_t metric = 0; metric < METRIC_COUNT; ++metric) {
+        if (!compare->info.integers || metric == METRIC_DIFFERING)
+            print_metric(compare, metric);
+    }
+    if (!compare->info.integers)
+        printf("  %-10s %llu in A, %llu in B, of %llu pixels\n", "nonfinite",
+               (unsigned long long)found->nonfinite_a, (unsigned long long)found->nonfinite_b,
+               (unsigned long long)found->pixel_count);
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+/* Numbers that mean nothing for hit identities are null there. */
+static void put_number(const struct compare *compare, json_t *object, const char *key, double value)
+{
+    document_number(object, key, compare->info.integers ? (double)NAN : value);
+}
+
+static bool is_within(const struct compare *compare);
+
+static whit_result save_json(const struct compare *compare)
+{
+    const whit_difference *found = &compare->found;
+    bool integers = compare->info.integers;
+    json_t *root = document_object(), *flip = integers ? json_null() : document_object();
+    document_text(root, "whit", WHIT_VERSION);
+    document_text(root, "a", compare->paths[0]);
+    document_text(root, "b", compare->paths[1]);
+    document_count(root, "width", compare->info.width);
+    document_count(root, "height", compare->info.height);
+    document_flag(root, "integers", integers);
+    document_count(root, "pixels", found->pixel_count);
+    document_count(root, "differing_pixels", found->differing_pixels);
+    document_count(root, "over_1_255", found->over_1_255);
+    document_count(root, "nonfinite_a", found->nonfinite_a);
+    document_count(root, "nonfinite_b", found->nonfinite_b);
+    document_count(root, "nonfinite_differing", found->nonfinite_differing);
+    put_number(compare, root, "rmse", found->rmse);
+    put_number(compare, root, "relative_mse", found->relative_mse);
+    put_number(compare, root, "largest", found->largest);
+    document_numbers(root, "mean", found->mean, 3);
+    if (!integers) {
+        document_number(flip, "mean", found->flip_mean);
+        document_number(flip, "largest", found->flip_largest);
+        document_number(flip, "pixels_per_degree", resolution_of(compare));
+    }
+    document_put(root, "flip", flip);
+    document_text(root, "metric", metric_names[compare->metric]);
+    document_number(root, "tolerance", compare->has_tolerance ? compare->tolerance : (double)NAN);
+    document_put(root, "within",
+                 compare->has_tolerance ? json_boolean(is_within(compare)) : json_null());
+    return document_save(root, compare->json);
+}
+
+/* ---- Tolerance ---- */
+
+/* Pixels that are not finite in one of the two are in no mean: they pass no tolerance for one. */
+static bool is_within(const struct compare *compare)
+{
+    const whit_difference *found = &compare->found;
+    bool sees_all = compare->metric >= METRIC_OVER;
+    if (found->nonfinite_differing && !sees_all)
+        return false;
+    return fabs(value_of(compare, compare->metric)) <= compare->tolerance;
+}
+
+static int judge(const struct compare *compare)
+{
+    const whit_difference *found = &compare->found;
+    if (!compare->has_tolerance || is_within(compare))
+        return EXIT_FINE;
+    double value = value_of(compare, compare->metric);
+    if (fabs(value) <= compare->tolerance)
+        cli_error("%s is within %.6g, but leaves out %llu pixels that differ and are not finite",
+                  metric_names[compare->metric], compare->tolerance,
+                  (unsigned long long)found->nonfinite_differing);
+    else
+        cli_error("%s is %.6g, over %.6g", metric_names[compare->metric], value,
+                  compare->tolerance);
+    return EXIT_DIFFERS;
+}
+
+/* ---- Pictures ---- */
+
+/* As a heat map where it becomes a PNG. */
+static whit_result save_values(const whit_image *values, const char *path,
+                               const whit_heat_params *heat)
+{
+    whit_image *colours = NULL;
+    whit_result result = WHIT_OK;
+    if (view_is_png(path))
+        result = whit_image_heat(values, heat, &colours);
+    if (result == WHIT_OK)
+        result = whit_image_save(colours ? colours : values, path, NULL, 0, &cli_log);
+    whit_image_destroy(colours);
+    return result;
+}
+
+static whit_result save_diff(const struct compare *compare)
+{
+    const whit_heat_params heat = {.is_signed = true, .title = "B - A", .unit = "linear"};
+    whit_image *difference = NULL;
+    whit_result result =
+        whit_image_subtract(compare->images[0], compare->images[1], &cli_log, &difference);
+    if (result == WHIT_OK)
+        result = save_values(difference, compare->diff, &heat);
+    whit_image_destroy(difference);
+    return result;
+}
+
+static whit_result save_flip(const struct compare *compare)
+{
+    const whit_heat_params heat = {.scale = 1.0, .title = "FLIP", .unit = "0: looks the same"};
+    return save_values(compare->flip_map, compare->flip, &heat);
+}
+
+static whit_result save_all(const struct compare *compare)
+{
+    whit_result result = WHIT_OK;
+    if (compare->diff)
+        result = save_diff(compare);
+    if (result == WHIT_OK && compare->flip)
+        result = save_flip(compare);
+    if (result == WHIT_OK && compare->json)
+        result = save_json(compare);
+    return result;
+}
+
+/* ---- Work ---- */
+
+static whit_result check_pair(struct compare *compare)
+{
+    whit_image_info a, b;
+    const char *const *paths = compare->paths;
+    whit_image_get_info(compare->images[0], &a);
+    whit_image_get_info(compare->images[1], &b);
+    compare->info = a;
+    if (a.width != b.width || a.height != b.height)
+        cli_error("%s is %u x %u, %s is %u x %u: only pictures of one size can be compared",
+                  paths[0], a.width, a.height, paths[1], b.width, b.height);
+    else if (a.integers != b.integers)
+        cli_error("%s holds hit identities, %s colours", paths[!a.integers], paths[a.integers]);
+    else if (a.integers && a.channels != b.channels)
+        cli_error("%s has %u channels of integers, %s %u", paths[0], a.channels, paths[1],
+                  b.channels);
+    else if (a.integers && (compare->diff || compare->flip))
+        cli_error("--%s: hit identities have no colours", compare->diff ? "diff" : "flip");
+    else if (a.integers && compare->has_metric && compare->metric != METRIC_DIFFERING)
+        cli_error("--metric %s: of hit identities there is only `differing`",
+                  metric_names[compare->metric]);
+    else
+        return WHIT_OK;
+    return WHIT_ERROR_INPUT;
+}
+
+static whit_result find_out(struct compare *compare)
+{
+    whit_result result = WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < 2; ++i) {
+        result = whit_image_load(compare->paths[i], &cli_log, &compare->images[i]);
+        if (result == WHIT_OK)
+            result = job_still_wanted();
+    }
+    if (result == WHIT_OK)
+        result = check_pair(compare);
+    if (result != WHIT_OK)
+        return result;
+    if (compare->info.integers)
+        compare->metric = METRIC_DIFFERING;
+    compare->params.no_flip =
+        compare->has_metric && compare->metric != METRIC_FLIP && !compare->flip && !compare->json;
+    result = whit_image_compare(compare->images[0], compare->images[1], &compare->params, &cli_log,
+                                &compare->found, &compare->flip_map);
+    return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+static int work(struct compare *compare)
+{
+    whit_result result = find_out(compare);
+    if (result == WHIT_OK)
+        result = save_all(compare);
+    int status = result == WHIT_OK ? print_text(compare) : cli_exit_of(result);
+    if (status == EXIT_FINE)
+        status = judge(compare);
+    whit_image_destroy(compare->images[0]);
+    whit_image_destroy(compare->images[1]);
+    whit_image_destroy(compare->flip_map);
+    return status;
+}
+
+/* ---- Options ---- */
+
+static bool check_picture(struct cli_reader *reader, const char *option, const char *path)
+{
+    if (!path || whit_image_format_known(path, false))
+        return true;
+    return cli_misuse(reader, "%s %s: .png, .exr or .pfm is needed", option, path);
+}
+
+static bool check_request(struct cli_reader *reader, struct compare *compare)
+{
+    const char *const outputs[] = {compare->diff, compare->flip, compare->json};
+    if (reader->status >= 0)
+        return false;
+    compare->paths[0] = reader->positional;
+    compare->paths[1] = reader->second;
+    if (!compare->paths[1])
+        return cli_misuse(reader, "%s missing", compare->paths[0] ? "B is" : "A and B are");
+    if (!check_picture(reader, "--diff", compare->diff) ||
+        !check_picture(reader, "--flip", compare->flip) ||
+        !cli_no_dash(reader, "--json", compare->json, "for a pipe give /dev/stdout"))
+        return false;
+    for (uint32_t i = 0; i < sizeof outputs / sizeof outputs[0]; ++i) {
+        if (outputs[i] && !cli_can_write(outputs[i])) {
+            reader->status = EXIT_USAGE;
+            return false;
+        }
+    }
+    return true;
+}
+
+static void read_option(struct cli_reader *reader, int id, struct compare *compare)
+{
+    if (id == ID_TOLERANCE)
+        compare->has_tolerance = cli_number(reader, 0.0, 1e30, &compare->tolerance);
+    else if (id == ID_METRIC)
+        compare->has_metric = cli_choice(reader, metric_names, &compare->metric);
+    else if (id == ID_DIFF)
+        compare->diff = reader->value;
+    else if (id == ID_FLIP)
+        compare->flip = reader->value;
+    else if (id == ID_JSON)
+        compare->json = reader->value;
+    else if (id == ID_PPD)
+        cli_number(reader, 1.0, 1000.0, &compare->params.pixels_per_degree);
+    else
+        compare->quiet = true;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct compare compare = {.metric = METRIC_FLIP};
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &compare);
+    return check_request(&reader, &compare) ? work(&compare) : reader.status;
+}
+
+const struct cli_command command_compare = {
+    .name = "compare",
+    .arguments = "A B [options]",
+    .summary = "Measures how picture B differs from A, the reference.",
+    .details =
+        "A and B are PNG, EXR, PFM or HDR, any mix; PNG is taken from sRGB to linear. Metrics are\n"
+        "over linear RGB, alpha counts only as `differing` and `over`; FLIP is of the pictures as\n"
+        "displayed. Pixels that are not finite are left out of all but `over`, `differing` and\n"
+        "`flip`; with them no other metric passes a tolerance.\n",
+    .options = options,
+    .takes_two = true,
+    .run = run,
+};

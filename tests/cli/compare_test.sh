@@ -1,0 +1,84 @@
+#!/bin/sh
+# whit compare: metrics by hand on pictures of two pixels, tolerances, formats, difference pictures.
+. "$(dirname "$0")/common.sh"
+VK_DRIVER_FILES=/nonexistent
+VK_ICD_FILENAMES=/nonexistent
+export VK_DRIVER_FILES VK_ICD_FILENAMES
+A=$OUT/a.pfm
+B=$OUT/b.pfm
+N=$OUT/nan.pfm
+
+# Floats, little-endian: 0, 0.25, 0.5, 1, NaN.
+ZERO='\0\0\0\0' QUARTER='\0\0\200\076' HALF='\0\0\0\077' ONE='\0\0\200\077' NAN='\0\0\300\177'
+printf "PF\n2 1\n-1\n$ZERO$ZERO$ZERO$HALF$HALF$HALF" >"$A"
+printf "PF\n2 1\n-1\n$ZERO$ZERO$ZERO$ONE$HALF$QUARTER" >"$B"
+printf "PF\n2 1\n-1\n$ZERO$ZERO$ZERO$HALF$NAN$HALF" >"$N"
+printf "PF\n1 2\n-1\n$ZERO$ZERO$ZERO$HALF$HALF$HALF" >"$OUT/tall.pfm"
+printf "Pf\n2 1\n-1\n$ZERO$HALF" >"$OUT/grey.pfm"
+# Two pixels, sRGB codes 0 and 188, which are linear 0 and 0.5028865.
+echo iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mNgYGDYs2cPAARvAjV7odqHAAAAAElFTkSuQmCC |
+    base64 -d >"$OUT/a.png"
+
+# value METRIC: the number on its line of the last output.
+value() {
+    awk -v name="$1" '$1 == name { print $2 }' "$OUT/stdout"
+}
+
+expect 0 "the same" compare "$A" "$A"
+for metric in rmse relmse largest mean over differing flip; do
+    check "the same: $metric is 0" test "$(value $metric)" = 0
+done
+check "pixels are counted" grep -q "^  differing  0  (0 of 2 pixels" "$OUT/stdout"
+expect 0 "grey is three equal channels" compare "$A" "$OUT/grey.pfm"
+check "grey: nothing differs" test "$(value differing)" = 0
+
+expect 0 "two pictures" compare "$A" "$B" --json "$OUT/j.json"
+check "largest" test "$(value largest)" = 0.5
+check "mean: (0.5 - 0.25) / 6" test "$(value mean)" = 0.0416667
+check "rmse: root of (0.25 + 0.0625) / 6" test "$(value rmse)" = 0.228218
+check "relmse: 0.3125 / 0.26 / 6" test "$(value relmse)" = 0.200321
+check "half of the pixels" test "$(value over)" = 0.5
+check "flip is between 0 and 1" awk -v flip="$(value flip)" 'BEGIN { exit !(flip > 0.1 && flip < 1) }'
+for key in whit a b width height pixels differing_pixels over_1_255 nonfinite_a nonfinite_b \
+    nonfinite_differing rmse relative_mse largest mean flip metric tolerance within; do
+    check "JSON has $key" grep -q "^  \"$key\":" "$OUT/j.json"
+done
+
+expect 0 "one metric" compare "$A" "$B" --metric largest
+check "one metric: one line" test "$(wc -l <"$OUT/stdout")" -eq 1
+expect 0 "within" compare "$A" "$B" --metric largest --tolerance 0.5
+refuse 1 "over" "largest is 0.5, over 0.49" compare "$A" "$B" --metric largest --tolerance 0.49 --json "$OUT/j.json"
+check "over: JSON says so" grep -q '"within": false' "$OUT/j.json"
+refuse 1 "the mean's sign does not matter" "mean is -0.0416667" compare "$B" "$A" --metric mean --tolerance 0.04
+refuse 1 "flip is the metric by itself" "flip is .* over 0" compare "$A" "$B" --tolerance 0
+expect 0 "quiet" compare "$A" "$B" -q
+check "quiet prints nothing" test ! -s "$OUT/stdout"
+
+expect 0 "a picture with NaN" compare "$A" "$N"
+check "NaN is counted" grep -q "nonfinite  0 in A, 1 in B, of 2 pixels" "$OUT/stdout"
+check "NaN is left out of rmse" test "$(value rmse)" = 0
+refuse 1 "NaN passes no tolerance" "rmse is within 1, but" compare "$A" "$N" --metric rmse --tolerance 1
+expect 0 "the same NaN passes" compare "$N" "$N" --metric rmse --tolerance 0
+
+expect 0 "PNG beside PFM" compare "$OUT/a.png" "$A" --metric largest
+check "PNG is taken to linear" awk -v largest="$(value largest)" \
+    'BEGIN { exit !(largest > 0.0028864 && largest < 0.0028866) }'
+expect 0 "difference as EXR" compare "$OUT/grey.pfm" "$B" --diff "$OUT/d.exr" --flip "$OUT/f.exr" -q
+expect 0 "difference as PFM" compare "$OUT/grey.pfm" "$B" --diff "$OUT/d.pfm" -q
+expect 0 "both are the same" compare "$OUT/d.exr" "$OUT/d.pfm" --metric differing --tolerance 0
+expect 0 "difference and FLIP as PNG" compare "$A" "$B" --diff "$OUT/d.png" --flip "$OUT/f.png" -q
+check "they are PNGs" test "$(head -c 4 "$OUT/d.png" | tail -c 3)$(head -c 4 "$OUT/f.png" | tail -c 3)" = PNGPNG
+
+refuse 2 "other sizes" "a.pfm is 2 x 1, .*tall.pfm is 1 x 2" compare "$A" "$OUT/tall.pfm"
+refuse 2 "no pictures" "A and B are missing" compare
+refuse 2 "one picture" "B is missing" compare "$A"
+refuse 2 "three pictures" "too many" compare "$A" "$B" "$N"
+refuse 2 "no such picture" "none.png" compare "$A" "$OUT/none.png"
+refuse 2 "not a picture" "not a PNG, EXR, PFM or HDR" compare "$A" "$OUT/j.json"
+refuse 2 "unknown metric" "one of rmse, relmse" compare "$A" "$B" --metric psnr
+refuse 2 "tolerance below 0" "a number from 0" compare "$A" "$B" --tolerance -1
+refuse 2 "tolerance nan" "a number from 0" compare "$A" "$B" --tolerance nan
+refuse 2 "difference as text" ".png, .exr or .pfm" compare "$A" "$B" --diff "$OUT/d.txt"
+refuse 2 "no such folder" "none/d.png" compare "$A" "$B" --diff "$OUT/none/d.png"
+check "nothing was left" test ! -e "$OUT/d.txt"
+finish
