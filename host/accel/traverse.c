@@ -1,4 +1,4 @@
-/* shaders/bind/traverse.glsl in C, for the two modes that geometry alone decides. */
+/* shaders/bind/traverse.glsl, primitive.glsl and settle.glsl in C, for the two modes that geometry alone decides. */
 #include "accel/accel_inside.h"
 
 #include <float.h>

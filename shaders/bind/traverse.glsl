@@ -5,11 +5,7 @@
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
 
-#include "../lib/exact.glsl"
-#include "../lib/intersect.glsl"
-#include "../lib/moller.glsl"
-#include "../lib/sphere.glsl"
-#include "trees.glsl"
+#include "settle.glsl"
 
 // Defined by the kernel: whether a cut-out primitive is solid at a point. `u` and `v` of a sphere are
 // its texture coordinates (sphere_uv), here and below.
@@ -21,14 +17,6 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
                     ivec3 own);
 
-// What may end a traversal; always a constant, so that each use is compiled for its own.
-const uint TRAVERSE_CLOSEST = 0u;
-const uint TRAVERSE_ANY = 1u;    // any hit will do
-const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
-// The closest hit behind one that is known, in the order of (t, instance, primitive): the ray's own
-// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was.
-const uint TRAVERSE_NEXT = 3u;
-
 float hit_before;
 
 // Whether a hit comes behind the one that is known; at NUMERICS_EXACT it goes by keys.
@@ -39,41 +27,8 @@ bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint
                                                               primitive > known_primitive)));
 }
 
-bool finds_closest(const uint mode)
-{
-    return mode == TRAVERSE_CLOSEST || mode == TRAVERSE_NEXT;
-}
-
 const uint REF_DONE = 0xffffffffu;
 const uint REF_ONE_PRIMITIVE = 1u << BVH_COUNT_SHIFT;
-const float FLOAT_LARGEST = 3.402823466e+38;
-
-struct Hit {
-    float t; // largest t that still counts, then that of the hit
-    float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
-    float u, v;     // of a sphere: square_from_dir of the normal, object space
-    uint triangle;  // record
-    uint primitive; // of its mesh, or HIT_NONE
-    uint instance;
-    ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
-    uint status;
-};
-
-Hit make_hit(float t_max)
-{
-    Hit hit;
-    hit.t = t_max < FLOAT_LARGEST ? t_max : FLOAT_LARGEST;
-    hit.lo = hit.t;
-    hit.hi = hit.t;
-    hit.u = 0.0;
-    hit.v = 0.0;
-    hit.triangle = 0u;
-    hit.primitive = HIT_NONE;
-    hit.instance = HIT_NONE;
-    hit.filter_depth = ivec3(0);
-    hit.status = 0u;
-    return hit;
-}
 
 // What lies behind it does not count.
 float farthest(Hit hit)
@@ -253,83 +208,6 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
-// Where a ray meets a primitive.
-struct Meeting {
-    bool met;
-    float t, u, v;
-    bool front; // met from outside
-    bool owned; // of several triangles that share the point one owns it
-    // NUMERICS_EXACT: bounds of the key. Not `sure`: it may be met, and settle() finds out; until then
-    // t, u and v are good where `rounded`.
-    float lo, hi;
-    bool sure, rounded;
-};
-
-Meeting bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
-{
-    ExactBounds bounds = exact_filter(ray, a, b, c);
-    Meeting m;
-    m.met = !bounds.outside && !(bounds.hi < t_min);
-    m.t = bounds.t > t_min ? bounds.t : t_min;
-    m.u = bounds.u;
-    m.v = bounds.v;
-    m.front = !bounds.inside || bounds.front;
-    m.owned = true;
-    m.lo = bounds.lo;
-    m.hi = bounds.hi;
-    m.sure = bounds.inside && bounds.lo >= t_min;
-    m.rounded = bounds.inside;
-    return m;
-}
-
-Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
-{
-    Meeting m;
-    if (SPEC_NUMERICS == NUMERICS_FAST) {
-        m.met = intersect_moller(ray.origin, ray.dir, row_vec3(r0), row_vec3(r1), row_vec3(r2),
-                                 t_min, m.t, m.u, m.v, m.front);
-        if (SPEC_FLAT != 0u)
-            m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
-        m.owned = true;
-        return m;
-    }
-    precise vec3 a = row_vec3(r0) - ray.origin;
-    precise vec3 b = row_vec3(r1) - ray.origin;
-    precise vec3 c = row_vec3(r2) - ray.origin;
-    if (SPEC_NUMERICS == NUMERICS_EXACT) {
-        m = bound_triangle(ray, t_min, a, b, c);
-        if (SPEC_FLAT != 0u)
-            m.front = !m.rounded || m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
-        return m;
-    }
-    m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
-    if (SPEC_FLAT != 0u)
-        m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
-    m.owned = owns_point(ray, a, b, c);
-    return m;
-}
-
-// Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
-// end is there to be met, and only on the way inwards. No distance needs to be small for that.
-Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
-{
-    Meeting m;
-    float at = at_exit ? chord.t_far : chord.t_near;
-    // False for NaN.
-    m.met = chord.met && at >= t_min && (!own || chord.inward);
-    m.t = at > chord.t_box ? at : chord.t_box;
-    vec2 square = square_from_dir(chord_end(ray, chord, at_exit));
-    m.u = square.x;
-    m.v = square.y;
-    m.front = !at_exit;
-    m.owned = true;
-    m.lo = m.t;
-    m.hi = m.t;
-    m.sure = true;
-    m.rounded = true;
-    return m;
-}
-
 // Whether rays may go on through a sphere's near end where nothing is marked at it.
 bool goes_through(const uint mode)
 {
@@ -404,157 +282,6 @@ bool has_looks(const uint mode)
     return SPEC_NUMERICS == NUMERICS_EXACT || SPEC_CUTOUTS != 0u ||
            (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
            (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
-}
-
-// A triangle or a sphere as it stands in its record.
-struct Primitive {
-    uvec4 r0, r1, r2;
-    uint index, flags, instance;
-    bool own; // the ray starts on it
-    bool is_sphere;
-};
-
-// With SPEC_FLAT the record names its instance.
-Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip_instance,
-                          uint skip_primitive)
-{
-    Primitive p;
-    p.r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
-    p.r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
-    p.r2 = uvec4(0u);
-    if (SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u)
-        p.r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
-    p.index = p.r0.w;
-    p.flags = p.r1.w;
-    p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
-    p.own = mode != TRAVERSE_NEXT && p.index == skip_primitive && p.instance == skip_instance;
-    p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
-    return p;
-}
-
-// Where a record's triangle is met, exactly.
-ExactMeeting meet_record(vec3 origin, vec3 dir, uint record)
-{
-    return exact_meet(origin, dir, row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS)),
-                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u)),
-                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u)));
-}
-
-// Replaces the bounds of a meeting by what is exact.
-void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact, inout Meeting m)
-{
-    precise vec3 a = row_vec3(p.r0) - ray.origin;
-    precise vec3 b = row_vec3(p.r1) - ray.origin;
-    precise vec3 c = row_vec3(p.r2) - ray.origin;
-    vec2 sa, sb, sc;
-    vec3 edges;
-    shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
-                   turn_dominant(ray.dominant, c), sa, sb, sc, edges);
-    m.met = m.met && exact.met && exact.key >= t_min;
-    m.owned = owns_its_edges(sa, sb, sc, exact.on_edge, exact.front == (ray.shear.z > 0.0));
-    m.front = exact.front;
-    if (SPEC_FLAT != 0u)
-        m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
-    m.t = m.rounded ? m.t : exact.key;
-    m.u = m.rounded ? m.u : exact.u;
-    m.v = m.rounded ? m.v : exact.v;
-    m.lo = exact.key;
-    m.hi = exact.key;
-}
-
-// The ray as the mesh of an instance sees it.
-void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
-{
-    if (SPEC_INSTANCED != 0u) {
-        InstanceFrame frame = fetch_instance_frame(instance);
-        origin = to_object_point(frame, origin);
-        dir = to_object_dir(frame, dir);
-    }
-}
-
-// NUMERICS_EXACT: the key of a meeting, and of the hit so far where it is needed to tell which of both
-// comes first. `origin`, `dir`: of the ray in world space.
-void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
-            inout Meeting m, inout Hit hit)
-{
-    vec3 from = ray.origin, along = ray.dir;
-    bool own = true, again;
-    do {
-        ExactMeeting exact = meet_record(from, along, record);
-        again = false;
-        if (own) {
-            if (!p.is_sphere)
-                settle_triangle(ray, t_min, p, exact, m);
-            again = m.met && hit.lo < hit.hi && hit.lo <= m.lo && m.lo <= hit.hi;
-            from = origin;
-            along = dir;
-            take_to_instance(again ? hit.instance : 0u, from, along);
-            record = hit.triangle;
-        } else {
-            hit.lo = exact.key;
-            hit.hi = exact.key;
-        }
-        own = false;
-    } while (again);
-}
-
-// NUMERICS_EXACT: makes the t of a hit its key, which nothing may have asked for so far. Not for
-// shading, which does with less and would pay for it on every ray.
-void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
-{
-    bool loose = hit.lo < hit.hi;
-    if (!loose)
-        hit.t = hit.lo;
-    if (loose) {
-        take_to_instance(hit.instance, origin, dir);
-        uint row = hit.triangle * TRIANGLE_ROWS;
-        loose = !round_t(origin, dir, row_vec3(fetch_triangle_row(row)),
-                         row_vec3(fetch_triangle_row(row + 1u)),
-                         row_vec3(fetch_triangle_row(row + 2u)), hit.t);
-    }
-    if (loose)
-        hit.t = meet_record(origin, dir, hit.triangle).key;
-    hit.lo = hit.t;
-    hit.hi = hit.t;
-}
-
-// Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
-Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
-{
-    Meeting m;
-    if (SPEC_SPHERES != SPHERES_ONLY) {
-        m = meet_triangle(ray, t_min, p.r0, p.r1, p.r2);
-        m.met = m.met && !p.own;
-    }
-    if (SPEC_SPHERES != SPHERES_NONE) {
-        Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
-        if (SPEC_SPHERES == SPHERES_ONLY)
-            m = on_sphere;
-        m.met = p.is_sphere ? on_sphere.met : m.met;
-        m.t = p.is_sphere ? on_sphere.t : m.t;
-        m.u = p.is_sphere ? on_sphere.u : m.u;
-        m.v = p.is_sphere ? on_sphere.v : m.v;
-        m.front = p.is_sphere ? on_sphere.front : m.front;
-        m.owned = p.is_sphere || m.owned;
-        m.lo = p.is_sphere ? on_sphere.lo : m.lo;
-        m.hi = p.is_sphere ? on_sphere.hi : m.hi;
-        m.sure = p.is_sphere || m.sure;
-        m.rounded = p.is_sphere || m.rounded;
-    }
-    return m;
-}
-
-Chord chord_of(RaySetup ray, float t_min, Primitive p)
-{
-    Chord chord;
-    if (SPEC_SPHERES != SPHERES_NONE)
-        chord = intersect_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x), t_min);
-    return chord;
-}
-
-bool starts_at_exit(Primitive p, Chord chord, float t_min)
-{
-    return SPEC_SPHERES != SPHERES_NONE && (p.own || !(chord.t_near >= t_min));
 }
 
 // Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal

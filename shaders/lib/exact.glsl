@@ -56,30 +56,22 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
         4.125 * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
     bvec3 below = lessThan(edges, vec3(-edge_error));
     bvec3 above = greaterThan(edges, vec3(edge_error));
-    precise float det = (edges.x + edges.y) + edges.z;
-    precise float az = ray.shear.z * ta.z;
-    precise float bz = ray.shear.z * tb.z;
-    precise float cz = ray.shear.z * tc.z;
-    precise float scaled_t = (edges.x * az + edges.y * bz) + edges.z * cz;
-    precise float inv_det = 1.0 / det;
-    precise float at = scaled_t * inv_det;
-    precise float weight_b = edges.y * inv_det;
-    precise float weight_c = edges.z * inv_det;
-    float z_lo = smaller(az, smaller(bz, cz));
-    float z_hi = larger(az, larger(bz, cz));
+    Weights w = weigh_triangle(ray, ta.z, tb.z, tc.z, edges);
+    float z_lo = smaller(w.z.x, smaller(w.z.y, w.z.z));
+    float z_hi = larger(w.z.x, larger(w.z.y, w.z.z));
     precise float z_error = 40.0 * EXACT_UNIT * larger(abs(z_lo), abs(z_hi)) + EXACT_TINY;
-    precise float weights_error = (3.25 * edge_error) * abs(inv_det);
+    precise float weights_error = (3.25 * edge_error) * abs(w.inv_det);
     precise float t_error = weights_error * (z_hi - z_lo) + z_error;
     ExactBounds bounds;
     bounds.outside = any(below) && any(above);
-    bounds.inside = (all(below) || all(above)) && abs(det) < EXACT_LARGE &&
-                    abs(at) < EXACT_LARGE && weights_error < 0.25;
-    bounds.front = (det > 0.0) == (ray.shear.z > 0.0);
-    bounds.t = at;
-    bounds.u = weight_b;
-    bounds.v = weight_c;
-    precise float t_lo = at - t_error;
-    precise float t_hi = at + t_error;
+    bounds.inside = (all(below) || all(above)) && abs(w.det) < EXACT_LARGE &&
+                    abs(w.t) < EXACT_LARGE && weights_error < 0.25;
+    bounds.front = (w.det > 0.0) == (ray.shear.z > 0.0);
+    bounds.t = w.t;
+    bounds.u = w.b;
+    bounds.v = w.c;
+    precise float t_lo = w.t - t_error;
+    precise float t_hi = w.t + t_error;
     precise float any_lo = z_lo - z_error;
     precise float any_hi = z_hi + z_error;
     bool known = any_lo <= any_hi; // not NaN

@@ -113,6 +113,26 @@ void shear_triangle(RaySetup ray, vec3 ta, vec3 tb, vec3 tc, out vec2 sa, out ve
     edges = vec3(ea, eb, ec);
 }
 
+// Where the edge functions place the ray in the triangle.
+struct Weights {
+    float det, inv_det;
+    float t, b, c; // distance along the ray; weights of the second and the third vertex
+    vec3 z;        // distances of the vertices, along the ray
+};
+
+// Of vertices whose last coordinates, turned, are az, bz and cz.
+Weights weigh_triangle(RaySetup ray, float az, float bz, float cz, vec3 edges)
+{
+    precise vec3 z = ray.shear.z * vec3(az, bz, cz);
+    precise float det = (edges.x + edges.y) + edges.z;
+    precise float scaled_t = (edges.x * z.x + edges.y * z.y) + edges.z * z.z;
+    precise float inv_det = 1.0 / det;
+    precise float at = scaled_t * inv_det;
+    precise float weight_b = edges.y * inv_det;
+    precise float weight_c = edges.z * inv_det;
+    return Weights(det, inv_det, at, weight_b, weight_c, z);
+}
+
 // Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
 // An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
 // triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
@@ -145,21 +165,13 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
     shear_triangle(ray, ta, tb, tc, sa, sb, sc, edges);
     bool below = edges.x < 0.0 || edges.y < 0.0 || edges.z < 0.0;
     bool above = edges.x > 0.0 || edges.y > 0.0 || edges.z > 0.0;
-    precise float det = (edges.x + edges.y) + edges.z;
-    precise float az = ray.shear.z * ta.z;
-    precise float bz = ray.shear.z * tb.z;
-    precise float cz = ray.shear.z * tc.z;
-    precise float scaled_t = (edges.x * az + edges.y * bz) + edges.z * cz;
-    precise float inv_det = 1.0 / det;
-    precise float at = scaled_t * inv_det;
-    precise float weight_b = edges.y * inv_det;
-    precise float weight_c = edges.z * inv_det;
-    u = weight_b;
-    v = weight_c;
-    t = at > t_near ? at : t_near;
-    front = (det > 0.0) == (ray.shear.z > 0.0);
-    // at >= t_min is false for NaN: overflow and zero area are no hits.
-    return !(below && above) && det != 0.0 && at >= t_min && t_near <= t_far;
+    Weights w = weigh_triangle(ray, ta.z, tb.z, tc.z, edges);
+    u = w.b;
+    v = w.c;
+    t = w.t > t_near ? w.t : t_near;
+    front = (w.det > 0.0) == (ray.shear.z > 0.0);
+    // w.t >= t_min is false for NaN: overflow and zero area are no hits.
+    return !(below && above) && w.det != 0.0 && w.t >= t_min && t_near <= t_far;
 }
 
 // Whether a point on this edge, as seen along the ray, belongs to the triangle on its left.

@@ -1,0 +1,196 @@
+// One record and a ray: what a hit is, and where the ray meets the triangle or the sphere of the record.
+// accel/traverse.c is this in C.
+#ifndef BIND_PRIMITIVE_GLSL
+#define BIND_PRIMITIVE_GLSL
+
+#include "../lib/exact.glsl"
+#include "../lib/intersect.glsl"
+#include "../lib/moller.glsl"
+#include "../lib/sphere.glsl"
+#include "trees.glsl"
+
+// What may end a traversal; always a constant, so that each use is compiled for its own.
+const uint TRAVERSE_CLOSEST = 0u;
+const uint TRAVERSE_ANY = 1u;    // any hit will do
+const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
+// The closest hit behind one that is known, in the order of (t, instance, primitive): the ray's own
+// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was.
+const uint TRAVERSE_NEXT = 3u;
+
+bool finds_closest(const uint mode)
+{
+    return mode == TRAVERSE_CLOSEST || mode == TRAVERSE_NEXT;
+}
+
+const float FLOAT_LARGEST = 3.402823466e+38;
+
+struct Hit {
+    float t; // largest t that still counts, then that of the hit
+    float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
+    float u, v;     // of a sphere: square_from_dir of the normal, object space
+    uint triangle;  // record
+    uint primitive; // of its mesh, or HIT_NONE
+    uint instance;
+    ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
+    uint status;
+};
+
+Hit make_hit(float t_max)
+{
+    Hit hit;
+    hit.t = t_max < FLOAT_LARGEST ? t_max : FLOAT_LARGEST;
+    hit.lo = hit.t;
+    hit.hi = hit.t;
+    hit.u = 0.0;
+    hit.v = 0.0;
+    hit.triangle = 0u;
+    hit.primitive = HIT_NONE;
+    hit.instance = HIT_NONE;
+    hit.filter_depth = ivec3(0);
+    hit.status = 0u;
+    return hit;
+}
+
+// A triangle or a sphere as it stands in its record.
+struct Primitive {
+    uvec4 r0, r1, r2;
+    uint index, flags, instance;
+    bool own; // the ray starts on it
+    bool is_sphere;
+};
+
+// With SPEC_FLAT the record names its instance.
+Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip_instance,
+                          uint skip_primitive)
+{
+    Primitive p;
+    p.r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
+    p.r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
+    p.r2 = uvec4(0u);
+    if (SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u)
+        p.r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    p.index = p.r0.w;
+    p.flags = p.r1.w;
+    p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
+    p.own = mode != TRAVERSE_NEXT && p.index == skip_primitive && p.instance == skip_instance;
+    p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
+    return p;
+}
+
+// Where a ray meets a primitive.
+struct Meeting {
+    bool met;
+    float t, u, v;
+    bool front; // met from outside
+    bool owned; // of several triangles that share the point one owns it
+    // NUMERICS_EXACT: bounds of the key. Not `sure`: it may be met, and settle() finds out; until then
+    // t, u and v are good where `rounded`.
+    float lo, hi;
+    bool sure, rounded;
+};
+
+Meeting bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
+{
+    ExactBounds bounds = exact_filter(ray, a, b, c);
+    Meeting m;
+    m.met = !bounds.outside && !(bounds.hi < t_min);
+    m.t = bounds.t > t_min ? bounds.t : t_min;
+    m.u = bounds.u;
+    m.v = bounds.v;
+    m.front = !bounds.inside || bounds.front;
+    m.owned = true;
+    m.lo = bounds.lo;
+    m.hi = bounds.hi;
+    m.sure = bounds.inside && bounds.lo >= t_min;
+    m.rounded = bounds.inside;
+    return m;
+}
+
+Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
+{
+    Meeting m;
+    if (SPEC_NUMERICS == NUMERICS_FAST) {
+        m.met = intersect_moller(ray.origin, ray.dir, row_vec3(r0), row_vec3(r1), row_vec3(r2),
+                                 t_min, m.t, m.u, m.v, m.front);
+        if (SPEC_FLAT != 0u)
+            m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+        m.owned = true;
+        return m;
+    }
+    precise vec3 a = row_vec3(r0) - ray.origin;
+    precise vec3 b = row_vec3(r1) - ray.origin;
+    precise vec3 c = row_vec3(r2) - ray.origin;
+    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+        m = bound_triangle(ray, t_min, a, b, c);
+        if (SPEC_FLAT != 0u)
+            m.front = !m.rounded || m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+        return m;
+    }
+    m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
+    if (SPEC_FLAT != 0u)
+        m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
+    m.owned = owns_point(ray, a, b, c);
+    return m;
+}
+
+// Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
+// end is there to be met, and only on the way inwards. No distance needs to be small for that.
+Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
+{
+    Meeting m;
+    float at = at_exit ? chord.t_far : chord.t_near;
+    // False for NaN.
+    m.met = chord.met && at >= t_min && (!own || chord.inward);
+    m.t = at > chord.t_box ? at : chord.t_box;
+    vec2 square = square_from_dir(chord_end(ray, chord, at_exit));
+    m.u = square.x;
+    m.v = square.y;
+    m.front = !at_exit;
+    m.owned = true;
+    m.lo = m.t;
+    m.hi = m.t;
+    m.sure = true;
+    m.rounded = true;
+    return m;
+}
+
+// Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
+Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
+{
+    Meeting m;
+    if (SPEC_SPHERES != SPHERES_ONLY) {
+        m = meet_triangle(ray, t_min, p.r0, p.r1, p.r2);
+        m.met = m.met && !p.own;
+    }
+    if (SPEC_SPHERES != SPHERES_NONE) {
+        Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
+        if (SPEC_SPHERES == SPHERES_ONLY)
+            m = on_sphere;
+        m.met = p.is_sphere ? on_sphere.met : m.met;
+        m.t = p.is_sphere ? on_sphere.t : m.t;
+        m.u = p.is_sphere ? on_sphere.u : m.u;
+        m.v = p.is_sphere ? on_sphere.v : m.v;
+        m.front = p.is_sphere ? on_sphere.front : m.front;
+        m.owned = p.is_sphere || m.owned;
+        m.lo = p.is_sphere ? on_sphere.lo : m.lo;
+        m.hi = p.is_sphere ? on_sphere.hi : m.hi;
+        m.sure = p.is_sphere || m.sure;
+        m.rounded = p.is_sphere || m.rounded;
+    }
+    return m;
+}
+
+Chord chord_of(RaySetup ray, float t_min, Primitive p)
+{
+    Chord chord;
+    if (SPEC_SPHERES != SPHERES_NONE)
+        chord = intersect_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x), t_min);
+    return chord;
+}
+
+bool starts_at_exit(Primitive p, Chord chord, float t_min)
+{
+    return SPEC_SPHERES != SPHERES_NONE && (p.own || !(chord.t_near >= t_min));
+}
+
+#endif

@@ -1,0 +1,94 @@
+// NUMERICS_EXACT: what the integers of lib/exact.glsl say of a record, where its floats left it open.
+// accel/traverse.c is this in C.
+#ifndef BIND_SETTLE_GLSL
+#define BIND_SETTLE_GLSL
+
+#include "primitive.glsl"
+
+// Where a record's triangle is met, exactly.
+ExactMeeting meet_record(vec3 origin, vec3 dir, uint record)
+{
+    return exact_meet(origin, dir, row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS)),
+                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u)),
+                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u)));
+}
+
+// Replaces the bounds of a meeting by what is exact.
+void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact, inout Meeting m)
+{
+    precise vec3 a = row_vec3(p.r0) - ray.origin;
+    precise vec3 b = row_vec3(p.r1) - ray.origin;
+    precise vec3 c = row_vec3(p.r2) - ray.origin;
+    vec2 sa, sb, sc;
+    vec3 edges;
+    shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
+                   turn_dominant(ray.dominant, c), sa, sb, sc, edges);
+    m.met = m.met && exact.met && exact.key >= t_min;
+    m.owned = owns_its_edges(sa, sb, sc, exact.on_edge, exact.front == (ray.shear.z > 0.0));
+    m.front = exact.front;
+    if (SPEC_FLAT != 0u)
+        m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
+    m.t = m.rounded ? m.t : exact.key;
+    m.u = m.rounded ? m.u : exact.u;
+    m.v = m.rounded ? m.v : exact.v;
+    m.lo = exact.key;
+    m.hi = exact.key;
+}
+
+// The ray as the mesh of an instance sees it.
+void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
+{
+    if (SPEC_INSTANCED != 0u) {
+        InstanceFrame frame = fetch_instance_frame(instance);
+        origin = to_object_point(frame, origin);
+        dir = to_object_dir(frame, dir);
+    }
+}
+
+// NUMERICS_EXACT: the key of a meeting, and of the hit so far where it is needed to tell which of both
+// comes first. `origin`, `dir`: of the ray in world space.
+void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
+            inout Meeting m, inout Hit hit)
+{
+    vec3 from = ray.origin, along = ray.dir;
+    bool own = true, again;
+    do {
+        ExactMeeting exact = meet_record(from, along, record);
+        again = false;
+        if (own) {
+            if (!p.is_sphere)
+                settle_triangle(ray, t_min, p, exact, m);
+            again = m.met && hit.lo < hit.hi && hit.lo <= m.lo && m.lo <= hit.hi;
+            from = origin;
+            along = dir;
+            take_to_instance(again ? hit.instance : 0u, from, along);
+            record = hit.triangle;
+        } else {
+            hit.lo = exact.key;
+            hit.hi = exact.key;
+        }
+        own = false;
+    } while (again);
+}
+
+// NUMERICS_EXACT: makes the t of a hit its key, which nothing may have asked for so far. Not for
+// shading, which does with less and would pay for it on every ray.
+void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
+{
+    bool loose = hit.lo < hit.hi;
+    if (!loose)
+        hit.t = hit.lo;
+    if (loose) {
+        take_to_instance(hit.instance, origin, dir);
+        uint row = hit.triangle * TRIANGLE_ROWS;
+        loose = !round_t(origin, dir, row_vec3(fetch_triangle_row(row)),
+                         row_vec3(fetch_triangle_row(row + 1u)),
+                         row_vec3(fetch_triangle_row(row + 2u)), hit.t);
+    }
+    if (loose)
+        hit.t = meet_record(origin, dir, hit.triangle).key;
+    hit.lo = hit.t;
+    hit.hi = hit.t;
+}
+
+#endif
