@@ -66,26 +66,41 @@ static void resample_row(void *user, uint32_t y)
     }
 }
 
-whit_result upload_environment(struct renderer *renderer)
+bool environment_resample(const struct scene_environment *environment, uint32_t *size,
+                          float **texels)
 {
-    const struct scene_environment *environment = &renderer->scene->environment;
-    struct scene_buffers *buffers = &renderer->scene_buffers;
-    buffers->environment_size = 0;
-    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb ||
-        !renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
-        return WHIT_OK;
+    *size = 0;
+    *texels = NULL;
+    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb)
+        return true;
     /* As many texels as the map has. */
-    double texels = (double)environment->width * (double)environment->height;
-    uint32_t size = (uint32_t)fmin(ceil(sqrt(texels)), ENVIRONMENT_SIDE_MAX);
-    struct resample job = {.from = environment, .size = size < 2 ? 2 : size};
+    double count = (double)environment->width * (double)environment->height;
+    uint32_t side = (uint32_t)fmin(ceil(sqrt(count)), ENVIRONMENT_SIDE_MAX);
+    struct resample job = {.from = environment, .size = side < 2 ? 2 : side};
     job.to = array_alloc_zeroed((size_t)job.size * job.size, 4 * sizeof(float));
     if (!job.to)
-        return render_no_memory(renderer, "the environment");
+        return false;
     threads_for(0, job.size, resample_row, &job);
-    buffers->environment_size = job.size;
-    whit_result result =
-        upload_words(renderer, job.to, (uint64_t)job.size * job.size * 4 * sizeof(float),
-                     BUFFER_STORAGE, "environment", &buffers->environment);
-    free(job.to);
+    *size = job.size;
+    *texels = job.to;
+    return true;
+}
+
+whit_result upload_environment(struct renderer *renderer)
+{
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    uint32_t size;
+    float *texels;
+    buffers->environment_size = 0;
+    if (!renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
+        return WHIT_OK;
+    if (!environment_resample(&renderer->scene->environment, &size, &texels))
+        return render_no_memory(renderer, "the environment");
+    if (!texels)
+        return WHIT_OK;
+    buffers->environment_size = size;
+    whit_result result = upload_words(renderer, texels, (uint64_t)size * size * 4 * sizeof(float),
+                                      BUFFER_STORAGE, "environment", &buffers->environment);
+    free(texels);
     return result;
 }

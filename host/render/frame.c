@@ -44,3 +44,15 @@ whit_result frame_fill(struct renderer *renderer)
     frame->stack_size = renderer->pixel_buffers.stack_size;
     return media_frame(renderer);
 }
+
+whit_result render_view(const struct log *log, struct accel *accel, const struct scene_pose *pose,
+                        const char *camera, uint32_t width, uint32_t height,
+                        struct gpu_frame *frame, uint32_t *kind)
+{
+    struct renderer view = {.log = *log, .accel = accel, .scene = accel->scene, .pose = *pose};
+    whit_result result = camera_frame(log, pose, camera, width, height, &view.frame, kind);
+    if (result == WHIT_OK)
+        result = media_frame(&view);
+    *frame = view.frame;
+    return result;
+}

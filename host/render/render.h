@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "abi/shade.h"
 #include "accel/accel.h"
 #include "accel/cost.h"
 #include "device/device.h"
@@ -108,5 +109,27 @@ WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gp
                                       struct gpu_cost *costs);
 /* Device time of the traversal of the last renderer_trace, without transfers; < 0: not measured. */
 double renderer_trace_device_ms(const struct renderer *renderer);
+
+/* ---- What pictures share that are made without a device (host/reference) ---- */
+
+/* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
+WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
+
+/* Of *frame the camera, the media that it is in, whether media meet, and `contact`; the rest is 0.
+ *kind: CAMERA_*. `accel` has the pose. */
+WHIT_CHECK whit_result render_view(const struct log *log, struct accel *accel,
+                                   const struct scene_pose *pose, const char *camera,
+                                   uint32_t width, uint32_t height, struct gpu_frame *frame,
+                                   uint32_t *kind);
+
+/* Sample `index` of `count` (1, 4, 16 or 64) into chunk->sample_xy and lens_xy: fixed patterns, the
+   same for every pixel. A single sample is the middle of the pixel and of the lens. */
+void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
+                   struct gpu_chunk *chunk);
+
+/* A map as an octahedral square of *size texels a side, RGBA, free(); NULL for a gradient. False
+   when memory runs out. */
+bool environment_resample(const struct scene_environment *environment, uint32_t *size,
+                          float **texels);
 
 #endif

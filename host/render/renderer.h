@@ -111,9 +111,6 @@ enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
 
-/* params.c: fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
-WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
-
 /* renderer.c: the kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
@@ -127,11 +124,6 @@ uint32_t pixels_blocks_across(uint32_t pixels);
 WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
                                     const char *selector, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
-
-/* Sample `index` of `count` (1, 4, 16 or 64) into chunk->sample_xy and lens_xy: fixed patterns, the
-   same for every pixel. A single sample is the middle of the pixel and of the lens. */
-void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
-                   struct gpu_chunk *chunk);
 
 /* whitted.comp's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a camera of
    `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */

@@ -1,0 +1,54 @@
+/* Where the ray tree of a pixel starts: the kernels' cameras and patterns of samples, in double. */
+#include "reference/inside.h"
+
+#define PI 3.14159265358979323846
+
+static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double y)
+{
+    double longitude = PI * x, latitude = -0.5 * PI * y;
+    struct dvec3 level = d3_along(d3_scale(d3_load(frame->forward), cos(longitude)),
+                                  d3_load(frame->right), sin(longitude));
+    return d3_along(d3_scale(level, cos(latitude)), d3_load(frame->up), sin(latitude));
+}
+
+/* x and y: -1..1 from left to right and from top to bottom. */
+static void take_line(const struct reference *reference, double x, double y, const float lens_xy[2],
+                      struct ray *ray)
+{
+    const struct gpu_frame *frame = &reference->frame;
+    struct dvec3 right = d3_load(frame->right), up = d3_load(frame->up);
+    struct dvec3 aside = d3_along(d3_scale(right, x), up, -y);
+    ray->origin = d3_load(frame->eye);
+    ray->dir = d3_add(d3_load(frame->forward), aside);
+    if (reference->camera == CAMERA_PANORAMA)
+        ray->dir = in_panorama(frame, x, y);
+    if (reference->camera == CAMERA_ORTHOGRAPHIC) {
+        ray->origin = d3_add(ray->origin, aside);
+        ray->dir = d3_load(frame->forward);
+    }
+    if (reference->camera == CAMERA_LENS) { /* all meet in the focus plane */
+        struct dvec3 on_lens =
+            d3_along(d3_scale(right, (double)lens_xy[0]), up, (double)lens_xy[1]);
+        ray->origin = d3_along(ray->origin, on_lens, (double)frame->focus_distance);
+        ray->dir = dvec3_sub(ray->dir, on_lens);
+    }
+    ray->dir = d3_unit_or(ray->dir, d3(0, 0, -1));
+}
+
+struct ray camera_first_ray(const struct reference *reference, uint32_t x, uint32_t y,
+                            uint32_t sample)
+{
+    const struct gpu_frame *frame = &reference->frame;
+    struct gpu_chunk chunk = {0};
+    struct ray ray = {.weight = d3_all(1.0),
+                      .media = media_around_eye(reference),
+                      .kind = REFERENCE_PRIMARY,
+                      .skip_instance = HIT_NONE,
+                      .skip_primitive = HIT_NONE,
+                      .node = REFERENCE_NONE};
+    camera_sample(frame, sample, reference->params.picture.samples, &chunk);
+    double at_x = 2.0 * (x + (double)chunk.sample_xy[0]) / frame->width - 1.0;
+    double at_y = 2.0 * (y + (double)chunk.sample_xy[1]) / frame->height - 1.0;
+    take_line(reference, at_x, at_y, chunk.lens_xy, &ray);
+    return ray;
+}

@@ -1,0 +1,233 @@
+/* What rays meet: the walk in double of accel/, with what surfaces do to rays of each kind:
+   cut-outs, surfaces without a back, filters of shadow rays. Equal t goes to the smaller instance,
+   then primitive. */
+#include <string.h>
+
+#include "accel/wide.h"
+#include "reference/inside.h"
+
+/* Boxes are of floats, and grow by more than their roundings and those of the walk. */
+#define BOX_GROWTH          0x1p-40
+#define BOX_GROWTH_INSTANCE 0x1p-20
+#define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
+
+enum mode { MODE_CLOSEST, MODE_NEXT, MODE_SHADOW };
+
+struct search {
+    struct wide_walk walk;
+    const struct reference *reference;
+    enum mode mode;
+    double world_origin[3], world_dir[3];
+    struct line line; /* in the space of the tree in hand */
+    uint32_t skip_instance, skip_primitive;
+    const struct hit *known; /* MODE_NEXT */
+    double light_end;        /* MODE_SHADOW: where absorption is told from; 0: a sun */
+    double stops[3];
+    struct hit best;
+};
+
+static void take_line(struct search *s, const double origin[3], const double dir[3], double growth)
+{
+    s->line = line_make(origin, dir);
+    memcpy(s->walk.ray.origin, origin, sizeof s->walk.ray.origin);
+    memcpy(s->walk.ray.dir, dir, sizeof s->walk.ray.dir);
+    s->walk.ray.growth = growth;
+}
+
+static bool enter_instance(struct wide_walk *walk, uint32_t instance)
+{
+    struct search *s = (struct search *)walk;
+    const struct affine *inverse = &s->reference->placings[instance].inverse;
+    double origin[3], dir[3];
+    affine_point(inverse, s->world_origin, origin);
+    affine_vector(inverse, s->world_dir, dir);
+    take_line(s, origin, dir, BOX_GROWTH);
+    return true;
+}
+
+static bool comes_before(double t, uint32_t instance, uint32_t primitive, const struct hit *other)
+{
+    if (t != other->t)
+        return t < other->t;
+    return instance != other->instance ? instance < other->instance : primitive < other->primitive;
+}
+
+/* In reach, nearer than what is known, and there for rays of this kind at all. */
+static bool is_reached(const struct search *s, const struct meeting *m,
+                       const struct gpu_triangle *record, uint32_t instance)
+{
+    if (!m->met || !(m->t >= 0.0) || !(m->t <= s->walk.ray.t_max))
+        return false;
+    if (s->mode == MODE_SHADOW)
+        return !(record->flags & TRIANGLE_NO_SHADOW);
+    if (!m->front && (record->flags & TRIANGLE_ONE_SIDED))
+        return false;
+    if (s->mode == MODE_NEXT) {
+        const struct hit *known = s->known;
+        bool same = m->t == known->t && instance == known->instance &&
+                    record->primitive == known->primitive;
+        if (same || comes_before(m->t, instance, record->primitive, known))
+            return false;
+    }
+    return comes_before(m->t, instance, record->primitive, &s->best);
+}
+
+static bool is_solid(const struct search *s, const struct meeting *m,
+                     const struct gpu_triangle *record, uint32_t instance)
+{
+    if (!(record->flags & TRIANGLE_CUTOUT))
+        return true;
+    struct surface place = surface_texture_place(s->reference, instance, m, record);
+    return place.material->alpha != SCENE_ALPHA_MASK ||
+           texture_opacity(s->reference, &place) * place.alpha >=
+               (double)place.material->alpha_cutoff;
+}
+
+static double stops_of(const struct reference *reference, double kept)
+{
+    if (!(kept > 0.0))
+        return reference->params.whole_stops ? 65535.0 : INFINITY;
+    double stops = fmax(-SHADOW_DEPTH_SCALE * log2(kept), 0.0);
+    return reference->params.whole_stops ? floor(stops + 0.5) : stops;
+}
+
+/* What a filter keeps: 1 - cover passes beside it, the rest through it. */
+static struct dvec3 kept_by(const struct reference *reference, const struct surface *place)
+{
+    const struct scene_material *m = place->material;
+    struct dvec3 passes = d3_scale(d3_load(m->transmission),
+                                   texture_sample(reference, place, SCENE_SLOT_TRANSMISSION).rgb.x);
+    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+        double metallic =
+            (double)m->metallic * texture_sample(reference, place, SCENE_SLOT_METAL_ROUGH).rgb.z;
+        struct dvec3 base = d3_times(d3_load(m->diffuse), place->color);
+        base = d3_times(base, texture_sample(reference, place, SCENE_SLOT_DIFFUSE).rgb);
+        passes = d3_scale(d3_times(passes, base), 1.0 - metallic);
+    }
+    double cover = 1.0;
+    if (m->alpha == SCENE_ALPHA_BLEND)
+        cover = clamp_unit(texture_opacity(reference, place) * place->alpha);
+    return d3_along(d3_all(1.0 - cover), passes, cover);
+}
+
+/* Kernels take the stops of plain filters from the record, ten bits a channel. */
+static void add_filter(struct search *s, const struct meeting *m, const struct gpu_triangle *record,
+                       uint32_t instance)
+{
+    const struct reference *reference = s->reference;
+    bool detail = (record->flags & TRIANGLE_FILTER_DETAIL) != 0;
+    if (!m->owned) /* an edge within glass counts once */
+        return;
+    if (!detail && reference->params.whole_stops) {
+        for (int c = 0; c < 3; ++c)
+            s->stops[c] += record->shadow >> (10 * c) & 1023u;
+        return;
+    }
+    struct surface place = surface_texture_place(reference, instance, m, record);
+    struct dvec3 kept = kept_by(reference, &place);
+    s->stops[0] += stops_of(reference, kept.x);
+    s->stops[1] += stops_of(reference, kept.y);
+    s->stops[2] += stops_of(reference, kept.z);
+    for (int c = 0; detail && !place.material->thin_walled && c < 3; ++c) {
+        double absorbed =
+            (double)place.material->absorption[c] * (s->light_end - m->t) * STOPS_OF_ABSORPTION;
+        if (reference->params.whole_stops)
+            absorbed = floor(absorbed + 0.5);
+        s->stops[c] += m->front ? absorbed : -absorbed;
+    }
+}
+
+/* True: the ray ends here. */
+static bool take_meeting(struct search *s, const struct meeting *m, uint32_t record_index,
+                         uint32_t instance)
+{
+    const struct gpu_triangle *record = &s->reference->accel->triangles[record_index];
+    if (!is_reached(s, m, record, instance) || !is_solid(s, m, record, instance))
+        return false;
+    if (s->mode == MODE_SHADOW && (record->flags & TRIANGLE_FILTER) &&
+        !s->reference->params.picture.opaque_shadows) {
+        add_filter(s, m, record, instance);
+        return false;
+    }
+    s->best = (struct hit){.t = m->t,
+                           .u = m->u,
+                           .v = m->v,
+                           .normal = m->normal,
+                           .record = record_index,
+                           .primitive = record->primitive,
+                           .instance = instance};
+    s->walk.limit = m->t;
+    s->walk.done = s->mode == MODE_SHADOW;
+    return true;
+}
+
+static void visit_record(struct wide_walk *walk, uint32_t index, uint32_t instance)
+{
+    struct search *s = (struct search *)walk;
+    const struct gpu_triangle *record = &walk->accel->triangles[index];
+    bool own = s->mode != MODE_NEXT && record->primitive == s->skip_primitive &&
+               instance == s->skip_instance;
+    struct meeting m;
+    if (record->flags & TRIANGLE_SPHERE) {
+        m = meet_sphere(&s->line, record, false, own);
+        bool ended = take_meeting(s, &m, index, instance);
+        m = meet_sphere(&s->line, record, true, own);
+        if (!ended)
+            take_meeting(s, &m, index, instance);
+        return;
+    }
+    if (own)
+        return;
+    m = meet_triangle(&s->line, record);
+    if (record->flags & TRIANGLE_MIRRORED && walk->accel->flat)
+        m.front = !m.front;
+    take_meeting(s, &m, index, instance);
+}
+
+static struct search search_begin(const struct reference *reference, enum mode mode,
+                                  struct dvec3 origin, struct dvec3 dir, double t_max)
+{
+    struct search s = {.walk = {.accel = reference->accel,
+                                .limit = INFINITY,
+                                .ray = {.t_max = t_max},
+                                .enter = enter_instance,
+                                .visit = visit_record},
+                       .reference = reference,
+                       .mode = mode,
+                       .world_origin = {origin.x, origin.y, origin.z},
+                       .world_dir = {dir.x, dir.y, dir.z},
+                       .best = {.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE}};
+    bool one_space = reference->accel->single_identity || reference->accel->flat;
+    take_line(&s, s.world_origin, s.world_dir, one_space ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
+    return s;
+}
+
+struct hit hit_closest(const struct reference *reference, const struct ray *ray)
+{
+    struct search s = search_begin(reference, MODE_CLOSEST, ray->origin, ray->dir, INFINITY);
+    s.skip_instance = ray->skip_instance;
+    s.skip_primitive = ray->skip_primitive;
+    wide_walk_run(&s.walk);
+    return s.best;
+}
+
+struct hit hit_next(const struct reference *reference, const struct ray *ray,
+                    const struct hit *known, double t_max)
+{
+    struct search s = search_begin(reference, MODE_NEXT, ray->origin, ray->dir, t_max);
+    s.known = known;
+    wide_walk_run(&s.walk);
+    return s.best;
+}
+
+struct shadow hit_shadow(const struct reference *reference, const struct shadow_ray *ray)
+{
+    struct search s = search_begin(reference, MODE_SHADOW, ray->origin, ray->dir, ray->distance);
+    s.skip_instance = ray->skip_instance;
+    s.skip_primitive = ray->skip_primitive;
+    s.light_end = isfinite(ray->distance) ? ray->distance : 0.0;
+    wide_walk_run(&s.walk);
+    struct shadow out = {.blocked = s.best.primitive != HIT_NONE, .blocker = s.best};
+    memcpy(out.stops, s.stops, sizeof out.stops);
+    return out;
+}

@@ -1,0 +1,186 @@
+/* Where light comes from: lights, flat emitters by exact integrals, the sky. */
+#include <float.h>
+
+#include "reference/inside.h"
+
+#define PI 3.14159265358979323846
+
+static uint32_t reverse_bits(uint32_t x)
+{
+    uint32_t out = 0;
+    for (int i = 0; i < 32; ++i)
+        out |= (x >> i & 1u) << (31 - i);
+    return out;
+}
+
+/* The kernels' set of points: Hammersley, moved as a whole for each sample of the pixel. In 2^-32.
+ */
+static void emitter_place(uint32_t index, uint32_t count, uint32_t sample, double uv[2])
+{
+    uint32_t half = (uint32_t)(UINT64_C(0x80000000) / count);
+    uint32_t x = 2 * half * index + half, y = reverse_bits(index) + half;
+    x += sample * 0xc13fa9a9u;
+    y += sample * 0x91e10da6u;
+    uv[0] = (x >> 8) * 0x1p-24;
+    uv[1] = (y >> 8) * 0x1p-24;
+}
+
+static struct dvec3 three(const double v[3])
+{
+    return d3(v[0], v[1], v[2]);
+}
+
+static struct dvec3 emitter_point(const struct tracer *tracer, const struct scene_light *light,
+                                  uint32_t index)
+{
+    double uv[2];
+    emitter_place(index, tracer->reference->light_samples, tracer->sample, uv);
+    double u = uv[0], v = uv[1];
+    if (light->kind == SCENE_LIGHT_TRIANGLE) { /* keeps areas (Turk 1990) */
+        double root = sqrt(uv[0]);
+        u = root * (1.0 - uv[1]);
+        v = root * uv[1];
+    }
+    return d3_along(d3_along(three(light->position), three(light->edge_u), u), three(light->edge_v),
+                    v);
+}
+
+double light_area_share(const struct reference *reference, const struct scene_light *light)
+{
+    double area = d3_length(dvec3_cross(three(light->edge_u), three(light->edge_v)));
+    if (light->kind == SCENE_LIGHT_TRIANGLE)
+        area *= 0.5;
+    return area / (PI * reference->light_samples);
+}
+
+static double spot_share(const struct scene_light *light, double cos_away)
+{
+    double outer = (double)light->cos_outer, inner = (double)light->cos_inner;
+    double soft = clamp_unit((cos_away - outer) / fmax(inner - outer, 1e-6));
+    return soft * soft;
+}
+
+static struct dvec3 at_most(struct dvec3 light)
+{
+    return d3(fmin(light.x, LIGHT_MOST), fmin(light.y, LIGHT_MOST), fmin(light.z, LIGHT_MOST));
+}
+
+bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
+              struct dvec3 p, struct light_turn *turn)
+{
+    bool flat = scene_light_is_flat(light);
+    *turn = (struct light_turn){.arriving = d3_load(light->color)};
+    struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
+    if (light->kind == SCENE_LIGHT_DIRECTIONAL) {
+        turn->to_light = d3_scale(direction, -1.0);
+        turn->distance = INFINITY;
+        return true;
+    }
+    struct dvec3 from = flat ? emitter_point(tracer, light, index) : three(light->position);
+    struct dvec3 way = dvec3_sub(from, p);
+    turn->distance = d3_length(way);
+    if (!(turn->distance > 0.0))
+        return false;
+    turn->to_light = d3_scale(way, 1.0 / turn->distance);
+    double square = fmax(turn->distance * turn->distance, (double)FLT_MIN);
+    double cos_away = -dvec3_dot(turn->to_light, direction), share = 1.0;
+    double cos_emitter = light->two_sided ? fabs(cos_away) : fmax(cos_away, 0.0);
+    if (light->falloff || flat || light->kind == SCENE_LIGHT_AREA_SAMPLE)
+        share /= square;
+    if (light->kind == SCENE_LIGHT_SPOT)
+        share *= spot_share(light, cos_away);
+    if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+        share *= cos_emitter;
+    if (flat) {
+        turn->strength = fmin(cos_emitter / square, LIGHT_MOST);
+        share = light_area_share(tracer->reference, light) * turn->strength;
+    }
+    turn->arriving = at_most(d3_scale(turn->arriving, share));
+    if (light->range > 0.0f && turn->distance > (double)light->range)
+        return false;
+    if (flat) /* what lies in one plane with it casts no shadow of its light */
+        turn->distance *= 1.0 - 1.0 / 4096.0;
+    return d3_largest(turn->arriving) > 0.0;
+}
+
+/* ---- Form factors ---- */
+
+/* The angle of an edge times the cosine of n to the normal of the plane through it (Lambert 1760).
+ */
+static double edge_term(struct dvec3 n, struct dvec3 a, struct dvec3 b)
+{
+    struct dvec3 normal = dvec3_cross(a, dvec3_sub(b, a));
+    double size = d3_length(normal);
+    return size > 0.0 ? atan2(size, dvec3_dot(a, b)) * dvec3_dot(n, normal) / size : 0.0;
+}
+
+/* What is above the horizon of n, by Sutherland and Hodgman; the number of its corners. */
+static int clip_to_horizon(struct dvec3 n, const struct dvec3 *corners, int count,
+                           struct dvec3 *out)
+{
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+        struct dvec3 a = corners[i], b = corners[(i + 1) % count];
+        double up_a = dvec3_dot(n, a), up_b = dvec3_dot(n, b);
+        if (up_a > 0.0)
+            out[kept++] = a;
+        if ((up_a > 0.0) != (up_b > 0.0))
+            out[kept++] = d3_along(a, dvec3_sub(b, a), up_a / (up_a - up_b));
+    }
+    return kept;
+}
+
+double light_form_factor(const struct scene_light *light, struct dvec3 p, struct dvec3 n)
+{
+    struct dvec3 u = three(light->edge_u), v = three(light->edge_v), clipped[8];
+    struct dvec3 c0 = dvec3_sub(three(light->position), p), direction = three(light->direction);
+    bool triangle = light->kind == SCENE_LIGHT_TRIANGLE;
+    const struct dvec3 corners[4] = {
+        c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
+    double height = -dvec3_dot(c0, direction), sum = 0.0;
+    if (fabs(height) <= 4.0 * DBL_EPSILON * d3_length(c0)) /* in its plane */
+        return 0.0;
+    int count = clip_to_horizon(n, corners, triangle ? 3 : 4, clipped);
+    for (int i = 0; i < count; ++i)
+        sum += edge_term(n, clipped[i], clipped[(i + 1) % count]);
+    double factor = sum * (-0.5 / PI);
+    return height > 0.0 ? fmax(factor, 0.0) : light->two_sided ? fmax(-factor, 0.0) : 0.0;
+}
+
+/* ---- The sky ---- */
+
+static struct dvec3 sky_texel(const struct reference *reference, double x, double y)
+{
+    double last = (double)reference->sky_size - 1.0;
+    size_t column = (size_t)fmin(fmax(x, 0.0), last), row = (size_t)fmin(fmax(y, 0.0), last);
+    return d3_load(&reference->sky[4 * (row * reference->sky_size + column)]);
+}
+
+/* Unit direction on the octahedral square, +y in its middle (Meyer et al. 2010). */
+static struct dvec3 sky_map(const struct reference *reference, struct dvec3 dir)
+{
+    double size = fabs(dir.x) + fabs(dir.y) + fabs(dir.z), x = dir.x / size, z = dir.z / size;
+    if (dir.y < 0.0) {
+        double folded = copysign(1.0 - fabs(z), x >= 0.0 ? 1.0 : -1.0);
+        z = copysign(1.0 - fabs(x), z >= 0.0 ? 1.0 : -1.0);
+        x = folded;
+    }
+    x = (x * 0.5 + 0.5) * reference->sky_size - 0.5;
+    z = (z * 0.5 + 0.5) * reference->sky_size - 0.5;
+    double left = floor(x), top = floor(z);
+    struct dvec3 above =
+        d3_mix(sky_texel(reference, left, top), sky_texel(reference, left + 1.0, top), x - left);
+    struct dvec3 below = d3_mix(sky_texel(reference, left, top + 1.0),
+                                sky_texel(reference, left + 1.0, top + 1.0), x - left);
+    return d3_mix(above, below, z - top);
+}
+
+struct dvec3 light_sky(const struct reference *reference, struct dvec3 dir)
+{
+    const struct scene_environment *sky = &reference->scene->environment;
+    if (reference->sky)
+        return sky_map(reference, dir);
+    struct dvec3 end = d3_load(dir.y >= 0.0 ? sky->zenith : sky->ground);
+    return d3_times(d3_mix(d3_load(sky->horizon), end, fmin(fabs(dir.y), 1.0)),
+                    d3_load(sky->scale));
+}

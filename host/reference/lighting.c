@@ -1,0 +1,217 @@
+/* Light that reaches a surface straight from the lights, with shadows. */
+#include <string.h>
+
+#include "reference/inside.h"
+
+#define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
+#define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
+
+/* What all shadow rays of a hit have in common. */
+struct receiver {
+    const struct surface *s;
+    const struct ray *ray; /* that met it */
+    struct dvec3 lift;     /* from the hit point to where shadow rays start */
+    struct dvec3 absorption;
+    uint32_t instance, primitive; /* that was met */
+    bool lifted;
+};
+
+/* From a point, `from` away from a vertex, onto the tangent plane there, outwards only. */
+static struct dvec3 lift_to_plane(struct dvec3 from, struct dvec3 n, struct dvec3 ng, double slack,
+                                  bool *smooth)
+{
+    double cosine = dvec3_dot(n, ng);
+    if (cosine < 0.0)
+        n = d3_scale(n, -1.0);
+    *smooth = *smooth && fabs(cosine) >= SMOOTH_COSINE;
+    return d3_scale(n, fmax(-dvec3_dot(from, n) - slack, 0.0));
+}
+
+/* To the mean of the projections on the tangent planes at the vertices (Hanika 2021, "Hacking the
+   Shadow Terminator"). The kernels' slack is part of it: a surface flatter than that is flat. */
+static struct dvec3 smooth_lift(const struct reference *reference, const struct surface *s)
+{
+    struct dvec3 from = d3_along(d3_scale(s->e1, s->u), s->e2, s->v);
+    const struct dvec3 away[3] = {from, dvec3_sub(from, s->e1), dvec3_sub(from, s->e2)};
+    const double weights[3] = {1.0 - s->u - s->v, s->u, s->v};
+    double slack = fmax(d3_size(s->e1), d3_size(s->e2)) / 65536.0;
+    struct dvec3 lift = d3_all(0.0);
+    bool smooth = !s->sphere;
+    for (uint32_t i = 0; i < 3; ++i) {
+        struct dvec3 n = surface_vertex_normal(reference, s, i);
+        lift = d3_along(lift, lift_to_plane(away[i], n, s->ng, slack, &smooth), weights[i]);
+    }
+    return smooth ? lift : d3_all(0.0);
+}
+
+/* What the filters on the way and the media around the receiver leave. */
+static struct dvec3 share_of(const struct reference *reference, const struct receiver *at,
+                             const struct shadow_ray *ray, const struct shadow *shadow)
+{
+    double end = isfinite(ray->distance) ? ray->distance : 0.0, share[3];
+    double around[3] = {at->absorption.x, at->absorption.y, at->absorption.z};
+    for (int c = 0; c < 3; ++c) {
+        double stops = around[c] * end * STOPS_OF_ABSORPTION;
+        if (reference->params.whole_stops)
+            stops = floor(stops + 0.5);
+        stops = fmax(shadow->stops[c] + stops, 0.0);
+        share[c] = exp2(-stops / SHADOW_DEPTH_SCALE);
+    }
+    return d3(share[0], share[1], share[2]);
+}
+
+static void record_shadow(struct tracer *tracer, const struct receiver *at,
+                          const struct shadow_ray *ray, const struct shadow *shadow,
+                          struct dvec3 share, uint32_t light, uint32_t point)
+{
+    const struct hit *blocker = &shadow->blocker;
+    struct reference_ray node = {
+        .kind = REFERENCE_SHADOW,
+        .end = shadow->blocked         ? REFERENCE_END_BLOCKED
+               : d3_largest(share) > 0 ? REFERENCE_END_LIGHT
+                                       : REFERENCE_END_ABSORBED,
+        .parent = at->ray->node,
+        .bounces = ray_bounces(at->ray->steps),
+        .origin = {ray->origin.x, ray->origin.y, ray->origin.z},
+        .dir = {ray->dir.x, ray->dir.y, ray->dir.z},
+        .t = shadow->blocked ? blocker->t : ray->distance,
+        .instance = blocker->instance,
+        .primitive = blocker->primitive,
+        .material = REFERENCE_NONE,
+        .medium = REFERENCE_NONE,
+        .light = light,
+        .point = point,
+        .weight = {share.x, share.y, share.z},
+    };
+    if (shadow->blocked)
+        node.material = surface_at(tracer->reference, blocker).material_index;
+    tree_record(tracer, &node);
+}
+
+/* How much of a light passes. What is lifted off its triangle may be met by light from below the
+   triangle's plane, which must then pass beside the triangle. */
+static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at,
+                                const struct light_turn *turn, uint32_t light, uint32_t point)
+{
+    const struct reference *reference = tracer->reference;
+    if (reference->params.picture.no_shadows)
+        return d3_all(1.0);
+    const struct surface *s = at->s;
+    bool above = dvec3_dot(turn->to_light, s->ng) > 0.0;
+    struct shadow_ray ray = {.origin = surface_leave(d3_add(s->p, at->lift), s->ng),
+                             .dir = turn->to_light,
+                             .distance = turn->distance,
+                             .skip_instance = at->instance,
+                             .skip_primitive = above ? at->primitive : HIT_NONE};
+    if (at->lifted && isfinite(ray.distance)) {
+        struct dvec3 way = dvec3_sub(d3_along(s->p, turn->to_light, turn->distance), ray.origin);
+        ray.distance = d3_length(way);
+        ray.dir = d3_unit_or(way, ray.dir);
+    }
+    struct shadow shadow = hit_shadow(reference, &ray);
+    struct dvec3 share = shadow.blocked ? d3_all(0.0) : share_of(reference, at, &ray, &shadow);
+    ++tracer->stats.rays[RAY_SHADOW];
+    if (tracer->records)
+        record_shadow(tracer, at, &ray, &shadow, share, light, point);
+    return share;
+}
+
+/* What one light adds. Of flat emitters the points tell what share is seen, each weighted by what
+   it would send; the light itself is the integral over the emitter. Their highlight is not scaled
+   up where points miss most of what is above the horizon. */
+struct lit {
+    struct dvec3 sum, open; /* open: without shadows */
+    double weight;          /* flat emitters: cos cos / distance^2 */
+    struct dvec3 visible, highlight;
+};
+
+static void add_point(struct tracer *tracer, const struct receiver *at, const struct optics *o,
+                      uint32_t index, uint32_t point, struct lit *lit)
+{
+    const struct scene_light *light = &tracer->reference->pose.lights[index];
+    const struct surface *s = at->s;
+    struct light_turn turn;
+    if (!light_at(tracer, light, point, s->p, &turn))
+        return;
+    double cos_light = dvec3_dot(turn.to_light, s->ns);
+    if (!(cos_light > 0.0))
+        return;
+    bool wanted = at->lifted || dvec3_dot(turn.to_light, s->ng) > 0.0;
+    struct dvec3 highlight =
+        optics_highlight(o, s->ns, turn.to_light, d3_scale(at->ray->dir, -1.0));
+    struct dvec3 reflected = d3_along(highlight, o->diffuse, cos_light);
+    wanted = wanted && !(reflected.x + reflected.y + reflected.z <= 0.0);
+    struct dvec3 share = d3_all(0.0);
+    if (wanted)
+        share = light_share(tracer, at, &turn, index, point);
+    if (scene_light_is_flat(light)) {
+        double weight = cos_light * turn.strength;
+        lit->weight += weight;
+        lit->visible = d3_along(lit->visible, share, weight);
+        lit->highlight = d3_along(lit->highlight, d3_times(highlight, share), turn.strength);
+    } else if (wanted) {
+        struct dvec3 arriving = d3_times(reflected, turn.arriving);
+        lit->open = d3_add(lit->open, arriving);
+        lit->sum = d3_add(lit->sum, d3_times(arriving, share));
+    }
+}
+
+static void add_emitter(const struct reference *reference, const struct scene_light *light,
+                        const struct surface *s, const struct optics *o, struct lit *lit)
+{
+    if (!(lit->weight > 0.0))
+        return;
+    double factor = light_form_factor(light, s->p, s->ns);
+    double share = light_area_share(reference, light);
+    struct dvec3 radiance = d3_load(light->color);
+    struct dvec3 seen = d3_scale(lit->visible, factor / lit->weight);
+    struct dvec3 highlight =
+        d3_scale(lit->highlight, share * fmin(factor / (share * lit->weight), 1.0));
+    struct dvec3 light_seen = d3_add(d3_times(o->diffuse, seen), highlight);
+    lit->sum = d3_add(lit->sum, d3_times(radiance, light_seen));
+    lit->open = d3_add(lit->open, d3_times(radiance, d3_scale(o->diffuse, factor)));
+}
+
+struct dvec3 lighting_local(struct tracer *tracer, const struct surface *s, const struct optics *o,
+                            const struct ray *ray, const struct hit *hit, const struct media *media,
+                            struct dvec3 *open)
+{
+    const struct reference *reference = tracer->reference;
+    const struct scene_pose *pose = &reference->pose;
+    struct dvec3 sum =
+        d3_add(o->emission, d3_times(o->ambient, d3_load(reference->scene->ambient)));
+    struct receiver at = {.s = s,
+                          .ray = ray,
+                          .lift = smooth_lift(reference, s),
+                          .absorption = media_absorption(reference, media),
+                          .instance = hit->instance,
+                          .primitive = hit->primitive};
+    if (reference->params.picture.no_shadows)
+        at.lift = d3_all(0.0);
+    if (reference->params.picture.opaque_shadows)
+        at.absorption = d3_all(0.0);
+    at.lifted = !d3_is_zero(at.lift);
+    *open = d3_all(0.0);
+    for (uint32_t i = 0; i < pose->light_count; ++i) {
+        const struct scene_light *light = &pose->lights[i];
+        bool flat = scene_light_is_flat(light);
+        struct lit lit = {.weight = 0.0};
+        for (uint32_t k = 0; k < (flat ? reference->light_samples : 1); ++k)
+            add_point(tracer, &at, o, i, k, &lit);
+        if (flat)
+            add_emitter(reference, light, s, o, &lit);
+        sum = d3_add(sum, lit.sum);
+        *open = d3_add(*open, lit.open);
+    }
+    return sum;
+}
+
+static double caught(double light, double open)
+{
+    return open > 1e-30 ? clamp_unit(light / open) : 1.0;
+}
+
+struct dvec3 lighting_caught(struct dvec3 light, struct dvec3 open)
+{
+    return d3(caught(light.x, open.x), caught(light.y, open.y), caught(light.z, open.z));
+}

@@ -1,0 +1,266 @@
+/* A reference from its making to its end, pictures by rows, ray trees by pixels. */
+#include <float.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/clock.h"
+#include "base/threads.h"
+#include "reference/inside.h"
+
+enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
+
+static whit_result check_params(const struct log *log, const struct scene *scene,
+                                struct render_params *params)
+{
+    if (params->adaptive != 0.0 || params->effects_removed) {
+        log_error(log, "a reference picture has all effects, and as many samples in every pixel");
+        return WHIT_ERROR_USAGE;
+    }
+    if (scene->pictures_dropped) {
+        log_error(log, "%s: its textures were dropped, no reference can be made from it",
+                  scene->name);
+        return WHIT_ERROR_USAGE;
+    }
+    return params_check(log, params);
+}
+
+static double linear_of(double srgb)
+{
+    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+static bool has_alpha(const struct scene_texture *t)
+{
+    size_t count = (size_t)t->width * t->height;
+    for (size_t i = 0; i < count; ++i) {
+        if (t->rgba[4 * i + 3] != 255)
+            return true;
+    }
+    return false;
+}
+
+static bool fill_tables(struct reference *r)
+{
+    const struct scene *scene = r->scene;
+    r->placings = array_alloc(r->pose.instance_count, sizeof *r->placings);
+    r->alphas = array_alloc(scene->texture_count, sizeof *r->alphas);
+    if (!r->placings || !r->alphas)
+        return false;
+    for (uint32_t i = 0; i < r->pose.instance_count; ++i) {
+        r->placings[i].forward = r->pose.instances[i];
+        if (!affine_invert(&r->pose.instances[i], &r->placings[i].inverse))
+            r->placings[i].inverse = affine_identity(); /* poses have none of these */
+    }
+    for (uint32_t i = 0; i < scene->texture_count; ++i)
+        r->alphas[i] = has_alpha(&scene->textures[i]);
+    for (int i = 0; i < 256; ++i)
+        r->linear[i] = linear_of(i / 255.0);
+    return environment_resample(&scene->environment, &r->sky_size, &r->sky);
+}
+
+static whit_result create_parts(struct reference *r)
+{
+    struct render_params *params = &r->params.picture;
+    whit_result result = scene_pose_init(r->scene, params->time_s, &r->pose);
+    if (result == WHIT_OK)
+        result = accel_pose(r->accel, &r->pose);
+    if (result == WHIT_OK)
+        result = render_view(&r->log, r->accel, &r->pose, params->camera, params->width,
+                             params->height, &r->frame, &r->camera);
+    if (result == WHIT_OK && !fill_tables(r)) {
+        log_error(&r->log, "out of memory for the reference");
+        result = WHIT_ERROR_MEMORY;
+    }
+    r->light_samples = params->light_samples ? params->light_samples : LIGHT_SAMPLES_DEFAULT;
+    r->bailout = params->bailout == 0.0  ? WHIT_BAILOUT_DEFAULT
+                 : params->bailout < 0.0 ? DBL_MIN
+                                         : params->bailout;
+    return result;
+}
+
+whit_result reference_create(const struct log *log, struct accel *accel,
+                             const struct reference_params *params, struct reference **out)
+{
+    *out = NULL;
+    struct reference *r = calloc(1, sizeof *r);
+    if (!r)
+        return WHIT_ERROR_MEMORY;
+    r->log = *log;
+    r->accel = accel;
+    r->scene = accel->scene;
+    r->params = *params;
+    whit_result result = check_params(log, r->scene, &r->params.picture);
+    if (result == WHIT_OK)
+        result = create_parts(r);
+    if (result != WHIT_OK) {
+        reference_destroy(r);
+        return result;
+    }
+    *out = r;
+    return WHIT_OK;
+}
+
+void reference_destroy(struct reference *r)
+{
+    if (!r)
+        return;
+    scene_pose_finish(&r->pose);
+    free(r->placings);
+    free(r->alphas);
+    free(r->sky);
+    free(r);
+}
+
+/* ---- Pictures ---- */
+
+struct job {
+    const struct reference *reference;
+    struct image *color, *ids;
+    struct tracer *rows; /* of the band: what each row counted */
+    uint32_t first_row;
+};
+
+static bool stopped(const struct reference *r)
+{
+    return r->params.picture.cancel && *r->params.picture.cancel;
+}
+
+static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x, uint32_t y)
+{
+    const struct render_params *params = &job->reference->params.picture;
+    size_t pixel = (size_t)y * params->width + x;
+    struct dvec3 sum = d3_all(0.0);
+    for (uint32_t i = 0; i < params->samples; ++i) {
+        struct hit first = {.primitive = HIT_NONE, .instance = HIT_NONE};
+        tracer->sample = i;
+        sum = d3_add(sum, tree_trace(tracer, x, y, &first));
+        if (i == 0 && job->ids) {
+            job->ids->words[2 * pixel] = first.instance;
+            job->ids->words[2 * pixel + 1] = first.primitive;
+        }
+    }
+    sum = d3_scale(sum, 1.0 / params->samples);
+    float *out = &job->color->pixels[4 * pixel];
+    out[0] = (float)sum.x;
+    out[1] = (float)sum.y;
+    out[2] = (float)sum.z;
+    out[3] = 1.0f;
+    tracer->stats.non_finite += !d3_is_finite(sum);
+}
+
+static void draw_row(void *user, uint32_t index)
+{
+    struct job *job = user;
+    struct tracer tracer = {.reference = job->reference};
+    for (uint32_t x = 0; x < job->reference->params.picture.width; ++x) {
+        if (tracer.lacks_memory || stopped(job->reference))
+            break;
+        draw_pixel(job, &tracer, x, job->first_row + index);
+    }
+    tree_finish(&tracer);
+    job->rows[index] = tracer;
+}
+
+static void add_stats(const struct reference_stats *from, struct reference_stats *to)
+{
+    for (uint32_t i = 0; i < RAY_KIND_COUNT; ++i)
+        to->rays[i] += from->rays[i];
+    to->cut_depth += from->cut_depth;
+    to->cut_bailout += from->cut_bailout;
+    to->non_finite += from->non_finite;
+}
+
+static whit_result tracer_result(const struct reference *r, const struct tracer *tracer)
+{
+    if (tracer->lacks_memory) {
+        log_error(&r->log, "out of memory for the rays of a pixel");
+        return WHIT_ERROR_MEMORY;
+    }
+    if (tracer->too_many_media) {
+        log_error(&r->log, "a ray is in more than %u media at once", MEDIA_MOST);
+        return WHIT_ERROR_STATUS;
+    }
+    return WHIT_OK;
+}
+
+/* All rows, band by band: between them the caller's thread tells of progress. */
+static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_ms,
+                              struct reference_stats *stats)
+{
+    const struct reference *r = job->reference;
+    const struct render_params *params = &r->params.picture;
+    whit_result result = WHIT_OK;
+    for (uint32_t y = 0; result == WHIT_OK && y < params->height; y += band_rows) {
+        uint32_t rows = params->height - y < band_rows ? params->height - y : band_rows;
+        job->first_row = y;
+        threads_for(r->params.thread_count, rows, draw_row, job);
+        for (uint32_t i = 0; result == WHIT_OK && i < rows; ++i) {
+            result = tracer_result(r, &job->rows[i]);
+            add_stats(&job->rows[i].stats, stats);
+        }
+        if (result == WHIT_OK && stopped(r))
+            result = WHIT_ERROR_CANCELLED;
+        if (result == WHIT_OK && params->time_limit_s > 0.0 &&
+            clock_ms() - start_ms > 1000.0 * params->time_limit_s)
+            result = WHIT_ERROR_TIME_LIMIT;
+        if (result == WHIT_OK && params->progress)
+            params->progress(params->progress_user, (double)(y + rows) / params->height);
+    }
+    return result;
+}
+
+whit_result reference_render(const struct reference *r, struct image *color, struct image *ids,
+                             struct reference_stats *stats)
+{
+    const struct render_params *params = &r->params.picture;
+    struct reference_stats ignored;
+    double start_ms = clock_ms();
+    uint32_t threads = r->params.thread_count ? r->params.thread_count : threads_available();
+    uint32_t band_rows =
+        threads > BAND_ROWS / BAND_ROWS_OF_THREAD ? threads * BAND_ROWS_OF_THREAD : BAND_ROWS;
+    stats = stats ? stats : &ignored;
+    *stats = (struct reference_stats){0};
+    *color = (struct image){0};
+    if (ids)
+        *ids = (struct image){0};
+    struct job job = {.reference = r, .color = color, .ids = ids};
+    job.rows = array_alloc_zeroed(band_rows, sizeof *job.rows);
+    whit_result result = job.rows ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = image_init(color, params->width, params->height, 4, false);
+    if (result == WHIT_OK && ids)
+        result = image_init(ids, params->width, params->height, 2, true);
+    if (result == WHIT_OK)
+        result = draw_bands(&job, band_rows, start_ms, stats);
+    free(job.rows);
+    stats->render_ms = clock_ms() - start_ms;
+    if (result != WHIT_OK) {
+        image_finish(color);
+        image_finish(ids);
+    }
+    return result;
+}
+
+whit_result reference_ray_tree(const struct reference *r, uint32_t x, uint32_t y, uint32_t sample,
+                               struct reference_ray **rays, uint32_t *count)
+{
+    const struct render_params *params = &r->params.picture;
+    struct tracer tracer = {.reference = r, .sample = sample, .records = true};
+    struct hit first;
+    *rays = NULL;
+    *count = 0;
+    if (x >= params->width || y >= params->height || sample >= params->samples) {
+        log_error(&r->log, "pixel %u,%u, sample %u: the picture has %ux%u pixels of %u samples", x,
+                  y, sample, params->width, params->height, params->samples);
+        return WHIT_ERROR_USAGE;
+    }
+    tree_trace(&tracer, x, y, &first);
+    whit_result result = tracer_result(r, &tracer);
+    if (result == WHIT_OK) {
+        *rays = tracer.nodes;
+        *count = tracer.node_count;
+        tracer.nodes = NULL;
+    }
+    tree_finish(&tracer);
+    return result;
+}
