@@ -126,6 +126,7 @@ struct surface {
     struct dvec3 color;     /* of the vertices */
     double alpha;
     double u, v; /* of spheres: texture coordinates */
+    double room; /* by how much a ray starts off the surface */
     const struct scene_mesh *mesh;
     const struct scene_material *material;
     uint32_t material_index, instance, primitive;
@@ -144,9 +145,6 @@ struct dvec3 surface_vertex_normal(const struct reference *reference, const stru
 /* What identifies the place for textures, without the rest: mesh, material, u, v, colours. */
 struct surface surface_texture_place(const struct reference *reference, uint32_t instance,
                                      const struct meeting *m, const struct gpu_triangle *record);
-/* Where a ray starts that leaves the surface to the side of `side`. */
-struct dvec3 surface_leave(struct dvec3 p, struct dvec3 side);
-
 /* ---- texture.c ---- */
 
 struct texel {
@@ -206,6 +204,7 @@ struct crossing {
     bool seen;
     /* Where what passes goes on: the last of the surfaces that are crossed here. */
     struct dvec3 p, ng;
+    double room;
     uint32_t instance, primitive;
 };
 

@@ -98,7 +98,7 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
         return d3_all(1.0);
     const struct surface *s = at->s;
     bool above = dvec3_dot(turn->to_light, s->ng) > 0.0;
-    struct shadow_ray ray = {.origin = surface_leave(d3_add(s->p, at->lift), s->ng),
+    struct shadow_ray ray = {.origin = d3_along(d3_add(s->p, at->lift), s->ng, s->room),
                              .dir = turn->to_light,
                              .distance = turn->distance,
                              .skip_instance = at->instance,

@@ -169,11 +169,13 @@ static void gather_touching(const struct reference *reference, const struct ray 
         add_crossed(crossed, entry, hit.instance, leaves);
         c->p = other.p;
         c->ng = other.ng;
+        c->room = other.room;
         c->instance = hit.instance;
         c->primitive = hit.primitive;
         if (rank_of(&other, leaves) > rank) {
             rank = rank_of(&other, leaves);
             other.p = s->p;
+            other.room = s->room;
             *s = other;
         }
     }
@@ -212,6 +214,7 @@ struct crossing media_cross(struct tracer *tracer, const struct ray *ray, const 
                          .seen = true,
                          .p = s->p,
                          .ng = s->ng,
+                         .room = s->room,
                          .instance = hit->instance,
                          .primitive = hit->primitive};
     if (!media_bounded_by(s->material))

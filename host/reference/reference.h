@@ -7,8 +7,9 @@
    Nothing that decides a colour is shared with the kernels or with their float twins.
 
    What is other than in the kernels, on purpose:
-   - Rays start at the double hit point, moved off the surface by 2^-45 of its coordinates, and do
-   not meet the primitive that they start on. Kernels move by the bounds of float errors.
+   - Rays start at the double hit point, moved off the surface by 2^-45 of the coordinates it comes
+   from, and do not meet the primitive that they start on. Kernels move by the bounds of float
+   errors.
    - Instances are placed by the pose's matrices in double. Vertices, materials and camera vectors
    are the floats that the kernels read. Vertex colours are not rounded to 16 bits.
    - Filters of shadow rays weaken light by what they let through, not by whole 1/64 stops, unless

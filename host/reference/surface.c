@@ -1,8 +1,9 @@
 /* From a hit to what shading needs: point, normals, texture coordinates, material. */
 #include "reference/inside.h"
 
-#define PI           3.14159265358979323846
-#define LEAVE_GROWTH 0x1p-45
+#define PI   3.14159265358979323846
+/* Of the coordinates that a point comes from: more than what it is off by. */
+#define ROOM 0x1p-45
 
 static struct dvec3 to_world(const struct reference *reference, uint32_t instance, struct dvec3 p,
                              bool is_point)
@@ -148,6 +149,7 @@ struct surface surface_at(const struct reference *reference, const struct hit *h
     s.e2 = to_world(reference, hit->instance, s.e2, false);
     s.ng = d3_unit_or(ng, d3(0, 1, 0));
     s.ns = d3_unit_or(ns, s.ng);
+    s.room = ROOM * (d3_size(s.p) + d3_size(s.e1) + d3_size(s.e2));
     take_colors(&s);
     return s;
 }
@@ -164,10 +166,4 @@ bool surface_face(struct surface *s, struct dvec3 dir)
     if (dvec3_dot(s->ns, dir) > 0.0)
         s->ns = s->ng;
     return inside;
-}
-
-/* By more than what the point is off by: some roundings of its coordinates. */
-struct dvec3 surface_leave(struct dvec3 p, struct dvec3 side)
-{
-    return d3_along(p, side, LEAVE_GROWTH * d3_size(p));
 }

@@ -93,7 +93,7 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
 static struct ray beyond(const struct ray *ray, const struct crossing *c, struct dvec3 dir,
                          struct dvec3 weight, uint32_t kind)
 {
-    return (struct ray){.origin = surface_leave(c->p, d3_scale(c->ng, -1.0)),
+    return (struct ray){.origin = d3_along(c->p, c->ng, -c->room),
                         .dir = dir,
                         .weight = weight,
                         .media = ray->media,
@@ -127,7 +127,7 @@ static bool push_reflected(struct tracer *tracer, const struct ray *ray, const s
     struct dvec3 dir = optics_reflect(ray->dir, s->ns);
     if (dvec3_dot(dir, s->ng) <= 0.0)
         dir = optics_reflect(ray->dir, s->ng);
-    const struct ray child = {.origin = surface_leave(s->p, s->ng),
+    const struct ray child = {.origin = d3_along(s->p, s->ng, s->room),
                               .dir = d3_unit_or(dir, s->ng),
                               .weight =
                                   d3_scale(d3_times(ray->weight, o->reflected), 1.0 - o->straight),

@@ -1,0 +1,453 @@
+/* The reference in double against formulas: its rays to 1e-12, its pictures to the rounding to
+ * float. */
+#include "media_fixture.h"
+#include "reference/reference.h"
+
+static const double pi = 3.14159265358979323846;
+
+struct drawn {
+    struct scene *scene;
+    struct accel *accel;
+    struct reference *reference;
+};
+
+static struct drawn open_reference(struct scene *scene, const struct render_params *picture)
+{
+    struct drawn d = {.scene = scene};
+    struct reference_params params = {.picture = *picture};
+    if (params.picture.depth == 0)
+        params.picture.depth = 8;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, scene, NULL, &d.accel), WHIT_OK);
+    assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
+    return d;
+}
+
+static void close_reference(struct drawn *d)
+{
+    reference_destroy(d->reference);
+    accel_destroy(d->accel);
+    scene_destroy(d->scene);
+}
+
+static struct image draw(const struct drawn *d)
+{
+    struct image image = {0};
+    assert_int_equal(reference_render(d->reference, &image, NULL, NULL), WHIT_OK);
+    return image;
+}
+
+/* One sample's ray tree, of a picture of one pixel. */
+struct rays {
+    struct reference_ray *all;
+    uint32_t count;
+};
+
+static const struct render_params one_pixel = {.width = 1, .height = 1, .depth = 8};
+
+static struct rays trace_pixel(const struct drawn *d)
+{
+    struct rays rays;
+    assert_int_equal(reference_ray_tree(d->reference, 0, 0, 0, &rays.all, &rays.count), WHIT_OK);
+    return rays;
+}
+
+static const struct reference_ray *find_ray(const struct rays *rays, enum reference_kind kind,
+                                            uint32_t parent)
+{
+    for (uint32_t i = 0; i < rays->count; ++i) {
+        if (rays->all[i].kind == kind && rays->all[i].parent == parent)
+            return &rays->all[i];
+    }
+    fail_msg("no ray of kind %d below ray %u", kind, parent);
+    return NULL;
+}
+
+static void assert_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance))
+        fail_msg("%.17g is not %.17g within %g", value, expected, tolerance);
+}
+
+/* From (0, 0, 0) along -z, tilted towards +x by `angle`, at a face in the plane z = -4. */
+static struct scene *facing_scene(double angle, struct scene_material m)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){sin(angle), 0, -cos(angle)});
+    add_object(scene, box(400, 400, 2), m, 0, 0, -5);
+    return scene;
+}
+
+static double facing_angle(const struct reference_ray *ray)
+{
+    return atan2(hypot(ray->dir[0], ray->dir[1]), -ray->dir[2]);
+}
+
+/* ---- Optics ---- */
+
+static void check_glass(double angle, double ior, bool schlick)
+{
+    struct render_params params = one_pixel;
+    params.schlick = schlick;
+    struct drawn d = open_reference(facing_scene(angle, clear_glass((float)ior, 0)), &params);
+    struct rays rays = trace_pixel(&d);
+    double cos_in = -rays.all[0].dir[2], n = (double)(float)ior;
+    double share = fresnel(cos_in, 1.0, n), f0 = (n - 1) * (n - 1) / ((n + 1) * (n + 1));
+    if (schlick)
+        share = f0 + (1.0 - f0) * (1.0 - cos_in) * (1.0 - cos_in) * (1.0 - cos_in) *
+                         (1.0 - cos_in) * (1.0 - cos_in);
+    const struct reference_ray *reflected = find_ray(&rays, REFERENCE_REFLECTED, 0);
+    const struct reference_ray *refracted = find_ray(&rays, REFERENCE_REFRACTED, 0);
+    for (int c = 0; c < 3; ++c) {
+        assert_close(reflected->weight[c], share, 1e-10);
+        assert_close(refracted->weight[c], 1.0 - share, 1e-10);
+    }
+    double in = facing_angle(&rays.all[0]);
+    assert_close(sin(facing_angle(refracted)), sin(in) / n, 1e-12);
+    assert_close(reflected->dir[0], rays.all[0].dir[0], 1e-12);
+    assert_close(reflected->dir[2], -rays.all[0].dir[2], 1e-12);
+    assert_close(rays.all[0].t, 4.0 / cos_in, 1e-12 * rays.all[0].t);
+    /* Through the other side of the slab, parallel to where it came from. */
+    const struct reference_ray *out =
+        find_ray(&rays, REFERENCE_REFRACTED, (uint32_t)(refracted - rays.all));
+    assert_close(out->dir[0], rays.all[0].dir[0], 1e-12);
+    assert_close(refracted->t, 2.0 / cos(facing_angle(refracted)), 1e-10);
+    assert_int_equal(refracted->medium, refracted->material);
+    assert_int_equal(out->medium, REFERENCE_NONE);
+    free(rays.all);
+    close_reference(&d);
+}
+
+static void glass_follows_fresnel_and_snell(void **state)
+{
+    (void)state;
+    static const double angles[] = {0.0, 0.2, 0.9, 1.2, 1.5};
+    static const double iors[] = {1.33, 1.5, 2.42};
+    for (size_t a = 0; a < 5; ++a) {
+        for (size_t i = 0; i < 3; ++i) {
+            check_glass(angles[a], iors[i], false);
+            check_glass(angles[a], iors[i], true);
+        }
+    }
+}
+
+/* From inside of a block of glass of index 1.5, beside and beyond the critical angle of 41.8
+ * degrees. */
+static void light_is_reflected_whole_from_inside(void **state)
+{
+    (void)state;
+    for (int beyond = 0; beyond < 2; ++beyond) {
+        double angle = (41.81 + (beyond ? 0.02 : -0.02)) * pi / 180.0;
+        struct scene *scene =
+            dark_scene((double[]){0, 0, 0}, (double[]){sin(angle), 0, -cos(angle)});
+        add_object(scene, box(100, 100, 8), clear_glass(1.5f, 0), 0, 0, 0);
+        struct drawn d = open_reference(scene, &one_pixel);
+        struct rays rays = trace_pixel(&d);
+        assert_int_not_equal(rays.all[0].medium, REFERENCE_NONE);
+        double share = fresnel(-rays.all[0].dir[2], 1.5, 1.0);
+        const struct reference_ray *reflected = find_ray(&rays, REFERENCE_REFLECTED, 0);
+        assert_close(reflected->weight[0], share, 1e-7);
+        assert_true(beyond ? share == 1.0 : share < 0.99);
+        free(rays.all);
+        close_reference(&d);
+    }
+}
+
+static void bodies_absorb_by_beer(void **state)
+{
+    (void)state;
+    const double absorption[3] = {0.1, 0.7, 3.0};
+    struct scene_material m = clear_glass(1.0f, 0);
+    for (int c = 0; c < 3; ++c)
+        m.absorption[c] = (float)absorption[c];
+    struct scene *scene = facing_scene(0.5, m);
+    set_sky(scene, 1, 1, 1);
+    struct drawn d = open_reference(scene, &one_pixel);
+    struct rays rays = trace_pixel(&d);
+    struct image image = draw(&d);
+    double path = 2.0 / -rays.all[0].dir[2];
+    for (int c = 0; c < 3; ++c) {
+        double expected = exp(-(double)(float)absorption[c] * path);
+        assert_near(image.pixels[c], expected, 1e-7);
+        /* Rays start some 2e-11 off these faces. */
+        assert_close(rays.all[rays.count - 1].weight[c], expected, 1e-10);
+    }
+    image_finish(&image);
+    free(rays.all);
+    close_reference(&d);
+}
+
+/* Nothing absorbs under a sky of 1: what reaches the sky and what was cut add up to 1. */
+static void check_furnace(const struct drawn *d, uint32_t x, uint32_t y)
+{
+    struct rays rays;
+    double sum = 0.0;
+    assert_int_equal(reference_ray_tree(d->reference, x, y, 0, &rays.all, &rays.count), WHIT_OK);
+    for (uint32_t i = 0; i < rays.count; ++i) {
+        bool cut =
+            rays.all[i].end == REFERENCE_END_DEPTH || rays.all[i].end == REFERENCE_END_BAILOUT;
+        sum += rays.all[i].radiance[0] + (cut ? rays.all[i].weight[0] : 0.0);
+    }
+    assert_close(sum, 1.0, 1e-11);
+    free(rays.all);
+}
+
+static void nothing_is_lost_in_a_furnace(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 0, 6}, (double[]){0, 0, 0});
+    set_sky(scene, 1, 1, 1);
+    struct scene_mesh ring = {0}, ball = {0};
+    assert_int_equal(shape_torus(1.0, 0.35, 24, 12, &ring), WHIT_OK);
+    assert_int_equal(shape_sphere(0.9, 24, 12, &ball), WHIT_OK);
+    add_object(scene, ring, clear_glass(1.5f, 2), 0, 0, 0);
+    add_object(scene, ball, clear_glass(1.33f, 1), 0.3, 0, 0);
+    add_object(scene, box(3, 3, 1), clear_glass(1.1f, 0), 0, 0, -0.5);
+    struct scene_material sheet = clear_glass(1.5f, 0);
+    sheet.thin_walled = true;
+    add_object(scene, box(5, 1, 0.1), sheet, 0, 1, 2);
+    const struct render_params params = {.width = 24, .height = 24, .depth = 20, .bailout = 1e-4};
+    struct drawn d = open_reference(scene, &params);
+    for (uint32_t i = 0; i < 24 * 24; ++i)
+        check_furnace(&d, i % 24, i / 24);
+    close_reference(&d);
+}
+
+/* ---- Light ---- */
+
+/* A white floor seen from above, at (0, 0, 0) in the middle. */
+static struct scene *floor_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("floor");
+    set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
+    add_object(scene, plane(40), m, 0, 0, 0);
+    return scene;
+}
+
+/* Of the middle pixel of a picture of the scene, which is freed. */
+static double floor_light(struct scene *scene, const struct render_params *params)
+{
+    struct drawn d = open_reference(scene, params);
+    struct image image = draw(&d);
+    double light = (double)middle(&image)[0];
+    image_finish(&image);
+    close_reference(&d);
+    return light;
+}
+
+static void light_falls_with_cosine_and_square(void **state)
+{
+    (void)state;
+    struct scene *scene = floor_scene();
+    add_lamp(scene, 3, 4, 0, 100);
+    assert_close(floor_light(scene, &one_pixel), 0.5 * 100 / 25.0 * 0.8, 1e-6);
+    scene = floor_scene();
+    add_sun(scene, -3, -4, 0, 2);
+    assert_close(floor_light(scene, &one_pixel), 0.5 * 2 * 0.8, 1e-7);
+}
+
+/* (n . h)^shininess, and GGX where light, eye and normal are one direction: 1 / (4 alpha^2). */
+static void highlights_follow_their_formulas(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = material("gloss");
+    set_rgb(m.diffuse, 0, 0, 0);
+    set_rgb(m.specular, 0.7f, 0.7f, 0.7f);
+    m.shininess = 30;
+    add_object(scene, plane(40), m, 0, 0, 0);
+    add_sun(scene, -sin(0.4), -cos(0.4), 0, 1);
+    assert_close(floor_light(scene, &one_pixel), 0.7 * pow(cos(0.2), 30), 1e-7);
+
+    scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    m = material("metal");
+    m.model = SCENE_MODEL_METAL_ROUGH;
+    set_rgb(m.diffuse, 0.6f, 0.6f, 0.6f);
+    set_rgb(m.specular, 1, 1, 1);
+    m.metallic = 1;
+    m.roughness = 0.5f;
+    add_object(scene, plane(40), m, 0, 0, 0);
+    add_sun(scene, 0, -1, 0, 1);
+    assert_close(floor_light(scene, &one_pixel), 0.6 / (4 * 0.0625), 1e-6);
+}
+
+/* A rectangle above the floor, parallel to it: 4 times the closed form of a quarter. */
+static void emitters_follow_their_form_factor(void **state)
+{
+    (void)state;
+    struct scene *scene = floor_scene();
+    struct scene_light light = {.name = string_copy("panel"),
+                                .kind = SCENE_LIGHT_RECTANGLE,
+                                .node = SCENE_NONE,
+                                .position = {-1, 2, -1.5},
+                                .edge_u = {2, 0, 0},
+                                .edge_v = {0, 0, 3}};
+    set_rgb(light.color, 5, 5, 5);
+    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    double a = 0.5, b = 0.75, ra = sqrt(1 + a * a), rb = sqrt(1 + b * b);
+    double factor = 4 / (2 * pi) * (a / ra * atan(b / ra) + b / rb * atan(a / rb));
+    assert_close(floor_light(scene, &one_pixel), 0.5 * 5 * factor, 1e-6);
+}
+
+/* Light through sheets: (1 - opacity) each; in whole stops what kernels make of that. */
+static void filters_multiply(void **state)
+{
+    (void)state;
+    for (int stops = 0; stops < 2; ++stops) {
+        struct scene *scene = floor_scene();
+        struct scene_material sheet = material("sheet");
+        set_rgb(sheet.diffuse, 0, 0, 0);
+        sheet.alpha = SCENE_ALPHA_BLEND;
+        sheet.opacity = 0.3f;
+        add_object(scene, plane(2), sheet, 4, 1, 0);
+        add_object(scene, plane(2), sheet, 6, 1.5, 0);
+        add_sun(scene, -4, -1, 0, 1);
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        struct drawn d = {.scene = scene};
+        struct reference_params params = {.picture = one_pixel, .whole_stops = stops};
+        assert_int_equal(accel_create(&fixture_log, scene, NULL, &d.accel), WHIT_OK);
+        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
+        struct image image = draw(&d);
+        double open = 0.5 / sqrt(17.0), opacity = (double)0.3f;
+        double share =
+            stops ? exp2(2 * -round(-64 * log2(1 - opacity)) / 64) : (1 - opacity) * (1 - opacity);
+        assert_close((double)image.pixels[0], open * share, 1e-8);
+        image_finish(&image);
+        close_reference(&d);
+    }
+}
+
+/* ---- Pictures and trees ---- */
+
+static struct scene *crowded_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 3, 9}, (double[]){0, 0.5, 0});
+    set_sky(scene, 0.9f, 0.5f, 0.1f);
+    struct scene_material floor = material("floor"), mirror = material("mirror");
+    set_rgb(floor.diffuse, 0.6f, 0.5f, 0.4f);
+    set_rgb(mirror.reflection, 0.8f, 0.8f, 0.8f);
+    struct scene_mesh ball = {0}, ring = {0};
+    assert_int_equal(shape_sphere(1.0, 16, 8, &ball), WHIT_OK);
+    assert_int_equal(shape_torus(1.0, 0.3, 16, 8, &ring), WHIT_OK);
+    add_object(scene, plane(20), floor, 0, 0, 0);
+    add_object(scene, ball, clear_glass(1.5f, 0), -1.2, 1, 0);
+    add_object(scene, ring, mirror, 1.2, 1, 0);
+    add_lamp(scene, 4, 6, 3, 30);
+    add_lamp(scene, -4, 6, 5, 30);
+    return scene;
+}
+
+static void threads_draw_the_same_bytes(void **state)
+{
+    (void)state;
+    const struct render_params picture = {.width = 37, .height = 41, .depth = 6, .samples = 4};
+    struct drawn d = open_reference(crowded_scene(), &picture);
+    struct image first = draw(&d);
+    for (uint32_t threads = 1; threads < 4; ++threads) {
+        struct reference *other = NULL;
+        struct image image = {0};
+        const struct reference_params params = {.picture = picture, .thread_count = threads};
+        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &other), WHIT_OK);
+        assert_int_equal(reference_render(other, &image, NULL, NULL), WHIT_OK);
+        assert_memory_equal(image.pixels, first.pixels, 37 * 41 * 4 * sizeof(float));
+        image_finish(&image);
+        reference_destroy(other);
+    }
+    image_finish(&first);
+    close_reference(&d);
+}
+
+static void check_tree(const struct reference_ray *rays, uint32_t count, double sum[3])
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        assert_true(i == 0 ? rays[i].parent == REFERENCE_NONE : rays[i].parent < i);
+        assert_close(rays[i].dir[0] * rays[i].dir[0] + rays[i].dir[1] * rays[i].dir[1] +
+                         rays[i].dir[2] * rays[i].dir[2],
+                     1.0, 1e-12);
+        assert_int_equal(rays[i].light != REFERENCE_NONE, rays[i].kind == REFERENCE_SHADOW);
+        bool met = rays[i].end == REFERENCE_END_SURFACE || rays[i].end == REFERENCE_END_OPAQUE ||
+                   rays[i].end == REFERENCE_END_BLOCKED || rays[i].end == REFERENCE_END_UNSEEN;
+        assert_int_equal(rays[i].instance != REFERENCE_NONE, met);
+        assert_int_equal(rays[i].material != REFERENCE_NONE, met);
+        for (int c = 0; c < 3; ++c)
+            sum[c] += rays[i].radiance[c];
+    }
+}
+
+static void ray_trees_add_up_to_pixels(void **state)
+{
+    (void)state;
+    const struct render_params picture = {.width = 16, .height = 16, .depth = 5};
+    struct drawn d = open_reference(crowded_scene(), &picture);
+    struct image image = draw(&d);
+    uint32_t kinds = 0, ends = 0;
+    for (uint32_t i = 0; i < 256; ++i) {
+        struct rays rays;
+        double sum[3] = {0};
+        assert_int_equal(reference_ray_tree(d.reference, i % 16, i / 16, 0, &rays.all, &rays.count),
+                         WHIT_OK);
+        check_tree(rays.all, rays.count, sum);
+        for (int c = 0; c < 3; ++c)
+            assert_near(image.pixels[4 * i + (uint32_t)c], sum[c], 1e-6);
+        for (uint32_t k = 0; k < rays.count; ++k) {
+            kinds |= 1u << rays.all[k].kind;
+            ends |= 1u << rays.all[k].end;
+        }
+        free(rays.all);
+    }
+    assert_int_equal(kinds, 15);
+    assert_int_equal(ends & (1u << REFERENCE_END_MISS | 1u << REFERENCE_END_SURFACE |
+                             1u << REFERENCE_END_OPAQUE | 1u << REFERENCE_END_LIGHT |
+                             1u << REFERENCE_END_BLOCKED | 1u << REFERENCE_END_DEPTH |
+                             1u << REFERENCE_END_BAILOUT),
+                     ends);
+    image_finish(&image);
+    close_reference(&d);
+}
+
+static void what_it_cannot_draw_is_refused(void **state)
+{
+    (void)state;
+    static const struct log silent = {0};
+    struct drawn d = open_reference(floor_scene(), &one_pixel);
+    struct reference *none = NULL;
+    struct reference_ray *rays = NULL;
+    uint32_t count = 1;
+    struct reference_params params = {.picture = {.adaptive = 0.1}};
+    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
+    params = (struct reference_params){.picture = {.samples = 3}};
+    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
+    params = (struct reference_params){.picture = {.camera = "no such camera"}};
+    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
+    params = (struct reference_params){.picture = {.effects_removed = 1}};
+    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
+    assert_null(none);
+    bool cancel = true;
+    struct image image = {0};
+    params = (struct reference_params){.picture = {.cancel = &cancel}};
+    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_OK);
+    assert_int_equal(reference_render(none, &image, NULL, NULL), WHIT_ERROR_CANCELLED);
+    assert_null(image.pixels);
+    assert_int_equal(reference_ray_tree(none, 640, 0, 0, &rays, &count), WHIT_ERROR_USAGE);
+    assert_null(rays);
+    reference_destroy(none);
+    close_reference(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(glass_follows_fresnel_and_snell),
+        cmocka_unit_test(light_is_reflected_whole_from_inside),
+        cmocka_unit_test(bodies_absorb_by_beer),
+        cmocka_unit_test(nothing_is_lost_in_a_furnace),
+        cmocka_unit_test(light_falls_with_cosine_and_square),
+        cmocka_unit_test(highlights_follow_their_formulas),
+        cmocka_unit_test(emitters_follow_their_form_factor),
+        cmocka_unit_test(filters_multiply),
+        cmocka_unit_test(threads_draw_the_same_bytes),
+        cmocka_unit_test(ray_trees_add_up_to_pixels),
+        cmocka_unit_test(what_it_cannot_draw_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
