@@ -48,6 +48,11 @@ struct whit_file {
     struct log log;
 };
 
+/* renderer_api.c. WHIT_ERROR_USAGE, logged, for names that there are none of. */
+WHIT_CHECK whit_result render_params_from_public(const struct log *log,
+                                                 const whit_renderer_params *params,
+                                                 struct render_params *out);
+
 static inline struct log log_from_public(const whit_log *log)
 {
     if (!log)

@@ -112,9 +112,8 @@ bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect)
            renderer_compiles(renderer->renderer, (enum scene_effect)effect);
 }
 
-static whit_result render_params_from_public(const struct log *log,
-                                             const whit_renderer_params *params,
-                                             struct render_params *out)
+whit_result render_params_from_public(const struct log *log, const whit_renderer_params *params,
+                                      struct render_params *out)
 {
     *out = (struct render_params){
         .width = params->width,

@@ -1,0 +1,117 @@
+/* The reference through the public header: no device. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "whit.h"
+
+enum { WIDTH = 16, HEIGHT = 12 };
+
+struct opened {
+    whit_scene *scene;
+    whit_accel *accel;
+};
+
+static struct opened open_scene(const char *path)
+{
+    struct opened o = {0};
+    assert_int_equal(whit_scene_load(path, NULL, NULL, &o.scene), WHIT_OK);
+    assert_int_equal(whit_accel_create(o.scene, NULL, &o.accel), WHIT_OK);
+    return o;
+}
+
+static void close_scene(struct opened *o)
+{
+    whit_accel_destroy(o->accel);
+    whit_scene_destroy(o->scene);
+}
+
+static void note_progress(void *user, double done)
+{
+    double *last = user;
+    assert_true(done > *last && done <= 1.0);
+    *last = done;
+}
+
+static void draws_pictures_and_ray_trees(void **state)
+{
+    (void)state;
+    struct opened o = open_scene(WHIT_SCENES_DIR "/default.json");
+    double last = 0.0;
+    const whit_renderer_params params = {.width = WIDTH,
+                                         .height = HEIGHT,
+                                         .effects = "all",
+                                         .progress = note_progress,
+                                         .progress_user = &last};
+    whit_reference *reference = NULL;
+    whit_image *color = NULL, *ids = NULL;
+    assert_int_equal(whit_reference_create(o.accel, &params, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_render(reference, &color, &ids), WHIT_OK);
+    assert_true(last == 1.0);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        whit_tree_ray *rays = NULL;
+        uint32_t count = 0;
+        double sum = 0.0;
+        assert_int_equal(whit_reference_rays(reference, i % WIDTH, i / WIDTH, 0, &rays, &count),
+                         WHIT_OK);
+        assert_true(count > 0);
+        for (uint32_t k = 0; k < count; ++k)
+            sum += rays[k].radiance[1];
+        assert_true(fabs(sum - (double)whit_image_floats(color)[4 * i + 1]) <= 1e-6 * sum);
+        assert_int_equal(rays[0].instance, whit_image_words(ids)[2 * i]);
+        assert_int_equal(rays[0].primitive, whit_image_words(ids)[2 * i + 1]);
+        whit_tree_rays_destroy(rays);
+    }
+    whit_image_destroy(color);
+    whit_image_destroy(ids);
+    whit_reference_destroy(reference);
+    close_scene(&o);
+}
+
+static void refuses_what_it_cannot_draw(void **state)
+{
+    (void)state;
+    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
+    const whit_renderer_params refused[] = {
+        {.adaptive = 0.1}, {.effects = "-shadows"}, {.effects = "nonsense"}, {.camera = "nobody"}};
+    whit_reference *reference = NULL;
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
+        assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),
+                         WHIT_ERROR_USAGE);
+        assert_null(reference);
+    }
+    const volatile bool cancel = true;
+    const whit_renderer_params cancelled = {.cancel = &cancel};
+    whit_image *color = NULL;
+    assert_int_equal(whit_reference_create(o.accel, &cancelled, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_render(reference, &color, NULL), WHIT_ERROR_CANCELLED);
+    assert_null(color);
+    whit_reference_destroy(reference);
+    close_scene(&o);
+}
+
+static void every_kind_and_end_has_a_name(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < WHIT_TREE_KINDS; ++i)
+        assert_non_null(whit_tree_kind_name(i));
+    for (uint32_t i = 0; i < WHIT_TREE_ENDS; ++i)
+        assert_non_null(whit_tree_end_name(i));
+    assert_null(whit_tree_kind_name(WHIT_TREE_KINDS));
+    assert_null(whit_tree_end_name(WHIT_TREE_ENDS));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(draws_pictures_and_ray_trees),
+        cmocka_unit_test(refuses_what_it_cannot_draw),
+        cmocka_unit_test(every_kind_and_end_has_a_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
