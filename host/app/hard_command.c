@@ -80,10 +80,11 @@ static int work_view(struct hard *hard)
     whit_result result = draw(hard, &wrong, &other);
     if (result != WHIT_OK)
         return cli_exit_of(result);
-    printf("%s: %s: %llu pixels wrong (red), %llu with another triangle within the error of floats "
-           "(yellow)\n",
-           hard->output, job_numerics_name(hard->job.numerics), (unsigned long long)wrong,
-           (unsigned long long)other);
+    printf(
+        "%s: %s: %llu pixel%s wrong (red), %llu with another triangle within the error of floats "
+        "(yellow)\n",
+        hard->output, job_numerics_name(hard->job.numerics), (unsigned long long)wrong,
+        wrong == 1 ? "" : "s", (unsigned long long)other);
     int status = cli_finish_stdout(EXIT_FINE);
     if (status == EXIT_FINE && wrong && hard->job.numerics != WHIT_NUMERICS_FAST)
         status = EXIT_DIFFERS;
@@ -100,12 +101,14 @@ static int work(struct hard *hard)
     int status = hard_print(hard);
     const whit_hard_report *report = hard->report;
     if (report->unanswered)
-        cli_warning("%u of %u rows: the device gave no answer, its twin's hits are judged",
-                    report->unanswered, report->row_count);
-    if (status == EXIT_FINE && report->broken) {
+        cli_error("%u of %u rows: the device gave no answer, so no promise of theirs is shown",
+                  report->unanswered, report->row_count);
+    if (status == EXIT_FINE && report->unanswered)
+        status = EXIT_DIFFERS;
+    if (report->broken) {
         cli_error("%u of %u rows break a promise of their level", report->broken,
                   report->row_count);
-        status = EXIT_DIFFERS;
+        status = status == EXIT_FINE ? EXIT_DIFFERS : status;
     }
     return status == EXIT_FINE ? job_check_validation(&hard->job) : status;
 }

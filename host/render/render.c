@@ -28,7 +28,8 @@ static void describe_non_finite(struct renderer *renderer, char *text, size_t te
     uint32_t x, y, count;
     text[0] = 0;
     if (readback_non_finite(renderer, &x, &y, &count) == WHIT_OK && count > 0)
-        snprintf(text, text_bytes, ": in %u pixels so far, the first at %u,%u", count, x, y);
+        snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u", count,
+                 count == 1 ? "" : "s", x, y);
 }
 
 whit_result status_check(struct renderer *renderer)
