@@ -1,4 +1,5 @@
-/* shaders/bind/traverse.glsl, primitive.glsl and settle.glsl in C, for the two modes that geometry alone decides. */
+/* shaders/bind/traverse.glsl, with what it includes, in C: the two modes that geometry alone
+   decides. */
 #include "accel/accel_inside.h"
 
 #include <float.h>

@@ -171,3 +171,85 @@ change(host/accel/traverse.c [[if (*top == STACK_SIZE) {]] [[if (false) {]])
 
 mutation(stack_without_end_in_kernels render_cost RED understated_depth_is_reported)
 change(shaders/bind/traverse.glsl [[if (stack.in_memory < SPEC_STACK_SIZE) {]] [[if (true) {]])
+
+# ---- Levels ----
+
+mutation(levels_untold render_numerics RED only_fast_leaks)
+change(host/render/variants.c [[spec.SPEC_NUMERICS = renderer->params.numerics;]]
+  [[spec.SPEC_NUMERICS = NUMERICS_WATERTIGHT;]])
+
+mutation(fast_with_slack_in_kernels render_numerics RED one_mesh)
+change(shaders/lib/moller.glsl [[weight_b >= 0.0 && weight_c >= 0.0 && weights <= 1.0]]
+  [[weight_b >= -1e-6 && weight_c >= -1e-6 && weights <= 1.000001]])
+
+mutation(fast_with_an_epsilon epsilons RED "small numbers that nothing accounts for"
+  GREEN " 0 of them not accounted for" TARGET kernel_dump)
+change(host/accel/moller.h [[det != 0.0f]] [[fabsf(det) > 1e-6f]])
+change(shaders/lib/moller.glsl [[det != 0.0]] [[abs(det) > 1e-6]])
+
+mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
+change(shaders/bind/camera.glsl [[inverse_square_root(squared)]] [[inversesqrt(squared)]])
+
+mutation(filter_without_bound accel_hard RED cases_are_what_they_say)
+change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 0.0f *]])
+change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
+
+mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
+change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
+
+mutation(filter_bound_too_small accel_hard RED cases_are_what_they_say)
+change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 0.25f *]])
+
+mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
+change(host/accel/exact.c [[float t_error = weights_error * (z_hi - z_lo) + z_error;]]
+  [[float t_error = 0.0f * z_error;]])
+change(shaders/lib/exact.glsl [[t_error = weights_error * (z_hi - z_lo) + z_error;]]
+  [[t_error = 0.0 * z_error;]])
+
+mutation(keys_unrounded accel_hard RED cases_are_what_they_say)
+change(host/accel/traverse.c [[!walk->any && walk->lo < walk->hi)]] [[!walk->any && false)]])
+
+mutation(keys_unrounded_in_kernels render_numerics RED one_mesh)
+change(shaders/bind/settle.glsl [[bool loose = hit.lo < hit.hi;]] [[bool loose = false;]])
+
+mutation(keys_cut_off accel_hard RED cases_are_what_they_say)
+change(host/accel/exact.c [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0 ? 1u : 0u;]])
+change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
+
+mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
+change(shaders/lib/exact.glsl [[vec2 t = pair_sum(first, second);]] [[vec2 t = pair_sum(first, 0.0);]])
+
+mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
+change(host/accel/traverse.c [[if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)]]
+  [[if (false)]])
+
+mutation(hits_unsettled_in_kernels render_numerics RED ties)
+change(shaders/bind/settle.glsl [[again = m.met && hit.lo < hit.hi &&]] [[again = false &&]])
+
+mutation(identities_unmet cli_hard RED "the hash is the one that is stored" TARGET whit_leaky)
+change(shaders/bind/settle.glsl [[m.met && exact.met && exact.key]] [[m.met && exact.key]])
+
+# ---- whit hard ----
+
+mutation(leaks_uncounted accel_hard RED the_judge_sees)
+change(host/accel/hard_judge.c [[hits && !met && is_leak(]] [[false && is_leak(]])
+
+mutation(promises_always_kept accel_hard RED the_judge_sees)
+change(host/accel/hard_judge.c [[if (numerics == NUMERICS_FAST)]] [[if (numerics < 9)]])
+
+mutation(differences_unseen accel_hard RED the_judge_sees)
+change(host/accel/hard_judge.c [[&b[i], sizeof a[i]) != 0;]] [[&b[i], 1) != 0;]])
+
+mutation(identities_unhashed accel_hard RED cases_are_what_they_say)
+change(host/accel/hard_judge.c [[ids[2] = {exact[i].instance, exact[i].primitive};]]
+  [[ids[2] = {exact[i].instance, 0};]])
+
+mutation(self_hits_unseen accel_hard RED self_hits_are_seen)
+change(host/accel/hard_judge.c [[j->hard->truth == HARD_MUST_MISS ||]] [[]])
+
+mutation(open_edges_unseen accel_hard RED surfaces_are_described)
+change(host/accel/hard_topology.c [[open_edges += end - first == 1;]] [[open_edges += 0;]])
+
+mutation(broken_promises_are_fine cli_hard RED "a twin that loses rays: exit code 1"
+  TARGET whit_leaky)
+change(host/app/hard_command.c [[status == EXIT_FINE ? EXIT_DIFFERS : status;]] [[status;]])

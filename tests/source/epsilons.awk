@@ -139,6 +139,8 @@ END {
         print "only " files " files and " checked " small numbers: the sources were not read"
         bad++
     }
+    if (bad)
+        print "FAILED: small numbers that nothing accounts for"
     print checked " small numbers in " files - 1 " files, " bad + 0 " of them not accounted for"
     exit bad > 0
 }
