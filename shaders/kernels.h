@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum kernel { KERNEL_TRACE, KERNEL_WHITTED, KERNEL_COUNT };
+enum kernel { KERNEL_TRACE, KERNEL_WHITTED, KERNEL_PRESENT, KERNEL_COUNT };
 
 struct kernel_code {
     const char *name;

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "image/display.h"
 #include "image/flip.h"
 #include "image/heat.h"
 
@@ -23,6 +24,11 @@ const float *whit_image_floats(const whit_image *image)
 const uint32_t *whit_image_words(const whit_image *image)
 {
     return image->image.words;
+}
+
+void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
+{
+    display_bytes(&image->image, rgba);
 }
 
 /* Release with free(); NULL when memory runs out, which is logged. */

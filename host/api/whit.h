@@ -308,6 +308,13 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
    pipelines. The picture is that of a renderer made at that time, byte for byte. */
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
+/* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
+   samples, adaptive, light_samples, bailout, depth and no_bounces, and nothing else. `camera` is
+   borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
+   After an error there is nothing to render before a call that succeeds. */
+WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
+                                              const whit_renderer_params *params);
+
 /* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
 const char *whit_effect_name(uint32_t index);
 /* Whether whit_renderer_params.effects may say "+NAME" and "-NAME" of it: what geometry or camera
@@ -571,6 +578,9 @@ void whit_image_get_info(const whit_image *image, whit_image_info *info);
 /* width * height * channels values, row 0 at the top; the other one gives NULL. */
 const float *whit_image_floats(const whit_image *image);
 const uint32_t *whit_image_words(const whit_image *image);
+
+/* Of a picture of floats what its .png holds: RGBA, width * height * 4 bytes. */
+void whit_image_display_bytes(const whit_image *image, uint8_t *rgba);
 
 typedef struct whit_text {
     const char *key, *value;

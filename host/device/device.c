@@ -160,13 +160,22 @@ static whit_result logical_create(struct device *device)
 {
     whit_result result = WHIT_OK;
     uint32_t timestamp_bits = 0;
-    if (!instance_queue_family(device->physical, &device->queue_family, &timestamp_bits))
+    if (!instance_queue_family(device->physical, device->surface, &device->queue_family,
+                               &timestamp_bits))
         return WHIT_ERROR_NO_DEVICE; /* instance_select refuses such a device with its reason */
     if (timestamp_bits > 0 && device->properties.limits.timestampPeriod > 0.0f)
         device->timestamp_mask =
             timestamp_bits >= 64 ? UINT64_MAX : (UINT64_C(1) << timestamp_bits) - 1;
 
-    const char *extension = "VK_KHR_portability_subset";
+    const char *extensions[2];
+    uint32_t extension_count = 0;
+    if (has_portability_subset(device))
+        extensions[extension_count++] = "VK_KHR_portability_subset";
+    if (device->surface)
+        extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    VkPhysicalDeviceFeatures can;
+    vkGetPhysicalDeviceFeatures(device->physical, &can);
+    device->writes_any_format = device->surface && can.shaderStorageImageWriteWithoutFormat;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -178,13 +187,14 @@ static whit_result logical_create(struct device *device)
         .robustBufferAccess = device->validation,
         .shaderFloat64 = device->info.float64,
         .shaderInt64 = device->info.int64,
+        .shaderStorageImageWriteWithoutFormat = device->writes_any_format,
     };
     VkDeviceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
-        .enabledExtensionCount = has_portability_subset(device) ? 1 : 0,
-        .ppEnabledExtensionNames = &extension,
+        .enabledExtensionCount = extension_count,
+        .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &features,
     };
     VK_TRY(device, vkCreateDevice(device->physical, &info, NULL, &device->vk));
@@ -222,7 +232,12 @@ whit_result device_create(const struct log *log, const struct device_params *par
     device->staged = environment_on("WHIT_STAGING");
     device_read_fault(device);
 
+    device->surface_source = params ? params->surface : NULL;
+
     whit_result result = instance_create(device);
+    if (result == WHIT_OK)
+        result = instance_make_surface(device);
+    device->surface_source = NULL;
     if (result == WHIT_OK)
         result = instance_select(device, params ? params->selector : NULL);
     if (result == WHIT_OK)

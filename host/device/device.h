@@ -48,6 +48,16 @@ WHIT_CHECK whit_result device_list(const struct log *log, struct device_info **i
                                    uint32_t *count);
 const char *device_kind_name(enum device_kind kind);
 
+/* A window that a device shows pictures in, for device_params. Who makes windows knows which
+   instance extensions that takes, and makes the surface: `create` gets a VkInstance and the address
+   of a VkSurfaceKHR, and returns a VkResult. The device destroys the surface. */
+struct device_surface {
+    const char *const *extensions;
+    uint32_t extension_count; /* at most 8 */
+    int (*create)(void *user, void *instance, void *surface);
+    void *user;
+};
+
 struct device_params {
     const char *selector; /* NULL or "auto": discrete, else integrated, else virtual, else CPU; a
                              number: that index; else part of a name, any case */
@@ -55,6 +65,8 @@ struct device_params {
                              absence is an error. WHIT_VALIDATION=1 in the environment turns it on
                              for every device; WHIT_VALIDATION=sync without the GPU-assisted
                              checks, which make kernels slow to compile */
+    const struct device_surface *surface; /* NULL: nothing is shown. Borrowed by device_create. A
+                                             device that cannot present to it is not usable. */
 };
 
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.

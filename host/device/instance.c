@@ -113,8 +113,11 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
                                  const char *const *names, uint32_t name_count,
                                  bool validation_features)
 {
-    const char *enabled[8];
+    const struct device_surface *surface = device->surface_source;
+    const char *enabled[16];
     uint32_t enabled_count = 0;
+    for (uint32_t i = 0; surface && i < surface->extension_count && i < 8; ++i)
+        enabled[enabled_count++] = surface->extensions[i];
     for (uint32_t i = 0; i < name_count; ++i)
         if (extensions >> i & 1)
             enabled[enabled_count++] = names[i];
@@ -160,6 +163,19 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
     return device_check(device, vk, "vkCreateInstance", __FILE__, __LINE__);
 }
 
+static whit_result make_messenger(struct device *device)
+{
+    whit_result result = WHIT_OK;
+    PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(device->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(device);
+    if (create_messenger)
+        VK_TRY(device, create_messenger(device->instance, &info, NULL, &device->messenger));
+fail:
+    return result;
+}
+
 whit_result instance_create(struct device *device)
 {
     static const char *const names[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
@@ -184,16 +200,18 @@ whit_result instance_create(struct device *device)
         return result;
 
     device->debug_utils = (found & 1u) != 0;
-    if (!device->validation)
+    return device->validation ? make_messenger(device) : WHIT_OK;
+}
+
+whit_result instance_make_surface(struct device *device)
+{
+    const struct device_surface *source = device->surface_source;
+    if (!source)
         return WHIT_OK;
-    PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
-        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(device->instance,
-                                                                  "vkCreateDebugUtilsMessengerEXT");
-    VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(device);
-    if (create_messenger)
-        VK_TRY(device, create_messenger(device->instance, &info, NULL, &device->messenger));
-fail:
-    return result;
+    VkResult vk = VK_SUCCESS;
+    if (device_may_call(device, "vkCreateSurface", &vk))
+        vk = (VkResult)source->create(source->user, device->instance, &device->surface);
+    return device_check(device, vk, "the window's surface", __FILE__, __LINE__);
 }
 
 void instance_destroy(struct device *device)
@@ -206,11 +224,23 @@ void instance_destroy(struct device *device)
                 device->instance, "vkDestroyDebugUtilsMessengerEXT");
         destroy_messenger(device->instance, device->messenger, NULL);
     }
+    if (device->surface)
+        vkDestroySurfaceKHR(device->instance, device->surface, NULL);
     vkDestroyInstance(device->instance, NULL);
     device->instance = NULL;
 }
 
-bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *timestamp_bits)
+static bool presents(VkPhysicalDevice physical, uint32_t family, VkQueueFlags flags,
+                     VkSurfaceKHR surface)
+{
+    VkBool32 supported = VK_FALSE;
+    return (flags & VK_QUEUE_GRAPHICS_BIT) &&
+           vkGetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &supported) >= 0 &&
+           supported;
+}
+
+bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t *family,
+                           uint32_t *timestamp_bits)
 {
     VkQueueFamilyProperties families[32];
     uint32_t count = sizeof families / sizeof *families;
@@ -219,6 +249,8 @@ bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t
     *timestamp_bits = 0;
     for (uint32_t i = 0; i < count; ++i) {
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT))
+            continue;
+        if (surface && !presents(physical, i, families[i].queueFlags, surface))
             continue;
         if (found && (*timestamp_bits > 0 || families[i].timestampValidBits == 0))
             continue;
@@ -278,14 +310,15 @@ static void fill_details(VkPhysicalDevice physical, struct device_info *info)
     info->int64 = features.shaderInt64;
 }
 
-static void fill_info(VkPhysicalDevice physical, uint32_t index, struct device_info *info)
+static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t index,
+                      struct device_info *info)
 {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical, &properties);
     const VkPhysicalDeviceLimits *limits = &properties.limits;
     uint32_t version = properties.apiVersion;
     uint32_t family, timestamp_bits;
-    bool computes = instance_queue_family(physical, &family, &timestamp_bits);
+    bool computes = instance_queue_family(physical, surface, &family, &timestamp_bits);
 
     *info = (struct device_info){
         .index = index,
@@ -311,7 +344,9 @@ static void fill_info(VkPhysicalDevice physical, uint32_t index, struct device_i
     fill_details(physical, info);
     if (!computes) {
         info->usable = false;
-        snprintf(info->why_not, sizeof info->why_not, "no queue that computes");
+        snprintf(info->why_not, sizeof info->why_not,
+                 surface ? "no queue that computes and shows pictures in a window"
+                         : "no queue that computes");
     }
 }
 
@@ -340,7 +375,7 @@ static whit_result list_physical(struct device *device, VkPhysicalDevice **handl
         goto fail;
     }
     for (uint32_t i = 0; i < *count; ++i)
-        fill_info((*handles)[i], i, &(*infos)[i]);
+        fill_info((*handles)[i], device->surface, i, &(*infos)[i]);
     return WHIT_OK;
 fail:
     free(*handles);

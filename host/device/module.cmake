@@ -1,5 +1,6 @@
 whit_module(device
   SOURCES instance.c device.c cache.c kernel_cache.c buffer.c pipeline.c specialize.cpp commands.c
+    swapchain.c
   LINK whit_base Vulkan::Vulkan SPIRV-Tools-opt)
 
 # Containers of the C++ library cross into a library that was built without sanitizers.

@@ -33,6 +33,9 @@ struct device {
     atomic_uint validation_messages;
 
     VkInstance instance;
+    const struct device_surface *surface_source; /* during device_create alone */
+    VkSurfaceKHR surface;                        /* null: shows nothing */
+    bool writes_any_format;                      /* storage images without a format */
     VkDebugUtilsMessengerEXT messenger;
     bool debug_utils; /* the instance extension is on */
 
@@ -89,11 +92,15 @@ struct binding_set {
 
 /* instance.c. Both work on a zeroed struct device that has its log, fault and validation. */
 whit_result instance_create(struct device *device);
+/* After instance_create, and before instance_select: sets surface, where one is asked for. */
+whit_result instance_make_surface(struct device *device);
 void instance_destroy(struct device *device);
 /* Sets physical, properties, memory and info. */
 whit_result instance_select(struct device *device, const char *selector);
 /* The family that the device's one queue comes from; false when none computes. */
-bool instance_queue_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *timestamp_bits);
+/* `surface`: not null: the family also draws, and presents to it. */
+bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t *family,
+                           uint32_t *timestamp_bits);
 
 /* cache.c: the pipeline cache and its file. */
 whit_result cache_open(struct device *device);

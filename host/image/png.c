@@ -6,6 +6,7 @@
 #include <png.h>
 
 #include "base/array.h"
+#include "image/display.h"
 #include "image/formats.h"
 
 /* libpng leaves its functions by longjmp. Whatever must survive that lives in here, outside the
@@ -78,65 +79,6 @@ static void finish(struct job *job)
     free(job->texts);
 }
 
-/* linear -> 8-bit sRGB, rounded to nearest: `first` gives for each of 4096 cells of [0, 1] the
-   code at its start, `from` the smallest linear value of each code. */
-enum { CELL_COUNT = 4096 };
-struct encoder {
-    uint8_t first[CELL_COUNT + 1];
-    float from[257];
-};
-
-static void encoder_init(struct encoder *encoder)
-{
-    encoder->from[0] = 0.0f;
-    for (int code = 1; code < 256; ++code) {
-        double srgb = (code - 0.5) / 255.0;
-        double linear = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
-        float rounded = (float)linear;
-        encoder->from[code] = (double)rounded < linear ? nextafterf(rounded, 2.0f) : rounded;
-    }
-    encoder->from[256] = INFINITY;
-    int code = 0;
-    for (int cell = 0; cell <= CELL_COUNT; ++cell) {
-        while ((float)cell / CELL_COUNT >= encoder->from[code + 1])
-            ++code;
-        encoder->first[cell] = (uint8_t)code;
-    }
-}
-
-static uint8_t encode(const struct encoder *encoder, float linear)
-{
-    if (!(linear > 0.0f))
-        return 0;
-    if (linear >= 1.0f)
-        return 255;
-    uint32_t code = encoder->first[(int)(linear * CELL_COUNT)];
-    while (linear >= encoder->from[code + 1])
-        ++code;
-    return (uint8_t)code;
-}
-
-static uint8_t encode_alpha(float alpha)
-{
-    return (uint8_t)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
-}
-
-static void encode_pixel(const struct encoder *encoder, const float *pixel, uint32_t channels,
-                         uint8_t *to, uint32_t to_channels)
-{
-    bool finite = true;
-    for (uint32_t c = 0; c < channels; ++c)
-        finite = finite && isfinite(pixel[c]);
-    if (!finite) {
-        memcpy(to, (const uint8_t[]){255, 0, 255, 255}, to_channels);
-        return;
-    }
-    for (uint32_t c = 0; c < to_channels; ++c) {
-        float value = pixel[channels == 1 ? 0 : c];
-        to[c] = c == 3 ? encode_alpha(value) : encode(encoder, value);
-    }
-}
-
 /* Grey has no magenta: a grey picture that needs it is written in colour. */
 static uint32_t written_channels(const struct image *image)
 {
@@ -179,14 +121,14 @@ static void set_texts(struct job *job, const struct image_target *target)
 
 static void write_rows(struct job *job, const struct image *image, uint32_t to_channels)
 {
-    struct encoder encoder;
-    encoder_init(&encoder);
+    struct display_encoder encoder;
+    display_encoder_init(&encoder);
     job->bytes = allocate(job, (size_t)image->width * to_channels, 1);
     for (uint32_t y = 0; y < image->height; ++y) {
         const float *pixel = image->pixels + (size_t)y * image->width * image->channels;
         uint8_t *to = job->bytes;
         for (uint32_t x = 0; x < image->width; ++x) {
-            encode_pixel(&encoder, pixel, image->channels, to, to_channels);
+            display_encode(&encoder, pixel, image->channels, to, to_channels);
             pixel += image->channels;
             to += to_channels;
         }

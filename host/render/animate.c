@@ -26,12 +26,7 @@ static whit_result take_pose(struct renderer *renderer, double time_s)
 static whit_result upload_all(struct renderer *renderer)
 {
     whit_result result = upload_pose(renderer);
-    if (result == WHIT_OK)
-        result = frame_fill(renderer);
-    if (result == WHIT_OK)
-        result = buffer_write(renderer->scene_buffers.frame, 0, &renderer->frame,
-                              sizeof renderer->frame);
-    return result;
+    return result == WHIT_OK ? frame_upload(renderer) : result;
 }
 
 /* Drops the passes whose compiled constants no longer fit; new ones are made when they are called

@@ -93,6 +93,7 @@ whit_result brute_create(struct renderer *renderer)
         log_error(&renderer->log, "exact numerics need trees on a device");
         return WHIT_ERROR_USAGE;
     }
+    uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     if (!list_all(renderer->accel, &l) || !list_nothing(&l)) {
         log_error(&renderer->log, "out of memory for the list of what rays test");
@@ -114,6 +115,7 @@ whit_result brute_create(struct renderer *renderer)
                                BUFFER_STORAGE, "shadows so far", &brute->passed);
     if (result == WHIT_OK)
         renderer->scene_buffers.bytes += buffer_size(brute->found) + buffer_size(brute->passed);
+    brute->bytes = renderer->scene_buffers.bytes - before;
     return result;
 }
 

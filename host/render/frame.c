@@ -56,3 +56,12 @@ whit_result render_view(const struct log *log, struct accel *accel, const struct
     *frame = view.frame;
     return result;
 }
+
+whit_result frame_upload(struct renderer *renderer)
+{
+    whit_result result = frame_fill(renderer);
+    if (result == WHIT_OK)
+        result = buffer_write(renderer->scene_buffers.frame, 0, &renderer->frame,
+                              sizeof renderer->frame);
+    return result;
+}

@@ -61,6 +61,7 @@ whit_result pixels_create(struct renderer *renderer)
     bool lists = renderer->has_secondary || adaptive || renderer->accel->no_trees;
     uint64_t list_bytes = lists ? 16 + (uint64_t)p->chunk_slots * 4 : 0;
     uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;
+    uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     const struct {
         struct buffer **buffer;
@@ -84,12 +85,14 @@ whit_result pixels_create(struct renderer *renderer)
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
         if (all[i].bytes == 0)
             continue;
-        result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
+        if (!*all[i].buffer)
+            result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
         if (result == WHIT_OK)
             renderer->scene_buffers.bytes += all[i].bytes;
     }
     if (result == WHIT_OK)
         result = costs_create(renderer);
+    p->bytes = renderer->scene_buffers.bytes - before;
     const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
     if (result == WHIT_OK && lists)
         result = buffer_write(p->work_head, 0, &head, sizeof head);

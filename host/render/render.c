@@ -367,7 +367,8 @@ whit_result renderer_render(struct renderer *renderer)
     const struct render_params *params = &renderer->params;
     renderer->rendered = false;
     if (renderer->between_times) {
-        log_error(&renderer->log, "its time could not be set, so there is nothing to render");
+        log_error(&renderer->log,
+                  "its time or view could not be set, so there is nothing to render");
         return WHIT_ERROR_USAGE;
     }
     image_finish(&renderer->color);

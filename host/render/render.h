@@ -103,6 +103,14 @@ WHIT_CHECK whit_result renderer_read_costs(struct renderer *renderer, uint32_t k
    camera. The picture is then that of a renderer made at that time, byte for byte. */
 WHIT_CHECK whit_result renderer_set_time(struct renderer *renderer, double time_s);
 
+/* Takes over width, height, camera, time_s, samples, adaptive, light_samples, bailout and depth of
+   `params`, and nothing else; buffers that fit stay, and so do kernels but for a camera of another
+   kind, adaptive on or off, depth to or from 0, and without trees. params->camera is borrowed until
+   the next call. The picture is that of a renderer made with these, byte for byte. After an error
+   there is nothing to render before a call that succeeds. */
+WHIT_CHECK whit_result renderer_set_view(struct renderer *renderer,
+                                         const struct render_params *params);
+
 /* A batch of rays in chunks that fit the device. `costs`: one a ray, or NULL. */
 WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays,
                                       uint64_t count, bool any, struct gpu_hit *hits,

@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 
-static bool calls_for_secondary(const struct renderer *renderer)
+bool renderer_bounces(const struct renderer *renderer)
 {
     const bool *called = renderer->effects.called;
     return renderer->params.depth > 0 &&
@@ -16,7 +16,7 @@ static bool calls_for_secondary(const struct renderer *renderer)
 static whit_result create_parts(struct renderer *renderer)
 {
     double start_ms = clock_ms();
-    renderer->has_secondary = calls_for_secondary(renderer);
+    renderer->has_secondary = renderer_bounces(renderer);
     renderer->node_stack_size = accel_stack_size(renderer->accel);
     renderer->single_identity = renderer->accel->single_identity;
     whit_result result = pixels_create(renderer);

@@ -32,6 +32,7 @@ struct pixel_buffers {
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
     uint32_t stack_size;  /* rays of one pixel */
+    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* Pipelines of one kernel with the buffers they work on. */
@@ -58,6 +59,7 @@ struct brute_state {
     struct buffer *found, *passed; /* of a chunk */
     struct brute_range *ranges;
     uint32_t range_count;
+    uint64_t bytes; /* of these, also counted in scene_buffers.bytes */
     struct pass closest, shadow; /* renderer->whitted: the phase that shades */
     bool time_checked;
 };
@@ -111,7 +113,12 @@ enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
 
-/* renderer.c: the kernel of the picture, where there is none yet. */
+/* params.c: fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
+WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
+
+/* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
+bool renderer_bounces(const struct renderer *renderer);
+/* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
 /* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer. */
@@ -218,7 +225,11 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *sp
 /* Makes the binding sets of pass->pipeline. */
 WHIT_CHECK whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
+/* CAMERA_* that kernels are made for. */
+uint32_t variant_camera(const struct renderer *renderer);
 void pass_finish(struct pass *pass);
+/* Keeps the pipeline. */
+void pass_unbind(struct pass *pass);
 void passes_finish(struct renderer *renderer);
 
 /* beside.c: renderer->whitted is the best kernel that there is without waiting for it: at first the
@@ -233,6 +244,8 @@ void trace_finish(struct trace_state *trace);
 
 /* frame.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
+/* The same, and to the device. */
+WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
 
 /* readback.c: a picture of one band and one pass stays on the device until it is asked for. */
 bool readback_is_late(const struct renderer *renderer);

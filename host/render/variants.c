@@ -5,7 +5,7 @@
 
 #include "kernels.h"
 
-static uint32_t camera_code(const struct renderer *renderer)
+uint32_t variant_camera(const struct renderer *renderer)
 {
     const bool *called = renderer->effects.called;
     bool lens_removed = renderer->params.effects_removed >> SCENE_EFFECT_LENS & 1;
@@ -55,7 +55,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
-    spec.SPEC_CAMERA = camera_code(renderer);
+    spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.adaptive > 0.0;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
@@ -304,10 +304,16 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
     return WHIT_OK;
 }
 
-void pass_finish(struct pass *pass)
+void pass_unbind(struct pass *pass)
 {
     binding_set_destroy(pass->sets[0]);
     binding_set_destroy(pass->sets[1]);
+    pass->sets[0] = pass->sets[1] = NULL;
+}
+
+void pass_finish(struct pass *pass)
+{
+    pass_unbind(pass);
     pipeline_destroy(pass->pipeline);
     *pass = (struct pass){0};
 }

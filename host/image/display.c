@@ -1,0 +1,68 @@
+#include "image/display.h"
+
+#include <math.h>
+#include <string.h>
+
+void display_encoder_init(struct display_encoder *encoder)
+{
+    encoder->from[0] = 0.0f;
+    for (int code = 1; code < 256; ++code) {
+        double srgb = (code - 0.5) / 255.0;
+        double linear = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+        float rounded = (float)linear;
+        encoder->from[code] = (double)rounded < linear ? nextafterf(rounded, 2.0f) : rounded;
+    }
+    encoder->from[256] = INFINITY;
+    int code = 0;
+    for (int cell = 0; cell <= DISPLAY_CELLS; ++cell) {
+        while ((float)cell / DISPLAY_CELLS >= encoder->from[code + 1])
+            ++code;
+        encoder->first[cell] = (uint8_t)code;
+    }
+}
+
+static uint8_t encode(const struct display_encoder *encoder, float linear)
+{
+    if (!(linear > 0.0f))
+        return 0;
+    if (linear >= 1.0f)
+        return 255;
+    uint32_t code = encoder->first[(int)(linear * DISPLAY_CELLS)];
+    while (linear >= encoder->from[code + 1])
+        ++code;
+    return (uint8_t)code;
+}
+
+static uint8_t encode_alpha(float alpha)
+{
+    return (uint8_t)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
+}
+
+void display_encode(const struct display_encoder *encoder, const float *pixel, uint32_t channels,
+                    uint8_t *to, uint32_t to_channels)
+{
+    bool finite = true;
+    for (uint32_t c = 0; c < channels; ++c)
+        finite = finite && isfinite(pixel[c]);
+    if (!finite) {
+        memcpy(to, (const uint8_t[]){255, 0, 255, 255}, to_channels);
+        return;
+    }
+    for (uint32_t c = 0; c < to_channels; ++c) {
+        float value = pixel[channels == 1 ? 0 : c];
+        to[c] = c == 3 ? encode_alpha(value) : encode(encoder, value);
+    }
+}
+
+void display_bytes(const struct image *image, uint8_t *rgba)
+{
+    struct display_encoder encoder;
+    size_t pixel_count = (size_t)image->width * image->height;
+    display_encoder_init(&encoder);
+    for (size_t i = 0; i < pixel_count; ++i) {
+        const float *pixel = image->pixels + i * image->channels;
+        rgba[4 * i + 3] = 255;
+        display_encode(&encoder, pixel, image->channels, &rgba[4 * i],
+                       image->channels == 4 ? 4 : 3);
+    }
+}

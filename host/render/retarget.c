@@ -1,0 +1,84 @@
+/* Another picture from a renderer that is there already: size, camera, time, samples, limits. */
+#include "render/renderer.h"
+
+/* Parameters that other kernels, or other uploads, would be needed for stay as they are. */
+static struct render_params merge(const struct render_params *own, const struct render_params *from)
+{
+    struct render_params params = *own;
+    params.width = from->width;
+    params.height = from->height;
+    params.camera = from->camera;
+    params.time_s = from->time_s;
+    params.samples = from->samples;
+    params.adaptive = from->adaptive;
+    params.light_samples = from->light_samples;
+    params.bailout = from->bailout;
+    params.depth = from->depth;
+    return params;
+}
+
+static bool same_buffers(const struct render_params *a, const struct render_params *b)
+{
+    return a->width == b->width && a->height == b->height && a->depth == b->depth &&
+           a->light_samples == b->light_samples && (a->adaptive > 0.0) == (b->adaptive > 0.0);
+}
+
+/* The word of the status stays: kernels of ray batches are bound to it. */
+static void drop_pixels(struct renderer *renderer)
+{
+    struct pixel_buffers *pixels = &renderer->pixel_buffers;
+    struct buffer *status = pixels->status;
+    pass_unbind(&renderer->whitted);
+    pixels->status = NULL;
+    renderer->scene_buffers.bytes -= pixels->bytes;
+    pixels_finish(pixels);
+    pixels->status = status;
+}
+
+static whit_result replace_pixels(struct renderer *renderer)
+{
+    drop_pixels(renderer);
+    whit_result result = pixels_create(renderer);
+    if (result == WHIT_OK && renderer->accel->no_trees) {
+        passes_finish(renderer);
+        renderer->scene_buffers.bytes -= renderer->brute.bytes;
+        brute_finish(&renderer->brute);
+        renderer->brute = (struct brute_state){0};
+        result = brute_create(renderer);
+    }
+    if (result != WHIT_OK)
+        drop_pixels(renderer);
+    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    return result;
+}
+
+whit_result renderer_set_view(struct renderer *renderer, const struct render_params *params)
+{
+    struct render_params wanted = merge(&renderer->params, params);
+    whit_result result = params_check(&renderer->log, &wanted);
+    if (result != WHIT_OK)
+        return result;
+    bool moved = wanted.time_s != renderer->params.time_s;
+    bool same = same_buffers(&renderer->params, &wanted) && renderer->pixel_buffers.pixels;
+    bool listed = renderer->params.adaptive > 0.0, had_secondary = renderer->has_secondary;
+    renderer->rendered = false;
+    renderer->params = wanted;
+    renderer->has_secondary = renderer_bounces(renderer);
+    uint32_t camera = variant_camera(renderer);
+    if (!same)
+        result = replace_pixels(renderer);
+    if (result == WHIT_OK && moved)
+        result = renderer_set_time(renderer, wanted.time_s);
+    else if (result == WHIT_OK)
+        result = frame_upload(renderer);
+    bool other_kernel = variant_camera(renderer) != camera || (wanted.adaptive > 0.0) != listed ||
+                        renderer->has_secondary != had_secondary;
+    if (result == WHIT_OK && other_kernel) {
+        beside_finish(renderer);
+        passes_finish(renderer);
+    } else if (result == WHIT_OK && !same && renderer->whitted.pipeline) {
+        result = variant_bind_whitted(renderer, &renderer->whitted);
+    }
+    renderer->between_times = result != WHIT_OK;
+    return result;
+}

@@ -1,0 +1,129 @@
+/* One renderer that is given one view after another: each picture is that of a renderer made for
+   it, byte for byte. */
+#include "load/load.h"
+#include "render/renderer.h"
+#include "render_fixture.h"
+
+static const char *const aside = "3,2.5,4,0,0.6,0,0,1,0,35";
+
+/* Every step changes something else: size, samples, camera, limits, and back. */
+static const struct render_params steps[] = {
+    {.width = 40, .height = 32, .depth = 4},
+    {.width = 24, .height = 40, .depth = 4},
+    {.width = 24, .height = 40, .depth = 4, .camera = aside},
+    {.width = 24, .height = 40, .depth = 4, .camera = aside, .samples = 4},
+    {.width = 61, .height = 33, .depth = 9, .samples = 1},
+    {.width = 61, .height = 33, .depth = 0},
+    {.width = 61, .height = 33, .depth = 2, .light_samples = 4, .bailout = -1.0},
+    {.width = 40, .height = 32, .depth = 4, .adaptive = 0.1},
+    {.width = 32, .height = 32, .depth = 4, .adaptive = 0.1, .time_s = 0.7},
+    {.width = 40, .height = 32, .depth = 4},
+};
+enum { STEPS = sizeof steps / sizeof *steps };
+
+static struct scene *load(const char *name)
+{
+    char path[512];
+    struct scene *scene = scene_create(&fixture_log, name);
+    assert_non_null(scene);
+    snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, name);
+    assert_int_equal(load_scene_file(scene, path, NULL), WHIT_OK);
+    return scene;
+}
+
+static void read_all(struct renderer *renderer, struct image *color, struct image *ids)
+{
+    assert_int_equal(renderer_render(renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(renderer, color), WHIT_OK);
+    assert_int_equal(renderer_read_ids(renderer, ids), WHIT_OK);
+}
+
+static void check_same(const struct fixture *f, const struct render_params *params)
+{
+    struct renderer *fresh = NULL;
+    struct image color = {0}, ids = {0}, fresh_color = {0}, fresh_ids = {0};
+    read_all(f->renderer, &color, &ids);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &fresh), WHIT_OK);
+    read_all(fresh, &fresh_color, &fresh_ids);
+    assert_int_equal(color.width, params->width);
+    assert_int_equal(color.height, params->height);
+    size_t pixels = (size_t)params->width * params->height;
+    assert_memory_equal(color.pixels, fresh_color.pixels, pixels * 4 * sizeof(float));
+    assert_memory_equal(ids.words, fresh_ids.words, pixels * 2 * sizeof(uint32_t));
+    struct render_stats stats, fresh_stats;
+    renderer_get_stats(f->renderer, &stats);
+    renderer_get_stats(fresh, &fresh_stats);
+    assert_int_equal(stats.device_bytes, fresh_stats.device_bytes);
+    renderer_destroy(fresh);
+    image_finish(&color);
+    image_finish(&ids);
+    image_finish(&fresh_color);
+    image_finish(&fresh_ids);
+}
+
+static void walk(const char *name, const struct accel_params *accel, int count)
+{
+    struct fixture f = fixture_open(load(name), accel, &steps[0]);
+    for (int i = 0; i < count; ++i) {
+        assert_int_equal(renderer_set_view(f.renderer, &steps[i]), WHIT_OK);
+        check_same(&f, &steps[i]);
+    }
+    print_message("  %s: 0 of %d views differ\n", name, count);
+    fixture_close(&f);
+}
+
+static void views_are_those_of_new_renderers(void **state)
+{
+    (void)state;
+    walk("spin", NULL, STEPS);
+    walk("whitted", NULL, STEPS);
+}
+
+static void without_trees(void **state)
+{
+    (void)state;
+    const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
+    walk("cube", &none, 3);
+}
+
+/* Kernels of ray batches are bound to what a new size must keep. */
+static void rays_are_traced_in_between(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(load("cube"), NULL, &steps[0]);
+    const struct gpu_ray ray = {.origin = {3, 2.5f, 4}, .dir = {-3, -2, -4}, .t_max = INFINITY};
+    struct gpu_hit before = {0}, after = {0};
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &before, NULL), WHIT_OK);
+    assert_int_equal(renderer_set_view(f.renderer, &steps[4]), WHIT_OK);
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &after, NULL), WHIT_OK);
+    assert_memory_equal(&before, &after, sizeof before);
+    assert_int_not_equal(before.primitive, HIT_NONE);
+    fixture_close(&f);
+}
+
+static void nonsense_is_refused(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(load("cube"), NULL, &steps[0]);
+    struct render_params wrong = steps[0];
+    wrong.camera = "no such camera";
+    assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
+    wrong = steps[0];
+    wrong.samples = 5;
+    assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
+    check_same(&f, &steps[1]);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(views_are_those_of_new_renderers),
+        cmocka_unit_test(without_trees),
+        cmocka_unit_test(rays_are_traced_in_between),
+        cmocka_unit_test(nonsense_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
