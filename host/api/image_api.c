@@ -26,6 +26,25 @@ const uint32_t *whit_image_words(const whit_image *image)
     return image->image.words;
 }
 
+whit_result whit_image_create_display(uint32_t width, uint32_t height, const uint8_t *rgba,
+                                      whit_image **out)
+{
+    size_t pixel_count = (size_t)width * height;
+    *out = NULL;
+    whit_image *image = calloc(1, sizeof *image);
+    whit_result result =
+        image ? image_init(&image->image, width, height, 3, false) : WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK) {
+        free(image);
+        return result;
+    }
+    for (size_t i = 0; i < 3 * pixel_count; ++i)
+        image->image.pixels[i] =
+            image_linear_from_srgb((float)rgba[i / 3 * 4 + i % 3] * (1.0f / 255.0f));
+    *out = image;
+    return WHIT_OK;
+}
+
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 {
     display_bytes(&image->image, rgba);

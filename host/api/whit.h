@@ -595,6 +595,9 @@ WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, wh
  */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
                                          const float *pixels, whit_image **out);
+/* The picture whose .png holds these RGBA bytes; alpha is left out. */
+WHIT_CHECK whit_result whit_image_create_display(uint32_t width, uint32_t height,
+                                                 const uint8_t *rgba, whit_image **out);
 void whit_image_destroy(whit_image *image);
 
 /* True for a path that whit_image_save can write; `integers` asks for hit identities. */

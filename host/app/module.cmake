@@ -12,6 +12,13 @@ set_target_properties(whit_program PROPERTIES
 target_include_directories(whit_program PRIVATE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 target_link_libraries(whit_program PRIVATE whit_flags whit PkgConfig::JANSSON m)
+if(WHIT_VIEWER)
+  target_sources(whit_program PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/app/view_command.c)
+  target_compile_definitions(whit_program PRIVATE WHIT_VIEWER)
+  # In front of the library, whose modules it also calls.
+  target_link_libraries(whit_program PRIVATE $<TARGET_OBJECTS:whit_view> glfw PkgConfig::IMGUI
+    Vulkan::Vulkan)
+endif()
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES app/completion/whit.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)

@@ -1,0 +1,218 @@
+#include "view/camera.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double FOV_DEFAULT = 45.0;
+static const double PI = 3.14159265358979323846;
+static const double STEEPEST = 0.998; /* cosine between a look and up */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double length(const double a[3])
+{
+    return sqrt(dot(a, a));
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static bool normalize(double a[3])
+{
+    double l = length(a);
+    for (int i = 0; i < 3; ++i)
+        a[i] /= l;
+    return l > 0.0 && isfinite(l);
+}
+
+/* Around a unit axis (Rodrigues' formula). */
+static void rotate(double v[3], const double axis[3], double angle)
+{
+    double c = cos(angle), s = sin(angle), along = dot(axis, v), side[3];
+    cross(axis, v, side);
+    for (int i = 0; i < 3; ++i)
+        v[i] = v[i] * c + side[i] * s + axis[i] * along * (1.0 - c);
+}
+
+/* Unit vectors of the picture, and the distance to the target. */
+struct frame {
+    double right[3], up[3], forward[3], distance;
+};
+
+static struct frame frame_of(const struct view_camera *camera)
+{
+    struct frame f;
+    for (int i = 0; i < 3; ++i)
+        f.forward[i] = camera->target[i] - camera->eye[i];
+    f.distance = length(f.forward);
+    normalize(f.forward);
+    cross(f.forward, camera->up, f.right);
+    if (!normalize(f.right)) {
+        double other[3] = {0.0, 0.0, 0.0};
+        other[fabs(f.forward[0]) < 0.5 ? 0 : 2] = 1.0;
+        cross(f.forward, other, f.right);
+        normalize(f.right);
+    }
+    cross(f.right, f.forward, f.up);
+    return f;
+}
+
+/* Turns a look by the angles, but not over the top. */
+static void turn(const struct view_camera *camera, double look[3], double right, double up)
+{
+    double axis[3], side[3], tilted[3];
+    memcpy(axis, camera->up, sizeof axis);
+    normalize(axis);
+    rotate(look, axis, -right);
+    cross(look, axis, side);
+    if (!normalize(side))
+        return;
+    memcpy(tilted, look, sizeof tilted);
+    rotate(tilted, side, up);
+    double steep = dot(tilted, axis) / length(tilted);
+    if (fabs(steep) < STEEPEST || fabs(steep) < fabs(dot(look, axis) / length(look)))
+        memcpy(look, tilted, sizeof tilted);
+}
+
+void camera_orbit(struct view_camera *camera, double right, double up)
+{
+    double look[3];
+    for (int i = 0; i < 3; ++i)
+        look[i] = camera->target[i] - camera->eye[i];
+    turn(camera, look, right, up);
+    for (int i = 0; i < 3; ++i)
+        camera->eye[i] = camera->target[i] - look[i];
+}
+
+void camera_turn(struct view_camera *camera, double right, double up)
+{
+    double look[3];
+    for (int i = 0; i < 3; ++i)
+        look[i] = camera->target[i] - camera->eye[i];
+    turn(camera, look, right, up);
+    for (int i = 0; i < 3; ++i)
+        camera->target[i] = camera->eye[i] + look[i];
+}
+
+void camera_fly(struct view_camera *camera, double right, double up, double forward)
+{
+    struct frame f = frame_of(camera);
+    for (int i = 0; i < 3; ++i) {
+        double step = f.distance * (right * f.right[i] + up * f.up[i] + forward * f.forward[i]);
+        camera->eye[i] += step;
+        camera->target[i] += step;
+    }
+}
+
+void camera_zoom(struct view_camera *camera, double factor)
+{
+    double eye[3];
+    for (int i = 0; i < 3; ++i)
+        eye[i] = camera->target[i] + factor * (camera->eye[i] - camera->target[i]);
+    bool apart = false;
+    for (int i = 0; i < 3; ++i)
+        apart = apart || (float)eye[i] != (float)camera->target[i];
+    if (apart && factor > 0.0)
+        memcpy(camera->eye, eye, sizeof eye);
+}
+
+void camera_focus(struct view_camera *camera, const double point[3])
+{
+    for (int i = 0; i < 3; ++i) {
+        camera->eye[i] += point[i] - camera->target[i];
+        camera->target[i] = point[i];
+    }
+}
+
+/* The distance from which a ball is inside the picture. */
+static double distance_for(const struct view_camera *camera, double radius, double aspect)
+{
+    double half = camera->fov_y_degrees * PI / 360.0;
+    if (aspect < 1.0)
+        half = atan(tan(half) * aspect);
+    return radius / sin(half);
+}
+
+void camera_show(struct view_camera *camera, const double lo[3], const double hi[3], double aspect)
+{
+    struct frame f = frame_of(camera);
+    double radius = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        radius += 0.25 * (hi[i] - lo[i]) * (hi[i] - lo[i]);
+        camera->target[i] = 0.5 * (lo[i] + hi[i]);
+    }
+    radius = sqrt(radius);
+    double distance = distance_for(camera, radius > 0.0 && isfinite(radius) ? radius : 1.0, aspect);
+    for (int i = 0; i < 3; ++i) {
+        if (!(lo[i] <= hi[i]))
+            camera->target[i] = 0.0;
+        camera->eye[i] = camera->target[i] - distance * f.forward[i];
+    }
+}
+
+void camera_fit(struct view_camera *camera, const double lo[3], const double hi[3], double aspect)
+{
+    *camera = (struct view_camera){
+        .eye = {1.0, 0.7, 1.6}, .up = {0.0, 1.0, 0.0}, .fov_y_degrees = FOV_DEFAULT};
+    camera_show(camera, lo, hi, aspect);
+}
+
+void camera_along(struct view_camera *camera, int axis, int from)
+{
+    double distance = frame_of(camera).distance;
+    for (int i = 0; i < 3; ++i) {
+        camera->eye[i] = camera->target[i] + (i == axis ? from * distance : 0.0);
+        camera->up[i] = i == (axis == 1 ? 2 : 1) ? (axis == 1 ? -from : 1.0) : 0.0;
+    }
+}
+
+void camera_to_text(const struct view_camera *camera, char *text, size_t text_bytes)
+{
+    const double *e = camera->eye, *t = camera->target, *u = camera->up;
+    snprintf(text, text_bytes, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", e[0], e[1],
+             e[2], t[0], t[1], t[2], u[0], u[1], u[2], camera->fov_y_degrees);
+}
+
+bool camera_from_text(const char *text, struct view_camera *camera)
+{
+    double n[10];
+    for (int i = 0; i < 10; ++i) {
+        char *end;
+        n[i] = strtod(text, &end);
+        if (end == text || *end != (i < 9 ? ',' : '\0') || !isfinite(n[i]))
+            return false;
+        text = end + 1;
+    }
+    memcpy(camera->eye, n, sizeof camera->eye);
+    memcpy(camera->target, n + 3, sizeof camera->target);
+    memcpy(camera->up, n + 6, sizeof camera->up);
+    camera->fov_y_degrees = n[9];
+    double side[3];
+    const double look[3] = {n[3] - n[0], n[4] - n[1], n[5] - n[2]};
+    cross(look, camera->up, side);
+    return length(side) > 0.0 && n[9] > 0.0 && n[9] < 180.0;
+}
+
+bool camera_project(const struct view_camera *camera, const double point[3], double width,
+                    double height, double *x, double *y)
+{
+    struct frame f = frame_of(camera);
+    double d[3], focal = 0.5 * height / tan(camera->fov_y_degrees * PI / 360.0);
+    for (int i = 0; i < 3; ++i)
+        d[i] = point[i] - camera->eye[i];
+    double depth = dot(d, f.forward);
+    if (!(depth > 0.0))
+        return false;
+    *x = 0.5 * width + focal * dot(d, f.right) / depth;
+    *y = 0.5 * height - focal * dot(d, f.up) / depth;
+    return true;
+}

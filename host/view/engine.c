@@ -1,0 +1,497 @@
+/* The engine's threads, and who has what: see engine_private.h. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "view/engine_private.h"
+
+enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MOST = 2 };
+static const uint64_t LARGE_SCENE = 1000000; /* triangles */
+
+static void wake_window(struct engine *engine)
+{
+    pthread_cond_broadcast(&engine->news);
+    if (engine->params.wake)
+        engine->params.wake(engine->params.wake_user);
+}
+
+/* ---- Sessions in the making ---- */
+
+/* The first error is the reason; what follows from it is not. One that nobody wants any more, as
+   its scene was left, keeps its errors. */
+static void session_message(void *user, whit_log_level level, const char *message)
+{
+    struct session *session = user;
+    struct engine *engine = session->owner;
+    pthread_mutex_lock(&engine->lock);
+    char *error = session->ready ? engine->error : session->error;
+    if (level == WHIT_LOG_ERROR && !error[0])
+        snprintf(error, ENGINE_MESSAGE, "%s", message);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+static void run_job(void *context)
+{
+    struct engine_job *job = context;
+    struct engine *engine = job->engine;
+    whit_result result =
+        session_open(job->session, &job->settings, job->scene,
+                     &(whit_log){session_message, job->session, WHIT_LOG_ERROR}, &job->progress);
+    pthread_mutex_lock(&engine->lock);
+    job->result = result;
+    job->done = true;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+static void job_destroy(struct engine_job *job)
+{
+    if (!job)
+        return;
+    thread_join(job->thread);
+    if (job->session)
+        session_close(job->session);
+    free(job->session);
+    scene_ref_drop(job->scene);
+    free(job);
+}
+
+/* A scene that some session has loaded already, held; NULL: none. */
+static struct scene_ref *find_scene(const struct engine *engine,
+                                    const struct view_settings *settings)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        const struct session *session = engine->sessions[i];
+        if (session && settings_same_scene(&session->scene->settings, settings))
+            return scene_ref_take(session->scene);
+    }
+    return NULL;
+}
+
+static bool start_job(struct engine *engine, const struct view_settings *settings)
+{
+    struct engine_job *job = calloc(1, sizeof *job);
+    struct session *session = calloc(1, sizeof *session);
+    if (job && session) {
+        job->session = session;
+        job->settings = *settings;
+        job->engine = engine;
+        session->owner = engine;
+        job->start_ms = whit_clock_ms();
+        job->scene = find_scene(engine, settings);
+        job->thread = thread_start(run_job, job);
+        if (job->thread) {
+            engine->job = job;
+            return true;
+        }
+        scene_ref_drop(job->scene);
+    }
+    free(job);
+    free(session);
+    snprintf(engine->error, sizeof engine->error, "out of memory");
+    return false;
+}
+
+/* ---- The sessions that there are ---- */
+
+static void forget_session(struct engine *engine, uint32_t index)
+{
+    struct session *session = engine->sessions[index];
+    engine->sessions[index] = NULL;
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        if (engine->lanes[i].session == session)
+            engine->lanes[i].session = NULL;
+    }
+    pthread_mutex_unlock(&engine->lock);
+    session_close(session);
+    free(session);
+    pthread_mutex_lock(&engine->lock);
+}
+
+static void forget_if(struct engine *engine, const struct session *session)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        if (engine->sessions[i] == session && session)
+            forget_session(engine, i);
+    }
+}
+
+static bool is_shown(const struct engine *engine, const struct session *session)
+{
+    return engine->lanes[0].session == session || engine->lanes[1].session == session;
+}
+
+static uint32_t sessions_most(const struct engine *engine, const struct session *newest)
+{
+    uint32_t most = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
+    bool large = newest->scene->info.triangle_count > LARGE_SCENE;
+    return large && most > SESSIONS_LARGE ? SESSIONS_LARGE : most;
+}
+
+/* Makes room for one more: scenes that nobody looks at go first, then what was not used longest. */
+static void make_room(struct engine *engine, const struct session *newest)
+{
+    for (;;) {
+        uint32_t count = 0, oldest = ENGINE_SESSIONS_MOST;
+        for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+            const struct session *session = engine->sessions[i];
+            count += session != NULL;
+            if (!session || is_shown(engine, session))
+                continue;
+            if (oldest == ENGINE_SESSIONS_MOST ||
+                session->last_use < engine->sessions[oldest]->last_use)
+                oldest = i;
+        }
+        if (count < sessions_most(engine, newest) || oldest == ENGINE_SESSIONS_MOST)
+            return;
+        forget_session(engine, oldest);
+    }
+}
+
+static struct session *find_session(const struct engine *engine,
+                                    const struct view_settings *settings)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        struct session *session = engine->sessions[i];
+        if (session && settings_same_kernel(&session->settings, settings))
+            return session;
+    }
+    return NULL;
+}
+
+static void keep_session(struct engine *engine, struct session *session)
+{
+    make_room(engine, session);
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        if (!engine->sessions[i]) {
+            engine->sessions[i] = session;
+            return;
+        }
+    }
+}
+
+/* Takes what a finished job made. */
+static void reap_job(struct engine *engine)
+{
+    struct engine_job *job = engine->job;
+    if (!job || !job->done)
+        return;
+    engine->job = NULL;
+    if (job->result == WHIT_OK) {
+        job->session->ready = true;
+        keep_session(engine, job->session);
+        engine->error[0] = '\0';
+    } else if (job->result != WHIT_ERROR_CANCELLED) {
+        memcpy(engine->error, job->session->error, sizeof engine->error);
+        if (!engine->error[0])
+            snprintf(engine->error, sizeof engine->error, "out of memory");
+        for (int i = 0; i < ENGINE_LANES; ++i) {
+            struct engine_lane *lane = &engine->lanes[i];
+            if (lane->wanted && settings_same_kernel(&lane->settings, &job->settings))
+                lane->failed = true;
+        }
+    }
+    wake_window(engine);
+    if (job->result == WHIT_OK)
+        job->session = NULL; /* kept */
+    pthread_mutex_unlock(&engine->lock);
+    job_destroy(job);
+    pthread_mutex_lock(&engine->lock);
+}
+
+/* ---- The drawing thread ---- */
+
+static bool is_done(const struct engine_lane *lane)
+{
+    bool best = lane->quality == ENGINE_WHOLE || lane->moving;
+    return !lane->wanted || lane->failed ||
+           (lane->drawn == lane->asked && best && !lane->stale);
+}
+
+static void set_place(struct view_settings *settings, const struct view_settings *place)
+{
+    memcpy(settings->camera, place->camera, sizeof settings->camera);
+    settings->picture.time_s = place->picture.time_s;
+    settings->picture.width = place->picture.width;
+    settings->picture.height = place->picture.height;
+}
+
+/* Starts the session that a lane lacks, or stops one that nobody wants any more. */
+static void make_session_for(struct engine *engine, struct engine_lane *lane)
+{
+    const struct engine_job *job = engine->job;
+    if (!job) {
+        lane->failed = !start_job(engine, &lane->settings);
+        wake_window(engine);
+        return;
+    }
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        const struct engine_lane *other = &engine->lanes[i];
+        if (other->wanted && settings_same_kernel(&other->settings, &job->settings))
+            return;
+    }
+    job->session->cancel = true;
+}
+
+/* What to draw for a lane now; false: nothing. With the lock. */
+static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
+{
+    if (is_done(lane))
+        return false;
+    *task = (struct engine_task){.settings = lane->settings};
+    task->session = find_session(engine, &lane->settings);
+    if (task->session) {
+        if (task->session != lane->session)
+            lane->ms_per_sample = 0.0;
+        engine_plan(engine, lane, task);
+        return true;
+    }
+    make_session_for(engine, lane);
+    /* The old kernel goes on at the new place, but not to another scene. */
+    if (lane->failed || !lane->session || lane->drawn == lane->asked ||
+        !settings_same_scene(&lane->session->settings, &lane->settings))
+        return false;
+    task->session = lane->session;
+    task->settings = lane->session->settings;
+    set_place(&task->settings, &lane->settings);
+    engine_plan(engine, lane, task);
+    return true;
+}
+
+/* Without the lock. */
+static void note_change(struct engine *engine, const struct engine_frame *frame)
+{
+    struct engine_change change = engine->change; /* which no other thread writes */
+    engine_compare(&engine->last, frame, &change);
+    engine_keep(&engine->last, frame);
+    pthread_mutex_lock(&engine->lock);
+    engine->change = change;
+    pthread_mutex_unlock(&engine->lock);
+}
+
+static void take_picture(struct engine *engine, struct engine_lane *lane,
+                         const struct engine_task *task, uint64_t asked, struct engine_frame *frame)
+{
+    double pixels = (double)frame->width * frame->height;
+    double samples = frame->samples ? frame->samples : 8;
+    double ms = frame->stats.render_ms / (pixels * samples);
+    /* Small pictures have their own overhead: the larger one tells. */
+    if (frame->divisor == 1 || lane->ms_per_sample <= 0.0 || ms > lane->ms_per_sample)
+        lane->ms_per_sample = ms;
+    else
+        lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
+    bool own = settings_same_kernel(&task->settings, &lane->settings);
+    lane->session = task->session;
+    lane->drawn = asked;
+    lane->quality = task->quality;
+    lane->stale = !own;
+    task->session->last_use = ++engine->uses;
+    frame->number = ++lane->frames;
+    engine_frame_finish(&lane->frame);
+    lane->frame = *frame;
+    engine->error[0] = '\0';
+    engine->lost = 0;
+}
+
+/* The device is gone: everything on it is made again, unless that happens again and again. */
+static void lose_device(struct engine *engine, struct session *session)
+{
+    engine->device_lost = ++engine->lost > LOST_MOST;
+    forget_if(engine, session);
+}
+
+static void draw_one(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
+{
+    struct engine_frame frame;
+    struct session *session = task->session;
+    uint64_t asked = lane->asked;
+    session->cancel = false;
+    engine->busy = true;
+    engine->drawing = task->quality == ENGINE_QUICK ? NULL : session;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = engine_draw(task, &frame);
+    if (result == WHIT_OK && frame.whole && lane == &engine->lanes[0])
+        note_change(engine, &frame);
+    pthread_mutex_lock(&engine->lock);
+    engine->busy = false;
+    engine->drawing = NULL;
+    if (result == WHIT_OK) {
+        take_picture(engine, lane, task, asked, &frame);
+    } else {
+        engine_frame_finish(&frame);
+        if (result == WHIT_ERROR_DEVICE)
+            lose_device(engine, session);
+        if (result != WHIT_ERROR_CANCELLED && (result != WHIT_ERROR_DEVICE || engine->device_lost))
+            lane->failed = lane->asked == asked;
+    }
+    wake_window(engine);
+}
+
+static void run_engine(void *context)
+{
+    struct engine *engine = context;
+    pthread_mutex_lock(&engine->lock);
+    while (!engine->quit) {
+        struct engine_task task;
+        bool drew = false;
+        reap_job(engine);
+        for (int i = 0; i < ENGINE_LANES && !engine->quit; ++i) {
+            if (plan_lane(engine, &engine->lanes[i], &task)) {
+                draw_one(engine, &engine->lanes[i], &task);
+                drew = true;
+            }
+        }
+        if (!drew && !engine->quit && !(engine->job && engine->job->done))
+            pthread_cond_wait(&engine->work, &engine->lock);
+    }
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* ---- The window's thread ---- */
+
+whit_result engine_create(const struct engine_params *params, struct engine **out)
+{
+    *out = NULL;
+    struct engine *engine = calloc(1, sizeof *engine);
+    if (!engine)
+        return WHIT_ERROR_MEMORY;
+    pthread_condattr_t monotonic;
+    engine->params = *params;
+    if (engine->params.sessions > ENGINE_SESSIONS_MOST)
+        engine->params.sessions = ENGINE_SESSIONS_MOST;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_mutex_init(&engine->lock, NULL);
+    pthread_cond_init(&engine->work, NULL);
+    pthread_cond_init(&engine->news, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    engine->thread = thread_start(run_engine, engine);
+    if (!engine->thread) {
+        engine_destroy(engine);
+        return WHIT_ERROR_MEMORY;
+    }
+    *out = engine;
+    return WHIT_OK;
+}
+
+void engine_destroy(struct engine *engine)
+{
+    if (!engine)
+        return;
+    pthread_mutex_lock(&engine->lock);
+    engine->quit = true;
+    if (engine->job)
+        engine->job->session->cancel = true;
+    if (engine->drawing)
+        engine->drawing->cancel = true;
+    pthread_cond_broadcast(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+    thread_join(engine->thread);
+    job_destroy(engine->job);
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        if (engine->sessions[i])
+            session_close(engine->sessions[i]);
+        free(engine->sessions[i]);
+    }
+    for (int i = 0; i < ENGINE_LANES; ++i)
+        engine_frame_finish(&engine->lanes[i].frame);
+    engine_kept_finish(&engine->last);
+    pthread_cond_destroy(&engine->work);
+    pthread_cond_destroy(&engine->news);
+    pthread_mutex_destroy(&engine->lock);
+    free(engine);
+}
+
+static void ask(struct engine *engine, struct engine_lane *lane,
+                const struct view_settings *settings, bool moving)
+{
+    bool same = lane->wanted && settings_same(&lane->settings, settings);
+    if (same && lane->moving == moving)
+        return;
+    if (!same) {
+        ++lane->asked;
+        lane->failed = false;
+        if (engine->drawing)
+            engine->drawing->cancel = true;
+    }
+    lane->wanted = true;
+    lane->settings = *settings;
+    lane->moving = moving;
+    pthread_cond_signal(&engine->work);
+}
+
+void engine_ask(struct engine *engine, const struct view_settings *settings, bool moving)
+{
+    pthread_mutex_lock(&engine->lock);
+    struct engine_lane *other = &engine->lanes[1];
+    ask(engine, &engine->lanes[0], settings, moving);
+    if (other->wanted) {
+        struct view_settings there = other->settings;
+        set_place(&there, settings);
+        ask(engine, other, &there, moving);
+    }
+    pthread_mutex_unlock(&engine->lock);
+}
+
+void engine_ask_other(struct engine *engine, const struct view_settings *settings)
+{
+    pthread_mutex_lock(&engine->lock);
+    if (settings)
+        ask(engine, &engine->lanes[1], settings, engine->lanes[0].moving);
+    else
+        engine->lanes[1].wanted = false;
+    pthread_mutex_unlock(&engine->lock);
+}
+
+void engine_get_status(struct engine *engine, struct engine_status *status)
+{
+    pthread_mutex_lock(&engine->lock);
+    const struct engine_job *job = engine->job;
+    *status = (struct engine_status){
+        .stage = job ? (enum session_stage)atomic_load(&job->progress.stage) : SESSION_DONE,
+        .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
+        .drawing = !is_done(&engine->lanes[0]) || !is_done(&engine->lanes[1]),
+        .device_lost = engine->device_lost,
+        .change = engine->change,
+    };
+    memcpy(status->error, engine->error, sizeof status->error);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
+{
+    pthread_mutex_lock(&engine->lock);
+    struct engine_lane *lane = &engine->lanes[other ? 1 : 0];
+    bool newer = lane->frame.number > frame->number;
+    if (newer) {
+        engine_frame_finish(frame);
+        *frame = lane->frame;
+        lane->frame = (struct engine_frame){0};
+    }
+    pthread_mutex_unlock(&engine->lock);
+    return newer;
+}
+
+bool engine_is_still(struct engine *engine)
+{
+    pthread_mutex_lock(&engine->lock);
+    bool still = is_done(&engine->lanes[0]) && is_done(&engine->lanes[1]) && !engine->busy;
+    pthread_mutex_unlock(&engine->lock);
+    return still;
+}
+
+void engine_wait(struct engine *engine, double ms)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    int64_t ns = until.tv_nsec + (int64_t)(ms * 1e6);
+    until.tv_sec += (time_t)(ns / 1000000000);
+    until.tv_nsec = (long)(ns % 1000000000);
+    pthread_mutex_lock(&engine->lock);
+    bool fresh = engine->lanes[0].frame.number > 0 || engine->lanes[1].frame.number > 0;
+    if (!fresh)
+        (void)pthread_cond_timedwait(&engine->news, &engine->lock, &until);
+    pthread_mutex_unlock(&engine->lock);
+}

@@ -1,0 +1,82 @@
+/* Draws beside the window: one thread draws what was last asked for, another makes new sessions
+   while the old one goes on drawing. The window's thread asks and takes; no call of it waits. */
+#ifndef VIEW_ENGINE_H
+#define VIEW_ENGINE_H
+
+#include "view/session.h"
+
+struct engine;
+
+struct engine_params {
+    double budget_ms;    /* of a picture while something moves; 0: 1000 / 30 */
+    uint32_t sessions;   /* kept at a time, 2..8; 0: 4 */
+    void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
+    void *wake_user;
+};
+
+WHIT_CHECK whit_result engine_create(const struct engine_params *params, struct engine **out);
+void engine_destroy(struct engine *engine); /* cancels, waits; NULL is fine */
+
+/* What to draw from now on. `moving`: more will follow soon, so be quick: a smaller picture of one
+   sample within the budget; else as the settings say, a quick one first. */
+void engine_ask(struct engine *engine, const struct view_settings *settings, bool moving);
+
+/* What B of the split view shows: `settings` are drawn too, at the place of what engine_ask says.
+   NULL: no more. */
+void engine_ask_other(struct engine *engine, const struct view_settings *settings);
+
+enum { ENGINE_MESSAGE = 512 };
+
+/* A picture that is done, or with an error in its place. */
+struct engine_frame {
+    uint64_t number;               /* counts up; 0: none yet */
+    struct view_settings settings; /* drawn */
+    struct scene_ref *scene;       /* held */
+    whit_image *color; /* floats: linear RGBA, or of one channel where costs are painted */
+    whit_image *ids;   /* hit identities; NULL but for whole pictures */
+    uint8_t *rgba;     /* width * height * 4: as the window shows it */
+    uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
+    uint32_t samples;                /* a pixel; adaptive: 0 */
+    bool whole;                      /* full size and all samples: what `whit render` makes */
+    double scale;                    /* of a heat map */
+    whit_stats stats;
+    whit_accel_info accel;
+    whit_device_info device;
+    double build_ms, compile_ms;
+};
+void engine_frame_finish(struct engine_frame *frame);
+
+/* What another kernel, tree or setting changed, from the last whole picture before to the first one
+   after, of the same place. */
+struct engine_change {
+    uint64_t number;    /* counts up; 0: none yet */
+    char what[128];     /* "traversal distance -> sign" */
+    uint64_t pixels;    /* of both pictures */
+    uint64_t other_ids; /* pixels that hit something else */
+    uint64_t other_colors;
+    double largest, mean; /* difference of a channel, linear */
+    double before_ms, after_ms; /* of drawing, on the device where it measures */
+};
+
+struct engine_status {
+    enum session_stage stage; /* of the session in the making; SESSION_DONE: none is */
+    double stage_ms;          /* since it was asked for */
+    bool drawing;             /* a better picture than the last one is on its way */
+    char error[ENGINE_MESSAGE]; /* the last failure, until something succeeds; "": none */
+    bool device_lost;
+    struct engine_change change; /* the last one */
+};
+void engine_get_status(struct engine *engine, struct engine_status *status);
+
+/* Moves the newest picture into *frame, whose old one is finished; false when there is no newer one
+   than frame->number. `other`: that of engine_ask_other. */
+bool engine_take(struct engine *engine, bool other, struct engine_frame *frame);
+
+/* True when nothing is left to do: the whole picture of what was last asked for is there, or an
+   error. */
+bool engine_is_still(struct engine *engine);
+
+/* Waits for the next thing to take, at most `ms`. For tests and replays. */
+void engine_wait(struct engine *engine, double ms);
+
+#endif

@@ -1,0 +1,156 @@
+/* One picture of one session. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/engine_private.h"
+
+static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
+enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
+static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
+
+static uint32_t samples_of(const struct view_settings *settings)
+{
+    const whit_renderer_params *p = &settings->picture;
+    if (settings->paint != VIEW_PAINT_COLOR)
+        return 1;
+    return p->adaptive > 0.0 ? 8 : p->samples ? p->samples : 1; /* adaptive: 4 and some */
+}
+
+/* The largest picture of one sample within the budget. */
+static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
+{
+    double budget_ms = engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
+    const whit_renderer_params *p = &lane->settings.picture;
+    double full_ms = (double)p->width * p->height * lane->ms_per_sample;
+    if (lane->ms_per_sample <= 0.0)
+        return DIVISOR_UNKNOWN;
+    for (int i = 0; i < DIVISORS; ++i) {
+        if (full_ms <= budget_ms * divisors[i] * divisors[i])
+            return divisors[i];
+    }
+    return divisors[DIVISORS - 1];
+}
+
+void engine_plan(const struct engine *engine, const struct engine_lane *lane,
+                 struct engine_task *task)
+{
+    uint32_t divisor = choose_divisor(engine, lane);
+    uint32_t samples = samples_of(&lane->settings);
+    bool first = lane->drawn != lane->asked || lane->stale;
+    enum engine_quality quality = first ? ENGINE_QUICK : lane->quality + 1;
+    if (quality == ENGINE_QUICK && divisor == 1)
+        quality = ENGINE_FULL; /* all pixels are quick */
+    if (quality == ENGINE_FULL && samples == 1)
+        quality = ENGINE_WHOLE; /* one sample is all there is */
+    if (lane->moving && quality == ENGINE_WHOLE && samples > 1)
+        quality = ENGINE_FULL;
+    task->quality = quality;
+    task->divisor = quality == ENGINE_QUICK ? divisor : 1;
+}
+
+/* Heat maps stand above a legend, and in the middle where that is wider. */
+static void cut_out(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
+{
+    whit_image_info info;
+    whit_image_get_info(heat, &info);
+    uint8_t *all = malloc((size_t)info.width * info.height * 4);
+    if (!all)
+        return;
+    whit_image_display_bytes(heat, all);
+    size_t left = (info.width - width) / 2;
+    for (uint32_t y = 0; y < height; ++y)
+        memcpy(rgba + (size_t)y * width * 4, all + ((size_t)y * info.width + left) * 4,
+               (size_t)width * 4);
+    free(all);
+}
+
+static whit_result paint_costs(const struct engine_task *task, struct engine_frame *frame)
+{
+    const struct view_settings *settings = &task->settings;
+    whit_image *heat = NULL;
+    whit_view view = (whit_view)(settings->paint - VIEW_PAINT_DEPTH);
+    whit_result result = whit_renderer_cost_image(task->session->renderer, view,
+                                                  (whit_ray_kind)settings->paint_rays,
+                                                  &frame->color);
+    if (result != WHIT_OK)
+        return result;
+    frame->scale = settings->paint_scale > 0.0 ? settings->paint_scale
+                                               : whit_image_heat_scale(frame->color);
+    const whit_heat_params params = {.scale = frame->scale};
+    result = whit_image_heat(frame->color, &params, &heat);
+    if (result == WHIT_OK)
+        cut_out(heat, frame->width, frame->height, frame->rgba);
+    whit_image_destroy(heat);
+    return result;
+}
+
+static whit_result read_picture(const struct engine_task *task, struct engine_frame *frame)
+{
+    whit_renderer *renderer = task->session->renderer;
+    whit_result result = WHIT_OK;
+    frame->rgba = malloc((size_t)frame->width * frame->height * 4);
+    if (!frame->rgba)
+        return WHIT_ERROR_MEMORY;
+    if (task->settings.paint != VIEW_PAINT_COLOR) {
+        result = paint_costs(task, frame);
+    } else {
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &frame->color);
+        if (result == WHIT_OK)
+            whit_image_display_bytes(frame->color, frame->rgba);
+    }
+    if (result == WHIT_OK && task->divisor == 1)
+        result = whit_renderer_image(renderer, WHIT_AOV_IDS, &frame->ids);
+    return result;
+}
+
+/* The parameters of the picture; its camera's text is the session's own. */
+static whit_renderer_params task_params(const struct engine_task *task)
+{
+    struct session *session = task->session;
+    session->settings = task->settings;
+    whit_renderer_params params = settings_picture(&session->settings);
+    params.width = (params.width + task->divisor - 1) / task->divisor;
+    params.height = (params.height + task->divisor - 1) / task->divisor;
+    bool counts = task->settings.paint != VIEW_PAINT_COLOR;
+    if (task->quality != ENGINE_WHOLE || counts) {
+        params.samples = 1;
+        params.adaptive = 0.0;
+    }
+    return params;
+}
+
+whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame)
+{
+    struct session *session = task->session;
+    whit_renderer_params params = task_params(task);
+    *frame = (struct engine_frame){
+        .settings = task->settings,
+        .scene = scene_ref_take(session->scene),
+        .width = params.width,
+        .height = params.height,
+        .divisor = task->divisor,
+        .samples = params.adaptive > 0.0 ? 0 : params.samples ? params.samples : 1,
+        .whole = task->quality == ENGINE_WHOLE,
+        .accel = session->accel_info,
+        .device = session->device_info,
+        .build_ms = session->build_ms,
+        .compile_ms = session->compile_ms,
+    };
+    whit_result result = whit_renderer_set_view(session->renderer, &params);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(session->renderer);
+    if (result == WHIT_OK)
+        result = read_picture(task, frame);
+    if (result == WHIT_OK)
+        whit_renderer_get_stats(session->renderer, &frame->stats);
+    return result;
+}
+
+void engine_frame_finish(struct engine_frame *frame)
+{
+    whit_image_destroy(frame->color);
+    whit_image_destroy(frame->ids);
+    free(frame->rgba);
+    scene_ref_drop(frame->scene);
+    *frame = (struct engine_frame){0};
+}

@@ -1,0 +1,99 @@
+/* The engine from inside: its threads share this under one lock. */
+#ifndef VIEW_ENGINE_PRIVATE_H
+#define VIEW_ENGINE_PRIVATE_H
+
+#include <pthread.h>
+
+#include "base/threads.h"
+#include "view/engine.h"
+
+enum { ENGINE_SESSIONS_MOST = 8, ENGINE_LANES = 2 };
+
+/* A session in the making. */
+struct engine_job {
+    struct session *session;
+    struct view_settings settings;
+    struct scene_ref *scene;
+    struct session_progress progress;
+    struct thread *thread;
+    struct engine *engine;
+    double start_ms;
+    whit_result result;
+    bool done; /* under the lock */
+};
+
+/* How good a picture is. Each is tried in turn, unless the next one takes no longer than allowed. */
+enum engine_quality {
+    ENGINE_QUICK, /* within the budget */
+    ENGINE_FULL,  /* all pixels, one sample */
+    ENGINE_WHOLE, /* all that the settings say */
+};
+
+/* What is asked for and what came of it; [0] is the window's, [1] the other side of a split. */
+struct engine_lane {
+    bool wanted;
+    struct view_settings settings;
+    bool moving;
+    uint64_t asked;              /* counts what is asked for */
+    uint64_t drawn;              /* `asked` of the last picture */
+    enum engine_quality quality; /* of it */
+    bool failed;                 /* it could not be drawn; until asked again */
+    bool stale;                  /* drawn by an older session: a better one is in the making */
+    struct session *session;     /* that drew last; NULL: none, or gone */
+    struct engine_frame frame;   /* the newest picture; number 0: taken */
+    uint64_t frames;
+    double ms_per_sample; /* of pictures of its session; 0: not known */
+};
+
+/* A whole picture, for comparing. */
+struct engine_kept {
+    struct view_settings settings;
+    whit_stats stats;
+    whit_accel_info accel;
+    uint32_t width, height;
+    float *color; /* RGBA; NULL where costs were painted */
+    uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
+};
+
+struct engine {
+    struct engine_params params;
+    pthread_mutex_t lock;
+    pthread_cond_t work, news;
+    struct thread *thread;
+    bool quit;
+    struct engine_lane lanes[ENGINE_LANES];
+    struct engine_job *job; /* NULL: none */
+    struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
+    struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing, or what
+                                is done soon */
+    bool busy;               /* something is being drawn */
+    uint64_t uses;
+    uint32_t lost;           /* devices lost one after the other */
+    char error[ENGINE_MESSAGE];
+    bool device_lost;
+    struct engine_change change;
+    struct engine_kept last; /* of the drawing thread: the window's last whole picture */
+};
+
+/* What engine_draw is to draw. */
+struct engine_task {
+    struct session *session;
+    struct view_settings settings;
+    enum engine_quality quality;
+    uint32_t divisor;
+};
+
+/* engine_draw.c: how good the next picture of a lane is to be, and how large. */
+void engine_plan(const struct engine *engine, const struct engine_lane *lane,
+                 struct engine_task *task);
+/* Draws; of the drawing thread, without the lock. *frame is the caller's to finish. */
+WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame);
+/* engine_change.c: what differs between two whole pictures of one place; *change stays where they
+   are none, or differ in nothing that has a name. */
+void engine_compare(const struct engine_kept *before, const struct engine_frame *after,
+                    struct engine_change *change);
+/* In place of what was kept. Keeps nothing where memory runs out. */
+void engine_keep(struct engine_kept *kept, const struct engine_frame *frame);
+void engine_kept_finish(struct engine_kept *kept);
+
+#endif

@@ -1,0 +1,93 @@
+/* What the user does, as the window tells it or as a file of a replay does.
+
+   The file has one event a line; # begins a comment. What --record writes:
+       wait MS | key NAME down|up [Shift+][Ctrl+][Alt+] | char CODE | button left|right|middle
+       down|up | move X Y | wheel X Y | size W H | drop PATH | close
+   and, for tests, also
+       press [Shift+][Ctrl+][Alt+]NAME   a key down and up
+       click X Y                         move there, and the left button down and up
+       still                             until the picture is as good as it gets
+       state                             one line of JSON on standard output: see docs/view.md
+       shot FILE.png                     the window, with what is drawn over the picture
+       minimise | restore */
+#ifndef VIEW_EVENTS_H
+#define VIEW_EVENTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "base/log.h"
+
+enum view_event_kind {
+    EVENT_NONE,
+    EVENT_KEY,
+    EVENT_CHAR,
+    EVENT_BUTTON,
+    EVENT_MOVE,
+    EVENT_WHEEL,
+    EVENT_SIZE, /* of the window's pixels; 0 x 0: minimised */
+    EVENT_DROP,
+    EVENT_CLOSE,
+    EVENT_REFRESH, /* the window wants to be drawn again */
+    /* of replays alone */
+    EVENT_WAIT,
+    EVENT_STILL,
+    EVENT_STATE,
+    EVENT_SHOT,
+    EVENT_MINIMISE,
+    EVENT_RESTORE,
+};
+
+enum { EVENT_SHIFT = 1, EVENT_CTRL = 2, EVENT_ALT = 4, EVENT_PATH = 1024 };
+
+/* Keys: letters and digits are themselves, as capitals; others from here on. */
+enum view_key {
+    KEY_SPACE = ' ',
+    KEY_ESCAPE = 256,
+    KEY_ENTER,
+    KEY_TAB,
+    KEY_BACKSPACE,
+    KEY_DELETE,
+    KEY_LEFT,
+    KEY_RIGHT,
+    KEY_UP,
+    KEY_DOWN,
+    KEY_HOME,
+    KEY_END,
+    KEY_F1, /* to KEY_F1 + 11 */
+    KEY_F12 = KEY_F1 + 11,
+    KEY_SHIFT,
+    KEY_CTRL,
+    KEY_ALT,
+};
+
+struct view_event {
+    enum view_event_kind kind;
+    int key;           /* enum view_key, or a character */
+    bool down;         /* of keys and buttons */
+    bool repeat;       /* a key that is held */
+    unsigned mods;     /* EVENT_SHIFT and others, or-ed */
+    int button;        /* 0 left, 1 right, 2 middle */
+    uint32_t code;     /* EVENT_CHAR: Unicode */
+    double x, y;       /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
+    uint32_t width, height;
+    char path[EVENT_PATH]; /* of files */
+};
+
+/* "T", "Left", "F12", "Comma"; "?" for what has no name. */
+const char *event_key_name(int key);
+
+/* One line, without the end; false, logged with file and line, for nonsense. Empty lines and
+   comments are EVENT_NONE. `press` and `click` give several events. */
+enum { EVENTS_A_LINE = 4 };
+bool events_from_line(const struct log *log, const char *file, uint32_t line, const char *text,
+                      struct view_event events[EVENTS_A_LINE], int *count);
+/* What events_from_line reads back; nothing for events that have no line. */
+void event_to_line(const struct view_event *event, FILE *to);
+
+/* All events of a file; *events is one block, free() it. */
+WHIT_CHECK whit_result events_load(const struct log *log, const char *path,
+                                   struct view_event **events, uint32_t *count);
+
+#endif

@@ -1,0 +1,189 @@
+/* Figures, the cheat sheet and messages over the picture. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "view/view_private.h"
+
+static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
+                      COLOR_GOOD = 0xFFD0E090u;
+
+static double traced_rays(const whit_stats *s)
+{
+    return (double)s->rays_primary + (double)s->rays_shadow + (double)s->rays_reflected +
+           (double)s->rays_refracted;
+}
+
+/* On the device where it is measured: that is what a frame costs, present apart. */
+static double render_ms(const whit_stats *s)
+{
+    return s->render_device_ms >= 0.0 ? s->render_device_ms : s->render_ms;
+}
+
+/* "full size, 4 samples" */
+static void draw_quality(const struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    char samples[32] = "adaptive samples";
+    if (frame->samples > 0)
+        snprintf(samples, sizeof samples, "%u sample%s", frame->samples,
+                 frame->samples > 1 ? "s" : "");
+    if (frame->divisor > 1)
+        ui_text_color(COLOR_WARNING, "1/%u of the size, %s%s", frame->divisor, samples,
+                      view->status.drawing ? ", on its way" : "");
+    else if (!frame->whole)
+        ui_text_color(COLOR_WARNING, "full size, %s as yet", samples);
+    else
+        ui_text("full size, %s", samples);
+}
+
+static void draw_figures(const struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    const whit_stats *s = &frame->stats;
+    struct swapchain_info chain;
+    swapchain_get_info(view->swapchain, &chain);
+    double ms = render_ms(s);
+    ui_text("%6.1f fps   render %7.2f ms   present %6.2f ms", view->rate.fps, ms,
+            chain.present_ms);
+    ui_text("%6.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
+    if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
+        const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];
+        ui_same_line(0);
+        ui_text("  %.1f visits a camera ray",
+                (double)(c->pairs + c->leaves + c->instances) / (double)c->rays);
+    }
+}
+
+static void draw_names(const struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    const struct view_settings *s = &frame->settings;
+    bool trees = s->trees.build != WHIT_BUILD_NONE;
+    ui_text("%s, %s, %s", trees ? frame->accel.builder : "no trees",
+            settings_traversal_name(s->picture.traversal),
+            settings_numerics_name(s->picture.numerics));
+}
+
+static void draw_more(const struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    const whit_scene_info *scene = &frame->scene->info;
+    const whit_stats *s = &frame->stats;
+    struct swapchain_info chain;
+    swapchain_get_info(view->swapchain, &chain);
+    ui_separator();
+    ui_text("%u x %u of %u x %u, %s %s", frame->width, frame->height, chain.width, chain.height,
+            chain.format, chain.direct ? "written directly" : "copied");
+    ui_text("%llu triangles, %llu balls, %u instances, %u lights",
+            (unsigned long long)scene->triangle_count, (unsigned long long)scene->sphere_count,
+            scene->instance_count, scene->light_count);
+    ui_text("rays: %llu camera, %llu shadow, %llu reflected, %llu refracted",
+            (unsigned long long)s->rays_primary, (unsigned long long)s->rays_shadow,
+            (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
+    ui_text("cut: %llu by depth, %llu by bail-out", (unsigned long long)s->rays_cut_depth,
+            (unsigned long long)s->rays_cut_bailout);
+    ui_text("trees %.1f ms, depth %u, %.1f MiB; kernel %u instructions, %.0f ms", frame->build_ms,
+            frame->accel.depth, (double)frame->accel.bytes / 1048576.0, s->kernel_instructions,
+            frame->compile_ms);
+    ui_text("%s", frame->device.name);
+    ui_text_dim("over the picture %.2f ms, image after %.2f ms", chain.draw_ms, chain.wait_ms);
+}
+
+/* "traversal distance -> sign: 0 of 307200 pixels changed" */
+static void draw_change(const struct view *view)
+{
+    const struct engine_change *c = &view->status.change;
+    if (c->number == 0)
+        return;
+    ui_separator();
+    ui_text("%s: %.2f -> %.2f ms", c->what, c->before_ms, c->after_ms);
+    ui_text_color(c->other_ids ? COLOR_WARNING : COLOR_GOOD, "%llu of %llu pixels changed",
+                  (unsigned long long)c->other_ids, (unsigned long long)c->pixels);
+    ui_same_line(0);
+    ui_text("what they hit; %llu colours, by %.3g at most, %.2g on average",
+            (unsigned long long)c->other_colors, c->largest, c->mean);
+}
+
+static void draw_hud(const struct view *view)
+{
+    if (view->hud == HUD_OFF || view->frame.number == 0)
+        return;
+    if (ui_panel_begin("figures", 0.0f, 0.0f, UI_PANEL_PLAIN)) {
+        draw_figures(view);
+        draw_names(view);
+        draw_quality(view);
+        if (view->hud == HUD_FULL)
+            draw_more(view);
+        draw_change(view);
+    }
+    ui_panel_end();
+}
+
+static void draw_help(struct view *view)
+{
+    uint32_t count;
+    const struct key_binding *keys = key_bindings(&count);
+    if (!view->help)
+        return;
+    if (ui_panel_begin("Keys", 0.5f, 0.5f, UI_PANEL_PLAIN)) {
+        if (ui_table_begin("keys", 6)) {
+            uint32_t rows = (count + 1) / 2;
+            for (uint32_t i = 0; i < 2 * rows; ++i) {
+                uint32_t at = i / 2 + (i % 2) * rows;
+                char state[VIEW_TEXT] = "";
+                if (at < count && keys[at].state)
+                    keys[at].state(view, state, sizeof state);
+                ui_table_next();
+                ui_text_color(COLOR_GOOD, "%s", at < count ? keys[at].keys : "");
+                ui_table_next();
+                ui_text("%s", at < count ? keys[at].name : "");
+                ui_table_next();
+                ui_text_dim("%.28s", state);
+            }
+            ui_table_end();
+        }
+        ui_text("left drag: around   right drag: look, with WASD QE fly   middle drag: aside");
+        ui_text("wheel: nearer   click: what is there   drop a file: open it");
+    }
+    ui_panel_end();
+}
+
+static void draw_work(const struct view *view)
+{
+    const struct engine_status *status = &view->status;
+    if (status->stage == SESSION_DONE)
+        return;
+    if (ui_panel_begin("work", 0.5f, 1.0f, UI_PANEL_PLAIN)) {
+        char text[96];
+        snprintf(text, sizeof text, "%s %.1f s", session_stage_name(status->stage),
+                 status->stage_ms * 1e-3);
+        ui_progress((float)(status->stage + 0.5) / (float)SESSION_DONE, text);
+    }
+    ui_panel_end();
+}
+
+static void draw_messages(const struct view *view)
+{
+    bool toast = view->toast[0] != '\0', error = view->status.error[0] != '\0';
+    bool hint = view->hint && view->params->hint;
+    if (!toast && !error && !hint)
+        return;
+    if (ui_panel_begin("messages", 0.0f, 1.0f, (enum ui_panel)(UI_PANEL_PLAIN | UI_PANEL_WIDE))) {
+        if (error)
+            ui_text_color(COLOR_ERROR, "%s", view->status.error);
+        if (toast)
+            ui_text_color(0xFFFFFFFFu, "%s", view->toast);
+        if (hint)
+            ui_text_color(COLOR_GOOD, "%s", view->params->hint);
+    }
+    ui_panel_end();
+}
+
+void hud_draw(struct view *view)
+{
+    draw_hud(view);
+    draw_help(view);
+    draw_work(view);
+    draw_messages(view);
+}

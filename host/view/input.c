@@ -1,0 +1,206 @@
+/* The mouse and held keys: cameras and time. */
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "view/view_private.h"
+
+static const double ORBIT_RADIANS = 3.14159265358979; /* across the window's height */
+static const double ZOOM_NOTCH = 0.85;
+static const double FLY_A_SECOND = 0.8; /* distances to the target */
+static const double CLICK_PIXELS = 4.0; /* less is no drag */
+static const double STEP_MOST_S = 0.25; /* of one picture, however long it took */
+
+static enum ui_key ui_key_of(int key)
+{
+    static const struct {
+        int key;
+        enum ui_key ui;
+    } all[] = {{KEY_TAB, UI_KEY_TAB},       {KEY_LEFT, UI_KEY_LEFT},
+               {KEY_RIGHT, UI_KEY_RIGHT},   {KEY_UP, UI_KEY_UP},
+               {KEY_DOWN, UI_KEY_DOWN},     {KEY_HOME, UI_KEY_HOME},
+               {KEY_END, UI_KEY_END},       {KEY_DELETE, UI_KEY_DELETE},
+               {KEY_ENTER, UI_KEY_ENTER},   {KEY_BACKSPACE, UI_KEY_BACKSPACE},
+               {KEY_ESCAPE, UI_KEY_ESCAPE}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+        if (all[i].key == key)
+            return all[i].ui;
+    }
+    return UI_KEY_COUNT;
+}
+
+/* ---- Keys ---- */
+
+/* Those that move the camera while the right button is held; letters do other things else. */
+static bool flies(const struct view *view, int key)
+{
+    return view->input.buttons[1] && key < 128 && strchr("WASDQE", key) && key;
+}
+
+static void on_key(struct view *view, const struct view_event *event)
+{
+    enum ui_key own = ui_key_of(event->key);
+    if (event->key >= 0 && event->key < KEYS_MOST)
+        view->input.down[event->key] = event->down;
+    if (own != UI_KEY_COUNT)
+        ui_key_event(view->ui, own, event->down);
+    if (!event->down || ui_has_keys(view->ui) || flies(view, event->key))
+        return;
+    if (key_act(view, event->key, event->mods))
+        view->dirty = true;
+}
+
+static bool fly(struct view *view, double seconds)
+{
+    const bool *down = view->input.down;
+    if (!view->input.buttons[1] || !view->camera_known)
+        return false;
+    double step = FLY_A_SECOND * seconds * (down[KEY_SHIFT] ? 4.0 : 1.0);
+    double right = (down['D'] - down['A']) * step, up = (down['E'] - down['Q']) * step;
+    double forward = (down['W'] - down['S']) * step;
+    if (right == 0.0 && up == 0.0 && forward == 0.0)
+        return false;
+    camera_fly(&view->camera, right, up, forward);
+    view_moved(view);
+    return true;
+}
+
+/* ---- Mouse ---- */
+
+static void drag(struct view *view, double dx, double dy)
+{
+    double height = view->settings.picture.height > 0 ? view->settings.picture.height : 1.0;
+    double right = dx / height, down = dy / height;
+    const struct view_input *input = &view->input;
+    bool pans = input->buttons[2] || (input->buttons[0] && input->down[KEY_SHIFT]);
+    if (!view->camera_known || !(input->buttons[0] || input->buttons[1] || input->buttons[2]))
+        return;
+    if (pans) {
+        double tall = 2.0 * tan(view->camera.fov_y_degrees * 0.008726646259971648);
+        camera_fly(&view->camera, -right * tall, down * tall, 0.0);
+    } else if (input->buttons[1]) {
+        camera_turn(&view->camera, right * ORBIT_RADIANS * 0.5, -down * ORBIT_RADIANS * 0.5);
+    } else {
+        camera_orbit(&view->camera, right * ORBIT_RADIANS, -down * ORBIT_RADIANS);
+    }
+    view_moved(view);
+}
+
+static void on_move(struct view *view, const struct view_event *event)
+{
+    struct view_input *input = &view->input;
+    double dx = event->x - input->x, dy = event->y - input->y;
+    bool held = input->buttons[0] || input->buttons[1] || input->buttons[2];
+    input->x = event->x;
+    input->y = event->y;
+    ui_mouse(view->ui, (float)event->x, (float)event->y);
+    if (held && !input->dragged) {
+        dx = event->x - input->press_x;
+        dy = event->y - input->press_y;
+        input->dragged = hypot(dx, dy) >= CLICK_PIXELS;
+    }
+    if (held && input->dragged)
+        drag(view, dx, dy);
+    if (!held)
+        view->dirty = true; /* what is under it may light up */
+}
+
+static void on_button(struct view *view, const struct view_event *event)
+{
+    struct view_input *input = &view->input;
+    if (event->button < 0 || event->button > 2)
+        return;
+    ui_button_event(view->ui, event->button, event->down);
+    view->dirty = true;
+    if (event->down && ui_has_mouse(view->ui))
+        return;
+    input->buttons[event->button] = event->down;
+    if (event->down) {
+        input->press_x = input->x;
+        input->press_y = input->y;
+        input->dragged = false;
+    }
+}
+
+static void on_wheel(struct view *view, const struct view_event *event)
+{
+    ui_wheel(view->ui, (float)event->x, (float)event->y);
+    view->dirty = true;
+    if (ui_has_mouse(view->ui) || !view->camera_known)
+        return;
+    camera_zoom(&view->camera, pow(ZOOM_NOTCH, event->y));
+    view_moved(view);
+}
+
+static void on_size(struct view *view, const struct view_event *event)
+{
+    if (event->width > 0 && event->height > 0 && view->swapchain) {
+        view->settings.picture.width = event->width;
+        view->settings.picture.height = event->height;
+    }
+    view->resized = true;
+    view->dirty = true;
+}
+
+void input_event(struct view *view, const struct view_event *event)
+{
+    switch (event->kind) {
+    case EVENT_KEY:
+        on_key(view, event);
+        break;
+    case EVENT_CHAR:
+        ui_character(view->ui, event->code);
+        break;
+    case EVENT_BUTTON:
+        on_button(view, event);
+        break;
+    case EVENT_MOVE:
+        on_move(view, event);
+        break;
+    case EVENT_WHEEL:
+        on_wheel(view, event);
+        break;
+    case EVENT_SIZE:
+        on_size(view, event);
+        break;
+    case EVENT_DROP:
+        view_open(view, event->path);
+        break;
+    case EVENT_CLOSE:
+        view->quit = true;
+        break;
+    default:
+        view->dirty = true;
+        break;
+    }
+}
+
+/* ---- Time ---- */
+
+static bool play(struct view *view, double now_ms)
+{
+    struct view_clock *clock = &view->clock;
+    double end_s = view->scene ? view->scene->info.time_end_s : 0.0;
+    double *time_s = &view->settings.picture.time_s;
+    double passed_s = fmin((now_ms - clock->last_ms) * 1e-3, STEP_MOST_S);
+    clock->last_ms = now_ms;
+    if (!clock->playing || !(end_s > 0.0))
+        return false;
+    *time_s += passed_s * clock->speed;
+    if (*time_s > end_s || *time_s < 0.0) {
+        clock->playing = !clock->once;
+        *time_s = clock->once ? (*time_s < 0.0 ? 0.0 : end_s)
+                              : *time_s - end_s * floor(*time_s / end_s);
+    }
+    view->dirty = true;
+    return true;
+}
+
+bool input_step(struct view *view, double now_ms)
+{
+    struct view_input *input = &view->input;
+    double seconds = fmin((now_ms - input->step_ms) * 1e-3, STEP_MOST_S);
+    input->step_ms = now_ms;
+    bool flew = fly(view, seconds), played = play(view, now_ms);
+    return flew || played;
+}

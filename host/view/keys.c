@@ -1,0 +1,527 @@
+/* What keys do. One table: the keys, the cheat sheet and the states it shows. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "view/view_private.h"
+
+static const double ESCAPE_MS = 1500.0; /* between the two that quit */
+enum { DEPTH_DEFAULT = 8, DEPTH_MOST = 255 };
+static const double ADAPTIVE_DEFAULT = 0.05;
+
+/* ---- What rays do ---- */
+
+static void turn_traversal(struct view *view, int by)
+{
+    static const whit_traversal order[] = {WHIT_TRAVERSAL_DISTANCE, WHIT_TRAVERSAL_SIGN,
+                                           WHIT_TRAVERSAL_BASIC};
+    int at = 0;
+    while (at < 2 && order[at] != view->settings.picture.traversal)
+        ++at;
+    view->settings.picture.traversal = order[(at + by + 3) % 3];
+}
+
+static void next_traversal(struct view *view)
+{
+    turn_traversal(view, 1);
+}
+
+static void last_traversal(struct view *view)
+{
+    turn_traversal(view, -1);
+}
+
+static void say_traversal(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%s", settings_traversal_name(view->settings.picture.traversal));
+}
+
+static void next_numerics(struct view *view)
+{
+    static const whit_numerics after[] = {[WHIT_NUMERICS_FAST] = WHIT_NUMERICS_WATERTIGHT,
+                                          [WHIT_NUMERICS_WATERTIGHT] = WHIT_NUMERICS_EXACT,
+                                          [WHIT_NUMERICS_EXACT] = WHIT_NUMERICS_FAST};
+    view->settings.picture.numerics = after[view->settings.picture.numerics];
+}
+
+static void say_numerics(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%s", settings_numerics_name(view->settings.picture.numerics));
+}
+
+static void set_build(struct view *view, whit_build build, const char *name)
+{
+    view->settings.trees.build = build;
+    view->settings.trees.bins = 0;
+    view->settings.trees.optimize = false;
+    snprintf(view->settings.build, sizeof view->settings.build, "%s", name);
+}
+
+static void next_builder(struct view *view)
+{
+    switch (view->settings.trees.build) {
+    case WHIT_BUILD_BINNED:
+        set_build(view, WHIT_BUILD_SWEEP, "sweep");
+        break;
+    case WHIT_BUILD_SWEEP:
+        set_build(view, WHIT_BUILD_SPATIAL, "spatial");
+        break;
+    case WHIT_BUILD_SPATIAL:
+        set_build(view, WHIT_BUILD_MEDIAN, "median");
+        break;
+    default:
+        set_build(view, WHIT_BUILD_BINNED, "");
+        break;
+    }
+}
+
+static void say_builder(const struct view *view, char *text, size_t bytes)
+{
+    bool none = view->settings.trees.build == WHIT_BUILD_NONE;
+    snprintf(text, bytes, "%s", none                     ? "no trees"
+                                : view->settings.build[0] ? view->settings.build
+                                                          : "binned");
+}
+
+static void switch_trees(struct view *view)
+{
+    if (view->settings.trees.build == WHIT_BUILD_NONE)
+        set_build(view, WHIT_BUILD_BINNED, "");
+    else
+        set_build(view, WHIT_BUILD_NONE, "");
+}
+
+static void say_trees(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->settings.trees.build == WHIT_BUILD_NONE ? "off" : "on");
+}
+
+static void switch_instances(struct view *view)
+{
+    view->settings.trees.flatten = !view->settings.trees.flatten;
+}
+
+static void say_instances(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->settings.trees.flatten ? "off: one tree" : "on");
+}
+
+static void change_depth(struct view *view, int by)
+{
+    whit_renderer_params *p = &view->settings.picture;
+    int depth = p->no_bounces ? 0 : p->depth ? (int)p->depth : DEPTH_DEFAULT;
+    depth += by;
+    if (depth < 0 || depth > DEPTH_MOST)
+        return;
+    p->no_bounces = depth == 0;
+    p->depth = depth == DEPTH_DEFAULT ? 0 : (uint32_t)depth;
+}
+
+static void less_depth(struct view *view)
+{
+    change_depth(view, -1);
+}
+
+static void more_depth(struct view *view)
+{
+    change_depth(view, 1);
+}
+
+static void say_depth(const struct view *view, char *text, size_t bytes)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    snprintf(text, bytes, "%u", p->no_bounces ? 0 : p->depth ? p->depth : DEPTH_DEFAULT);
+}
+
+static void next_samples(struct view *view)
+{
+    whit_renderer_params *p = &view->settings.picture;
+    if (p->adaptive > 0.0) {
+        p->adaptive = 0.0;
+        p->samples = 0;
+    } else if (p->samples == 64) {
+        p->samples = 0;
+        p->adaptive = ADAPTIVE_DEFAULT;
+    } else {
+        p->samples = p->samples > 1 ? 4 * p->samples : 4;
+    }
+}
+
+static void say_samples(const struct view *view, char *text, size_t bytes)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    if (p->adaptive > 0.0)
+        snprintf(text, bytes, "adaptive:%g", p->adaptive);
+    else
+        snprintf(text, bytes, "%u a pixel", p->samples ? p->samples : 1);
+}
+
+/* ---- What is painted ---- */
+
+static void switch_depth_view(struct view *view)
+{
+    bool color = view->settings.paint == VIEW_PAINT_COLOR;
+    view->settings.paint = color ? VIEW_PAINT_DEPTH : VIEW_PAINT_COLOR;
+}
+
+static void next_cost_view(struct view *view)
+{
+    uint32_t next = view->settings.paint + 1;
+    view->settings.paint = next < VIEW_PAINT_COUNT ? next : VIEW_PAINT_DEPTH;
+}
+
+static void next_view(struct view *view)
+{
+    view->settings.paint = (view->settings.paint + 1) % VIEW_PAINT_COUNT;
+}
+
+static void say_paint(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%s", settings_paint_name(view->settings.paint));
+}
+
+static void scale_by(struct view *view, double factor)
+{
+    double scale = view->settings.paint_scale > 0.0 ? view->settings.paint_scale
+                                                    : view->frame.scale;
+    if (view->settings.paint != VIEW_PAINT_COLOR && scale > 0.0)
+        view->settings.paint_scale = fmax(1.0, scale * factor);
+}
+
+static void less_scale(struct view *view)
+{
+    scale_by(view, 0.5);
+}
+
+static void more_scale(struct view *view)
+{
+    scale_by(view, 2.0);
+}
+
+static void own_scale(struct view *view)
+{
+    view->settings.paint_scale = 0.0;
+}
+
+static void say_scale(const struct view *view, char *text, size_t bytes)
+{
+    if (view->settings.paint_scale > 0.0)
+        snprintf(text, bytes, "%g", view->settings.paint_scale);
+    else
+        snprintf(text, bytes, "by the picture");
+}
+
+/* ---- Cameras ---- */
+
+static void look_along(struct view *view, int axis, int from)
+{
+    if (!view->camera_known)
+        return;
+    camera_along(&view->camera, axis, from);
+    view_moved(view);
+}
+
+static void look_front(struct view *view)
+{
+    look_along(view, 2, 1);
+}
+
+static void look_right(struct view *view)
+{
+    look_along(view, 0, 1);
+}
+
+static void look_top(struct view *view)
+{
+    look_along(view, 1, 1);
+}
+
+static void look_back(struct view *view)
+{
+    look_along(view, 2, -1);
+}
+
+static void look_left(struct view *view)
+{
+    look_along(view, 0, -1);
+}
+
+static void look_bottom(struct view *view)
+{
+    look_along(view, 1, -1);
+}
+
+static void next_file_camera(struct view *view)
+{
+    uint32_t count = view->scene ? view->scene->info.camera_count : 0;
+    if (count > 0)
+        view_use_camera(view, (int)((uint32_t)(view->file_camera + 1) % count));
+}
+
+static void say_camera(const struct view *view, char *text, size_t bytes)
+{
+    whit_camera_info info = {0};
+    if (view->scene && view->file_camera >= 0)
+        whit_scene_get_camera(view->scene->scene, (uint32_t)view->file_camera, &info);
+    snprintf(text, bytes, "%s", view->file_camera < 0 ? "by hand" : info.name ? info.name : "");
+}
+
+static void fit_scene(struct view *view)
+{
+    double lo[3], hi[3];
+    if (!view->camera_known || !view_bounds(view, lo, hi))
+        return;
+    camera_show(&view->camera, lo, hi, view_aspect(view));
+    view_moved(view);
+}
+
+/* ---- Time ---- */
+
+static bool moves(struct view *view)
+{
+    bool has_time = view->scene && view->scene->info.time_end_s > 0.0;
+    if (!has_time)
+        view_say(view, "nothing moves in this scene");
+    return has_time;
+}
+
+static void switch_playing(struct view *view)
+{
+    if (!moves(view))
+        return;
+    view->clock.playing = !view->clock.playing;
+    view->clock.last_ms = clock_ms();
+    if (view->clock.playing && view->clock.once &&
+        view->settings.picture.time_s >= view->scene->info.time_end_s)
+        view->settings.picture.time_s = 0.0;
+}
+
+static void say_playing(const struct view *view, char *text, size_t bytes)
+{
+    double end_s = view->scene ? view->scene->info.time_end_s : 0.0;
+    if (end_s > 0.0)
+        snprintf(text, bytes, "%s, %.2f of %.2f s", view->clock.playing ? "plays" : "stands",
+                 view->settings.picture.time_s, end_s);
+    else
+        snprintf(text, bytes, "nothing moves");
+}
+
+static void step_time(struct view *view, int by)
+{
+    if (!moves(view))
+        return;
+    double fps = view->params->fps > 0.0 ? view->params->fps : 24.0;
+    double last = floor(view->scene->info.time_end_s * fps + 1e-9);
+    double frame = floor(view->settings.picture.time_s * fps + 0.5) + by;
+    frame = frame < 0.0 ? last : frame > last ? 0.0 : frame;
+    view->clock.playing = false;
+    view->settings.picture.time_s = frame / fps;
+}
+
+static void step_back(struct view *view)
+{
+    step_time(view, -1);
+}
+
+static void step_forward(struct view *view)
+{
+    step_time(view, 1);
+}
+
+static void switch_loop(struct view *view)
+{
+    view->clock.once = !view->clock.once;
+}
+
+static void say_loop(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->clock.once ? "once" : "again and again");
+}
+
+static void slower(struct view *view)
+{
+    view->clock.speed = fmax(view->clock.speed * 0.5, 1.0 / 16.0);
+}
+
+static void faster(struct view *view)
+{
+    view->clock.speed = fmin(view->clock.speed * 2.0, 16.0);
+}
+
+static void say_speed(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "x %g", view->clock.speed);
+}
+
+/* ---- Files ---- */
+
+static void turn_scene(struct view *view, int by)
+{
+    uint32_t count = view->params->scene_count;
+    if (count == 0) {
+        view_say(view, "no other scene beside this one");
+        return;
+    }
+    view->scene_index = (view->scene_index + count + (uint32_t)by) % count;
+    view_open(view, view->params->scenes[view->scene_index]);
+}
+
+static void next_scene(struct view *view)
+{
+    turn_scene(view, 1);
+}
+
+static void last_scene(struct view *view)
+{
+    turn_scene(view, -1);
+}
+
+static void say_scene(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%s", path_name(view->settings.scene));
+}
+
+static void reload_scene(struct view *view)
+{
+    ++view->settings.reload;
+    view_say(view, "reading %s again", path_name(view->settings.scene));
+}
+
+/* whit-0001.png and on, in the folder where whit was started. */
+static void save_picture(struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    char path[32];
+    if (!frame->whole || frame->settings.paint != VIEW_PAINT_COLOR) {
+        view_say(view, frame->whole ? "costs are saved by `whit render --view`: see Ctrl+C"
+                                    : "the picture is not whole yet");
+        return;
+    }
+    for (int i = 1; i < 10000; ++i) {
+        snprintf(path, sizeof path, "whit-%04d.png", i);
+        if (!file_exists(path))
+            break;
+    }
+    const struct view_shot shot = {.settings = &frame->settings,
+                                   .color = frame->color,
+                                   .scene = frame->scene->scene,
+                                   .device = &frame->device,
+                                   .stats = &frame->stats};
+    if (view->params->save && view->params->save(view->params->save_user, &shot, path) == WHIT_OK)
+        view_say(view, "%s", path);
+    else
+        view_say(view, "%s could not be saved", path);
+}
+
+static void copy_line(struct view *view)
+{
+    char line[2048];
+    settings_render_line(&view->settings, line, sizeof line);
+    window_copy(view->window, line);
+    view_say(view, "copied: %s", line);
+}
+
+/* ---- The window ---- */
+
+static void switch_help(struct view *view)
+{
+    view->help = !view->help;
+    view->hint = false;
+}
+
+static void next_hud(struct view *view)
+{
+    view->hud = (enum view_hud)((view->hud + 1) % HUD_COUNT);
+}
+
+static void say_hud(const struct view *view, char *text, size_t bytes)
+{
+    static const char *const names[HUD_COUNT] = {"off", "small", "full"};
+    snprintf(text, bytes, "%s", names[view->hud]);
+}
+
+static void switch_fullscreen(struct view *view)
+{
+    window_set_fullscreen(view->window, !window_is_fullscreen(view->window));
+}
+
+static void say_fullscreen(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, window_is_fullscreen(view->window) ? "on" : "off");
+}
+
+static void escape(struct view *view)
+{
+    double now_ms = clock_ms();
+    if (view->help) {
+        view->help = false;
+        return;
+    }
+    view->quit = now_ms - view->escape_ms < ESCAPE_MS;
+    view->escape_ms = now_ms;
+    if (!view->quit)
+        view_say(view, "Escape once more quits");
+}
+
+static const struct key_binding bindings[] = {
+    {'T', 0, "T", "traversal order", next_traversal, say_traversal},
+    {'T', EVENT_SHIFT, "Shift+T", "traversal order, back", last_traversal, NULL},
+    {'K', 0, "K", "tree builder", next_builder, say_builder},
+    {'M', 0, "M", "numerics", next_numerics, say_numerics},
+    {'G', 0, "G", "trees", switch_trees, say_trees},
+    {'O', 0, "O", "instance tree", switch_instances, say_instances},
+    {'-', 0, "-", "fewer bounces", less_depth, NULL},
+    {'=', 0, "=", "more bounces", more_depth, say_depth},
+    {'A', 0, "A", "anti-aliasing", next_samples, say_samples},
+    {'B', 0, "B", "depth view", switch_depth_view, NULL},
+    {'B', EVENT_SHIFT, "Shift+B", "next cost view", next_cost_view, NULL},
+    {'V', 0, "V", "next view", next_view, say_paint},
+    {'[', 0, "[", "half the scale of costs", less_scale, NULL},
+    {']', 0, "]", "twice the scale", more_scale, say_scale},
+    {'\\', 0, "\\", "scale by the picture", own_scale, NULL},
+    {KEY_HOME, 0, "Home", "all of the scene", fit_scene, NULL},
+    {'0', 0, "0", "next camera of the file", next_file_camera, say_camera},
+    {'1', 0, "1", "from the front", look_front, NULL},
+    {'2', 0, "2", "from the right", look_right, NULL},
+    {'3', 0, "3", "from above", look_top, NULL},
+    {'4', 0, "4", "from behind", look_back, NULL},
+    {'5', 0, "5", "from the left", look_left, NULL},
+    {'6', 0, "6", "from below", look_bottom, NULL},
+    {KEY_SPACE, 0, "Space", "animation", switch_playing, say_playing},
+    {',', 0, ",", "a frame back", step_back, NULL},
+    {'.', 0, ".", "a frame on", step_forward, NULL},
+    {'L', 0, "L", "animation runs", switch_loop, say_loop},
+    {'9', 0, "9", "half speed", slower, NULL},
+    {'9', EVENT_SHIFT, "Shift+9", "double speed", faster, say_speed},
+    {KEY_LEFT, 0, "Left", "scene before", last_scene, NULL},
+    {KEY_RIGHT, 0, "Right", "scene after", next_scene, say_scene},
+    {'R', 0, "R", "read the scene again", reload_scene, NULL},
+    {KEY_F12, 0, "F12", "save the picture", save_picture, NULL},
+    {'C', EVENT_CTRL, "Ctrl+C", "copy the `whit render` line", copy_line, NULL},
+    {'H', 0, "H", "this list", switch_help, NULL},
+    {KEY_F1, 0, "F1", "this list", switch_help, NULL},
+    {KEY_F1 + 1, 0, "F2", "figures", next_hud, say_hud},
+    {KEY_F1 + 10, 0, "F11", "full screen", switch_fullscreen, say_fullscreen},
+    {KEY_ESCAPE, 0, "Escape", "twice: quit", escape, NULL},
+};
+
+const struct key_binding *key_bindings(uint32_t *count)
+{
+    *count = sizeof bindings / sizeof *bindings;
+    return bindings;
+}
+
+bool key_act(struct view *view, int key, unsigned mods)
+{
+    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; ++i) {
+        if (bindings[i].key == key && bindings[i].mods == mods) {
+            bindings[i].act(view);
+            view->dirty = true;
+            return true;
+        }
+    }
+    return false;
+}

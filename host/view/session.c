@@ -1,0 +1,156 @@
+#include "view/session.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WARM_WIDTH = 32, WARM_HEIGHT = 24 };
+/* The smallest picture that the window can do with, without trees: longer, and it is refused. */
+static const double BRUTE_LIMIT_MS = 3000.0;
+enum { BRUTE_DIVISOR = 8 };
+
+struct scene_ref *scene_ref_take(struct scene_ref *ref)
+{
+    if (ref)
+        atomic_fetch_add(&ref->refs, 1);
+    return ref;
+}
+
+void scene_ref_drop(struct scene_ref *ref)
+{
+    if (!ref || atomic_fetch_sub(&ref->refs, 1) > 1)
+        return;
+    whit_scene_destroy(ref->scene);
+    free(ref);
+}
+
+const char *session_stage_name(enum session_stage stage)
+{
+    static const char *const names[] = {"loading the scene", "building trees", "opening the device",
+                                        "compiling the kernel", ""};
+    return names[stage <= SESSION_DONE ? stage : SESSION_DONE];
+}
+
+static void tell(struct session_progress *progress, enum session_stage stage)
+{
+    if (progress)
+        atomic_store(&progress->stage, (int)stage);
+}
+
+static whit_result load(struct session *session)
+{
+    const struct view_settings *settings = &session->settings;
+    whit_load_params params = {.texture_limit = settings->texture_limit,
+                               .cancel = &session->cancel};
+    struct scene_ref *ref = calloc(1, sizeof *ref);
+    if (!ref)
+        return WHIT_ERROR_MEMORY;
+    atomic_init(&ref->refs, 1);
+    ref->settings = *settings;
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_scene_load(settings->scene, &params, &session->log, &ref->scene);
+    ref->load_ms = whit_clock_ms() - start_ms;
+    if (result != WHIT_OK) {
+        free(ref);
+        return result;
+    }
+    whit_scene_get_info(ref->scene, &ref->info);
+    session->scene = ref;
+    return WHIT_OK;
+}
+
+static whit_result build(struct session *session)
+{
+    whit_accel_params params = session->settings.trees;
+    params.cancel = &session->cancel;
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_accel_create(session->scene->scene, &params, &session->accel);
+    session->build_ms = whit_clock_ms() - start_ms;
+    if (result == WHIT_OK)
+        whit_accel_get_info(session->accel, &session->accel_info);
+    return result;
+}
+
+/* A small picture: drivers compile when a kernel is run for the first time. */
+static whit_result warm_up(struct session *session)
+{
+    whit_renderer_params params = settings_picture(&session->settings);
+    params.width = WARM_WIDTH;
+    params.height = WARM_HEIGHT;
+    params.samples = 1;
+    params.cancel = &session->cancel;
+    double start_ms = whit_clock_ms();
+    whit_result result =
+        whit_renderer_create(session->device, session->accel, &params, &session->renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(session->renderer);
+    double compiled_ms = whit_clock_ms();
+    session->compile_ms = compiled_ms - start_ms;
+    if (result == WHIT_OK && session->settings.trees.build == WHIT_BUILD_NONE) {
+        result = whit_renderer_render(session->renderer);
+        session->warm_ms_per_pixel = (whit_clock_ms() - compiled_ms) / (WARM_WIDTH * WARM_HEIGHT);
+    }
+    return result;
+}
+
+/* Without trees a window may never get its picture. */
+static whit_result check_time(const struct session *session)
+{
+    const whit_renderer_params *picture = &session->settings.picture;
+    double pixels = (double)picture->width * picture->height / (BRUTE_DIVISOR * BRUTE_DIVISOR);
+    double least_ms = pixels * session->warm_ms_per_pixel;
+    if (session->settings.trees.build != WHIT_BUILD_NONE || least_ms < BRUTE_LIMIT_MS)
+        return WHIT_OK;
+    char text[160];
+    snprintf(text, sizeof text,
+             "without trees a picture would take some %.0f s, at an eighth of its size %.1f s: not "
+             "done",
+             least_ms * BRUTE_DIVISOR * BRUTE_DIVISOR * 1e-3, least_ms * 1e-3);
+    if (session->log.fn)
+        session->log.fn(session->log.user, WHIT_LOG_ERROR, text);
+    return WHIT_ERROR_TIME_LIMIT;
+}
+
+whit_result session_open(struct session *session, const struct view_settings *settings,
+                         struct scene_ref *scene, const whit_log *log,
+                         struct session_progress *progress)
+{
+    const whit_device_params device = {.selector = settings->device[0] ? session->settings.device : NULL,
+                                       .validation = settings->validation};
+    session->settings = *settings;
+    session->log = *log;
+    session->scene = scene_ref_take(scene);
+    whit_device_opening *opening = whit_device_open_begin(&device, &session->log);
+    whit_result result = WHIT_OK;
+    tell(progress, SESSION_LOADING);
+    if (!session->scene)
+        result = load(session);
+    tell(progress, SESSION_BUILDING);
+    if (result == WHIT_OK)
+        result = build(session);
+    tell(progress, SESSION_OPENING);
+    if (result != WHIT_OK)
+        whit_device_open_abandon(opening);
+    else if (opening)
+        result = whit_device_open_end(opening, &session->device);
+    else
+        result = whit_device_create(&device, &session->log, &session->device);
+    tell(progress, SESSION_COMPILING);
+    if (result == WHIT_OK) {
+        whit_device_get_info(session->device, &session->device_info);
+        result = warm_up(session);
+    }
+    if (result == WHIT_OK)
+        result = check_time(session);
+    tell(progress, SESSION_DONE);
+    return result;
+}
+
+void session_close(struct session *session)
+{
+    whit_renderer_destroy(session->renderer);
+    whit_device_destroy(session->device);
+    whit_accel_destroy(session->accel);
+    scene_ref_drop(session->scene);
+    *session = (struct session){0};
+}

@@ -1,0 +1,61 @@
+/* A scene with trees on a device of its own, ready to draw: what a change of scene, trees or kernel
+   needs a new one of. Made in any thread, used by one at a time. */
+#ifndef VIEW_SESSION_H
+#define VIEW_SESSION_H
+
+#include <stdatomic.h>
+
+#include "view/settings.h"
+
+/* A loaded scene that several sessions, and whoever shows its names, hold. */
+struct scene_ref {
+    atomic_uint refs;
+    whit_scene *scene;
+    whit_scene_info info;
+    struct view_settings settings; /* that it was loaded for */
+    double load_ms;
+};
+struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
+void scene_ref_drop(struct scene_ref *ref);              /* likewise */
+
+enum session_stage {
+    SESSION_LOADING,
+    SESSION_BUILDING,
+    SESSION_OPENING,
+    SESSION_COMPILING,
+    SESSION_DONE,
+};
+const char *session_stage_name(enum session_stage stage);
+
+struct session {
+    struct view_settings settings; /* of scene, trees and kernel; of the picture: last drawn */
+    struct scene_ref *scene;
+    whit_accel *accel;
+    whit_device *device;
+    whit_renderer *renderer;
+    volatile bool cancel; /* stops what it is at */
+    whit_log log; /* of all that the session is made of */
+    void *owner;  /* of who made it, as is `error` */
+    char error[512];
+    bool ready;
+    whit_accel_info accel_info;
+    whit_device_info device_info;
+    double build_ms, compile_ms; /* of the trees; until the first pixels were there */
+    double warm_ms_per_pixel;    /* of a small picture */
+    uint64_t last_use;
+};
+
+/* How far it is; both may be NULL. Read by other threads while session_open works. */
+struct session_progress {
+    _Atomic(int) stage; /* enum session_stage */
+};
+
+/* Loads, builds, opens and compiles. `scene`: that of the settings, where it is loaded already; else
+   NULL. Reasons are logged. `session` is zeroed but for `cancel` and what is its owner's; session_close ends it, also after a
+   failure. */
+WHIT_CHECK whit_result session_open(struct session *session, const struct view_settings *settings,
+                                    struct scene_ref *scene, const whit_log *log,
+                                    struct session_progress *progress);
+void session_close(struct session *session);
+
+#endif

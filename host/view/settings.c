@@ -1,0 +1,235 @@
+#include "view/settings.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* What a renderer cannot change once it is made: another one is needed. */
+static bool same_trees(const whit_accel_params *a, const whit_accel_params *b)
+{
+    return a->build == b->build && a->optimize == b->optimize && a->bins == b->bins &&
+           a->leaf_limit == b->leaf_limit && a->spatial_alpha == b->spatial_alpha &&
+           a->spatial_budget == b->spatial_budget && a->instance_build == b->instance_build &&
+           a->instance_refit == b->instance_refit && a->flatten == b->flatten;
+}
+
+bool settings_same_scene(const struct view_settings *a, const struct view_settings *b)
+{
+    return strcmp(a->scene, b->scene) == 0 && a->reload == b->reload &&
+           a->texture_limit == b->texture_limit;
+}
+
+bool settings_same_kernel(const struct view_settings *a, const struct view_settings *b)
+{
+    const whit_renderer_params *p = &a->picture, *q = &b->picture;
+    bool counts = a->paint != VIEW_PAINT_COLOR, other_counts = b->paint != VIEW_PAINT_COLOR;
+    return settings_same_scene(a, b) && strcmp(a->device, b->device) == 0 &&
+           same_trees(&a->trees, &b->trees) && strcmp(a->effects, b->effects) == 0 &&
+           p->no_shadows == q->no_shadows && p->schlick == q->schlick &&
+           p->opaque_shadows == q->opaque_shadows && p->traversal == q->traversal &&
+           p->numerics == q->numerics && p->no_bounces == q->no_bounces &&
+           (p->adaptive > 0.0) == (q->adaptive > 0.0) && counts == other_counts;
+}
+
+bool settings_same_place(const struct view_settings *a, const struct view_settings *b)
+{
+    const whit_renderer_params *p = &a->picture, *q = &b->picture;
+    return settings_same_scene(a, b) && strcmp(a->camera, b->camera) == 0 &&
+           p->time_s == q->time_s && p->width == q->width && p->height == q->height;
+}
+
+bool settings_same(const struct view_settings *a, const struct view_settings *b)
+{
+    const whit_renderer_params *p = &a->picture, *q = &b->picture;
+    return settings_same_kernel(a, b) && settings_same_place(a, b) && p->samples == q->samples &&
+           p->adaptive == q->adaptive && p->depth == q->depth && p->bailout == q->bailout &&
+           p->light_samples == q->light_samples && a->paint == b->paint &&
+           a->paint_rays == b->paint_rays && a->paint_scale == b->paint_scale;
+}
+
+whit_renderer_params settings_picture(const struct view_settings *settings)
+{
+    whit_renderer_params params = settings->picture;
+    params.camera = settings->camera[0] ? settings->camera : NULL;
+    params.effects = settings->effects[0] ? settings->effects : NULL;
+    params.count = settings->paint != VIEW_PAINT_COLOR;
+    return params;
+}
+
+const char *settings_paint_name(uint32_t paint)
+{
+    static const char *const names[VIEW_PAINT_COUNT] = {"color", "depth", "visits",
+                                                        "boxes", "tris",  "stack"};
+    return paint < VIEW_PAINT_COUNT ? names[paint] : "";
+}
+
+const char *settings_traversal_name(whit_traversal traversal)
+{
+    return traversal == WHIT_TRAVERSAL_SIGN    ? "sign"
+           : traversal == WHIT_TRAVERSAL_BASIC ? "basic"
+                                               : "distance";
+}
+
+const char *settings_numerics_name(whit_numerics numerics)
+{
+    return numerics == WHIT_NUMERICS_FAST    ? "fast"
+           : numerics == WHIT_NUMERICS_EXACT ? "exact"
+                                             : "watertight";
+}
+
+/* ---- Words ---- */
+
+struct words {
+    char *text;
+    size_t bytes, used;
+    const char *separator;
+};
+
+static void put(struct words *words, const char *text)
+{
+    size_t length = strlen(text);
+    for (size_t i = 0; i < length; ++i, ++words->used) {
+        if (words->used + 1 < words->bytes)
+            words->text[words->used] = text[i];
+    }
+}
+
+static bool is_plain(const char *text)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "-_./:,+=@%";
+    return text[0] && text[strspn(text, plain)] == '\0';
+}
+
+/* In single quotes where a shell would take it apart. */
+static void put_quoted(struct words *words, const char *text)
+{
+    if (is_plain(text)) {
+        put(words, text);
+        return;
+    }
+    put(words, "'");
+    for (; *text; ++text) {
+        const char one[2] = {*text, 0};
+        put(words, *text == '\'' ? "'\\''" : one);
+    }
+    put(words, "'");
+}
+
+WHIT_PRINTF(3, 4)
+static void option(struct words *words, const char *name, const char *format, ...)
+{
+    char value[VIEW_PATH];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(value, sizeof value, format, args);
+    va_end(args);
+    if (words->used > 0)
+        put(words, words->separator);
+    put(words, name);
+    if (value[0]) {
+        put(words, " ");
+        put_quoted(words, value);
+    }
+}
+
+static void tree_words(struct words *words, const struct view_settings *settings)
+{
+    const whit_accel_params *trees = &settings->trees;
+    if (trees->build == WHIT_BUILD_NONE)
+        option(words, "--no-bvh", "%s", "");
+    else if (settings->build[0])
+        option(words, "--build", "%s%s", settings->build, trees->optimize ? "+opt" : "");
+    if (trees->leaf_limit)
+        option(words, "--leaf", "%u", trees->leaf_limit);
+    if (trees->flatten)
+        option(words, "--instances", "off");
+    if (trees->instance_build == WHIT_BUILD_MEDIAN)
+        option(words, "--instance-build", "median");
+    if (trees->instance_refit)
+        option(words, "--instance-update", "refit");
+    if (settings->texture_limit)
+        option(words, "--texture-limit", "%u", settings->texture_limit);
+}
+
+static void shading_words(struct words *words, const struct view_settings *settings)
+{
+    const whit_renderer_params *p = &settings->picture;
+    if (p->adaptive > 0.0)
+        option(words, "--aa", "adaptive:%.9g", p->adaptive);
+    else if (p->samples > 1)
+        option(words, "--aa", "%u", p->samples);
+    if (p->no_bounces)
+        option(words, "--depth", "0");
+    else if (p->depth)
+        option(words, "--depth", "%u", p->depth);
+    if (p->bailout != 0.0)
+        option(words, "--bailout", "%.9g", p->bailout < 0.0 ? 0.0 : p->bailout);
+    if (p->light_samples)
+        option(words, "--light-samples", "%u", p->light_samples);
+    if (p->schlick)
+        option(words, "--fresnel", "schlick");
+    if (p->opaque_shadows)
+        option(words, "--opaque-shadows", "%s", "");
+    if (p->no_shadows)
+        option(words, "--no-shadows", "%s", "");
+    if (settings->effects[0])
+        option(words, "--effects", "%s", settings->effects);
+}
+
+static void paint_words(struct words *words, const struct view_settings *settings)
+{
+    static const char *const kinds[] = {"primary", "shadow", "reflected", "refracted", "all"};
+    if (settings->paint == VIEW_PAINT_COLOR)
+        return;
+    option(words, "--view", "%s", settings_paint_name(settings->paint));
+    if (settings->paint_rays > 0 && settings->paint_rays <= WHIT_RAY_KINDS)
+        option(words, "--view-rays", "%s", kinds[settings->paint_rays]);
+    if (settings->paint_scale > 0.0)
+        option(words, "--view-scale", "%.9g", settings->paint_scale);
+}
+
+static void all_words(struct words *words, const struct view_settings *settings)
+{
+    const whit_renderer_params *p = &settings->picture;
+    if (p->width > 0)
+        option(words, "--size", "%ux%u", p->width, p->height);
+    if (settings->camera[0])
+        option(words, "--camera", "%s", settings->camera);
+    if (p->time_s != 0.0)
+        option(words, "--time", "%.17g", p->time_s);
+    if (settings->device[0])
+        option(words, "--device", "%s", settings->device);
+    if (p->traversal != WHIT_TRAVERSAL_DISTANCE)
+        option(words, "--traversal", "%s", settings_traversal_name(p->traversal));
+    if (p->numerics != WHIT_NUMERICS_WATERTIGHT)
+        option(words, "--numerics", "%s", settings_numerics_name(p->numerics));
+    tree_words(words, settings);
+    shading_words(words, settings);
+    paint_words(words, settings);
+}
+
+static size_t finish(struct words *words)
+{
+    size_t end = words->used < words->bytes ? words->used : words->bytes - 1;
+    words->text[end] = '\0';
+    return words->used;
+}
+
+size_t settings_words(const struct view_settings *settings, const char *separator, char *text,
+                      size_t text_bytes)
+{
+    struct words words = {.text = text, .bytes = text_bytes, .separator = separator};
+    all_words(&words, settings);
+    return finish(&words);
+}
+
+size_t settings_render_line(const struct view_settings *settings, char *text, size_t text_bytes)
+{
+    struct words words = {.text = text, .bytes = text_bytes, .separator = " "};
+    put(&words, "whit render ");
+    put_quoted(&words, settings->scene);
+    all_words(&words, settings);
+    put(&words, " -o picture.png");
+    return finish(&words);
+}

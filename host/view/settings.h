@@ -1,0 +1,65 @@
+/* All that a picture in the window depends on: what the options of `whit render` say, and how the
+   window shows it. A plain record: copied freely, compared field by field. */
+#ifndef VIEW_SETTINGS_H
+#define VIEW_SETTINGS_H
+
+#include "api/whit.h"
+
+enum { VIEW_PATH = 1024, VIEW_TEXT = 256 };
+
+/* What is painted. Costs are heat maps, of what whit_view tells. */
+enum view_paint {
+    VIEW_PAINT_COLOR,
+    VIEW_PAINT_DEPTH, /* from here on 1 + whit_view */
+    VIEW_PAINT_VISITS,
+    VIEW_PAINT_BOXES,
+    VIEW_PAINT_TRIS,
+    VIEW_PAINT_STACK,
+    VIEW_PAINT_COUNT,
+};
+
+struct view_settings {
+    char scene[VIEW_PATH];
+    uint32_t reload;        /* another number: the scene is read again */
+    char device[VIEW_TEXT]; /* "": auto */
+    uint32_t texture_limit; /* 0: the default */
+    bool validation;
+
+    whit_accel_params trees; /* without pointers */
+    char build[VIEW_TEXT];   /* `trees` as --build names it, without +opt; "": the default */
+
+    /* Without pointers; width and height are those of the window. */
+    whit_renderer_params picture;
+    char camera[VIEW_TEXT];  /* as --camera takes it; "": the scene's first */
+    char effects[VIEW_TEXT]; /* as --effects takes it; "": auto */
+
+    uint32_t paint;     /* enum view_paint */
+    uint32_t paint_rays; /* whit_ray_kind, or WHIT_RAY_KINDS: all */
+    double paint_scale; /* 0: by the picture */
+};
+
+/* Whether a renderer that was made for `a` draws `b` by whit_renderer_set_view alone. */
+bool settings_same_kernel(const struct view_settings *a, const struct view_settings *b);
+/* Whether the scene of `a` is that of `b`. */
+bool settings_same_scene(const struct view_settings *a, const struct view_settings *b);
+/* Whether what `a` and `b` see is the same: camera, time, size; not how it is found or shaded. */
+bool settings_same_place(const struct view_settings *a, const struct view_settings *b);
+/* All of it. */
+bool settings_same(const struct view_settings *a, const struct view_settings *b);
+
+/* The public parameters, with their strings, which point into `settings`. */
+whit_renderer_params settings_picture(const struct view_settings *settings);
+
+/* The words of the command line that say the same as `settings`, each in quotes where a shell needs
+   them; what is at its default is left out. `separator`: between an option and the next, " " or
+   "\n". The number of bytes written, without the 0 at the end; text that does not fit is cut. */
+size_t settings_words(const struct view_settings *settings, const char *separator, char *text,
+                      size_t text_bytes);
+/* `whit render SCENE ... -o picture.png`, which makes the picture of the window. */
+size_t settings_render_line(const struct view_settings *settings, char *text, size_t text_bytes);
+
+const char *settings_paint_name(uint32_t paint); /* "color" */
+const char *settings_traversal_name(whit_traversal traversal);
+const char *settings_numerics_name(whit_numerics numerics);
+
+#endif

@@ -1,0 +1,111 @@
+/* What the viewer is at, as one line of JSON: for tests, which read it between events. */
+#include <inttypes.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "base/hash.h"
+#include "view/view_private.h"
+
+static void put_text(json_t *object, const char *name, const char *text)
+{
+    json_object_set_new(object, name, json_string(text ? text : ""));
+}
+
+static void put_count(json_t *object, const char *name, uint64_t count)
+{
+    json_object_set_new(object, name, json_integer((json_int_t)count));
+}
+
+static void put_number(json_t *object, const char *name, double number)
+{
+    json_object_set_new(object, name, json_real(number));
+}
+
+static void put_bool(json_t *object, const char *name, bool value)
+{
+    json_object_set_new(object, name, json_boolean(value));
+}
+
+static void put_hash(json_t *object, const char *name, const void *data, size_t bytes)
+{
+    char text[17];
+    snprintf(text, sizeof text, "%016" PRIx64, data ? hash_bytes(HASH_START, data, bytes) : 0);
+    put_text(object, name, text);
+}
+
+static json_t *frame_json(const struct engine_frame *frame)
+{
+    json_t *object = json_object();
+    size_t pixels = (size_t)frame->width * frame->height;
+    put_count(object, "number", frame->number);
+    put_count(object, "width", frame->width);
+    put_count(object, "height", frame->height);
+    put_count(object, "divisor", frame->divisor);
+    put_count(object, "samples", frame->samples);
+    put_bool(object, "whole", frame->whole);
+    put_text(object, "view", settings_paint_name(frame->settings.paint));
+    put_text(object, "builder", frame->accel.builder);
+    put_number(object, "render_ms", frame->stats.render_ms);
+    put_hash(object, "ids", frame->ids ? whit_image_words(frame->ids) : NULL, pixels * 8);
+    put_hash(object, "pixels", frame->rgba, pixels * 4);
+    return object;
+}
+
+static json_t *change_json(const struct engine_change *change)
+{
+    json_t *object = json_object();
+    put_count(object, "number", change->number);
+    put_text(object, "what", change->what);
+    put_count(object, "pixels", change->pixels);
+    put_count(object, "other_ids", change->other_ids);
+    put_count(object, "other_colors", change->other_colors);
+    put_number(object, "largest", change->largest);
+    return object;
+}
+
+static json_t *keys_json(const struct view *view)
+{
+    uint32_t count;
+    const struct key_binding *keys = key_bindings(&count);
+    json_t *object = json_object();
+    for (uint32_t i = 0; i < count; ++i) {
+        char state[VIEW_TEXT] = "";
+        if (!keys[i].state)
+            continue;
+        keys[i].state(view, state, sizeof state);
+        put_text(object, keys[i].name, state);
+    }
+    return object;
+}
+
+void state_print(struct view *view, FILE *to)
+{
+    static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
+    char words[4096], line[4096];
+    struct swapchain_info chain;
+    json_t *root = json_object();
+    settings_words(&view->settings, " ", words, sizeof words);
+    settings_render_line(&view->settings, line, sizeof line);
+    swapchain_get_info(view->swapchain, &chain);
+    put_text(root, "scene", view->settings.scene);
+    put_text(root, "words", words);
+    put_text(root, "render", line);
+    put_number(root, "time_s", view->settings.picture.time_s);
+    put_count(root, "window_width", chain.width);
+    put_count(root, "window_height", chain.height);
+    put_bool(root, "direct", chain.direct);
+    put_text(root, "hud", huds[view->hud]);
+    put_bool(root, "help", view->help);
+    put_bool(root, "playing", view->clock.playing);
+    put_text(root, "toast", view->toast);
+    put_text(root, "error", view->status.error);
+    put_count(root, "shown", view->shown);
+    json_object_set_new(root, "keys", keys_json(view));
+    json_object_set_new(root, "frame", frame_json(&view->frame));
+    json_object_set_new(root, "change", change_json(&view->status.change));
+    json_dumpf(root, to, JSON_COMPACT);
+    fputc('\n', to);
+    fflush(to);
+    json_decref(root);
+}

@@ -1,0 +1,322 @@
+// The shim over Dear ImGui 1.86 and its Vulkan backend: everything of the viewer that is C++.
+#include "view/ui.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <new>
+
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+extern "C" {
+#include "device/swapchain.h"
+}
+
+struct ui {
+    struct swapchain *swapchain;
+    VkDescriptorPool descriptors;
+    VkDevice device;
+    float scale;
+    bool backend, pressed[3], down[3];
+};
+
+static float line_scale = 1.0f;
+
+static void make_fonts(void *user, void *commands)
+{
+    *static_cast<bool *>(user) =
+        ImGui_ImplVulkan_CreateFontsTexture(static_cast<VkCommandBuffer>(commands));
+}
+
+static void set_style(float scale)
+{
+    ImGui::StyleColorsDark();
+    ImGuiStyle &style = ImGui::GetStyle();
+    style.WindowRounding = 4.0f;
+    style.FrameRounding = 3.0f;
+    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06f, 0.07f, 0.09f, 0.86f);
+    style.ScaleAllSizes(scale);
+    ImFontConfig font;
+    font.SizePixels = 13.0f * scale;
+    ImGui::GetIO().Fonts->AddFontDefault(&font);
+}
+
+static void set_keys()
+{
+    static const ImGuiKey_ keys[UI_KEY_COUNT] = {
+        ImGuiKey_Tab,       ImGuiKey_LeftArrow, ImGuiKey_RightArrow, ImGuiKey_UpArrow,
+        ImGuiKey_DownArrow, ImGuiKey_Home,      ImGuiKey_End,        ImGuiKey_Delete,
+        ImGuiKey_Backspace, ImGuiKey_Enter,     ImGuiKey_Escape};
+    for (int i = 0; i < UI_KEY_COUNT; ++i)
+        ImGui::GetIO().KeyMap[keys[i]] = i;
+}
+
+static bool start_backend(struct ui *ui)
+{
+    struct swapchain_handles handles;
+    swapchain_get_handles(ui->swapchain, &handles);
+    ui->device = static_cast<VkDevice>(handles.device);
+    VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
+    VkDescriptorPoolCreateInfo pool = {};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+    pool.maxSets = 8;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
+    if (vkCreateDescriptorPool(ui->device, &pool, nullptr, &ui->descriptors) != VK_SUCCESS)
+        return false;
+    ImGui_ImplVulkan_InitInfo info = {};
+    info.Instance = static_cast<VkInstance>(handles.instance);
+    info.PhysicalDevice = static_cast<VkPhysicalDevice>(handles.physical);
+    info.Device = ui->device;
+    info.QueueFamily = handles.queue_family;
+    info.Queue = static_cast<VkQueue>(handles.queue);
+    info.PipelineCache = (VkPipelineCache)handles.pipeline_cache;
+    info.DescriptorPool = ui->descriptors;
+    info.MinImageCount = 2;
+    info.ImageCount = handles.image_count;
+    ui->backend = ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass);
+    bool fonts = false;
+    if (!ui->backend || swapchain_submit(ui->swapchain, make_fonts, &fonts) != WHIT_OK)
+        return false;
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    return fonts;
+}
+
+extern "C" {
+
+whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out)
+{
+    *out = nullptr;
+    struct ui *ui = new (std::nothrow) struct ui();
+    if (!ui)
+        return WHIT_ERROR_MEMORY;
+    ui->swapchain = swapchain;
+    ui->scale = scale > 0.0f ? scale : 1.0f;
+    line_scale = ui->scale;
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui::GetIO().BackendPlatformName = "whit";
+    set_style(ui->scale);
+    set_keys();
+    if (!start_backend(ui)) {
+        ui_destroy(ui);
+        return WHIT_ERROR_DEVICE;
+    }
+    *out = ui;
+    return WHIT_OK;
+}
+
+void ui_destroy(struct ui *ui)
+{
+    if (!ui)
+        return;
+    if (ui->device)
+        (void)vkDeviceWaitIdle(ui->device); // a lost device has nothing left to wait for
+    if (ui->backend)
+        ImGui_ImplVulkan_Shutdown();
+    if (ui->device)
+        vkDestroyDescriptorPool(ui->device, ui->descriptors, nullptr);
+    ImGui::DestroyContext();
+    delete ui;
+}
+
+void ui_mouse(struct ui *, float x, float y) { ImGui::GetIO().MousePos = ImVec2(x, y); }
+
+// A press and its release between two frames are a click all the same.
+void ui_button_event(struct ui *ui, int button, bool down)
+{
+    if (button < 0 || button > 2)
+        return;
+    ui->down[button] = down;
+    ui->pressed[button] |= down;
+}
+
+void ui_wheel(struct ui *, float x, float y)
+{
+    ImGui::GetIO().MouseWheelH += x;
+    ImGui::GetIO().MouseWheel += y;
+}
+
+void ui_key_event(struct ui *, enum ui_key key, bool down)
+{
+    ImGui::GetIO().KeysDown[key] = down;
+}
+
+void ui_character(struct ui *, uint32_t code_point)
+{
+    ImGui::GetIO().AddInputCharacter(code_point);
+}
+
+bool ui_has_mouse(const struct ui *) { return ImGui::GetIO().WantCaptureMouse; }
+bool ui_has_keys(const struct ui *) { return ImGui::GetIO().WantTextInput; }
+
+void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    io.DisplaySize = ImVec2((float)width, (float)height);
+    io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
+    for (int i = 0; i < 3; ++i) {
+        io.MouseDown[i] = ui->pressed[i] || ui->down[i];
+        ui->pressed[i] = false;
+    }
+    ImGui_ImplVulkan_NewFrame();
+    ImGui::NewFrame();
+}
+
+void ui_end(struct ui *) { ImGui::Render(); }
+
+void ui_draw(void *, void *commands)
+{
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), static_cast<VkCommandBuffer>(commands));
+}
+
+static void place(float x, float y, ImGuiCond when)
+{
+    ImVec2 window = ImGui::GetIO().DisplaySize;
+    float inside = 10.0f * line_scale;
+    ImGui::SetNextWindowPos(ImVec2(inside + x * (window.x - 2.0f * inside),
+                                   inside + y * (window.y - 2.0f * inside)),
+                            when, ImVec2(x, y));
+}
+
+bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
+{
+    int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+    if (!(kind & UI_PANEL_TITLE))
+        flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
+    place(x, y, kind & UI_PANEL_TITLE ? ImGuiCond_Appearing : ImGuiCond_Always);
+    if (kind & UI_PANEL_WIDE)
+        ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
+                                            ImVec2(ImGui::GetIO().DisplaySize.x * 0.9f, 1e6f));
+    return ImGui::Begin(title, nullptr, flags);
+}
+
+bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open)
+{
+    int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    place(x, y, ImGuiCond_Appearing);
+    ImVec2 window = ImGui::GetIO().DisplaySize;
+    float w = width * line_scale, h = height * line_scale;
+    ImGui::SetNextWindowSize(ImVec2(w < window.x ? w : window.x, h < window.y ? h : window.y),
+                             ImGuiCond_Appearing);
+    return ImGui::Begin(title, open, flags);
+}
+
+void ui_panel_end(void) { ImGui::End(); }
+
+void ui_text(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    ImGui::TextV(format, args);
+    va_end(args);
+}
+
+void ui_text_dim(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    ImGui::TextDisabledV(format, args);
+    va_end(args);
+}
+
+void ui_text_color(uint32_t color, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.9f);
+    ImGui::TextV(format, args);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    va_end(args);
+}
+
+void ui_separator(void) { ImGui::Separator(); }
+void ui_same_line(float x) { ImGui::SameLine(x * ImGui::GetFontSize() * 0.54f); }
+bool ui_button(const char *label) { return ImGui::Button(label); }
+bool ui_selectable(const char *label, bool selected) { return ImGui::Selectable(label, selected); }
+bool ui_checkbox(const char *label, bool *value) { return ImGui::Checkbox(label, value); }
+
+bool ui_choice(const char *label, const char *const *names, int count, int *value)
+{
+    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
+    return ImGui::Combo(label, value, names, count);
+}
+
+bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic)
+{
+    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, value, &lo, &hi, "%.4g",
+                               logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+}
+
+bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi)
+{
+    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
+    return ImGui::SliderScalar(label, ImGuiDataType_U32, value, &lo, &hi);
+}
+
+bool ui_tree_begin(const char *label, bool open)
+{
+    ImGui::SetNextItemOpen(open, ImGuiCond_Once);
+    return ImGui::TreeNode(label);
+}
+
+void ui_tree_end(void) { ImGui::TreePop(); }
+
+void ui_progress(float part, const char *text)
+{
+    float shown = part < 0.0f ? 0.0f : part;
+    ImGui::ProgressBar(shown, ImVec2(18.0f * ImGui::GetFontSize(), 0.0f), text);
+}
+
+bool ui_table_begin(const char *id, int columns)
+{
+    return ImGui::BeginTable(id, columns,
+                             ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                 ImGuiTableFlags_SizingFixedFit);
+}
+
+void ui_table_header(const char *const *names, int count)
+{
+    for (int i = 0; i < count; ++i)
+        ImGui::TableSetupColumn(names[i]);
+    ImGui::TableHeadersRow();
+}
+
+void ui_table_next(void) { ImGui::TableNextColumn(); }
+void ui_table_end(void) { ImGui::EndTable(); }
+
+void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width)
+{
+    ImGui::GetBackgroundDrawList()->AddLine(ImVec2(x0, y0), ImVec2(x1, y1), color,
+                                            width * line_scale);
+}
+
+void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    if (filled)
+        list->AddRectFilled(ImVec2(x0, y0), ImVec2(x1, y1), color);
+    else
+        list->AddRect(ImVec2(x0, y0), ImVec2(x1, y1), color);
+}
+
+void ui_text_at(float x, float y, uint32_t color, const char *text)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->AddText(ImVec2(x + line_scale, y + line_scale), 0xC0000000u, text);
+    list->AddText(ImVec2(x, y), color, text);
+}
+
+void ui_text_size(const char *text, float *width, float *height)
+{
+    ImVec2 size = ImGui::CalcTextSize(text);
+    *width = size.x;
+    *height = size.y;
+}
+
+} // extern "C"

@@ -1,0 +1,93 @@
+/* Dear ImGui behind C: what the viewer draws over its picture. One at a time, of the window's
+   thread. Places are in pixels from the window's upper left, colours 0xAABBGGRR. */
+#ifndef VIEW_UI_H
+#define VIEW_UI_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/whit_base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct swapchain;
+struct ui;
+
+/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. */
+WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out);
+void ui_destroy(struct ui *ui); /* before the swapchain; NULL is fine */
+
+/* What the user does, since the last frame. Keys are those of ui_key. */
+enum ui_key {
+    UI_KEY_TAB,
+    UI_KEY_LEFT,
+    UI_KEY_RIGHT,
+    UI_KEY_UP,
+    UI_KEY_DOWN,
+    UI_KEY_HOME,
+    UI_KEY_END,
+    UI_KEY_DELETE,
+    UI_KEY_BACKSPACE,
+    UI_KEY_ENTER,
+    UI_KEY_ESCAPE,
+    UI_KEY_COUNT,
+};
+void ui_mouse(struct ui *ui, float x, float y);
+void ui_button_event(struct ui *ui, int button, bool down); /* 0 left, 1 right, 2 middle */
+void ui_wheel(struct ui *ui, float x, float y);
+void ui_key_event(struct ui *ui, enum ui_key key, bool down);
+void ui_character(struct ui *ui, uint32_t code_point);
+/* Whether a panel has the mouse, or a text field the keys: the picture is then left alone. */
+bool ui_has_mouse(const struct ui *ui);
+bool ui_has_keys(const struct ui *ui);
+
+/* Everything below is drawn between these two. */
+void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
+void ui_end(struct ui *ui);
+/* A swapchain_draw: what was drawn since the last ui_begin. */
+void ui_draw(void *ui, void *commands);
+
+/* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
+   inside. False when it is folded: end it all the same. */
+enum ui_panel {
+    UI_PANEL_PLAIN = 0,  /* no title, cannot be moved, lets the mouse through */
+    UI_PANEL_TITLE = 1,  /* with a title, can be moved */
+    UI_PANEL_WIDE = 2,   /* with room for long lines */
+};
+bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
+/* The same with a cross that sets *open to false. */
+bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open);
+void ui_panel_end(void);
+
+void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
+void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
+void ui_text_color(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
+void ui_separator(void);
+void ui_same_line(float x); /* 0: right behind; else from the panel's left, in characters */
+bool ui_button(const char *label);
+bool ui_selectable(const char *label, bool selected);
+bool ui_checkbox(const char *label, bool *value);
+bool ui_choice(const char *label, const char *const *names, int count, int *value);
+bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
+bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
+bool ui_tree_begin(const char *label, bool open); /* true: ui_tree_end ends it */
+void ui_tree_end(void);
+void ui_progress(float part, const char *text); /* part < 0: not known */
+bool ui_table_begin(const char *id, int columns);
+void ui_table_header(const char *const *names, int count);
+void ui_table_next(void); /* cell */
+void ui_table_end(void);
+
+/* Over the picture, under the panels. */
+void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width);
+void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled);
+void ui_text_at(float x, float y, uint32_t color, const char *text);
+void ui_text_size(const char *text, float *width, float *height);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,413 @@
+/* The window's thread: events in, settings to the engine, pictures to the screen. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "kernels.h"
+#include "view/view_private.h"
+
+static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */
+static const double TOAST_MS = 4000.0;
+static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
+static const double IDLE_S = 5.0;
+
+void view_say(struct view *view, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(view->toast, sizeof view->toast, format, args);
+    va_end(args);
+    view->toast_until_ms = clock_ms() + TOAST_MS;
+    view->dirty = true;
+}
+
+void view_changed(struct view *view)
+{
+    view->dirty = true;
+}
+
+void view_moved(struct view *view)
+{
+    camera_to_text(&view->camera, view->settings.camera, sizeof view->settings.camera);
+    view->file_camera = -1;
+    view->moved_ms = clock_ms();
+    view->dirty = true;
+}
+
+bool view_bounds(const struct view *view, double lo[3], double hi[3])
+{
+    if (!view->scene)
+        return false;
+    memcpy(lo, view->scene->info.lo, 3 * sizeof *lo);
+    memcpy(hi, view->scene->info.hi, 3 * sizeof *hi);
+    return lo[0] <= hi[0];
+}
+
+double view_aspect(const struct view *view)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    return p->height > 0 ? (double)p->width / p->height : 1.0;
+}
+
+/* ---- Scenes and cameras ---- */
+
+/* The numbers of a camera of the scene, for the hand to begin with. */
+static void read_camera(struct view *view, uint32_t index)
+{
+    whit_camera_info info;
+    whit_scene_get_camera(view->scene->scene, index, &info);
+    view->camera = (struct view_camera){.fov_y_degrees = info.fov_y_degrees};
+    memcpy(view->camera.eye, info.eye, sizeof info.eye);
+    memcpy(view->camera.target, info.target, sizeof info.target);
+    memcpy(view->camera.up, info.up, sizeof info.up);
+    if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: the angle is not its own */
+        double distance = 0.0;
+        for (int i = 0; i < 3; ++i)
+            distance += (info.target[i] - info.eye[i]) * (info.target[i] - info.eye[i]);
+        distance = sqrt(distance);
+        view->camera.fov_y_degrees =
+            info.height > 0.0 && distance > 0.0
+                ? 2.0 * atan(0.5 * info.height / distance) * 57.29577951308232
+                : 60.0;
+    }
+}
+
+void view_use_camera(struct view *view, int index)
+{
+    if (!view->scene || index < 0 || (uint32_t)index >= view->scene->info.camera_count)
+        return;
+    read_camera(view, (uint32_t)index);
+    view->file_camera = index;
+    snprintf(view->settings.camera, sizeof view->settings.camera, "%d", index);
+    if (index == 0)
+        view->settings.camera[0] = '\0'; /* the default */
+    view->dirty = true;
+}
+
+/* What the settings' text says. */
+static void learn_camera(struct view *view)
+{
+    const char *text = view->settings.camera;
+    view->camera_known = true;
+    if (camera_from_text(text, &view->camera)) {
+        view->file_camera = -1;
+        return;
+    }
+    view->file_camera = 0;
+    for (uint32_t i = 0; text[0] && i < view->scene->info.camera_count; ++i) {
+        whit_camera_info info;
+        char number[16];
+        whit_scene_get_camera(view->scene->scene, i, &info);
+        snprintf(number, sizeof number, "%u", i);
+        if (strcmp(text, info.name) == 0 || strcmp(text, number) == 0)
+            view->file_camera = (int)i;
+    }
+    if (view->scene->info.camera_count > 0)
+        read_camera(view, (uint32_t)view->file_camera);
+}
+
+void view_open(struct view *view, const char *path)
+{
+    char old[VIEW_PATH];
+    if (strlen(path) >= sizeof view->settings.scene) {
+        view_say(view, "the path is too long");
+        return;
+    }
+    memcpy(old, view->settings.scene, sizeof old);
+    snprintf(view->settings.scene, sizeof view->settings.scene, "%s", path);
+    if (strcmp(old, path) == 0)
+        ++view->settings.reload;
+    view->settings.camera[0] = '\0';
+    view->settings.picture.time_s = 0.0;
+    view->camera_known = false;
+    view->hint = false;
+    view->dirty = true;
+}
+
+/* ---- Pictures ---- */
+
+static void set_title(struct view *view)
+{
+    char title[300];
+    snprintf(title, sizeof title, "%s - whit", path_name(view->settings.scene));
+    window_set_title(view->window, title);
+}
+
+static void count_picture(struct view *view)
+{
+    struct view_rate *rate = &view->rate;
+    const uint32_t most = sizeof rate->shown_ms / sizeof *rate->shown_ms;
+    double now_ms = clock_ms();
+    rate->shown_ms[rate->count++ % most] = now_ms;
+    uint32_t n = rate->count < most ? rate->count : most;
+    double first_ms = rate->shown_ms[(rate->count - n) % most];
+    rate->fps = n > 1 && now_ms > first_ms ? 1e3 * (n - 1) / (now_ms - first_ms) : 0.0;
+}
+
+static whit_result take_frame(struct view *view)
+{
+    if (!engine_take(view->engine, false, &view->frame))
+        return WHIT_OK;
+    struct engine_frame *frame = &view->frame;
+    bool other_scene = view->scene != frame->scene;
+    scene_ref_drop(view->scene);
+    view->scene = scene_ref_take(frame->scene);
+    view->fallback = frame->settings;
+    if (other_scene)
+        set_title(view);
+    if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
+        learn_camera(view);
+    count_picture(view);
+    view->picture_set = true;
+    view->dirty = true;
+    return swapchain_set_picture(view->swapchain, frame->rgba, frame->width, frame->height);
+}
+
+/* A switch that cannot be made goes back to what the picture shows; a scene that cannot be read
+   stays asked for, so that mending the file is enough. */
+static void take_failure(struct view *view)
+{
+    if (!view->status.error[0] || view->frame.number == 0 ||
+        !settings_same_scene(&view->settings, &view->fallback))
+        return;
+    struct view_settings back = view->fallback;
+    memcpy(back.camera, view->settings.camera, sizeof back.camera);
+    back.picture.time_s = view->settings.picture.time_s;
+    back.picture.width = view->settings.picture.width;
+    back.picture.height = view->settings.picture.height;
+    if (settings_same_kernel(&back, &view->settings))
+        return;
+    view_say(view, "%s", view->status.error);
+    view->settings = back;
+}
+
+static void take_status(struct view *view)
+{
+    struct engine_status old = view->status;
+    engine_get_status(view->engine, &view->status);
+    if (old.stage != view->status.stage || strcmp(old.error, view->status.error) != 0 ||
+        old.change.number != view->status.change.number || old.drawing != view->status.drawing ||
+        view->status.stage != SESSION_DONE)
+        view->dirty = true;
+    if (view->status.error[0] && !view->status.drawing)
+        take_failure(view);
+}
+
+/* ---- The window ---- */
+
+static whit_result fit_window(struct view *view)
+{
+    uint32_t width, height;
+    struct swapchain_info info;
+    window_pixels(view->window, &width, &height);
+    whit_result result = swapchain_resize(view->swapchain, width, height);
+    swapchain_get_info(view->swapchain, &info);
+    if (result == WHIT_OK && info.width > 0) {
+        view->settings.picture.width = info.width;
+        view->settings.picture.height = info.height;
+        view->dirty = true;
+    }
+    return result;
+}
+
+static whit_result keep_shot(struct view *view)
+{
+    struct swapchain_info info;
+    whit_image *image = NULL;
+    swapchain_get_info(view->swapchain, &info);
+    size_t bytes = (size_t)info.width * info.height * 4;
+    uint8_t *rgba = malloc(bytes);
+    whit_result result =
+        rgba ? swapchain_read(view->swapchain, rgba, bytes) : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = whit_image_create_display(info.width, info.height, rgba, &image);
+    const whit_log log = {view->log.fn, view->log.user, view->log.level};
+    if (result == WHIT_OK)
+        result = whit_image_save(image, view->shot, NULL, 0, &log);
+    whit_image_destroy(image);
+    free(rgba);
+    view->shot[0] = '\0';
+    return result;
+}
+
+static whit_result draw_window(struct view *view)
+{
+    struct swapchain_info info;
+    bool shown = false, keep = view->shot[0] != '\0';
+    double now_ms = clock_ms();
+    swapchain_get_info(view->swapchain, &info);
+    view->dirty = false;
+    if (info.stale || info.width == 0 || view->resized) {
+        view->resized = false;
+        whit_result result = fit_window(view);
+        swapchain_get_info(view->swapchain, &info);
+        if (result != WHIT_OK || info.width == 0)
+            return result;
+    }
+    ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3);
+    if (!view->picture_set)
+        ui_rectangle(0, 0, (float)info.width, (float)info.height, 0xFF181410u, true);
+    hud_draw(view);
+    ui_end(view->ui);
+    view->drawn_ms = now_ms;
+    whit_result result = keep ? swapchain_show_and_keep(view->swapchain, ui_draw, view->ui, &shown)
+                              : swapchain_show(view->swapchain, ui_draw, view->ui, &shown);
+    if (result == WHIT_OK && !shown)
+        view->dirty = true;
+    if (result == WHIT_OK && shown && view->picture_set)
+        ++view->shown;
+    return result == WHIT_OK && shown && keep ? keep_shot(view) : result;
+}
+
+/* ---- The loop ---- */
+
+static bool is_moving(const struct view *view, double now_ms)
+{
+    return now_ms - view->moved_ms < MOVING_MS || view->clock.playing;
+}
+
+static double wait_seconds(const struct view *view, double now_ms, bool goes_on)
+{
+    double wait = IDLE_S;
+    if (view->dirty || goes_on)
+        return 0.0;
+    if (now_ms - view->moved_ms < MOVING_MS)
+        wait = fmin(wait, (MOVING_MS - (now_ms - view->moved_ms)) * 1e-3);
+    if (view->toast[0])
+        wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
+    if (view->status.stage != SESSION_DONE)
+        wait = fmin(wait, PROGRESS_S);
+    if (view->replay)
+        wait = fmin(wait, 0.005);
+    return wait + 1e-3;
+}
+
+static bool is_over(const struct view *view)
+{
+    const struct view_params *params = view->params;
+    return view->quit || (params->cancel && *params->cancel) || replay_is_over(view) ||
+           (params->frames > 0 && view->shown >= params->frames);
+}
+
+static void take_events(struct view *view)
+{
+    struct view_event event;
+    while (window_next(view->window, &event)) {
+        if (!view->replay)
+            record_event(view, &event);
+        input_event(view, &event);
+    }
+}
+
+static whit_result step(struct view *view)
+{
+    double now_ms = clock_ms();
+    bool goes_on = input_step(view, now_ms);
+    window_wait(view->window, goes_on || view->dirty ? 0.0 : wait_seconds(view, now_ms, goes_on));
+    take_events(view);
+    now_ms = clock_ms();
+    (void)replay_step(view, now_ms);
+    if (view->toast[0] && now_ms >= view->toast_until_ms) {
+        view->toast[0] = '\0';
+        view->dirty = true;
+    }
+    if (view->settings.picture.width > 0)
+        engine_ask(view->engine, &view->settings, is_moving(view, now_ms));
+    if (goes_on)
+        engine_wait(view->engine, 50.0);
+    whit_result result = take_frame(view);
+    take_status(view);
+    if (result == WHIT_OK && view->dirty)
+        result = draw_window(view);
+    return result;
+}
+
+static whit_result open_device(struct view *view)
+{
+    const struct device_params params = {
+        .selector = view->settings.device[0] ? view->settings.device : NULL,
+        .validation = view->settings.validation,
+        .surface = window_surface(view->window),
+    };
+    const struct swapchain_params chain = {
+        .spirv = kernels[KERNEL_PRESENT].words,
+        .spirv_bytes = kernels[KERNEL_PRESENT].bytes,
+        .vsync = !view->params->no_vsync,
+        .blit = view->params->blit,
+    };
+    whit_result result = device_create(&view->log, &params, &view->device);
+    if (result == WHIT_OK)
+        result = swapchain_create(view->device, &chain, &view->swapchain);
+    if (result == WHIT_OK)
+        result = fit_window(view);
+    if (result == WHIT_OK)
+        result = ui_create(view->swapchain, window_scale(view->window), &view->ui);
+    return result;
+}
+
+/* The engine begins before the window has its device: both take a while. */
+static whit_result open_all(struct view *view)
+{
+    const struct view_params *params = view->params;
+    const whit_renderer_params *picture = &params->settings.picture;
+    const struct window_params window = {.title = "whit",
+                                         .width = picture->width,
+                                         .height = picture->height,
+                                         .fullscreen = params->fullscreen};
+    const struct engine_params engine = {
+        .budget_ms = params->budget_fps > 0.0 ? 1e3 / params->budget_fps : 0.0,
+        .wake = window_wake,
+    };
+    whit_result result = replay_open(view);
+    if (result == WHIT_OK)
+        result = window_create(&view->log, &window, &view->window);
+    if (result == WHIT_OK)
+        result = engine_create(&engine, &view->engine);
+    if (result == WHIT_OK) {
+        engine_ask(view->engine, &view->settings, false);
+        result = open_device(view);
+    }
+    return result;
+}
+
+static void close_all(struct view *view, uint32_t *validation)
+{
+    replay_close(view);
+    engine_destroy(view->engine);
+    engine_frame_finish(&view->frame);
+    scene_ref_drop(view->scene);
+    ui_destroy(view->ui);
+    swapchain_destroy(view->swapchain);
+    *validation = view->device ? device_validation_messages(view->device) : 0;
+    device_destroy(view->device);
+    window_destroy(view->window);
+}
+
+whit_result view_run(const struct view_params *params, const whit_log *log, uint32_t *validation)
+{
+    struct view *view = calloc(1, sizeof *view);
+    if (!view)
+        return WHIT_ERROR_MEMORY;
+    view->log = (struct log){log->fn, log->user, log->level};
+    view->params = params;
+    view->settings = params->settings;
+    view->hud = HUD_SMALL;
+    view->hint = params->hint != NULL;
+    view->clock.speed = 1.0;
+    view->moved_ms = -1e9;
+    view->dirty = true;
+    for (uint32_t i = 0; i < params->scene_count; ++i) {
+        if (strcmp(params->scenes[i], params->settings.scene) == 0)
+            view->scene_index = i;
+    }
+    whit_result result = open_all(view);
+    while (result == WHIT_OK && !is_over(view))
+        result = step(view);
+    close_all(view, validation);
+    free(view);
+    return result;
+}

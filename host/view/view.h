@@ -1,0 +1,38 @@
+/* The viewer: a window on a scene. */
+#ifndef VIEW_VIEW_H
+#define VIEW_VIEW_H
+
+#include "view/engine.h"
+
+/* A picture to be saved with its recipe. */
+struct view_shot {
+    const struct view_settings *settings;
+    const whit_image *color; /* linear, as `whit render` makes it */
+    const whit_scene *scene;
+    const whit_device_info *device;
+    const whit_stats *stats;
+};
+
+struct view_params {
+    struct view_settings settings; /* to begin with; settings.picture's size is the window's */
+    bool fullscreen, no_vsync, blit;
+    double budget_fps;  /* while something moves; 0: 30 */
+    double fps;         /* frames of the animation in a second, for single steps */
+    uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
+    const char *record; /* where events go, or NULL */
+    const char *replay; /* where they come from, or NULL */
+    const char *hint;   /* shown at first, or NULL */
+    const char *const *scenes; /* for the arrows, borrowed; settings.scene need not be one of them */
+    uint32_t scene_count;
+    const volatile bool *cancel;
+    /* Saves a picture; the reason of a failure goes to the log. */
+    whit_result (*save)(void *user, const struct view_shot *shot, const char *path);
+    void *save_user;
+};
+
+/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: what the
+   validation layers had to say of the window's device. */
+WHIT_CHECK whit_result view_run(const struct view_params *params, const whit_log *log,
+                                uint32_t *validation);
+
+#endif

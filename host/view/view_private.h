@@ -1,0 +1,124 @@
+/* The viewer from inside: shared by the files of view/ that draw and act. */
+#ifndef VIEW_VIEW_PRIVATE_H
+#define VIEW_VIEW_PRIVATE_H
+
+#include "device/swapchain.h"
+#include "view/camera.h"
+#include "view/ui.h"
+#include "view/view.h"
+#include "view/window.h"
+
+enum view_hud { HUD_OFF, HUD_SMALL, HUD_FULL, HUD_COUNT };
+enum { TOAST_BYTES = 256, KEYS_MOST = 320 };
+
+/* What keys that are held, and the mouse, are at. */
+struct view_input {
+    bool down[KEYS_MOST];
+    bool buttons[3];
+    double x, y, press_x, press_y; /* of the mouse; where its button went down */
+    bool dragged;                  /* since the button went down */
+    double step_ms;                /* when held keys were last obeyed */
+};
+
+struct view_clock { /* of the animation */
+    bool playing, once;
+    double speed, last_ms;
+};
+
+/* Pictures and present calls of the last moments, for the HUD. */
+struct view_rate {
+    double shown_ms[32];
+    uint32_t count;
+    double fps;
+};
+
+struct view {
+    struct log log;
+    const struct view_params *params;
+    struct window *window;
+    struct device *device;
+    struct swapchain *swapchain;
+    struct ui *ui;
+    struct engine *engine;
+
+    struct view_settings settings;  /* wanted */
+    struct view_settings fallback;  /* of the last picture: where a switch fails, it goes back */
+    struct view_camera camera;      /* of settings.camera, as numbers */
+    bool camera_known;              /* else the scene's first camera, not read as yet */
+    int file_camera;                /* of the scene's, or -1 */
+    uint32_t scene_index;           /* in params->scenes */
+
+    struct engine_frame frame;
+    struct engine_status status;
+    uint64_t change_seen;
+    struct scene_ref *scene; /* of `frame` */
+
+    struct view_input input;
+    struct view_clock clock;
+    struct view_rate rate;
+    double moved_ms; /* when the picture was last changed by hand */
+    double drawn_ms; /* when the window was last drawn */
+    double escape_ms;
+    enum view_hud hud;
+    bool help, hint;
+    char toast[TOAST_BYTES];
+    double toast_until_ms;
+    bool dirty;   /* the window is to be drawn again */
+    bool resized; /* its images are to be made again */
+    bool quit;
+    uint32_t shown; /* pictures */
+    bool picture_set;
+
+    struct replay *replay;
+    FILE *record;
+    double record_ms;
+    char shot[EVENT_PATH]; /* of the next drawing; "": none */
+};
+
+/* Says something for some seconds. */
+void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
+/* The settings changed: draw them. */
+void view_changed(struct view *view);
+/* The camera was moved by hand: its text, and quick pictures for a moment. */
+void view_moved(struct view *view);
+/* Another scene, as the file dropped on the window. Keeps all but camera and time. */
+void view_open(struct view *view, const char *path);
+/* Sets the camera of the scene with this index; -1: the text of the settings. */
+void view_use_camera(struct view *view, int index);
+/* The world's bounds of the scene; false where none is loaded, or it is empty. */
+bool view_bounds(const struct view *view, double lo[3], double hi[3]);
+double view_aspect(const struct view *view);
+
+/* input.c */
+void input_event(struct view *view, const struct view_event *event);
+/* Obeys keys that are held, and the animation; true where something moves on by itself. */
+bool input_step(struct view *view, double now_ms);
+
+/* keys.c: what keys do, with the state of it. */
+struct key_binding {
+    int key;
+    unsigned mods;
+    const char *keys; /* as the cheat sheet says it */
+    const char *name;
+    void (*act)(struct view *view);
+    void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: none */
+};
+const struct key_binding *key_bindings(uint32_t *count);
+/* False where the key does nothing. */
+bool key_act(struct view *view, int key, unsigned mods);
+
+/* hud.c: everything drawn over the picture, between ui_begin and ui_end. */
+void hud_draw(struct view *view);
+
+/* state.c: the line of JSON that tests read. */
+void state_print(struct view *view, FILE *to);
+
+/* replay.c */
+WHIT_CHECK whit_result replay_open(struct view *view);
+/* Feeds what is due; true where there is more that waits for time or pictures. */
+bool replay_step(struct view *view, double now_ms);
+bool replay_is_over(const struct view *view);
+void replay_close(struct view *view);
+void record_event(struct view *view, const struct view_event *event);
+
+#endif
