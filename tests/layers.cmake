@@ -38,7 +38,7 @@ endfunction()
 set(system_headers assert complex ctype dirent errno fcntl fenv float getopt immintrin inttypes
   iso646 limits locale math poll pthread setjmp signal stdalign stdarg stdatomic stdbool stddef
   stdint stdio stdlib stdnoreturn string strings tgmath threads time uchar unistd wchar wctype
-  cstdlib cstring exception unordered_map vector)
+  cstdarg cstdio cstdlib cstring exception new unordered_map vector)
 
 function(check_library file module target)
   string(REGEX REPLACE "^<([^/.>]*).*>$" "\\1" library "${target}")

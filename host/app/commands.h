@@ -8,7 +8,7 @@
 #include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
-    command_devices, command_bench, command_hard, command_compare;
+    command_devices, command_bench, command_hard, command_compare, command_view;
 
 /* What `whit render` was asked for beside the job. */
 struct render_request {
@@ -22,6 +22,72 @@ struct render_request {
     bool counters;         /* costs in --stats */
     struct frames frames;  /* with them `output` and `ids` are patterns */
 };
+
+/* ---- Options of pictures: what `render` and `view` share (picture.c) ---- */
+
+enum { PICTURE_DEPTH_DEFAULT = 8, PICTURE_DEPTH_MOST = 255 };
+enum picture_id {
+    PICTURE_SIZE = JOB_ID_END,
+    PICTURE_CAMERA,
+    PICTURE_AA,
+    PICTURE_DEPTH,
+    PICTURE_BAILOUT,
+    PICTURE_NO_SHADOWS,
+    PICTURE_OPAQUE_SHADOWS,
+    PICTURE_LIGHT_SAMPLES,
+    PICTURE_FRESNEL,
+    PICTURE_EFFECTS,
+    PICTURE_VIEW,
+    PICTURE_VIEW_RAYS,
+    PICTURE_VIEW_SCALE,
+    PICTURE_ID_END,
+};
+#define PICTURE_OPTION_PLACE                                                                       \
+    {PICTURE_SIZE, "size", "WxH", "pixels (640x480)"},                                             \
+    {                                                                                              \
+        PICTURE_CAMERA, "camera", "NAME|N|numbers",                                                \
+            "a camera of the scene, by name or number, or\n"                                       \
+            "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"                                \
+            "vertical angle in degrees (the scene's first)"                                        \
+    }
+#define PICTURE_OPTION_SHADING                                                                     \
+    {PICTURE_AA, "aa", "1|4|16|64|adaptive:X",                                                     \
+     "samples a pixel; adaptive: 4, where neighbours differ by\n"                                  \
+     "more than X 16, and then 64 (1)"},                                                           \
+        {PICTURE_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},          \
+        {PICTURE_BAILOUT, "bailout", "X",                                                          \
+         "rays that can add less than X to a pixel are not traced;\n"                              \
+         "0: all are (1/1024)"},                                                                   \
+        {PICTURE_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},                      \
+        {PICTURE_OPAQUE_SHADOWS, "opaque-shadows", NULL,                                           \
+         "glass and blended surfaces cast full shadows"},                                          \
+        {PICTURE_LIGHT_SAMPLES, "light-samples", "1|4|16|64",                                      \
+         "points of an area light that are tested (16)"},                                          \
+        {PICTURE_FRESNEL, "fresnel", "exact|schlick",                                              \
+         "or Schlick's approximation in its place (exact)"},                                       \
+    {                                                                                              \
+        PICTURE_EFFECTS, "effects", "auto|all|+NAME,-NAME",                                        \
+            "compile what the scene calls for, or everything: the\n"                               \
+            "picture is the same; or more and less by name: less\n"                                \
+            "changes it. Names and prices: `whit scene --effects`\n"                               \
+            "(auto)"                                                                               \
+    }
+#define PICTURE_OPTION_VIEW                                                                        \
+    {PICTURE_VIEW, "view", "color|depth|visits|boxes|tris|stack",                                  \
+     "what traversals cost instead of colours: a heat map\n"                                       \
+     "(.png) or the numbers (.exr, .pfm)"},                                                        \
+        {PICTURE_VIEW_RAYS, "view-rays", "KIND",                                                   \
+         "of primary, shadow, reflected, refracted or all rays\n"                                  \
+         "(primary)"},                                                                             \
+    {                                                                                              \
+        PICTURE_VIEW_SCALE, "view-scale", "auto|X", "the number of the brightest colour (auto)"    \
+    }
+/* False when `id` is none of them. */
+bool picture_option(struct cli_reader *reader, int id, struct render_request *request);
+struct render_request picture_request_default(void);
+/* Without what only some commands have. */
+whit_renderer_params picture_request_params(const struct render_request *request,
+                                            const struct job *job);
 
 /* Saves what `request` names of the picture just rendered (render_command.c). */
 whit_result render_save(const struct job *job, const struct render_request *request,
@@ -41,9 +107,9 @@ struct recipe {
     whit_device_info device;
 };
 
-/* False when memory ran out, which was said. */
+/* False when memory ran out, which was said. `device`: NULL: that of the job. */
 bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
-                 const whit_stats *stats);
+                 const whit_device_info *device, const whit_stats *stats);
 /* Adds what a picture of costs shows; false as above. */
 bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
                      const struct view_figures *figures);

@@ -102,12 +102,16 @@ enum job_id {
     {                                                                                              \
         JOB_LOAD_PATH, "load-path", "auto|storage|texel", "how kernels read the trees (auto)"      \
     }
-#define JOB_OPTION_TREES                                                                           \
+#define JOB_OPTION_BUILD                                                                           \
     {JOB_BUILD, "build", "BUILDER[+opt]",                                                          \
      "how trees are built: binned[:K] with 2 to 256 bins,\n"                                       \
      "median, sweep, spatial[:ALPHA[,BUDGET]], sweep-naive;\n"                                     \
      "+opt improves them by reinsertion (binned)"},                                                \
-        {JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle"},                      \
+    {                                                                                              \
+        JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle"                         \
+    }
+#define JOB_OPTION_TREES                                                                           \
+    JOB_OPTION_BUILD,                                                                              \
         {JOB_TREE, "tree", "FILE", "trees that `whit bvh --save` wrote, instead of building"},     \
         JOB_OPTION_BUILDING, JOB_OPTION_WALKING,                                                   \
     {                                                                                              \

@@ -6,6 +6,9 @@
 static const struct cli_command *const commands[] = {
     &command_render, &command_scene, &command_trace,   &command_bvh,
     &command_bench,  &command_hard,  &command_compare, &command_devices,
+#ifdef WHIT_VIEWER
+    &command_view,
+#endif
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -9,16 +9,22 @@ add_executable(whit_program
   app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-target_include_directories(whit_program PRIVATE
+# What a program made of these sources links; tests make some more of them.
+add_library(whit_program_needs INTERFACE)
+target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
-target_link_libraries(whit_program PRIVATE whit_flags whit PkgConfig::JANSSON m)
 if(WHIT_VIEWER)
-  target_sources(whit_program PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/app/view_command.c)
-  target_compile_definitions(whit_program PRIVATE WHIT_VIEWER)
-  # In front of the library, whose modules it also calls.
-  target_link_libraries(whit_program PRIVATE $<TARGET_OBJECTS:whit_view> glfw PkgConfig::IMGUI
-    Vulkan::Vulkan)
+  target_sources(whit_program PRIVATE app/view_command.c)
+  target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
+    WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
+  # In front of the library, whose modules they call.
+  target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_view> glfw
+    PkgConfig::IMGUI)
+  add_dependencies(whit_program_needs whit_view)
 endif()
+target_link_libraries(whit_program_needs INTERFACE whit PkgConfig::JANSSON
+  $<$<BOOL:${WHIT_VIEWER}>:Vulkan::Vulkan> m)
+target_link_libraries(whit_program PRIVATE whit_flags whit_program_needs)
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES app/completion/whit.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)

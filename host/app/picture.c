@@ -1,4 +1,4 @@
-#include "app/picture.h"
+#include "app/commands.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,4 +60,75 @@ void picture_describe(const struct picture *picture, const struct job *job, json
     else
         document_count(object, "samples", picture->samples);
     document_count(object, "depth", picture->depth);
+}
+
+struct render_request picture_request_default(void)
+{
+    return (struct render_request){
+        .picture = {.width = 640, .height = 480, .samples = 1, .depth = PICTURE_DEPTH_DEFAULT},
+        .bailout = WHIT_BAILOUT_DEFAULT};
+}
+
+whit_renderer_params picture_request_params(const struct render_request *request,
+                                            const struct job *job)
+{
+    whit_renderer_params params = picture_params(&request->picture, job);
+    params.bailout = request->bailout > 0.0 ? request->bailout : -1.0;
+    params.no_shadows = request->no_shadows;
+    params.light_samples = request->light_samples;
+    params.schlick = request->schlick;
+    params.opaque_shadows = request->opaque_shadows;
+    params.effects = request->effects;
+    return params;
+}
+
+bool picture_option(struct cli_reader *reader, int id, struct render_request *request)
+{
+    static const char *const fresnels[] = {"exact", "schlick", NULL};
+    uint32_t choice;
+    switch (id) {
+    case PICTURE_SIZE:
+        cli_size(reader, &request->picture.width, &request->picture.height);
+        return true;
+    case PICTURE_CAMERA:
+        request->picture.camera = reader->value;
+        return true;
+    case PICTURE_AA:
+        picture_read_aa(reader, &request->picture);
+        return true;
+    case PICTURE_DEPTH:
+        cli_unsigned(reader, 0, PICTURE_DEPTH_MOST, &request->picture.depth);
+        return true;
+    case PICTURE_BAILOUT:
+        cli_number(reader, 0.0, 1.0, &request->bailout);
+        return true;
+    case PICTURE_NO_SHADOWS:
+        request->no_shadows = true;
+        return true;
+    case PICTURE_OPAQUE_SHADOWS:
+        request->opaque_shadows = true;
+        return true;
+    case PICTURE_LIGHT_SAMPLES:
+        picture_read_samples(reader, &request->light_samples);
+        return true;
+    case PICTURE_FRESNEL:
+        if (cli_choice(reader, fresnels, &choice))
+            request->schlick = choice == 1;
+        return true;
+    case PICTURE_EFFECTS:
+        if (effects_check(reader, reader->value))
+            request->effects = reader->value;
+        return true;
+    case PICTURE_VIEW:
+        view_read(reader, &request->view);
+        return true;
+    case PICTURE_VIEW_RAYS:
+        view_read_rays(reader, &request->view);
+        return true;
+    case PICTURE_VIEW_SCALE:
+        view_read_scale(reader, &request->view);
+        return true;
+    default:
+        return false;
+    }
 }

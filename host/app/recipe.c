@@ -188,12 +188,15 @@ static void add(struct recipe *recipe, const char *key, const char *value)
 }
 
 bool recipe_init(struct recipe *recipe, const struct job *job, const struct render_request *request,
-                 const whit_stats *stats)
+                 const whit_device_info *device, const whit_stats *stats)
 {
     *recipe = (struct recipe){0};
     whit_scene_info scene;
     whit_scene_get_info(job->scene, &scene);
-    whit_device_get_info(job->device, &recipe->device);
+    if (device)
+        recipe->device = *device;
+    else
+        whit_device_get_info(job->device, &recipe->device);
     snprintf(recipe->hash, sizeof recipe->hash, "%016" PRIx64, scene.hash);
     recipe->command = command_line(job, request);
     recipe->options = options_line(job, request);

@@ -6,64 +6,25 @@
 #include "app/commands.h"
 
 enum render_id {
-    ID_IDS = JOB_ID_END,
-    ID_SIZE,
-    ID_CAMERA,
-    ID_AA,
-    ID_DEPTH,
-    ID_BAILOUT,
-    ID_NO_SHADOWS,
-    ID_OPAQUE_SHADOWS,
-    ID_LIGHT_SAMPLES,
-    ID_FRESNEL,
-    ID_EFFECTS,
+    ID_IDS = PICTURE_ID_END,
     ID_TILE,
     ID_FRAMES,
-    ID_VIEW,
-    ID_VIEW_RAYS,
-    ID_VIEW_SCALE,
     ID_COUNTERS,
 };
 
-enum { DEPTH_MOST = 255, DEPTH_DEFAULT = 8, CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
+enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
 
 static const struct cli_option options[] = {
     {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)"},
     {ID_IDS, "ids", "FILE.exr", "also write what each pixel hits: instance, primitive"},
-    {ID_SIZE, "size", "WxH", "pixels (640x480)"},
-    {ID_CAMERA, "camera", "NAME|N|numbers",
-     "a camera of the scene, by name or number, or\n"
-     "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"
-     "vertical angle in degrees (the scene's first)"},
+    PICTURE_OPTION_PLACE,
     JOB_OPTION_TIME,
     {ID_FRAMES, "frames", "A-B",
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png"},
-    {ID_AA, "aa", "1|4|16|64|adaptive:X",
-     "samples a pixel; adaptive: 4, where neighbours differ by\n"
-     "more than X 16, and then 64 (1)"},
-    {ID_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},
-    {ID_BAILOUT, "bailout", "X",
-     "rays that can add less than X to a pixel are not traced;\n"
-     "0: all are (1/1024)"},
-    {ID_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},
-    {ID_OPAQUE_SHADOWS, "opaque-shadows", NULL, "glass and blended surfaces cast full shadows"},
-    {ID_LIGHT_SAMPLES, "light-samples", "1|4|16|64",
-     "points of an area light that are tested (16)"},
-    {ID_FRESNEL, "fresnel", "exact|schlick", "or Schlick's approximation in its place (exact)"},
-    {ID_EFFECTS, "effects", "auto|all|+NAME,-NAME",
-     "compile what the scene calls for, or everything: the\n"
-     "picture is the same; or more and less by name: less\n"
-     "changes it. Names and prices: `whit scene --effects`\n"
-     "(auto)"},
+    PICTURE_OPTION_SHADING,
     {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
-    {ID_VIEW, "view", "color|depth|visits|boxes|tris|stack",
-     "what traversals cost instead of colours: a heat map\n"
-     "(.png) or the numbers (.exr, .pfm)"},
-    {ID_VIEW_RAYS, "view-rays", "KIND",
-     "of primary, shadow, reflected, refracted or all rays\n"
-     "(primary)"},
-    {ID_VIEW_SCALE, "view-scale", "auto|X", "the number of the brightest colour (auto)"},
+    PICTURE_OPTION_VIEW,
     {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
@@ -75,9 +36,7 @@ static const struct cli_option options[] = {
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
 {
-    static const char *const fresnels[] = {"exact", "schlick", NULL};
-    uint32_t choice;
-    if (job_option(job, reader, id))
+    if (job_option(job, reader, id) || picture_option(reader, id, request))
         return;
     switch (id) {
     case 'o':
@@ -86,52 +45,11 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
     case ID_IDS:
         request->ids = reader->value;
         break;
-    case ID_SIZE:
-        cli_size(reader, &request->picture.width, &request->picture.height);
-        break;
-    case ID_CAMERA:
-        request->picture.camera = reader->value;
-        break;
-    case ID_AA:
-        picture_read_aa(reader, &request->picture);
-        break;
-    case ID_OPAQUE_SHADOWS:
-        request->opaque_shadows = true;
-        break;
-    case ID_LIGHT_SAMPLES:
-        picture_read_samples(reader, &request->light_samples);
-        break;
-    case ID_FRESNEL:
-        if (cli_choice(reader, fresnels, &choice))
-            request->schlick = choice == 1;
-        break;
-    case ID_DEPTH:
-        cli_unsigned(reader, 0, DEPTH_MOST, &request->picture.depth);
-        break;
-    case ID_BAILOUT:
-        cli_number(reader, 0.0, 1.0, &request->bailout);
-        break;
-    case ID_NO_SHADOWS:
-        request->no_shadows = true;
-        break;
-    case ID_EFFECTS:
-        if (effects_check(reader, reader->value))
-            request->effects = reader->value;
-        break;
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
         break;
     case ID_FRAMES:
         frames_read(reader, &request->frames);
-        break;
-    case ID_VIEW:
-        view_read(reader, &request->view);
-        break;
-    case ID_VIEW_RAYS:
-        view_read_rays(reader, &request->view);
-        break;
-    case ID_VIEW_SCALE:
-        view_read_scale(reader, &request->view);
         break;
     case ID_COUNTERS:
         request->counters = true;
@@ -249,13 +167,7 @@ static whit_result check_camera(const struct job *job, const char *wanted)
 static whit_result create_renderer(struct job *job, const struct render_request *request,
                                    struct frames_progress *progress, whit_renderer **renderer)
 {
-    whit_renderer_params params = picture_params(&request->picture, job);
-    params.bailout = request->bailout > 0.0 ? request->bailout : -1.0;
-    params.no_shadows = request->no_shadows;
-    params.light_samples = request->light_samples;
-    params.schlick = request->schlick;
-    params.opaque_shadows = request->opaque_shadows;
-    params.effects = request->effects;
+    whit_renderer_params params = picture_request_params(request, job);
     params.tile_size = request->tile_size;
     params.progress = frames_progress_update;
     params.progress_user = progress;
@@ -298,7 +210,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
                         whit_renderer *renderer, const whit_stats *stats)
 {
     struct recipe recipe;
-    if (!recipe_init(&recipe, job, request, stats))
+    if (!recipe_init(&recipe, job, request, NULL, stats))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     if (request->ids)
@@ -402,9 +314,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct job job;
-    struct render_request request = {
-        .picture = {.width = 640, .height = 480, .samples = 1, .depth = DEPTH_DEFAULT},
-        .bailout = WHIT_BAILOUT_DEFAULT};
+    struct render_request request = picture_request_default();
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

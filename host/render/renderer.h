@@ -59,7 +59,7 @@ struct brute_state {
     struct buffer *found, *passed; /* of a chunk */
     struct brute_range *ranges;
     uint32_t range_count;
-    uint64_t bytes; /* of these, also counted in scene_buffers.bytes */
+    uint64_t bytes;              /* of these, also counted in scene_buffers.bytes */
     struct pass closest, shadow; /* renderer->whitted: the phase that shades */
     bool time_checked;
 };
@@ -112,9 +112,6 @@ struct renderer {
 enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
-
-/* params.c: fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
-WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);

@@ -206,8 +206,7 @@ static void reap_job(struct engine *engine)
 static bool is_done(const struct engine_lane *lane)
 {
     bool best = lane->quality == ENGINE_WHOLE || lane->moving;
-    return !lane->wanted || lane->failed ||
-           (lane->drawn == lane->asked && best && !lane->stale);
+    return !lane->wanted || lane->failed || (lane->drawn == lane->asked && best && !lane->stale);
 }
 
 static void set_place(struct view_settings *settings, const struct view_settings *place)
@@ -477,7 +476,9 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool still = is_done(&engine->lanes[0]) && is_done(&engine->lanes[1]) && !engine->busy;
+    bool still = !engine->busy;
+    for (int i = 0; i < ENGINE_LANES; ++i)
+        still = still && is_done(&engine->lanes[i]) && engine->lanes[i].frame.number == 0;
     pthread_mutex_unlock(&engine->lock);
     return still;
 }

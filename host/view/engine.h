@@ -8,8 +8,8 @@
 struct engine;
 
 struct engine_params {
-    double budget_ms;    /* of a picture while something moves; 0: 1000 / 30 */
-    uint32_t sessions;   /* kept at a time, 2..8; 0: 4 */
+    double budget_ms;         /* of a picture while something moves; 0: 1000 / 30 */
+    uint32_t sessions;        /* kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
     void *wake_user;
 };
@@ -54,14 +54,14 @@ struct engine_change {
     uint64_t pixels;    /* of both pictures */
     uint64_t other_ids; /* pixels that hit something else */
     uint64_t other_colors;
-    double largest, mean; /* difference of a channel, linear */
+    double largest, mean;       /* difference of a channel, linear */
     double before_ms, after_ms; /* of drawing, on the device where it measures */
 };
 
 struct engine_status {
-    enum session_stage stage; /* of the session in the making; SESSION_DONE: none is */
-    double stage_ms;          /* since it was asked for */
-    bool drawing;             /* a better picture than the last one is on its way */
+    enum session_stage stage;   /* of the session in the making; SESSION_DONE: none is */
+    double stage_ms;            /* since it was asked for */
+    bool drawing;               /* a better picture than the last one is on its way */
     char error[ENGINE_MESSAGE]; /* the last failure, until something succeeds; "": none */
     bool device_lost;
     struct engine_change change; /* the last one */
@@ -72,8 +72,8 @@ void engine_get_status(struct engine *engine, struct engine_status *status);
    than frame->number. `other`: that of engine_ask_other. */
 bool engine_take(struct engine *engine, bool other, struct engine_frame *frame);
 
-/* True when nothing is left to do: the whole picture of what was last asked for is there, or an
-   error. */
+/* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
+   is an error. */
 bool engine_is_still(struct engine *engine);
 
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */

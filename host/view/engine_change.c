@@ -56,8 +56,13 @@ static void describe(const struct engine_kept *a, const struct engine_frame *b, 
     if (a->settings.trees.flatten != b->settings.trees.flatten)
         add(&text, "instance tree %s ", b->settings.trees.flatten ? "off" : "on");
     if (p->depth != q->depth || p->no_bounces != q->no_bounces)
-        add(&text, "depth %u -> %u ", p->no_bounces ? 0 : p->depth ? p->depth : 8,
-            q->no_bounces ? 0 : q->depth ? q->depth : 8);
+        add(&text, "depth %u -> %u ",
+            p->no_bounces ? 0
+            : p->depth    ? p->depth
+                          : 8,
+            q->no_bounces ? 0
+            : q->depth    ? q->depth
+                          : 8);
     if (p->samples != q->samples || p->adaptive != q->adaptive) {
         aa_name(p, from, sizeof from);
         aa_name(q, to, sizeof to);

@@ -19,7 +19,8 @@ static uint32_t samples_of(const struct view_settings *settings)
 /* The largest picture of one sample within the budget. */
 static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
 {
-    double budget_ms = engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
+    double budget_ms =
+        engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
     const whit_renderer_params *p = &lane->settings.picture;
     double full_ms = (double)p->width * p->height * lane->ms_per_sample;
     if (lane->ms_per_sample <= 0.0)
@@ -69,13 +70,12 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     const struct view_settings *settings = &task->settings;
     whit_image *heat = NULL;
     whit_view view = (whit_view)(settings->paint - VIEW_PAINT_DEPTH);
-    whit_result result = whit_renderer_cost_image(task->session->renderer, view,
-                                                  (whit_ray_kind)settings->paint_rays,
-                                                  &frame->color);
+    whit_result result = whit_renderer_cost_image(
+        task->session->renderer, view, (whit_ray_kind)settings->paint_rays, &frame->color);
     if (result != WHIT_OK)
         return result;
-    frame->scale = settings->paint_scale > 0.0 ? settings->paint_scale
-                                               : whit_image_heat_scale(frame->color);
+    frame->scale =
+        settings->paint_scale > 0.0 ? settings->paint_scale : whit_image_heat_scale(frame->color);
     const whit_heat_params params = {.scale = frame->scale};
     result = whit_image_heat(frame->color, &params, &heat);
     if (result == WHIT_OK)
@@ -129,7 +129,9 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         .width = params.width,
         .height = params.height,
         .divisor = task->divisor,
-        .samples = params.adaptive > 0.0 ? 0 : params.samples ? params.samples : 1,
+        .samples = params.adaptive > 0.0 ? 0
+                   : params.samples      ? params.samples
+                                         : 1,
         .whole = task->quality == ENGINE_WHOLE,
         .accel = session->accel_info,
         .device = session->device_info,

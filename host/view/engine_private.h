@@ -22,7 +22,8 @@ struct engine_job {
     bool done; /* under the lock */
 };
 
-/* How good a picture is. Each is tried in turn, unless the next one takes no longer than allowed. */
+/* How good a picture is. Each is tried in turn, unless the next one takes no longer than allowed.
+ */
 enum engine_quality {
     ENGINE_QUICK, /* within the budget */
     ENGINE_FULL,  /* all pixels, one sample */
@@ -51,7 +52,7 @@ struct engine_kept {
     whit_stats stats;
     whit_accel_info accel;
     uint32_t width, height;
-    float *color; /* RGBA; NULL where costs were painted */
+    float *color;  /* RGBA; NULL where costs were painted */
     uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
 };
 
@@ -62,13 +63,13 @@ struct engine {
     struct thread *thread;
     bool quit;
     struct engine_lane lanes[ENGINE_LANES];
-    struct engine_job *job; /* NULL: none */
+    struct engine_job *job;                         /* NULL: none */
     struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing, or what
                                 is done soon */
     bool busy;               /* something is being drawn */
     uint64_t uses;
-    uint32_t lost;           /* devices lost one after the other */
+    uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
     bool device_lost;
     struct engine_change change;

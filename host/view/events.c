@@ -10,14 +10,37 @@ static const struct key_name {
     int key;
     const char *name;
 } key_names[] = {
-    {KEY_SPACE, "Space"},   {KEY_ESCAPE, "Escape"}, {KEY_ENTER, "Enter"}, {KEY_TAB, "Tab"},
-    {KEY_BACKSPACE, "Backspace"}, {KEY_DELETE, "Delete"}, {KEY_LEFT, "Left"},
-    {KEY_RIGHT, "Right"},   {KEY_UP, "Up"},         {KEY_DOWN, "Down"},   {KEY_HOME, "Home"},
-    {KEY_END, "End"},       {',', "Comma"},         {'.', "Period"},      {'-', "Minus"},
-    {'=', "Equal"},         {'/', "Slash"},         {KEY_SHIFT, "Shift"}, {KEY_CTRL, "Ctrl"},
-    {KEY_ALT, "Alt"},       {KEY_F1, "F1"},         {KEY_F1 + 1, "F2"},   {KEY_F1 + 2, "F3"},
-    {KEY_F1 + 3, "F4"},     {KEY_F1 + 4, "F5"},     {KEY_F1 + 5, "F6"},   {KEY_F1 + 6, "F7"},
-    {KEY_F1 + 7, "F8"},     {KEY_F1 + 8, "F9"},     {KEY_F1 + 9, "F10"},  {KEY_F1 + 10, "F11"},
+    {KEY_SPACE, "Space"},
+    {KEY_ESCAPE, "Escape"},
+    {KEY_ENTER, "Enter"},
+    {KEY_TAB, "Tab"},
+    {KEY_BACKSPACE, "Backspace"},
+    {KEY_DELETE, "Delete"},
+    {KEY_LEFT, "Left"},
+    {KEY_RIGHT, "Right"},
+    {KEY_UP, "Up"},
+    {KEY_DOWN, "Down"},
+    {KEY_HOME, "Home"},
+    {KEY_END, "End"},
+    {',', "Comma"},
+    {'.', "Period"},
+    {'-', "Minus"},
+    {'=', "Equal"},
+    {'/', "Slash"},
+    {KEY_SHIFT, "Shift"},
+    {KEY_CTRL, "Ctrl"},
+    {KEY_ALT, "Alt"},
+    {KEY_F1, "F1"},
+    {KEY_F1 + 1, "F2"},
+    {KEY_F1 + 2, "F3"},
+    {KEY_F1 + 3, "F4"},
+    {KEY_F1 + 4, "F5"},
+    {KEY_F1 + 5, "F6"},
+    {KEY_F1 + 6, "F7"},
+    {KEY_F1 + 7, "F8"},
+    {KEY_F1 + 8, "F9"},
+    {KEY_F1 + 9, "F10"},
+    {KEY_F1 + 10, "F11"},
     {KEY_F12, "F12"},
 };
 enum { KEY_NAMES = sizeof key_names / sizeof *key_names, REPLAY_BYTES_MOST = 1 << 28 };
@@ -122,8 +145,7 @@ static bool parse_path(const char *rest, enum view_event_kind kind, struct view_
 static bool parse_press(const char *rest, struct view_event events[EVENTS_A_LINE], int *count)
 {
     char name[32];
-    if (sscanf(rest, "%31s", name) != 1 ||
-        !chord_from_text(name, &events[0].key, &events[0].mods))
+    if (sscanf(rest, "%31s", name) != 1 || !chord_from_text(name, &events[0].key, &events[0].mods))
         return false;
     events[0].kind = EVENT_KEY;
     events[1] = events[0];
@@ -148,8 +170,11 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     static const struct {
         const char *verb;
         enum view_event_kind kind;
-    } bare[] = {{"still", EVENT_STILL},       {"state", EVENT_STATE}, {"minimise", EVENT_MINIMISE},
-                {"restore", EVENT_RESTORE}, {"close", EVENT_CLOSE}};
+    } bare[] = {{"still", EVENT_STILL},
+                {"state", EVENT_STATE},
+                {"minimise", EVENT_MINIMISE},
+                {"restore", EVENT_RESTORE},
+                {"close", EVENT_CLOSE}};
     struct view_event *event = &events[0];
     *count = 1;
     for (size_t i = 0; i < sizeof bare / sizeof *bare; ++i) {

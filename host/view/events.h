@@ -64,13 +64,13 @@ enum view_key {
 
 struct view_event {
     enum view_event_kind kind;
-    int key;           /* enum view_key, or a character */
-    bool down;         /* of keys and buttons */
-    bool repeat;       /* a key that is held */
-    unsigned mods;     /* EVENT_SHIFT and others, or-ed */
-    int button;        /* 0 left, 1 right, 2 middle */
-    uint32_t code;     /* EVENT_CHAR: Unicode */
-    double x, y;       /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
+    int key;       /* enum view_key, or a character */
+    bool down;     /* of keys and buttons */
+    bool repeat;   /* a key that is held */
+    unsigned mods; /* EVENT_SHIFT and others, or-ed */
+    int button;    /* 0 left, 1 right, 2 middle */
+    uint32_t code; /* EVENT_CHAR: Unicode */
+    double x, y;   /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
     uint32_t width, height;
     char path[EVENT_PATH]; /* of files */
 };

@@ -44,8 +44,7 @@ static void draw_figures(const struct view *view)
     struct swapchain_info chain;
     swapchain_get_info(view->swapchain, &chain);
     double ms = render_ms(s);
-    ui_text("%6.1f fps   render %7.2f ms   present %6.2f ms", view->rate.fps, ms,
-            chain.present_ms);
+    ui_text("%6.1f fps   render %7.2f ms   present %6.2f ms", view->rate.fps, ms, chain.present_ms);
     ui_text("%6.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
     if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
         const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];

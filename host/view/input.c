@@ -16,11 +16,11 @@ static enum ui_key ui_key_of(int key)
     static const struct {
         int key;
         enum ui_key ui;
-    } all[] = {{KEY_TAB, UI_KEY_TAB},       {KEY_LEFT, UI_KEY_LEFT},
-               {KEY_RIGHT, UI_KEY_RIGHT},   {KEY_UP, UI_KEY_UP},
-               {KEY_DOWN, UI_KEY_DOWN},     {KEY_HOME, UI_KEY_HOME},
-               {KEY_END, UI_KEY_END},       {KEY_DELETE, UI_KEY_DELETE},
-               {KEY_ENTER, UI_KEY_ENTER},   {KEY_BACKSPACE, UI_KEY_BACKSPACE},
+    } all[] = {{KEY_TAB, UI_KEY_TAB},      {KEY_LEFT, UI_KEY_LEFT},
+               {KEY_RIGHT, UI_KEY_RIGHT},  {KEY_UP, UI_KEY_UP},
+               {KEY_DOWN, UI_KEY_DOWN},    {KEY_HOME, UI_KEY_HOME},
+               {KEY_END, UI_KEY_END},      {KEY_DELETE, UI_KEY_DELETE},
+               {KEY_ENTER, UI_KEY_ENTER},  {KEY_BACKSPACE, UI_KEY_BACKSPACE},
                {KEY_ESCAPE, UI_KEY_ESCAPE}};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         if (all[i].key == key)
@@ -189,8 +189,8 @@ static bool play(struct view *view, double now_ms)
     *time_s += passed_s * clock->speed;
     if (*time_s > end_s || *time_s < 0.0) {
         clock->playing = !clock->once;
-        *time_s = clock->once ? (*time_s < 0.0 ? 0.0 : end_s)
-                              : *time_s - end_s * floor(*time_s / end_s);
+        *time_s =
+            clock->once ? (*time_s < 0.0 ? 0.0 : end_s) : *time_s - end_s * floor(*time_s / end_s);
     }
     view->dirty = true;
     return true;

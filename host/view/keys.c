@@ -81,9 +81,10 @@ static void next_builder(struct view *view)
 static void say_builder(const struct view *view, char *text, size_t bytes)
 {
     bool none = view->settings.trees.build == WHIT_BUILD_NONE;
-    snprintf(text, bytes, "%s", none                     ? "no trees"
-                                : view->settings.build[0] ? view->settings.build
-                                                          : "binned");
+    snprintf(text, bytes, "%s",
+             none                      ? "no trees"
+             : view->settings.build[0] ? view->settings.build
+                                       : "binned");
 }
 
 static void switch_trees(struct view *view)
@@ -185,8 +186,8 @@ static void say_paint(const struct view *view, char *text, size_t bytes)
 
 static void scale_by(struct view *view, double factor)
 {
-    double scale = view->settings.paint_scale > 0.0 ? view->settings.paint_scale
-                                                    : view->frame.scale;
+    double scale =
+        view->settings.paint_scale > 0.0 ? view->settings.paint_scale : view->frame.scale;
     if (view->settings.paint != VIEW_PAINT_COLOR && scale > 0.0)
         view->settings.paint_scale = fmax(1.0, scale * factor);
 }

@@ -115,7 +115,8 @@ whit_result session_open(struct session *session, const struct view_settings *se
                          struct scene_ref *scene, const whit_log *log,
                          struct session_progress *progress)
 {
-    const whit_device_params device = {.selector = settings->device[0] ? session->settings.device : NULL,
+    const whit_device_params device = {.selector =
+                                           settings->device[0] ? session->settings.device : NULL,
                                        .validation = settings->validation};
     session->settings = *settings;
     session->log = *log;

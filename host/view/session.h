@@ -34,8 +34,8 @@ struct session {
     whit_device *device;
     whit_renderer *renderer;
     volatile bool cancel; /* stops what it is at */
-    whit_log log; /* of all that the session is made of */
-    void *owner;  /* of who made it, as is `error` */
+    whit_log log;         /* of all that the session is made of */
+    void *owner;          /* of who made it, as is `error` */
     char error[512];
     bool ready;
     whit_accel_info accel_info;
@@ -50,9 +50,9 @@ struct session_progress {
     _Atomic(int) stage; /* enum session_stage */
 };
 
-/* Loads, builds, opens and compiles. `scene`: that of the settings, where it is loaded already; else
-   NULL. Reasons are logged. `session` is zeroed but for `cancel` and what is its owner's; session_close ends it, also after a
-   failure. */
+/* Loads, builds, opens and compiles. `scene`: that of the settings, where it is loaded already;
+   else NULL. Reasons are logged. `session` is zeroed but for `cancel` and what is its owner's;
+   session_close ends it, also after a failure. */
 WHIT_CHECK whit_result session_open(struct session *session, const struct view_settings *settings,
                                     struct scene_ref *scene, const whit_log *log,
                                     struct session_progress *progress);

@@ -33,9 +33,9 @@ struct view_settings {
     char camera[VIEW_TEXT];  /* as --camera takes it; "": the scene's first */
     char effects[VIEW_TEXT]; /* as --effects takes it; "": auto */
 
-    uint32_t paint;     /* enum view_paint */
+    uint32_t paint;      /* enum view_paint */
     uint32_t paint_rays; /* whit_ray_kind, or WHIT_RAY_KINDS: all */
-    double paint_scale; /* 0: by the picture */
+    double paint_scale;  /* 0: by the picture */
 };
 
 /* Whether a renderer that was made for `a` draws `b` by whit_renderer_set_view alone. */

@@ -121,7 +121,10 @@ void ui_destroy(struct ui *ui)
     delete ui;
 }
 
-void ui_mouse(struct ui *, float x, float y) { ImGui::GetIO().MousePos = ImVec2(x, y); }
+void ui_mouse(struct ui *, float x, float y)
+{
+    ImGui::GetIO().MousePos = ImVec2(x, y);
+}
 
 // A press and its release between two frames are a click all the same.
 void ui_button_event(struct ui *ui, int button, bool down)
@@ -148,8 +151,14 @@ void ui_character(struct ui *, uint32_t code_point)
     ImGui::GetIO().AddInputCharacter(code_point);
 }
 
-bool ui_has_mouse(const struct ui *) { return ImGui::GetIO().WantCaptureMouse; }
-bool ui_has_keys(const struct ui *) { return ImGui::GetIO().WantTextInput; }
+bool ui_has_mouse(const struct ui *)
+{
+    return ImGui::GetIO().WantCaptureMouse;
+}
+bool ui_has_keys(const struct ui *)
+{
+    return ImGui::GetIO().WantTextInput;
+}
 
 void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
 {
@@ -164,7 +173,10 @@ void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     ImGui::NewFrame();
 }
 
-void ui_end(struct ui *) { ImGui::Render(); }
+void ui_end(struct ui *)
+{
+    ImGui::Render();
+}
 
 void ui_draw(void *, void *commands)
 {
@@ -175,9 +187,9 @@ static void place(float x, float y, ImGuiCond when)
 {
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float inside = 10.0f * line_scale;
-    ImGui::SetNextWindowPos(ImVec2(inside + x * (window.x - 2.0f * inside),
-                                   inside + y * (window.y - 2.0f * inside)),
-                            when, ImVec2(x, y));
+    ImGui::SetNextWindowPos(
+        ImVec2(inside + x * (window.x - 2.0f * inside), inside + y * (window.y - 2.0f * inside)),
+        when, ImVec2(x, y));
 }
 
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
@@ -185,7 +197,8 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
     int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
     if (!(kind & UI_PANEL_TITLE))
-        flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
+        flags |=
+            ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
     place(x, y, kind & UI_PANEL_TITLE ? ImGuiCond_Appearing : ImGuiCond_Always);
     if (kind & UI_PANEL_WIDE)
         ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
@@ -204,7 +217,10 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
     return ImGui::Begin(title, open, flags);
 }
 
-void ui_panel_end(void) { ImGui::End(); }
+void ui_panel_end(void)
+{
+    ImGui::End();
+}
 
 void ui_text(const char *format, ...)
 {
@@ -234,11 +250,26 @@ void ui_text_color(uint32_t color, const char *format, ...)
     va_end(args);
 }
 
-void ui_separator(void) { ImGui::Separator(); }
-void ui_same_line(float x) { ImGui::SameLine(x * ImGui::GetFontSize() * 0.54f); }
-bool ui_button(const char *label) { return ImGui::Button(label); }
-bool ui_selectable(const char *label, bool selected) { return ImGui::Selectable(label, selected); }
-bool ui_checkbox(const char *label, bool *value) { return ImGui::Checkbox(label, value); }
+void ui_separator(void)
+{
+    ImGui::Separator();
+}
+void ui_same_line(float x)
+{
+    ImGui::SameLine(x * ImGui::GetFontSize() * 0.54f);
+}
+bool ui_button(const char *label)
+{
+    return ImGui::Button(label);
+}
+bool ui_selectable(const char *label, bool selected)
+{
+    return ImGui::Selectable(label, selected);
+}
+bool ui_checkbox(const char *label, bool *value)
+{
+    return ImGui::Checkbox(label, value);
+}
 
 bool ui_choice(const char *label, const char *const *names, int count, int *value)
 {
@@ -265,7 +296,10 @@ bool ui_tree_begin(const char *label, bool open)
     return ImGui::TreeNode(label);
 }
 
-void ui_tree_end(void) { ImGui::TreePop(); }
+void ui_tree_end(void)
+{
+    ImGui::TreePop();
+}
 
 void ui_progress(float part, const char *text)
 {
@@ -287,8 +321,14 @@ void ui_table_header(const char *const *names, int count)
     ImGui::TableHeadersRow();
 }
 
-void ui_table_next(void) { ImGui::TableNextColumn(); }
-void ui_table_end(void) { ImGui::EndTable(); }
+void ui_table_next(void)
+{
+    ImGui::TableNextColumn();
+}
+void ui_table_end(void)
+{
+    ImGui::EndTable();
+}
 
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width)
 {

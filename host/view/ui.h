@@ -52,9 +52,9 @@ void ui_draw(void *ui, void *commands);
 /* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
    inside. False when it is folded: end it all the same. */
 enum ui_panel {
-    UI_PANEL_PLAIN = 0,  /* no title, cannot be moved, lets the mouse through */
-    UI_PANEL_TITLE = 1,  /* with a title, can be moved */
-    UI_PANEL_WIDE = 2,   /* with room for long lines */
+    UI_PANEL_PLAIN = 0, /* no title, cannot be moved, lets the mouse through */
+    UI_PANEL_TITLE = 1, /* with a title, can be moved */
+    UI_PANEL_WIDE = 2,  /* with room for long lines */
 };
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
 /* The same with a cross that sets *open to false. */

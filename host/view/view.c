@@ -221,8 +221,7 @@ static whit_result keep_shot(struct view *view)
     swapchain_get_info(view->swapchain, &info);
     size_t bytes = (size_t)info.width * info.height * 4;
     uint8_t *rgba = malloc(bytes);
-    whit_result result =
-        rgba ? swapchain_read(view->swapchain, rgba, bytes) : WHIT_ERROR_MEMORY;
+    whit_result result = rgba ? swapchain_read(view->swapchain, rgba, bytes) : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         result = whit_image_create_display(info.width, info.height, rgba, &image);
     const whit_log log = {view->log.fn, view->log.user, view->log.level};

@@ -22,7 +22,8 @@ struct view_params {
     const char *record; /* where events go, or NULL */
     const char *replay; /* where they come from, or NULL */
     const char *hint;   /* shown at first, or NULL */
-    const char *const *scenes; /* for the arrows, borrowed; settings.scene need not be one of them */
+    const char *const
+        *scenes; /* for the arrows, borrowed; settings.scene need not be one of them */
     uint32_t scene_count;
     const volatile bool *cancel;
     /* Saves a picture; the reason of a failure goes to the log. */
@@ -30,8 +31,8 @@ struct view_params {
     void *save_user;
 };
 
-/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: what the
-   validation layers had to say of the window's device. */
+/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: what
+   the validation layers had to say of the window's device. */
 WHIT_CHECK whit_result view_run(const struct view_params *params, const whit_log *log,
                                 uint32_t *validation);
 

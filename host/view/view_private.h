@@ -41,12 +41,12 @@ struct view {
     struct ui *ui;
     struct engine *engine;
 
-    struct view_settings settings;  /* wanted */
-    struct view_settings fallback;  /* of the last picture: where a switch fails, it goes back */
-    struct view_camera camera;      /* of settings.camera, as numbers */
-    bool camera_known;              /* else the scene's first camera, not read as yet */
-    int file_camera;                /* of the scene's, or -1 */
-    uint32_t scene_index;           /* in params->scenes */
+    struct view_settings settings; /* wanted */
+    struct view_settings fallback; /* of the last picture: where a switch fails, it goes back */
+    struct view_camera camera;     /* of settings.camera, as numbers */
+    bool camera_known;             /* else the scene's first camera, not read as yet */
+    int file_camera;               /* of the scene's, or -1 */
+    uint32_t scene_index;          /* in params->scenes */
 
     struct engine_frame frame;
     struct engine_status status;

@@ -57,16 +57,26 @@ static int key_from_glfw(int key)
     static const struct {
         int glfw, key;
     } all[] = {
-        {GLFW_KEY_ESCAPE, KEY_ESCAPE},       {GLFW_KEY_ENTER, KEY_ENTER},
-        {GLFW_KEY_KP_ENTER, KEY_ENTER},      {GLFW_KEY_TAB, KEY_TAB},
-        {GLFW_KEY_BACKSPACE, KEY_BACKSPACE}, {GLFW_KEY_DELETE, KEY_DELETE},
-        {GLFW_KEY_LEFT, KEY_LEFT},           {GLFW_KEY_RIGHT, KEY_RIGHT},
-        {GLFW_KEY_UP, KEY_UP},               {GLFW_KEY_DOWN, KEY_DOWN},
-        {GLFW_KEY_HOME, KEY_HOME},           {GLFW_KEY_END, KEY_END},
-        {GLFW_KEY_KP_SUBTRACT, '-'},         {GLFW_KEY_KP_ADD, '='},
-        {GLFW_KEY_LEFT_SHIFT, KEY_SHIFT},    {GLFW_KEY_RIGHT_SHIFT, KEY_SHIFT},
-        {GLFW_KEY_LEFT_CONTROL, KEY_CTRL},   {GLFW_KEY_RIGHT_CONTROL, KEY_CTRL},
-        {GLFW_KEY_LEFT_ALT, KEY_ALT},        {GLFW_KEY_RIGHT_ALT, KEY_ALT},
+        {GLFW_KEY_ESCAPE, KEY_ESCAPE},
+        {GLFW_KEY_ENTER, KEY_ENTER},
+        {GLFW_KEY_KP_ENTER, KEY_ENTER},
+        {GLFW_KEY_TAB, KEY_TAB},
+        {GLFW_KEY_BACKSPACE, KEY_BACKSPACE},
+        {GLFW_KEY_DELETE, KEY_DELETE},
+        {GLFW_KEY_LEFT, KEY_LEFT},
+        {GLFW_KEY_RIGHT, KEY_RIGHT},
+        {GLFW_KEY_UP, KEY_UP},
+        {GLFW_KEY_DOWN, KEY_DOWN},
+        {GLFW_KEY_HOME, KEY_HOME},
+        {GLFW_KEY_END, KEY_END},
+        {GLFW_KEY_KP_SUBTRACT, '-'},
+        {GLFW_KEY_KP_ADD, '='},
+        {GLFW_KEY_LEFT_SHIFT, KEY_SHIFT},
+        {GLFW_KEY_RIGHT_SHIFT, KEY_SHIFT},
+        {GLFW_KEY_LEFT_CONTROL, KEY_CTRL},
+        {GLFW_KEY_RIGHT_CONTROL, KEY_CTRL},
+        {GLFW_KEY_LEFT_ALT, KEY_ALT},
+        {GLFW_KEY_RIGHT_ALT, KEY_ALT},
     };
     if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12)
         return KEY_F1 + key - GLFW_KEY_F1;
@@ -79,8 +89,8 @@ static int key_from_glfw(int key)
 
 static unsigned mods_from_glfw(int mods)
 {
-    return (mods & GLFW_MOD_SHIFT ? EVENT_SHIFT : 0u) | (mods & GLFW_MOD_CONTROL ? EVENT_CTRL : 0u) |
-           (mods & GLFW_MOD_ALT ? EVENT_ALT : 0u);
+    return (mods & GLFW_MOD_SHIFT ? EVENT_SHIFT : 0u) |
+           (mods & GLFW_MOD_CONTROL ? EVENT_CTRL : 0u) | (mods & GLFW_MOD_ALT ? EVENT_ALT : 0u);
 }
 
 /* Letters and signs by what is printed on them, on whatever layout of keys. */
@@ -132,8 +142,7 @@ static void on_move(GLFWwindow *glfw, double x, double y)
 
 static void on_wheel(GLFWwindow *glfw, double x, double y)
 {
-    push(glfwGetWindowUserPointer(glfw),
-         &(struct view_event){.kind = EVENT_WHEEL, .x = x, .y = y});
+    push(glfwGetWindowUserPointer(glfw), &(struct view_event){.kind = EVENT_WHEEL, .x = x, .y = y});
 }
 
 static void on_pixels(GLFWwindow *glfw, int width, int height)
@@ -191,7 +200,8 @@ static whit_result make_window(struct window *window, const struct window_params
         return fail(window, "no display to open a window on");
     if (!glfwVulkanSupported())
         return fail(window, "no Vulkan for windows here");
-    window->surface.extensions = glfwGetRequiredInstanceExtensions(&window->surface.extension_count);
+    window->surface.extensions =
+        glfwGetRequiredInstanceExtensions(&window->surface.extension_count);
     if (!window->surface.extensions)
         return fail(window, "no Vulkan for windows here");
     window->surface.create = make_surface;

@@ -1,0 +1,317 @@
+/* whit view: the options of `whit render`, on a window. */
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "view/view.h"
+
+enum view_id {
+    ID_FULLSCREEN = PICTURE_ID_END,
+    ID_NO_VSYNC,
+    ID_BLIT,
+    ID_FPS_GOAL,
+    ID_FRAMES_SHOWN,
+    ID_RECORD,
+    ID_REPLAY,
+};
+
+static const struct cli_option options[] = {
+    PICTURE_OPTION_PLACE,
+    {ID_FULLSCREEN, "fullscreen", NULL, "the whole screen"},
+    {ID_NO_VSYNC, "no-vsync", NULL, "show pictures as they come, not as the screen does"},
+    {ID_BLIT, "blit", NULL, "copy pictures to the window, in place of writing them there"},
+    {ID_FPS_GOAL, "fps-goal", "F",
+     "pictures a second to hold while something moves, by\n"
+     "smaller ones (30)"},
+    {ID_FRAMES_SHOWN, "frames", "N", "end after N pictures were shown"},
+    {ID_RECORD, "record", "FILE", "write down what the user does"},
+    {ID_REPLAY, "replay", "FILE", "do what FILE says, and end"},
+    JOB_OPTION_TIME,
+    PICTURE_OPTION_SHADING,
+    PICTURE_OPTION_VIEW,
+    JOB_OPTION_DEVICE,
+    JOB_OPTION_BUILD,
+    JOB_OPTION_BUILDING,
+    JOB_OPTION_WALKING,
+    JOB_OPTION_TEXTURES,
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
+    {'q', "quiet", NULL, "no notes, only errors"},
+    {0, NULL, NULL, NULL},
+};
+
+static const char *const start_hint = "Drag turns the camera, the wheel comes nearer, H lists all "
+                                      "keys. Drop a scene here to open it.";
+
+static void read_option(struct cli_reader *reader, int id, struct job *job,
+                        struct render_request *request, struct view_params *view)
+{
+    if (job_option(job, reader, id) || picture_option(reader, id, request))
+        return;
+    switch (id) {
+    case ID_FULLSCREEN:
+        view->fullscreen = true;
+        break;
+    case ID_NO_VSYNC:
+        view->no_vsync = true;
+        break;
+    case ID_BLIT:
+        view->blit = true;
+        break;
+    case ID_FPS_GOAL:
+        cli_number(reader, 0.1, 1000.0, &view->budget_fps);
+        break;
+    case ID_FRAMES_SHOWN:
+        cli_unsigned(reader, 1, 1000000000, &view->frames);
+        break;
+    case ID_RECORD:
+        view->record = reader->value;
+        break;
+    case ID_REPLAY:
+        view->replay = reader->value;
+        break;
+    default:
+        break;
+    }
+}
+
+/* ---- Settings ---- */
+
+static void copy_text(char *to, size_t bytes, const char *text)
+{
+    snprintf(to, bytes, "%s", text ? text : "");
+}
+
+/* What options say, in the viewer's words. */
+static void fill_settings(const struct job *job, const struct render_request *request,
+                          struct view_settings *settings)
+{
+    char build[JOB_BUILD_NAME];
+    job_build_name(&job->build, build);
+    *settings = (struct view_settings){
+        .texture_limit = job->texture_limit,
+        .validation = job->validation,
+        .trees = job_accel_params(job),
+        .picture = picture_request_params(request, job),
+        .paint = request->view.given ? VIEW_PAINT_DEPTH + request->view.view : VIEW_PAINT_COLOR,
+        .paint_rays = request->view.rays,
+        .paint_scale = request->view.scale,
+    };
+    copy_text(settings->scene, sizeof settings->scene, job->scene_path);
+    copy_text(settings->device, sizeof settings->device, job->device_name);
+    copy_text(settings->camera, sizeof settings->camera, request->picture.camera);
+    copy_text(settings->effects, sizeof settings->effects, request->effects);
+    if (job->has_build)
+        copy_text(settings->build, sizeof settings->build, build);
+    char *opt = strstr(settings->build, "+opt"); /* stands beside */
+    if (opt)
+        *opt = '\0';
+    settings->trees.cancel = NULL;
+    settings->trees.tree_path = NULL;
+    settings->trees.time_limit_s = 0.0;
+    whit_renderer_params *p = &settings->picture;
+    p->camera = NULL;
+    p->effects = NULL;
+    p->load_path = NULL;
+    p->cancel = NULL;
+    p->time_limit_s = 0.0;
+    p->depth = p->depth == PICTURE_DEPTH_DEFAULT ? 0 : p->depth;
+    p->bailout = request->bailout == WHIT_BAILOUT_DEFAULT ? 0.0 : p->bailout;
+    p->samples = p->samples == 1 ? 0 : p->samples;
+}
+
+/* And back, for the recipe of a picture. */
+static void fill_request(const struct view_settings *settings, struct job *job,
+                         struct render_request *request, const char *path)
+{
+    const whit_renderer_params *p = &settings->picture;
+    job->scene_path = settings->scene;
+    job->time_s = p->time_s;
+    job->texture_limit = settings->texture_limit;
+    job->flatten = settings->trees.flatten;
+    job->numerics = p->numerics;
+    request->output = path;
+    request->picture = (struct picture){
+        .width = p->width,
+        .height = p->height,
+        .camera = settings->camera[0] ? settings->camera : NULL,
+        .samples = p->samples ? p->samples : 1,
+        .adaptive = p->adaptive,
+        .depth = p->no_bounces ? 0
+                 : p->depth    ? p->depth
+                               : PICTURE_DEPTH_DEFAULT,
+    };
+    request->bailout = p->bailout == 0.0  ? WHIT_BAILOUT_DEFAULT
+                       : p->bailout < 0.0 ? 0.0
+                                          : p->bailout;
+    request->no_shadows = p->no_shadows;
+    request->opaque_shadows = p->opaque_shadows;
+    request->light_samples = p->light_samples;
+    request->schlick = p->schlick;
+    request->effects = settings->effects[0] ? settings->effects : NULL;
+}
+
+/* view_params.save: the file that `whit render` would have written. */
+static whit_result save_shot(void *user, const struct view_shot *shot, const char *path)
+{
+    struct job job;
+    struct render_request request = picture_request_default();
+    struct recipe recipe;
+    (void)user;
+    job_init(&job);
+    fill_request(shot->settings, &job, &request, path);
+    job.scene = (whit_scene *)(uintptr_t)shot->scene; /* only read */
+    if (!recipe_init(&recipe, &job, &request, shot->device, shot->stats))
+        return WHIT_ERROR_MEMORY;
+    whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
+    recipe_finish(&recipe);
+    return result;
+}
+
+/* ---- Scenes ---- */
+
+enum { SCENES_MOST = 512 };
+
+struct scene_list {
+    char *paths[SCENES_MOST];
+    uint32_t count;
+};
+
+static bool is_scene(const char *name)
+{
+    static const char *const endings[] = {".json", ".obj", ".gltf", ".glb", ".ply", ".stl"};
+    size_t length = strlen(name);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
+        size_t end = strlen(endings[i]);
+        if (length > end && strcmp(name + length - end, endings[i]) == 0)
+            return name[0] != '.';
+    }
+    return false;
+}
+
+static int compare_paths(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Scenes and models in a folder, by name. */
+static void list_folder(struct scene_list *list, const char *folder)
+{
+    DIR *dir = opendir(folder[0] ? folder : ".");
+    struct dirent *entry;
+    while (dir && (entry = readdir(dir)) != NULL && list->count < SCENES_MOST) {
+        size_t bytes = strlen(folder) + strlen(entry->d_name) + 1;
+        char *path = is_scene(entry->d_name) ? malloc(bytes) : NULL;
+        if (!path)
+            continue;
+        snprintf(path, bytes, "%s%s", folder, entry->d_name);
+        list->paths[list->count++] = path;
+    }
+    if (dir)
+        closedir(dir);
+    qsort(list->paths, list->count, sizeof *list->paths, compare_paths);
+}
+
+static void list_beside(struct scene_list *list, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char folder[VIEW_PATH];
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
+    list_folder(list, folder);
+}
+
+static void list_finish(struct scene_list *list)
+{
+    for (uint32_t i = 0; i < list->count; ++i)
+        free(list->paths[i]);
+}
+
+/* whit's own scene to begin with: beside the installed program, or where it was built. */
+static const char *find_start(char *path, size_t bytes)
+{
+    char own[VIEW_PATH];
+    ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+    char *slash = NULL;
+    if (length > 0) {
+        own[length] = '\0';
+        slash = strrchr(own, '/');
+    }
+    if (slash) {
+        *slash = '\0';
+        snprintf(path, bytes, "%.900s/../share/whit/scenes/default.json", own);
+        if (access(path, R_OK) == 0)
+            return path;
+    }
+    snprintf(path, bytes, "%s/default.json", WHIT_SCENES_DIR);
+    return access(path, R_OK) == 0 ? path : NULL;
+}
+
+/* ---- The command ---- */
+
+static int work(struct job *job, const struct render_request *request, struct view_params *view)
+{
+    char start[VIEW_PATH];
+    struct scene_list scenes = {0};
+    uint32_t validation = 0;
+    if (!job->scene_path) {
+        job->scene_path = find_start(start, sizeof start);
+        view->hint = start_hint;
+    }
+    if (!job->scene_path) {
+        cli_error("name a scene: whit view SCENE");
+        return EXIT_USAGE;
+    }
+    if (strlen(job->scene_path) >= VIEW_PATH) {
+        cli_error("%s: the path is too long", job->scene_path);
+        return EXIT_USAGE;
+    }
+    fill_settings(job, request, &view->settings);
+    list_beside(&scenes, job->scene_path);
+    view->scenes = (const char *const *)scenes.paths;
+    view->scene_count = scenes.count;
+    view->fps = job->fps;
+    view->cancel = &cli_cancel;
+    view->save = save_shot;
+    whit_result result = view_run(view, &cli_log, &validation);
+    list_finish(&scenes);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    if (validation > 0)
+        cli_error("the validation layers had %u messages", validation);
+    return validation > 0 ? EXIT_DIFFERS : EXIT_FINE;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct job job;
+    struct render_request request = picture_request_default();
+    struct view_params view = {0};
+    job_init(&job);
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &job, &request, &view);
+    if (!reader.positional && reader.status < 0)
+        reader.positional = ""; /* the start scene */
+    if (!job_options_done(&job, &reader) || !view_check(&reader, &request.view))
+        return reader.status;
+    if (job.scene_path && !job.scene_path[0])
+        job.scene_path = NULL;
+    int status = work(&job, &request, &view);
+    job_finish(&job);
+    return status;
+}
+
+const struct cli_command command_view = {
+    .name = "view",
+    .arguments = "[SCENE] [options]",
+    .summary = "Shows a scene in a window: turn it, switch how it is drawn, see what that costs.",
+    .details =
+        "Defaults are in brackets. H in the window lists its keys. Without a display there is\n"
+        "`whit render`.\n"
+        "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device or display,\n"
+        "130 interrupted.\n",
+    .options = options,
+    .run = run,
+};
