@@ -4,6 +4,7 @@
 
 #include "app/cli.h"
 #include "app/document.h"
+#include "app/sample.h"
 
 enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12 };
 
@@ -29,7 +30,7 @@ struct bench_scene {
     char name[32];
 };
 
-/* Times in ms: in the order of the runs, and sorted up once they are complete. */
+/* Times in ms, in the order of the runs. */
 struct bench_times {
     double ms[BENCH_RUNS_MOST];
     uint32_t count;
@@ -78,7 +79,7 @@ double bench_median(const struct bench_times *times);
 double bench_least(const struct bench_times *times);
 /* Half the width of the middle half. */
 double bench_spread(const struct bench_times *times);
-/* 1: `a` takes longer beyond both spreads; -1: `b` does; 0: neither. */
+/* 1: `a` takes longer; -1: `b` does; 0: not to be distinguished, as sample_compare says. */
 int bench_compare(const struct bench_times *a, const struct bench_times *b);
 double bench_fps(const struct bench_case *c);
 /* Nodes opened a ray (pairs, leaves, instances), over all rays. */

@@ -1,5 +1,4 @@
 #define _GNU_SOURCE
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -82,12 +81,6 @@ void bench_end(struct bench *bench)
 
 /* ---- Figures ---- */
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 void bench_add(struct bench_times *times, double ms)
 {
     if (times->count < BENCH_RUNS_MOST)
@@ -97,14 +90,9 @@ void bench_add(struct bench_times *times, double ms)
 double bench_quantile(const struct bench_times *times, double share)
 {
     double sorted[BENCH_RUNS_MOST];
-    if (times->count == 0)
-        return 0.0;
     memcpy(sorted, times->ms, times->count * sizeof *sorted);
-    qsort(sorted, times->count, sizeof *sorted, compare_numbers);
-    double at = share * (times->count - 1);
-    uint32_t below = (uint32_t)at;
-    uint32_t above = below + 1 < times->count ? below + 1 : below;
-    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+    sample_sort(sorted, times->count);
+    return sample_quantile(sorted, times->count, share);
 }
 
 double bench_median(const struct bench_times *times)
@@ -124,10 +112,9 @@ double bench_spread(const struct bench_times *times)
 
 int bench_compare(const struct bench_times *a, const struct bench_times *b)
 {
-    double difference = bench_median(a) - bench_median(b);
-    if (fabs(difference) <= bench_spread(a) + bench_spread(b))
-        return 0;
-    return difference > 0.0 ? 1 : -1;
+    double differences[BENCH_RUNS_MOST];
+    uint32_t count = a->count < b->count ? a->count : b->count;
+    return sample_compare(a->ms, b->ms, count, differences, NULL);
 }
 
 double bench_fps(const struct bench_case *c)
@@ -209,8 +196,17 @@ json_t *bench_document(const struct bench_case *c)
 
 /* ---- Runs ---- */
 
-static whit_result build_once(struct bench *bench, struct bench_case *c)
+/* Cases of one section, measured in turns. */
+struct turns {
+    struct bench *bench;
+    struct bench_case *cases;
+};
+
+static whit_result build_once(void *user, uint32_t index, uint32_t run)
 {
+    const struct turns *turns = user;
+    struct bench_case *c = &turns->cases[index];
+    (void)run;
     whit_accel_params params = c->accel_params;
     params.cancel = &cli_cancel;
     whit_accel_destroy(c->accel);
@@ -220,19 +216,15 @@ static whit_result build_once(struct bench *bench, struct bench_case *c)
         return result;
     whit_accel_get_info(c->accel, &c->accel_info);
     bench_add(&c->build, c->accel_info.build_ms);
-    bench_step(bench);
+    bench_step(turns->bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
 whit_result bench_build(struct bench *bench, struct bench_case *cases, uint32_t count,
                         uint32_t runs)
 {
-    whit_result result = WHIT_OK;
-    for (uint32_t run = 0; run < runs; ++run) {
-        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
-            result = build_once(bench, &cases[i]);
-    }
-    return result;
+    struct turns turns = {.bench = bench, .cases = cases};
+    return sample_in_turns(count, runs, build_once, &turns);
 }
 
 static whit_result create_renderer(struct bench *bench, struct bench_case *c, bool counting,
@@ -265,6 +257,13 @@ static whit_result render_once(struct bench *bench, struct bench_case *c, bool t
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
+/* The first run warms up. */
+static whit_result render_run(void *user, uint32_t index, uint32_t run)
+{
+    const struct turns *turns = user;
+    return render_once(turns->bench, &turns->cases[index], run > 0);
+}
+
 static void keep_counts(struct bench_case *c)
 {
     whit_renderer_get_stats(c->renderer, &c->counted);
@@ -277,10 +276,9 @@ whit_result bench_render(struct bench *bench, struct bench_case *cases, uint32_t
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
         result = create_renderer(bench, &cases[i], bench->quick, &cases[i].renderer);
-    for (uint32_t run = 0; run <= runs; ++run) {
-        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
-            result = render_once(bench, &cases[i], run > 0);
-    }
+    struct turns turns = {.bench = bench, .cases = cases};
+    if (result == WHIT_OK)
+        result = sample_in_turns(count, runs + 1, render_run, &turns);
     for (uint32_t i = 0; i < count; ++i) {
         if (result == WHIT_OK && bench->quick)
             keep_counts(&cases[i]);

@@ -2,7 +2,7 @@
 add_executable(whit_program
   app/main.c app/cli.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
   app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
-  app/receipt.c app/receipt_output.c app/listing.c app/listing_output.c app/triangles.c
+  app/receipt.c app/receipt_output.c app/sample.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
   app/bench_section.c app/bench_table.c app/hard_command.c app/hard_output.c app/compare_command.c
   app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c

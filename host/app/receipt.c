@@ -59,27 +59,39 @@ static uint32_t rounds_for(const struct receipt *receipt, uint32_t effects)
                                   : (uint32_t)rounds;
 }
 
-/* `base` is the renderer for the scene; the other one has the effect more, or less. */
+/* The renderer for the scene, and one that has the effect more, or less. */
+struct pair {
+    whit_renderer *renderers[2];
+    double ms[2];
+    struct receipt_row *row;
+};
+
+static whit_result price_once(void *user, uint32_t index, uint32_t round)
+{
+    struct pair *pair = user;
+    whit_result result = time_frame(pair->renderers[index], &pair->ms[index]);
+    bool complete = index == (round % 2 ? 0 : 1);
+    if (result == WHIT_OK && complete)
+        bench_add(&pair->row->cost,
+                  pair->row->compiled ? pair->ms[0] - pair->ms[1] : pair->ms[1] - pair->ms[0]);
+    return result;
+}
+
 static whit_result price(const struct receipt *receipt, whit_renderer *base, uint32_t rounds,
                          struct receipt_row *row)
 {
     char effects[64];
     whit_renderer *other = NULL;
-    double ms, base_ms;
+    double ms;
     snprintf(effects, sizeof effects, "%c%s", row->compiled ? '-' : '+', row->name);
     whit_result result = make_renderer(receipt, effects, &other);
     if (result == WHIT_OK)
         result = time_frame(other, &ms); /* compiles, and warms up */
     if (result == WHIT_OK)
         result = compare_pictures(base, other, row);
-    for (uint32_t i = 0; result == WHIT_OK && i < rounds; ++i) {
-        /* Each of the two goes first in every other round. */
-        result = time_frame(i % 2 ? other : base, i % 2 ? &ms : &base_ms);
-        if (result == WHIT_OK)
-            result = time_frame(i % 2 ? base : other, i % 2 ? &base_ms : &ms);
-        if (result == WHIT_OK)
-            bench_add(&row->cost, row->compiled ? base_ms - ms : ms - base_ms);
-    }
+    struct pair pair = {.renderers = {base, other}, .row = row};
+    if (result == WHIT_OK)
+        result = sample_in_turns(2, rounds, price_once, &pair);
     row->priced = result == WHIT_OK;
     whit_renderer_destroy(other);
     return result;

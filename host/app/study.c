@@ -9,17 +9,11 @@ const char *study_kind_name(enum study_kind kind)
     return names[kind];
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 struct study_spread study_spread_of(double *values, uint32_t count)
 {
-    qsort(values, count, sizeof *values, compare_numbers);
+    sample_sort(values, count);
     return (struct study_spread){
-        .median = 0.5 * (values[(count - 1) / 2] + values[count / 2]),
+        .median = sample_quantile(values, count, 0.5),
         .least = values[0],
         .most = values[count - 1],
     };
@@ -75,23 +69,31 @@ static whit_result build_once(struct study *study, struct study_row *row, uint32
     return check_same(row, &info);
 }
 
+struct building {
+    struct study *study;
+    double *times_ms; /* [list][run]; a list is a row with a number of threads */
+};
+
+static whit_result build_list(void *user, uint32_t list, uint32_t run)
+{
+    const struct building *building = user;
+    struct study *study = building->study;
+    whit_result result = build_once(study, &study->rows[list % study->row_count],
+                                    study->threads[list / study->row_count],
+                                    &building->times_ms[(size_t)list * study->run_count + run]);
+    return result == WHIT_OK ? study_step(study) : result;
+}
+
 whit_result study_build(struct study *study)
 {
     uint32_t runs = study->run_count, lists = study->row_count * study->thread_count;
     double *times_ms = calloc((size_t)lists * runs, sizeof *times_ms);
-    whit_result result = WHIT_OK;
     if (!times_ms) {
         cli_error("out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; result == WHIT_OK && i < runs * lists; ++i) {
-        uint32_t run = i / lists, list = i % lists;
-        result = build_once(study, &study->rows[list % study->row_count],
-                            study->threads[list / study->row_count],
-                            &times_ms[(size_t)list * runs + run]);
-        if (result == WHIT_OK)
-            result = study_step(study);
-    }
+    struct building building = {.study = study, .times_ms = times_ms};
+    whit_result result = sample_in_turns(lists, runs, build_list, &building);
     for (uint32_t list = 0; result == WHIT_OK && list < lists; ++list)
         study->rows[list % study->row_count].build_ms[list / study->row_count] =
             study_spread_of(&times_ms[(size_t)list * runs], runs);

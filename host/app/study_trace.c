@@ -8,6 +8,7 @@ struct tracing {
     struct study *study;
     whit_hit *expected[STUDY_KINDS], *hits;
     double *rates; /* [kind][row][run] */
+    uint32_t kind; /* that trace_run traces */
 };
 
 static double *rates_of(const struct tracing *tracing, uint32_t kind, uint32_t row)
@@ -94,14 +95,18 @@ static whit_result trace_once(struct tracing *tracing, uint32_t kind)
     return result;
 }
 
+static whit_result trace_run(void *user, uint32_t row, uint32_t run)
+{
+    struct tracing *tracing = user;
+    return trace(tracing, row, tracing->kind, tracing->hits,
+                 &rates_of(tracing, tracing->kind, row)[run]);
+}
+
 static whit_result trace_runs(struct tracing *tracing, uint32_t kind)
 {
     struct study *study = tracing->study;
-    whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < study->run_count * study->row_count; ++i) {
-        uint32_t row = i % study->row_count, run = i / study->row_count;
-        result = trace(tracing, row, kind, tracing->hits, &rates_of(tracing, kind, row)[run]);
-    }
+    tracing->kind = kind;
+    whit_result result = sample_in_turns(study->row_count, study->run_count, trace_run, tracing);
     for (uint32_t row = 0; result == WHIT_OK && row < study->row_count; ++row)
         study->rows[row].mrays_per_s[kind] =
             study_spread_of(rates_of(tracing, kind, row), study->run_count);

@@ -1,0 +1,42 @@
+/* Figures that were measured several times: what they say, and whether two of them differ. */
+#ifndef APP_SAMPLE_H
+#define APP_SAMPLE_H
+
+#include "api/whit.h"
+
+/* Upwards; none of the values may be NAN. */
+void sample_sort(double *values, uint32_t count);
+/* The value below which `share` of the sorted values are, between neighbours by a straight line; 0
+   when there are none. */
+double sample_quantile(const double *sorted, uint32_t count, double share);
+
+/* The median, and an interval that holds the true one in at least 95 of 100 such measurements,
+   whatever the distribution: from the k-th value to the k-th last, where fewer than k of `count`
+   tosses of a coin come up heads in at most 2.5 % of cases (David and Nagaraja, Order Statistics,
+   3rd edition 2003, section 7.1). Up to 5 values are too few for that: then it goes from the least
+   to the most, and `coverage`, which is exact for values drawn one by one, is below 0.95. */
+struct sample_median {
+    double median, low, high, coverage;
+    uint32_t count;
+};
+/* Sorts `values`. All 0 when there are none. */
+struct sample_median sample_median_of(double *values, uint32_t count);
+
+/* Of two things measured in turns, a[i] beside b[i]: 1 when `a` is larger, -1 when `b` is, 0 when
+   they cannot be distinguished, because the interval of the median of a[i] - b[i] holds 0 (the sign
+   test at 5 %) or there are fewer than 6 pairs. What slows both down for a while does not count.
+   `differences` has room for `count` values; *median, or NULL, is theirs. */
+int sample_compare(const double *a, const double *b, uint32_t count, double *differences,
+                   struct sample_median *median);
+/* Of things that were not measured in turns, and of which only this is left: 0 where the intervals
+   touch or one of them covers less than 95 %. That asks for more than sample_compare does. */
+int sample_compare_apart(const struct sample_median *a, const struct sample_median *b);
+
+/* Calls run(user, way, round) for each of `ways` ways in each of `rounds` rounds, from the first
+   way to the last in even rounds and back in odd ones, so that each of two goes first equally often
+   and a drift in time falls on all of them. Stops at the first failure. */
+WHIT_CHECK whit_result sample_in_turns(uint32_t ways, uint32_t rounds,
+                                       whit_result (*run)(void *user, uint32_t way, uint32_t round),
+                                       void *user);
+
+#endif

@@ -1,0 +1,187 @@
+/* Medians, their intervals, and which differences can be told from chance. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "app/sample.h"
+#include "random_fixture.h"
+
+static void quantiles_are_between_neighbours(void **state)
+{
+    (void)state;
+    double values[] = {4.0, 1.0, 3.0, 2.0};
+    sample_sort(values, 4);
+    for (int i = 0; i < 4; ++i)
+        assert_true(values[i] == i + 1.0);
+    assert_true(sample_quantile(values, 4, 0.0) == 1.0 && sample_quantile(values, 4, 1.0) == 4.0);
+    assert_true(sample_quantile(values, 4, 0.5) == 2.5 && sample_quantile(values, 4, 0.25) == 1.75);
+    assert_true(sample_quantile(values, 3, 0.5) == 2.0 && sample_quantile(values, 0, 0.5) == 0.0);
+}
+
+/* Ranks and coverages of sums of binomial coefficients in whole numbers; those of 10, 20, 30, 50
+   and 100 are in tables of many textbooks. */
+static void ranks_are_those_of_the_binomial(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t count, low, high;
+        double coverage;
+    } known[] = {
+        {1, 1, 1, 0.0},
+        {2, 1, 2, 0.5},
+        {5, 1, 5, 0.9375},
+        {6, 1, 6, 0.96875},
+        {8, 1, 8, 0.9921875},
+        {9, 2, 8, 0.9609375},
+        {10, 2, 9, 0.978515625},
+        {15, 4, 12, 0.96484375},
+        {20, 6, 15, 0.9586105346679688},
+        {30, 10, 21, 0.9572260547429323},
+        {50, 18, 33, 0.9671608624357315},
+        {100, 40, 61, 0.9647997997822952},
+    };
+    double values[100];
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i) {
+        uint32_t count = known[i].count;
+        for (uint32_t v = 0; v < count; ++v)
+            values[v] = (double)(count - v);
+        struct sample_median median = sample_median_of(values, count);
+        assert_true(median.median == 0.5 * (count + 1.0));
+        assert_true(median.low == known[i].low && median.high == known[i].high);
+        assert_true(fabs(median.coverage - known[i].coverage) < 1e-12);
+        assert_int_equal(median.count, count);
+    }
+    struct sample_median none = sample_median_of(values, 0);
+    assert_true(none.median == 0.0 && none.coverage == 0.0 && none.count == 0);
+}
+
+/* As times of runs are: none below a floor, a long tail above. */
+static double skewed(void)
+{
+    double u = ((double)random_bits() + 0.5) / 4294967296.0;
+    return 10.0 - log(u);
+}
+
+enum { TRIALS = 4000, COUNT = 15 };
+
+static void intervals_hold_the_median(void **state)
+{
+    (void)state;
+    uint32_t held = 0;
+    random_state = 7;
+    double truth = 10.0 + log(2.0), values[COUNT];
+    for (int t = 0; t < TRIALS; ++t) {
+        for (int i = 0; i < COUNT; ++i)
+            values[i] = skewed();
+        struct sample_median median = sample_median_of(values, COUNT);
+        held += median.low <= truth && truth <= median.high;
+    }
+    print_message("%u of %d intervals hold the median\n", held, TRIALS);
+    assert_true(held > 0.955 * TRIALS && held < 0.975 * TRIALS); /* 0.9648 expected */
+}
+
+/* Two times of the same runs, while the machine becomes slower and recovers. `slower`: of the
+   second one. */
+static int compare_once(double slower)
+{
+    double a[COUNT], b[COUNT], differences[COUNT];
+    for (int i = 0; i < COUNT; ++i) {
+        double drift = 1.0 + 0.5 * sin(i * 0.6);
+        a[i] = drift * (1.0 + 0.02 * skewed());
+        b[i] = drift * (1.0 + 0.02 * skewed()) * slower;
+    }
+    return sample_compare(a, b, COUNT, differences, NULL);
+}
+
+static void equal_things_are_rarely_told_apart(void **state)
+{
+    (void)state;
+    int wrong = 0;
+    random_state = 11;
+    for (int t = 0; t < TRIALS; ++t)
+        wrong += compare_once(1.0) != 0;
+    print_message("%d of %d pairs of equal things told apart\n", wrong, TRIALS);
+    assert_true(wrong < 0.05 * TRIALS && wrong > 0.02 * TRIALS); /* 0.0352 expected */
+}
+
+static void ten_percent_are_found_through_a_drift(void **state)
+{
+    (void)state;
+    int found = 0;
+    random_state = 13;
+    for (int t = 0; t < TRIALS; ++t)
+        found += compare_once(1.1) == -1;
+    print_message("+10 %% found in %d of %d\n", found, TRIALS);
+    assert_true(found > 0.99 * TRIALS);
+}
+
+static void few_or_equal_values_say_nothing(void **state)
+{
+    (void)state;
+    const double low[6] = {1, 1, 1, 1, 1, 1}, high[6] = {2, 2, 2, 2, 2, 2};
+    double differences[6];
+    struct sample_median median;
+    assert_int_equal(sample_compare(low, high, 5, differences, &median), 0);
+    assert_true(median.median == -1.0 && median.coverage == 0.9375);
+    assert_int_equal(sample_compare(low, high, 6, differences, NULL), -1);
+    assert_int_equal(sample_compare(high, low, 6, differences, NULL), 1);
+    assert_int_equal(sample_compare(low, low, 6, differences, NULL), 0);
+    assert_int_equal(sample_compare(low, high, 0, differences, NULL), 0);
+}
+
+static void apart_means_that_intervals_do_not_touch(void **state)
+{
+    (void)state;
+    const struct sample_median fast = {2.0, 1.0, 3.0, 0.96, 9}, slow = {4.0, 3.1, 5.0, 0.96, 9},
+                               touching = {4.0, 3.0, 5.0, 0.96, 9}, few = {9.0, 9.0, 9.0, 0.9, 4};
+    assert_int_equal(sample_compare_apart(&fast, &slow), -1);
+    assert_int_equal(sample_compare_apart(&slow, &fast), 1);
+    assert_int_equal(sample_compare_apart(&fast, &touching), 0);
+    assert_int_equal(sample_compare_apart(&touching, &fast), 0);
+    assert_int_equal(sample_compare_apart(&fast, &few), 0);
+    assert_int_equal(sample_compare_apart(&few, &fast), 0);
+}
+
+struct turns {
+    uint32_t order[12], count, fails_at;
+};
+
+static whit_result note_turn(void *user, uint32_t way, uint32_t round)
+{
+    struct turns *turns = user;
+    turns->order[turns->count++] = 10 * round + way;
+    return turns->count == turns->fails_at ? WHIT_ERROR_FAILED : WHIT_OK;
+}
+
+static void turns_go_there_and_back(void **state)
+{
+    (void)state;
+    static const uint32_t expected[9] = {0, 1, 2, 12, 11, 10, 20, 21, 22};
+    struct turns turns = {0}, failing = {.fails_at = 5};
+    assert_int_equal(sample_in_turns(3, 3, note_turn, &turns), WHIT_OK);
+    assert_int_equal(turns.count, 9);
+    assert_memory_equal(turns.order, expected, sizeof expected);
+    assert_int_equal(sample_in_turns(3, 3, note_turn, &failing), WHIT_ERROR_FAILED);
+    assert_int_equal(failing.count, 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quantiles_are_between_neighbours),
+        cmocka_unit_test(ranks_are_those_of_the_binomial),
+        cmocka_unit_test(intervals_hold_the_median),
+        cmocka_unit_test(equal_things_are_rarely_told_apart),
+        cmocka_unit_test(ten_percent_are_found_through_a_drift),
+        cmocka_unit_test(few_or_equal_values_say_nothing),
+        cmocka_unit_test(apart_means_that_intervals_do_not_touch),
+        cmocka_unit_test(turns_go_there_and_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
