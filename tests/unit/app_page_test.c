@@ -1,0 +1,443 @@
+/* Pages of HTML: whatever text goes in, well-formed XML comes out, and nothing in it asks for
+   anything from elsewhere. WHIT_PAGE=FILE keeps the sample page, to be looked at. */
+#include <locale.h>
+#include <math.h>
+#include <wchar.h>
+
+#include "image_fixture.h"
+
+#include "app/page.h"
+#include "app/plot.h"
+
+/* ---- A reader of what pages may hold ---- */
+
+enum { DEPTH_MOST = 64, NAME_MOST = 32 };
+struct reader {
+    const char *at;
+    char open[DEPTH_MOST][NAME_MOST];
+    uint32_t depth, elements;
+    const char *fault; /* NULL: well-formed so far */
+};
+
+static bool is_entity(const char *text)
+{
+    static const char *const known[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i) {
+        if (strncmp(text, known[i], strlen(known[i])) == 0)
+            return true;
+    }
+    return false;
+}
+
+static void take_name(struct reader *reader, char name[NAME_MOST])
+{
+    size_t length = strcspn(reader->at, " \n/>=\"<&");
+    reader->fault = length == 0 || length >= NAME_MOST ? "a name is missing" : reader->fault;
+    length = length < NAME_MOST ? length : NAME_MOST - 1;
+    memcpy(name, reader->at, length);
+    name[length] = 0;
+    reader->at += length;
+}
+
+/* Behind the name: attributes, each once, then `>` or `/>`. */
+static bool take_attributes(struct reader *reader)
+{
+    char names[16][NAME_MOST];
+    uint32_t count = 0;
+    while (*reader->at == ' ' && !reader->fault && count < 16) {
+        ++reader->at;
+        take_name(reader, names[count]);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (strcmp(names[i], names[count]) == 0)
+                reader->fault = "an attribute comes twice";
+        }
+        ++count;
+        if (strncmp(reader->at, "=\"", 2) != 0) {
+            reader->fault = "an attribute has no quoted value";
+            return false;
+        }
+        for (reader->at += 2; *reader->at && *reader->at != '"'; ++reader->at) {
+            if (*reader->at == '<' || (*reader->at == '&' && !is_entity(reader->at)))
+                reader->fault = "markup in an attribute";
+        }
+        reader->at += *reader->at == '"';
+    }
+    bool empty = *reader->at == '/';
+    reader->at += empty;
+    if (*reader->at != '>')
+        reader->fault = "a tag has no end";
+    reader->at += *reader->at == '>';
+    return empty;
+}
+
+static void take_tag(struct reader *reader)
+{
+    char name[NAME_MOST];
+    bool closes = reader->at[1] == '/';
+    reader->at += closes ? 2 : 1;
+    take_name(reader, name);
+    bool empty = take_attributes(reader);
+    if (closes) {
+        if (reader->depth == 0 || strcmp(reader->open[reader->depth - 1], name) != 0)
+            reader->fault = "a tag closes what is not open";
+        reader->depth -= reader->depth > 0;
+        return;
+    }
+    ++reader->elements;
+    if (!empty && reader->depth < DEPTH_MOST)
+        memcpy(reader->open[reader->depth++], name, NAME_MOST);
+}
+
+static bool is_valid_utf8(const char *text)
+{
+    wchar_t wide;
+    for (size_t left = strlen(text); left;) {
+        int length = mbtowc(&wide, text, left);
+        if (length <= 0)
+            return false;
+        text += length;
+        left -= (size_t)length;
+    }
+    return true;
+}
+
+/* NULL when `text` is one element and all in it is well-formed. */
+static const char *find_fault(const char *text, uint32_t *elements)
+{
+    static const char doctype[] = "<!DOCTYPE html>\n";
+    struct reader reader = {.at = text};
+    if (strncmp(text, doctype, strlen(doctype)) == 0)
+        reader.at += strlen(doctype);
+    while (*reader.at && !reader.fault) {
+        unsigned char c = (unsigned char)*reader.at;
+        if (c == '<')
+            take_tag(&reader);
+        else if (c == '&' && !is_entity(reader.at))
+            reader.fault = "an ampersand";
+        else if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7f)
+            reader.fault = "a control character";
+        else
+            ++reader.at;
+        if (reader.depth == 0 && !reader.fault && strspn(reader.at, "\n") != strlen(reader.at))
+            reader.fault = "more than one element";
+    }
+    if (elements)
+        *elements = reader.elements;
+    return reader.fault ? reader.fault : reader.depth ? "an element has no end" : NULL;
+}
+
+static uint32_t count_of(const char *text, const char *part)
+{
+    uint32_t count = 0;
+    for (; (text = strstr(text, part)); text += strlen(part))
+        ++count;
+    return count;
+}
+
+/* ---- A page with all there is ---- */
+
+static whit_image *make_picture(uint32_t phase)
+{
+    enum { WIDTH = 240, HEIGHT = 160 };
+    static float pixels[WIDTH * HEIGHT * 3];
+    whit_image *image;
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        float dx = (float)x - 120.0f - (float)phase, dy = (float)y - 80.0f;
+        float inside = dx * dx + dy * dy < 3000.0f ? 0.8f : 0.1f;
+        pixels[3 * i] = inside;
+        pixels[3 * i + 1] = (float)y / HEIGHT * 0.5f;
+        pixels[3 * i + 2] = (float)x / WIDTH * 0.5f;
+    }
+    assert_int_equal(whit_image_create(WIDTH, HEIGHT, 3, pixels, &image), WHIT_OK);
+    return image;
+}
+
+static const char nasty[] =
+    "</title><script>alert(\"1\")</script> & 'it' \x01\xff\xc0\xaf\xed\xa0\x80 "
+    "\xce\xb5 \xf0\x9f\x94\xa5";
+
+static void put_plots(struct page *page)
+{
+    static struct plot_point points[PLOT_STYLES][6];
+    static struct plot_series series[PLOT_STYLES];
+    static const char *const names[PLOT_STYLES] = {"fast",  "watertight", "exact", nasty,
+                                                   "depth", "aa",         "lights"};
+    for (uint32_t s = 0; s < PLOT_STYLES; ++s) {
+        for (uint32_t i = 0; i < 6; ++i) {
+            double x = 2.0 * pow(2.1, i) * (1.0 + 0.1 * s), y = 0.3 * pow(0.2, i) * (1 + s);
+            points[s][i] = (struct plot_point){.x = x,
+                                               .y = i == 5 && s % 2 ? 0.0 : y,
+                                               .x_low = x * 0.93,
+                                               .x_high = x * 1.1,
+                                               .title = s == 3 ? nasty : "64 samples: 93 ms",
+                                               .marked = s == 0};
+        }
+        series[s] = (struct plot_series){names[s], points[s], 6, s % 3 == 0, false};
+    }
+    points[1][2].y = NAN;
+    const struct plot both = {.title = "Price and error, both logarithmic, some errors 0",
+                              .x = {"ms a frame", true},
+                              .y = {"RMSE", true},
+                              .series = series,
+                              .series_count = PLOT_STYLES};
+    plot_write(page, &both);
+    const struct plot linear = {.title = nasty,
+                                .x = {"ms a frame", false},
+                                .y = {"FLIP", false},
+                                .series = series,
+                                .series_count = 2};
+    plot_write(page, &linear);
+    const struct plot empty = {.title = "Nothing", .x = {"x", true}, .y = {"y", false}};
+    plot_write(page, &empty);
+}
+
+static void put_everything(struct page *page)
+{
+    static const struct page_column columns[] = {
+        {"setting", false}, {"ms a frame", true}, {nasty, true}};
+    static const char *const rows[][3] = {{"fast", "12.3", "0.0012"},
+                                          {"watertight", "13.1", "0"},
+                                          {nasty, "-", "not distinguishable"}};
+    whit_image *a = make_picture(0), *b = make_picture(12);
+    page_begin(page, nasty);
+    page_paragraph(page, "Measured on %s in %d rounds.", nasty, 15);
+    page_code(page, "whit cost scenes/default.json --size 640x480 <> &");
+    page_heading(page, "Prices");
+    page_table_begin(page, "ms of one frame: medians with their 95 % intervals", columns, 3);
+    for (int i = 0; i < 3; ++i)
+        page_table_row(page, columns, 3, rows[i], i == 1);
+    page_table_end(page);
+    page_heading(page, "Plots");
+    put_plots(page);
+    page_heading(page, "Pictures");
+    page_picture(page, a, nasty, "The reference");
+    page_flip(page, a, "reference", b, nasty);
+    page_end(page);
+    whit_image_destroy(a);
+    whit_image_destroy(b);
+}
+
+/* ---- Checks ---- */
+
+static void the_reader_finds_faults(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "<a>",      "<a></b>",      "<a/><b/>",     "<a b/>",      "<a b=c/>",
+        "<a>&</a>", "<a>1<2</a>",   "<a b=\"<\"/>", "<a>\x01</a>", "<a b=\"1\" b=\"2\"/>",
+        "</a>",     "<a>&nbsp;</a>"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i)
+        assert_non_null(find_fault(bad[i], NULL));
+    assert_null(find_fault("<a b=\"1\" c=\"&lt;\"><b/>x &amp; y</a>\n", NULL));
+}
+
+static void assert_escaped(const char *text, const char *expected)
+{
+    struct page page = {0};
+    page_text(&page, text);
+    assert_string_equal(page.text ? page.text : "", expected);
+    page_finish(&page);
+}
+
+#define REPLACED "\xef\xbf\xbd"
+
+static void text_is_escaped(void **state)
+{
+    (void)state;
+    assert_escaped("", "");
+    assert_escaped("<b a=\"1\" c='2'> & </b>",
+                   "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt; &amp; &lt;/b&gt;");
+    assert_escaped("a\tb\nc", "a\tb\nc");
+    assert_escaped("\x01\x1b[2J\x7f", REPLACED REPLACED "[2J" REPLACED);
+    assert_escaped("\xc3\xa4 \xe2\x82\xac \xf0\x9f\x94\xa5",
+                   "\xc3\xa4 \xe2\x82\xac \xf0\x9f\x94\xa5");
+    assert_escaped("\xc3", REPLACED);                                        /* cut off */
+    assert_escaped("\xc3(", REPLACED "(");                                   /* no second byte */
+    assert_escaped("\xc0\xbc", REPLACED REPLACED);                           /* a long < */
+    assert_escaped("\xe0\x80\xbc", REPLACED REPLACED REPLACED);              /* a longer one */
+    assert_escaped("\xed\xa0\x80", REPLACED REPLACED REPLACED);              /* a surrogate */
+    assert_escaped("\xef\xbf\xbf", REPLACED REPLACED REPLACED);              /* no character */
+    assert_escaped("\xf4\x90\x80\x80", REPLACED REPLACED REPLACED REPLACED); /* beyond the last */
+    assert_escaped("\xc2\x9b", REPLACED REPLACED); /* a control character */
+}
+
+static void everything_is_well_formed(void **state)
+{
+    (void)state;
+    struct page page = {0};
+    uint32_t elements;
+    put_everything(&page);
+    assert_false(page.failed);
+    assert_int_equal(page.length, strlen(page.text));
+    const char *fault = find_fault(page.text, &elements);
+    if (fault)
+        print_message("%s\n", fault);
+    assert_null(fault);
+    assert_true(elements > 150);
+    assert_null(strstr(page.text, "<script"));
+    assert_non_null(strstr(page.text, "&lt;script&gt;"));
+    if (setlocale(LC_CTYPE, "C.UTF-8"))
+        assert_true(is_valid_utf8(page.text));
+    const char *path = getenv("WHIT_PAGE");
+    if (path)
+        assert_int_equal(page_save(&page, path, NULL), WHIT_OK);
+    page_finish(&page);
+}
+
+/* Links would be requests; names of namespaces are none. */
+static void nothing_comes_from_elsewhere(void **state)
+{
+    (void)state;
+    struct page page = {0};
+    put_everything(&page);
+    assert_int_equal(count_of(page.text, "http"),
+                     count_of(page.text, "xmlns=\"http://www.w3.org/"));
+    assert_int_equal(count_of(page.text, "src="),
+                     count_of(page.text, "src=\"data:image/png;base64,"));
+    assert_int_equal(count_of(page.text, "src="), 3);
+    static const char *const never[] = {"href", "url(", "@import", "<link", "<iframe", "onload"};
+    for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
+        assert_null(strstr(page.text, never[i]));
+    page_finish(&page);
+}
+
+/* Points that are not finite are left out, all others are there with their titles. */
+static void plots_hold_every_point(void **state)
+{
+    (void)state;
+    struct page page = {0};
+    put_plots(&page);
+    assert_int_equal(count_of(page.text, "<g class=\"point"), 6 * PLOT_STYLES - 1 + 12 - 1);
+    assert_int_equal(count_of(page.text, "<title>"), 6 * PLOT_STYLES - 1 + 12 - 1);
+    assert_int_equal(count_of(page.text, "class=\"point mark\""), 12);
+    assert_int_equal(count_of(page.text, "grid zero"), 1); /* errors of 0, on one axis */
+    assert_null(strstr(page.text, "nan"));
+    assert_null(strstr(page.text, "inf"));
+    page_finish(&page);
+}
+
+/* RFC 4648, section 10. */
+static void base64_is_that_of_the_standard(void **state)
+{
+    (void)state;
+    static const char *const known[] = {"",         "Zg==",     "Zm8=",    "Zm9v",
+                                        "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+    for (size_t length = 0; length < 7; ++length) {
+        struct page page = {0};
+        page_base64(&page, (const uint8_t *)"foobar", length);
+        assert_string_equal(page.text ? page.text : "", known[length]);
+        page_finish(&page);
+    }
+}
+
+static void pictures_are_whole(void **state)
+{
+    (void)state;
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    whit_image *image = make_picture(3);
+    struct page page = {0};
+    uint8_t *png;
+    size_t size_bytes, at = 0;
+    assert_int_equal(whit_image_encode_png(image, NULL, 0, NULL, &png, &size_bytes), WHIT_OK);
+    assert_memory_equal(png, "\x89PNG", 4);
+    page_picture(&page, image, "", NULL);
+    const char *text = strstr(page.text, "base64,") + strlen("base64,");
+    uint32_t bits = 0, held = 0;
+    for (; *text != '"' && *text != '='; ++text) {
+        assert_non_null(strchr(digits, *text));
+        bits = bits << 6 | (uint32_t)(strchr(digits, *text) - digits);
+        held += 6;
+        if (held < 8)
+            continue;
+        held -= 8;
+        assert_true(at < size_bytes);
+        assert_int_equal(bits >> held & 255, png[at++]);
+    }
+    assert_int_equal(at, size_bytes);
+    free(png);
+    page_finish(&page);
+    whit_image_destroy(image);
+}
+
+static void assert_ticks(double low, double high, bool is_log, uint32_t wanted, uint32_t count,
+                         const double *expected)
+{
+    double ticks[PLOT_TICKS_MOST];
+    assert_int_equal(plot_ticks(low, high, is_log, wanted, ticks), count);
+    for (uint32_t i = 0; i < count; ++i)
+        assert_true(fabs(ticks[i] - expected[i]) <= 1e-9 * fabs(expected[i]));
+}
+
+static void ticks_read_well(void **state)
+{
+    (void)state;
+    assert_ticks(0.0, 10.0, false, 5, 6, (const double[]){0, 2, 4, 6, 8, 10});
+    assert_ticks(-1.0, 1.0, false, 4, 5, (const double[]){-1, -0.5, 0, 0.5, 1});
+    assert_ticks(103.0, 117.0, false, 7, 7, (const double[]){104, 106, 108, 110, 112, 114, 116});
+    assert_ticks(0.0, 3e-7, false, 3, 4, (const double[]){0, 1e-7, 2e-7, 3e-7});
+    assert_ticks(0.9, 1100.0, true, 6, 10,
+                 (const double[]){1, 2, 5, 10, 20, 50, 100, 200, 500, 1000});
+    assert_ticks(1e-6, 1.0, true, 6, 7, (const double[]){1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1});
+    assert_ticks(1e-12, 1.0, true, 6, 7, (const double[]){1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1});
+    assert_ticks(3.1, 4.2, true, 6, 6, (const double[]){3.2, 3.4, 3.6, 3.8, 4.0, 4.2});
+}
+
+/* In order, inside, and few enough to be read. */
+static void ticks_of_any_range(void **state)
+{
+    (void)state;
+    uint32_t seed = 5;
+    for (int trial = 0; trial < 20000; ++trial) {
+        double ticks[PLOT_TICKS_MOST], low, high;
+        bool is_log = trial % 2;
+        low = pow(10.0, (double)(fixture_random(&seed) % 24000) * 1e-3 - 12.0);
+        high = low * (1.0 + pow(10.0, (double)(fixture_random(&seed) % 15000) * 1e-3 - 5.0));
+        if (!is_log && trial % 4 == 0)
+            low = -low;
+        uint32_t count = plot_ticks(low, high, is_log, 6, ticks);
+        assert_true(count >= 2 && count <= 16);
+        for (uint32_t i = 0; i < count; ++i) {
+            assert_true(ticks[i] >= low - 1e-6 * (high - low));
+            assert_true(ticks[i] <= high + 1e-6 * (high - low));
+            assert_true(i == 0 || ticks[i] > ticks[i - 1]);
+        }
+    }
+}
+
+static void axes_are_widened(void **state)
+{
+    (void)state;
+    static const struct {
+        double low, high;
+        bool is_log;
+        double from, to;
+    } known[] = {{10.0, 100.0, false, 0.0, 104.5},    {90.0, 100.0, false, 89.5, 100.5},
+                 {5.0, 5.0, false, 4.75, 5.25},       {0.0, 0.0, false, 0.0, 1.0},
+                 {1.0, -1.0, false, 0.0, 1.0},        {1.0, -1.0, true, 1.0, 10.0},
+                 {1.0, 1e4, true, 0.630957, 15848.9}, {3.0, 3.0, true, 2.72727, 3.3},
+                 {-2.0, 2.0, false, -2.2, 2.2}};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i) {
+        double low = known[i].low, high = known[i].high;
+        plot_widen(&low, &high, known[i].is_log);
+        assert_true(fabs(low - known[i].from) < 1e-5 && fabs(high - known[i].to) < 0.1);
+        assert_true(low < high);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_reader_finds_faults),
+        cmocka_unit_test(text_is_escaped),
+        cmocka_unit_test(everything_is_well_formed),
+        cmocka_unit_test(nothing_comes_from_elsewhere),
+        cmocka_unit_test(plots_hold_every_point),
+        cmocka_unit_test(base64_is_that_of_the_standard),
+        cmocka_unit_test(pictures_are_whole),
+        cmocka_unit_test(ticks_read_well),
+        cmocka_unit_test(ticks_of_any_range),
+        cmocka_unit_test(axes_are_widened),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
