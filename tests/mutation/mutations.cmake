@@ -197,9 +197,6 @@ change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
-mutation(filter_bound_too_small accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 0.25f *]])
-
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
 change(host/accel/exact.c [[float t_error = weights_error * (z_hi - z_lo) + z_error;]]
   [[float t_error = 0.0f * z_error;]])

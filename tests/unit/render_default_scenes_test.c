@@ -1,5 +1,5 @@
 /* Every scene of scenes/ by the kernel made for it and by the one with every effect: the same
-   picture, and no ray of a kind that the scene does not call for. */
+   picture, and no ray of a kind that the scene does not call for. Two of them at every level. */
 #include <glob.h>
 
 #include "load/load.h"
@@ -46,13 +46,14 @@ static void assert_no_ray_uncalled(const struct scene *scene, const struct rende
         assert_int_equal(stats->rays_refracted, 0);
 }
 
-static void check_scene(struct device *device, const char *path)
+static void check_scene(struct device *device, const char *path, uint32_t numerics)
 {
     const struct load_params load = {.time_limit_s = 60.0};
     struct fixture f = {.device = device};
     assert_int_equal(load_scene(&fixture_log, path, &load, &f.scene), WHIT_OK);
     assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &f.accel), WHIT_OK);
-    const struct render_params params = {.width = 40, .height = 30, .depth = 6};
+    const struct render_params params = {
+        .width = 40, .height = 30, .depth = 6, .numerics = numerics};
     struct render_params all = params;
     all.all_effects = true;
     struct drawn a = draw(&f, &params), b = draw(&f, &all);
@@ -78,8 +79,21 @@ static void default_scenes_are_the_same(void **state)
     assert_true(paths.gl_pathc >= 10);
     assert_int_equal(device_create(&fixture_log, NULL, &device), WHIT_OK);
     for (size_t i = 0; i < paths.gl_pathc; ++i)
-        check_scene(device, paths.gl_pathv[i]);
+        check_scene(device, paths.gl_pathv[i], NUMERICS_WATERTIGHT);
     globfree(&paths);
+    device_destroy(device);
+}
+
+/* The other levels, whose kernels take as long again to compile: one scene of triangles in
+   instances with mirrors, one of media with a sphere among them. */
+static void other_levels_draw_the_same(void **state)
+{
+    (void)state;
+    struct device *device = NULL;
+    assert_int_equal(device_create(&fixture_log, NULL, &device), WHIT_OK);
+    check_scene(device, WHIT_SCENES_DIR "/default.json", NUMERICS_FAST);
+    check_scene(device, WHIT_SCENES_DIR "/default.json", NUMERICS_EXACT);
+    check_scene(device, WHIT_SCENES_DIR "/glass-of-water.json", NUMERICS_EXACT);
     device_destroy(device);
 }
 
@@ -87,6 +101,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(default_scenes_are_the_same),
+        cmocka_unit_test(other_levels_draw_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
