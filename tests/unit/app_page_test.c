@@ -285,6 +285,24 @@ static void everything_is_well_formed(void **state)
     page_finish(&page);
 }
 
+/* Memory ran out on the way: there is no half page. */
+static void half_a_page_is_not_saved(void **state)
+{
+    struct fixture *fixture = *state;
+    char *path = fixture_path(fixture, "half.html");
+    struct page page = {0};
+    page_begin(&page, "half");
+    page.failed = true;
+    page_paragraph(&page, "more");
+    assert_null(strstr(page.text, "more"));
+    const whit_log log = {fixture_collect, fixture, WHIT_LOG_INFO};
+    assert_int_equal(page_save(&page, path, &log), WHIT_ERROR_MEMORY);
+    assert_int_equal(fixture->errors, 1);
+    assert_int_not_equal(access(path, F_OK), 0);
+    page_finish(&page);
+    free(path);
+}
+
 /* Links would be requests; names of namespaces are none. */
 static void nothing_comes_from_elsewhere(void **state)
 {
@@ -432,6 +450,7 @@ int main(void)
         cmocka_unit_test(text_is_escaped),
         cmocka_unit_test(everything_is_well_formed),
         cmocka_unit_test(nothing_comes_from_elsewhere),
+        cmocka_unit_test_setup_teardown(half_a_page_is_not_saved, fixture_begin, fixture_end),
         cmocka_unit_test(plots_hold_every_point),
         cmocka_unit_test(base64_is_that_of_the_standard),
         cmocka_unit_test(pictures_are_whole),
