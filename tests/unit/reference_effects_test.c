@@ -1,0 +1,240 @@
+/* Every effect at once, by the device and by the reference in double: what the scenes of scenes/
+ * lack. */
+#include "picture_fixture.h"
+#include "reference/reference.h"
+
+enum { SIDE = 48 };
+
+/* 4 x 4 texels of `lowest` and above; alpha from 0 to 255 where wanted. */
+static uint32_t add_noise(struct scene *scene, uint8_t lowest, bool alpha)
+{
+    uint32_t random = 17;
+    struct scene_texture texture = {.name = string_copy("noise"), .width = 4, .height = 4};
+    texture.rgba = malloc(64);
+    assert_non_null(texture.rgba);
+    for (int i = 0; i < 64; ++i)
+        texture.rgba[i] = (uint8_t)(lowest + fixture_random(&random) % (256u - lowest));
+    for (int i = 3; !alpha && i < 64; i += 4)
+        texture.rgba[i] = 255;
+    return scene_add_texture(scene, texture);
+}
+
+static void use_smooth(struct scene_material *m, enum scene_slot slot, uint32_t texture,
+                       float scale, enum scene_wrap wrap)
+{
+    use_texture(m, slot, texture);
+    struct scene_texture_use *use = &m->textures[slot];
+    const float transform[6] = {scale, 0.3f, 0.1f, -0.2f, scale, 0.2f};
+    memcpy(use->transform, transform, sizeof transform);
+    use->nearest = false;
+    use->wrap_u = use->wrap_v = wrap;
+}
+
+static struct scene_mesh ball(double radius)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_sphere(radius, 16, 8, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static struct scene_mesh ring(void)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_torus(0.8, 0.3, 16, 8, &mesh), WHIT_OK);
+    return mesh;
+}
+
+static struct scene_mesh true_ball(float radius)
+{
+    struct scene_mesh mesh = {.sphere_count = 1};
+    mesh.spheres = array_alloc_zeroed(4, sizeof *mesh.spheres);
+    mesh.materials = array_alloc_zeroed(1, sizeof *mesh.materials);
+    assert_true(mesh.spheres && mesh.materials);
+    mesh.spheres[3] = radius;
+    return mesh;
+}
+
+static struct scene_mesh coloured(struct scene_mesh mesh)
+{
+    uint32_t random = 9;
+    mesh.colors = array_alloc_zeroed(mesh.vertex_count, 4 * sizeof *mesh.colors);
+    assert_non_null(mesh.colors);
+    for (uint32_t i = 0; i < 4 * mesh.vertex_count; ++i)
+        mesh.colors[i] = 0.75f + 0.25f * fixture_signed(&random);
+    return mesh;
+}
+
+static struct scene_material glass(float ior, uint32_t priority)
+{
+    struct scene_material m = material("glass");
+    set_rgb(m.diffuse, 0, 0, 0);
+    set_rgb(m.transmission, 0.9f, 1, 0.8f);
+    set_rgb(m.absorption, 0.3f, 0.1f, 0.9f);
+    m.fresnel = true;
+    m.ior = ior;
+    m.priority = priority;
+    return m;
+}
+
+static void add_ground(struct scene *scene)
+{
+    struct scene_material ground = material("ground"), catcher = material("catcher");
+    set_rgb(ground.diffuse, 0.8f, 0.7f, 0.6f);
+    set_rgb(ground.ambient, 1, 1, 1);
+    set_rgb(ground.specular, 0.3f, 0.3f, 0.3f);
+    ground.shininess = 20;
+    use_smooth(&ground, SCENE_SLOT_DIFFUSE, add_noise(scene, 60, false), 7, SCENE_WRAP_REPEAT);
+    use_smooth(&ground, SCENE_SLOT_NORMAL, add_noise(scene, 120, false), 5, SCENE_WRAP_MIRROR);
+    ground.normal_scale = 0.4f;
+    add_object(scene, plane(30), ground, 0, 0, 0);
+    catcher.shadow_catcher = true;
+    add_object(scene, plane(3), catcher, -2, 0.1, 2);
+}
+
+static void add_bodies(struct scene *scene)
+{
+    struct scene_material metal = material("metal"), sheet = material("sheet"),
+                          leaf = material("leaf"), paint = material("paint");
+    metal.model = SCENE_MODEL_METAL_ROUGH;
+    set_rgb(metal.diffuse, 0.9f, 0.7f, 0.3f);
+    set_rgb(metal.specular, 1, 1, 1);
+    metal.metallic = 0.9f;
+    metal.roughness = 0.6f;
+    use_smooth(&metal, SCENE_SLOT_METAL_ROUGH, add_noise(scene, 100, false), 3, SCENE_WRAP_CLAMP);
+    add_object(scene, ball(0.9), metal, 2.2, 0.95, 0);
+    sheet.alpha = SCENE_ALPHA_BLEND;
+    set_rgb(sheet.diffuse, 0.2f, 0.5f, 0.9f);
+    use_smooth(&sheet, SCENE_SLOT_DIFFUSE, add_noise(scene, 30, true), 2, SCENE_WRAP_REPEAT);
+    add_object(scene, box(0.9, 1.5, 0.05), sheet, 1, 0.8, 2.4);
+    leaf.alpha = SCENE_ALPHA_MASK;
+    leaf.alpha_cutoff = 0.45f;
+    set_rgb(leaf.diffuse, 0.3f, 0.8f, 0.2f);
+    set_rgb(leaf.emission, 0.05f, 0.1f, 0);
+    use_smooth(&leaf, SCENE_SLOT_OPACITY, add_noise(scene, 0, true), 2, SCENE_WRAP_REPEAT);
+    use_smooth(&leaf, SCENE_SLOT_BUMP, add_noise(scene, 0, false), 2, SCENE_WRAP_REPEAT);
+    add_object(scene, true_ball(0.6f), leaf, 0.2, 1.9, -1);
+    set_rgb(paint.diffuse, 0.9f, 0.9f, 0.9f);
+    set_rgb(paint.reflection, 0.1f, 0.1f, 0.1f);
+    paint.fresnel = true;
+    paint.one_sided = true;
+    add_object(scene, coloured(ring()), paint, -2.4, 1, -0.5);
+}
+
+static void add_glass(struct scene *scene)
+{
+    add_object(scene, true_ball(0.8f), glass(1.5f, 2), -0.6, 0.85, 1);
+    add_object(scene, box(0.9, 0.9, 0.9), glass(1.33f, 1), -0.3, 0.6, 0.6);
+    struct scene_material pane = glass(1.5f, 0);
+    pane.thin_walled = true;
+    set_rgb(pane.absorption, 0, 0, 0);
+    add_object(scene, box(0.1, 1.2, 1.2), pane, 1.4, 0.7, 1.2);
+}
+
+static void add_lights(struct scene *scene)
+{
+    struct scene_light spot = {.name = string_copy("spot"),
+                               .kind = SCENE_LIGHT_SPOT,
+                               .node = SCENE_NONE,
+                               .position = {3, 5, 3},
+                               .direction = {-0.5, -0.75, -0.4330127},
+                               .falloff = true,
+                               .range = 30,
+                               .cos_inner = 0.97f,
+                               .cos_outer = 0.8f};
+    struct scene_light panel = {.name = string_copy("panel"),
+                                .kind = SCENE_LIGHT_RECTANGLE,
+                                .node = SCENE_NONE,
+                                .position = {-3, 3, -2},
+                                .edge_u = {1.5, 0, 0.2},
+                                .edge_v = {0, 0.5, 1.5}};
+    struct scene_light sail = {.name = string_copy("sail"),
+                               .kind = SCENE_LIGHT_TRIANGLE,
+                               .node = SCENE_NONE,
+                               .position = {-3, 0.5, 3},
+                               .edge_u = {0, 2, 0.5},
+                               .edge_v = {1, 0.5, 0.5},
+                               .two_sided = true};
+    set_rgb(spot.color, 20, 18, 15);
+    set_rgb(panel.color, 2, 2, 3);
+    set_rgb(sail.color, 1, 0.5f, 0.5f);
+    assert_int_not_equal(scene_add_light(scene, spot), SCENE_NONE);
+    assert_int_not_equal(scene_add_light(scene, panel), SCENE_NONE);
+    assert_int_not_equal(scene_add_light(scene, sail), SCENE_NONE);
+    add_lamp(scene, 2, 4, -3, 6);
+    add_sun(scene, 0.3, -1, -0.2, 0.4f);
+}
+
+static struct scene *all_effects(void)
+{
+    struct scene *scene = dark_scene((double[]){0.5, 3, 8}, (double[]){0, 0.8, 0});
+    set_rgb(scene->environment.zenith, 0.2f, 0.3f, 0.6f);
+    set_rgb(scene->environment.horizon, 0.6f, 0.6f, 0.5f);
+    set_rgb(scene->ambient, 0.1f, 0.1f, 0.1f);
+    add_ground(scene);
+    add_bodies(scene);
+    add_glass(scene);
+    add_lights(scene);
+    return scene;
+}
+
+struct difference {
+    uint32_t over; /* 1e-3 of the displayed range, or of the value where it is brighter */
+    double largest;
+};
+
+static struct difference compare(const struct image *a, const struct image *b)
+{
+    struct difference d = {0};
+    for (size_t i = 0; i < (size_t)a->width * a->height; ++i) {
+        double most = 0.0;
+        for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
+            double x = (double)a->pixels[c], y = (double)b->pixels[c];
+            most = fmax(most, fabs(x - y) / fmax(1.0, fabs(y)));
+        }
+        d.over += most > 1e-3;
+        d.largest = fmax(d.largest, most);
+    }
+    return d;
+}
+
+static struct image draw_reference(struct accel *accel, const struct reference_params *params)
+{
+    struct reference *reference = NULL;
+    struct reference_stats stats;
+    struct image image = {0};
+    assert_int_equal(reference_create(&fixture_log, accel, params, &reference), WHIT_OK);
+    assert_int_equal(reference_render(reference, &image, NULL, &stats), WHIT_OK);
+    assert_int_equal(stats.non_finite, 0);
+    reference_destroy(reference);
+    return image;
+}
+
+static void every_effect_agrees_with_the_device(void **state)
+{
+    (void)state;
+    struct reference_params params = {
+        .picture = {.width = SIDE, .height = SIDE, .depth = 6, .samples = 4, .light_samples = 4},
+        .whole_stops = true};
+    struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
+    struct image device = render(&f), whole = draw_reference(f.accel, &params);
+    params.whole_stops = false;
+    struct image ideal = draw_reference(f.accel, &params);
+    struct difference d = compare(&device, &whole), stops = compare(&whole, &ideal);
+    print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
+                  d.over, SIDE * SIDE, d.largest, stops.over, stops.largest);
+    assert_true(d.over * 100 <= SIDE * SIDE);
+    /* Rounding to 1/64 stops: at most 0.6 % of the light of each of four filters on the way. */
+    assert_true(stops.over > 0 && stops.largest < 4 * 0.006);
+    image_finish(&device);
+    image_finish(&whole);
+    image_finish(&ideal);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_effect_agrees_with_the_device),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
