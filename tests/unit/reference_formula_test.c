@@ -405,6 +405,83 @@ static void ray_trees_add_up_to_pixels(void **state)
     close_reference(&d);
 }
 
+/* First rays are those of kernels (render_camera_rays has their bits), but for the roundings of
+ * floats. */
+static void cameras_are_those_of_kernels(void **state)
+{
+    (void)state;
+    static const struct {
+        enum scene_camera_kind kind;
+        float lens;
+    } cameras[] = {{SCENE_CAMERA_PERSPECTIVE, 0.0f},
+                   {SCENE_CAMERA_ORTHOGRAPHIC, 0.0f},
+                   {SCENE_CAMERA_PANORAMA, 0.0f},
+                   {SCENE_CAMERA_PERSPECTIVE, 0.2f}};
+    for (size_t i = 0; i < 4; ++i) {
+        struct scene *scene = dark_scene((double[]){1, 2, 3}, (double[]){0, 0.5, -1});
+        scene->cameras[0].kind = cameras[i].kind;
+        scene->cameras[0].height = 5.0f;
+        scene->cameras[0].lens_radius = cameras[i].lens;
+        add_object(scene, plane(10), material("floor"), 0, 0, 0);
+        const struct render_params picture = {.width = 13, .height = 9, .samples = 4};
+        struct drawn d = open_reference(scene, &picture);
+        struct gpu_frame frame;
+        struct scene_pose pose;
+        uint32_t kind;
+        assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+        assert_int_equal(render_view(&fixture_log, d.accel, &pose, NULL, 13, 9, &frame, &kind),
+                         WHIT_OK);
+        for (uint32_t k = 0; k < 13 * 9 * 4; ++k) {
+            struct gpu_chunk chunk = {0};
+            struct gpu_ray ray;
+            struct rays rays;
+            camera_sample(&frame, k % 4, 4, &chunk);
+            camera_ray(&frame, kind, k / 4 % 13, k / 52, &chunk, &ray);
+            assert_int_equal(
+                reference_ray_tree(d.reference, k / 4 % 13, k / 52, k % 4, &rays.all, &rays.count),
+                WHIT_OK);
+            for (int c = 0; c < 3; ++c) {
+                assert_close(rays.all[0].origin[c], (double)ray.origin[c], 1e-6);
+                assert_close(rays.all[0].dir[c], (double)ray.dir[c], 5e-7);
+            }
+            free(rays.all);
+        }
+        scene_pose_finish(&pose);
+        close_reference(&d);
+    }
+}
+
+/* Trees of every kind hold the same surfaces; in one tree for all they are placed by floats. */
+static void trees_do_not_matter(void **state)
+{
+    (void)state;
+    const struct accel_params trees[] = {{.mesh.builder = BVH_MEDIAN},
+                                         {.mesh.builder = BVH_SPATIAL},
+                                         {.mesh.builder = BVH_NONE},
+                                         {.flatten = true}};
+    const struct reference_params params = {.picture = {.width = 24, .height = 24, .depth = 6}};
+    struct drawn d = open_reference(crowded_scene(), &params.picture);
+    struct image first = draw(&d);
+    for (size_t i = 0; i < sizeof trees / sizeof *trees; ++i) {
+        struct drawn other = {.scene = d.scene};
+        uint32_t over = 0;
+        assert_int_equal(accel_create(&fixture_log, d.scene, &trees[i], &other.accel), WHIT_OK);
+        assert_int_equal(reference_create(&fixture_log, other.accel, &params, &other.reference),
+                         WHIT_OK);
+        struct image image = draw(&other);
+        for (size_t k = 0; k < 4 * 24 * 24; ++k)
+            over += fabs((double)image.pixels[k] - (double)first.pixels[k]) > 1e-4;
+        assert_true(trees[i].flatten ? over <= 4 * 3 : over == 0);
+        if (!trees[i].flatten)
+            assert_memory_equal(image.pixels, first.pixels, 24 * 24 * 4 * sizeof(float));
+        image_finish(&image);
+        reference_destroy(other.reference);
+        accel_destroy(other.accel);
+    }
+    image_finish(&first);
+    close_reference(&d);
+}
+
 static void what_it_cannot_draw_is_refused(void **state)
 {
     (void)state;
@@ -447,6 +524,8 @@ int main(void)
         cmocka_unit_test(filters_multiply),
         cmocka_unit_test(threads_draw_the_same_bytes),
         cmocka_unit_test(ray_trees_add_up_to_pixels),
+        cmocka_unit_test(cameras_are_those_of_kernels),
+        cmocka_unit_test(trees_do_not_matter),
         cmocka_unit_test(what_it_cannot_draw_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
