@@ -2,9 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/boxes.h"
 #include "accel/bvh_file.h"
 #include "accel/report.h"
 #include "api/handles.h"
+#include "base/array.h"
 #include "base/clock.h"
 
 #ifdef NDEBUG
@@ -183,5 +185,49 @@ whit_result whit_accel_get_report(const whit_accel *handle, whit_accel_report *r
     };
     memcpy(report->leaves_at_depth, inner.leaves_at_depth, sizeof report->leaves_at_depth);
     memcpy(report->leaves_of_size, inner.leaves_of_size, sizeof report->leaves_of_size);
+    return WHIT_OK;
+}
+
+/* ---- Boxes ---- */
+
+_Static_assert(sizeof(whit_box) == sizeof(struct accel_box), "boxes are handed on as they are");
+
+struct box_list {
+    struct accel_box *boxes;
+    uint32_t count, capacity;
+    uint64_t most, total;
+    bool failed;
+};
+
+static bool add_box(void *user, const struct accel_box *box)
+{
+    struct box_list *list = user;
+    if (list->total++ >= list->most)
+        return true;
+    list->failed = !ARRAY_PUSH(list->boxes, list->count, list->capacity, *box);
+    return !list->failed;
+}
+
+whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
+                             uint32_t level, uint64_t most, whit_box **boxes, uint64_t *total)
+{
+    struct box_list list = {.most = most};
+    struct scene_pose pose = {0};
+    *boxes = NULL;
+    *total = 0;
+    whit_result result = scene_pose_init(accel->accel->scene, time_s, &pose);
+    if (result == WHIT_OK)
+        accel_boxes(accel->accel, &pose, over_instances, level, add_box, &list);
+    scene_pose_finish(&pose);
+    if (list.failed) {
+        log_error(&accel->log, "out of memory for the boxes of trees");
+        result = WHIT_ERROR_MEMORY;
+    }
+    if (result != WHIT_OK) {
+        free(list.boxes);
+        return result;
+    }
+    *boxes = (whit_box *)list.boxes;
+    *total = list.total;
     return WHIT_OK;
 }

@@ -201,6 +201,21 @@ typedef struct whit_accel_report {
 } whit_accel_report;
 WHIT_CHECK whit_result whit_accel_get_report(const whit_accel *accel, whit_accel_report *report);
 
+/* A box of a tree's node, in world space: parallel to the axes of its own space, not always to the
+   world's. Corner i has the upper end of axis k where bit k of i is set. */
+typedef struct whit_box {
+    float corners[8][3];
+    uint32_t instance; /* WHIT_NONE: of the tree over instances, or of one tree over all of them */
+    uint32_t level;    /* the root is 0 */
+    bool leaf;
+} whit_box;
+/* The nodes at `level`, and the leaves above it, of the tree over instances, or of the mesh trees of
+   every instance, at `time_s`, which the accel must stand at. At most `most` of them; *boxes is one
+   block, free() it. *total: how many there are. */
+WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
+                                        uint32_t level, uint64_t most, whit_box **boxes,
+                                        uint64_t *total);
+
 /* ---- Devices ---- */
 
 typedef struct whit_device_info {

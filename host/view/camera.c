@@ -202,17 +202,33 @@ bool camera_from_text(const char *text, struct view_camera *camera)
     return length(side) > 0.0 && n[9] > 0.0 && n[9] < 180.0;
 }
 
-bool camera_project(const struct view_camera *camera, const double point[3], double width,
-                    double height, double *x, double *y)
+bool camera_project(const struct view_camera *camera, const double a[3], const double b[3],
+                    double width, double height, double line[4])
 {
     struct frame f = frame_of(camera);
-    double d[3], focal = 0.5 * height / tan(camera->fov_y_degrees * PI / 360.0);
-    for (int i = 0; i < 3; ++i)
-        d[i] = point[i] - camera->eye[i];
-    double depth = dot(d, f.forward);
-    if (!(depth > 0.0))
+    double focal = 0.5 * height / tan(camera->fov_y_degrees * PI / 360.0);
+    double near = 1e-3 * f.distance; /* part of the picture's own scale */
+    double ends[2][3];
+    for (int e = 0; e < 2; ++e) {
+        double d[3];
+        for (int i = 0; i < 3; ++i)
+            d[i] = (e ? b : a)[i] - camera->eye[i];
+        ends[e][0] = dot(d, f.right);
+        ends[e][1] = dot(d, f.up);
+        ends[e][2] = dot(d, f.forward);
+    }
+    if (ends[0][2] < near && ends[1][2] < near)
         return false;
-    *x = 0.5 * width + focal * dot(d, f.right) / depth;
-    *y = 0.5 * height - focal * dot(d, f.up) / depth;
+    for (int e = 0; e < 2; ++e) {
+        double *end = ends[e];
+        const double *other = ends[1 - e];
+        if (end[2] < near) {
+            double part = (near - end[2]) / (other[2] - end[2]);
+            for (int i = 0; i < 3; ++i)
+                end[i] += part * (other[i] - end[i]);
+        }
+        line[2 * e] = 0.5 * width + focal * end[0] / end[2];
+        line[2 * e + 1] = 0.5 * height - focal * end[1] / end[2];
+    }
     return true;
 }

@@ -34,9 +34,9 @@ void camera_to_text(const struct view_camera *camera, char *text, size_t text_by
 /* False where the text is no such list of numbers that makes a camera. */
 bool camera_from_text(const char *text, struct view_camera *camera);
 
-/* Where a point is in a picture of width x height: pixels from the upper left. False behind the
-   eye. */
-bool camera_project(const struct view_camera *camera, const double point[3], double width,
-                    double height, double *x, double *y);
+/* Where the part in front of the eye of a line from `a` to `b` is, in a picture of width x height:
+   pixels x0, y0, x1, y1 from the upper left. False where all of it is behind. */
+bool camera_project(const struct view_camera *camera, const double a[3], const double b[3],
+                    double width, double height, double line[4]);
 
 #endif

@@ -25,7 +25,7 @@ void engine_ask(struct engine *engine, const struct view_settings *settings, boo
    NULL: no more. */
 void engine_ask_other(struct engine *engine, const struct view_settings *settings);
 
-enum { ENGINE_MESSAGE = 512 };
+enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MOST = 8192 };
 
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {
@@ -39,6 +39,8 @@ struct engine_frame {
     uint32_t samples;                /* a pixel; adaptive: 0 */
     bool whole;                      /* full size and all samples: what `whit render` makes */
     double scale;                    /* of a heat map */
+    whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MOST */
+    uint64_t boxes_total;            /* that there are */
     whit_stats stats;
     whit_accel_info accel;
     whit_device_info device;

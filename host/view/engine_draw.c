@@ -103,6 +103,19 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
     return result;
 }
 
+static whit_result read_boxes(const struct engine_task *task, struct engine_frame *frame)
+{
+    const struct view_settings *s = &task->settings;
+    uint64_t count = 0;
+    if (s->boxes == VIEW_BOXES_OFF)
+        return WHIT_OK;
+    whit_result result =
+        whit_accel_boxes(task->session->accel, s->picture.time_s, s->boxes == VIEW_BOXES_INSTANCES,
+                         s->boxes_level, ENGINE_BOXES_MOST, &frame->boxes, &count);
+    frame->boxes_total = count;
+    return result;
+}
+
 /* The parameters of the picture; its camera's text is the session's own. */
 static whit_renderer_params task_params(const struct engine_task *task)
 {
@@ -144,6 +157,8 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     if (result == WHIT_OK)
         result = read_picture(task, frame);
     if (result == WHIT_OK)
+        result = read_boxes(task, frame);
+    if (result == WHIT_OK)
         whit_renderer_get_stats(session->renderer, &frame->stats);
     return result;
 }
@@ -153,6 +168,7 @@ void engine_frame_finish(struct engine_frame *frame)
     whit_image_destroy(frame->color);
     whit_image_destroy(frame->ids);
     free(frame->rgba);
+    free(frame->boxes);
     scene_ref_drop(frame->scene);
     *frame = (struct engine_frame){0};
 }

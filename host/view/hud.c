@@ -179,8 +179,30 @@ static void draw_messages(const struct view *view)
     ui_panel_end();
 }
 
+static void draw_boxes(const struct view *view)
+{
+    static const char *const trees[] = {"", "mesh trees", "instance tree"};
+    const struct engine_frame *frame = &view->frame;
+    const struct view_settings *s = &frame->settings;
+    if (s->boxes == VIEW_BOXES_OFF)
+        return;
+    overlay_boxes(view);
+    if (ui_panel_begin("boxes", 1.0f, 0.0f, UI_PANEL_PLAIN)) {
+        ui_text("%s, level %u", trees[s->boxes], s->boxes_level);
+        ui_text("%llu boxes%s", (unsigned long long)frame->boxes_total,
+                frame->boxes_total > ENGINE_BOXES_MOST ? ", the first 8192 are drawn" : "");
+        ui_text_color(0xFFFFC060u, "inner nodes");
+        ui_same_line(0);
+        ui_text_color(0xFF20A0FFu, "leaves, also from above");
+        if (!overlay_is_possible(view))
+            ui_text_color(COLOR_WARNING, "not drawn: the camera is not perspective");
+    }
+    ui_panel_end();
+}
+
 void hud_draw(struct view *view)
 {
+    draw_boxes(view);
     draw_hud(view);
     draw_help(view);
     draw_work(view);

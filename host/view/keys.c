@@ -9,7 +9,7 @@
 #include "view/view_private.h"
 
 static const double ESCAPE_MS = 1500.0; /* between the two that quit */
-enum { DEPTH_DEFAULT = 8, DEPTH_MOST = 255 };
+enum { DEPTH_DEFAULT = 8, DEPTH_MOST = 255, BOXES_LEVEL_MOST = 127 };
 static const double ADAPTIVE_DEFAULT = 0.05;
 
 /* ---- What rays do ---- */
@@ -213,6 +213,36 @@ static void say_scale(const struct view *view, char *text, size_t bytes)
         snprintf(text, bytes, "%g", view->settings.paint_scale);
     else
         snprintf(text, bytes, "by the picture");
+}
+
+/* ---- Boxes of trees ---- */
+
+static void next_boxes(struct view *view)
+{
+    view->settings.boxes = (view->settings.boxes + 1) % VIEW_BOXES_COUNT;
+}
+
+static void say_boxes(const struct view *view, char *text, size_t bytes)
+{
+    static const char *const names[VIEW_BOXES_COUNT] = {"off", "of meshes", "of instances"};
+    snprintf(text, bytes, "%s", names[view->settings.boxes]);
+}
+
+static void deeper_boxes(struct view *view)
+{
+    if (view->settings.boxes != VIEW_BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MOST)
+        ++view->settings.boxes_level;
+}
+
+static void higher_boxes(struct view *view)
+{
+    if (view->settings.boxes != VIEW_BOXES_OFF && view->settings.boxes_level > 0)
+        --view->settings.boxes_level;
+}
+
+static void say_level(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%u", view->settings.boxes_level);
 }
 
 /* ---- Cameras ---- */
@@ -483,6 +513,9 @@ static const struct key_binding bindings[] = {
     {'[', 0, "[", "half the scale of costs", less_scale, NULL},
     {']', 0, "]", "twice the scale", more_scale, say_scale},
     {'\\', 0, "\\", "scale by the picture", own_scale, NULL},
+    {'N', 0, "N", "boxes of trees", next_boxes, say_boxes},
+    {'J', 0, "J", "a level deeper", deeper_boxes, NULL},
+    {'J', EVENT_SHIFT, "Shift+J", "a level higher", higher_boxes, say_level},
     {KEY_HOME, 0, "Home", "all of the scene", fit_scene, NULL},
     {'0', 0, "0", "next camera of the file", next_file_camera, say_camera},
     {'1', 0, "1", "from the front", look_front, NULL},

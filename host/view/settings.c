@@ -44,7 +44,8 @@ bool settings_same(const struct view_settings *a, const struct view_settings *b)
     return settings_same_kernel(a, b) && settings_same_place(a, b) && p->samples == q->samples &&
            p->adaptive == q->adaptive && p->depth == q->depth && p->bailout == q->bailout &&
            p->light_samples == q->light_samples && a->paint == b->paint &&
-           a->paint_rays == b->paint_rays && a->paint_scale == b->paint_scale;
+           a->paint_rays == b->paint_rays && a->paint_scale == b->paint_scale &&
+           a->boxes == b->boxes && a->boxes_level == b->boxes_level;
 }
 
 whit_renderer_params settings_picture(const struct view_settings *settings)

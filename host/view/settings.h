@@ -18,6 +18,8 @@ enum view_paint {
     VIEW_PAINT_COUNT,
 };
 
+enum view_boxes { VIEW_BOXES_OFF, VIEW_BOXES_MESHES, VIEW_BOXES_INSTANCES, VIEW_BOXES_COUNT };
+
 struct view_settings {
     char scene[VIEW_PATH];
     uint32_t reload;        /* another number: the scene is read again */
@@ -36,6 +38,8 @@ struct view_settings {
     uint32_t paint;      /* enum view_paint */
     uint32_t paint_rays; /* whit_ray_kind, or WHIT_RAY_KINDS: all */
     double paint_scale;  /* 0: by the picture */
+    uint32_t boxes;      /* enum view_boxes, drawn over the picture */
+    uint32_t boxes_level;
 };
 
 /* Whether a renderer that was made for `a` draws `b` by whit_renderer_set_view alone. */

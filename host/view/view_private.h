@@ -89,6 +89,13 @@ void view_use_camera(struct view *view, int index);
 bool view_bounds(const struct view *view, double lo[3], double hi[3]);
 double view_aspect(const struct view *view);
 
+/* overlay.c: lines in the scene, between ui_begin and ui_end. Cameras that are not perspective have
+   none. */
+bool overlay_is_possible(const struct view *view);
+void overlay_line(const struct view *view, const double a[3], const double b[3], uint32_t color,
+                  float width);
+void overlay_boxes(const struct view *view);
+
 /* input.c */
 void input_event(struct view *view, const struct view_event *event);
 /* Obeys keys that are held, and the animation; true where something moves on by itself. */
