@@ -15,6 +15,7 @@ enum view_id {
     ID_FRAMES_SHOWN,
     ID_RECORD,
     ID_REPLAY,
+    ID_REMEMBER,
 };
 
 static const struct cli_option options[] = {
@@ -28,6 +29,9 @@ static const struct cli_option options[] = {
     {ID_FRAMES_SHOWN, "frames", "N", "end after N pictures were shown"},
     {ID_RECORD, "record", "FILE", "write down what the user does"},
     {ID_REPLAY, "replay", "FILE", "do what FILE says, and end"},
+    {ID_REMEMBER, "remember", "yes|no",
+     "cameras of scenes, from one run to the next (yes; no with\n"
+     "--record and --replay)"},
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_VIEW,
@@ -45,11 +49,16 @@ static const char *const start_hint = "Drag turns the camera, the wheel comes ne
                                       "keys. Drop a scene here to open it.";
 
 static void read_option(struct cli_reader *reader, int id, struct job *job,
-                        struct render_request *request, struct view_params *view)
+                        struct render_request *request, struct view_params *view,
+                        uint32_t *remember)
 {
+    static const char *const answers[] = {"no", "yes", NULL};
     if (job_option(job, reader, id) || picture_option(reader, id, request))
         return;
     switch (id) {
+    case ID_REMEMBER:
+        cli_choice(reader, answers, remember);
+        break;
     case ID_FULLSCREEN:
         view->fullscreen = true;
         break;
@@ -288,14 +297,16 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct job job;
     struct render_request request = picture_request_default();
     struct view_params view = {0};
+    uint32_t remember = 2; /* not said */
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &job, &request, &view);
+        read_option(&reader, id, &job, &request, &view, &remember);
     if (!reader.positional && reader.status < 0)
         reader.positional = ""; /* the start scene */
     if (!job_options_done(&job, &reader) || !view_check(&reader, &request.view))
         return reader.status;
+    view.remember = remember == 2 ? !view.record && !view.replay : remember == 1;
     if (job.scene_path && !job.scene_path[0])
         job.scene_path = NULL;
     int status = work(&job, &request, &view);

@@ -7,12 +7,15 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/watch.h"
 #include "kernels.h"
+#include "view/memory.h"
 #include "view/view_private.h"
 
 static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */
 static const double TOAST_MS = 4000.0;
 static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
+static const double WATCH_S = 0.25;   /* between looks at the scene's files */
 static const double IDLE_S = 5.0;
 
 void view_say(struct view *view, const char *format, ...)
@@ -110,6 +113,39 @@ static void learn_camera(struct view *view)
         read_camera(view, (uint32_t)view->file_camera);
 }
 
+/* What the user made of the scene's camera, for the next time. */
+static void remember_camera(const struct view *view)
+{
+    bool by_hand = view->file_camera < 0;
+    if (view->params->remember && view->camera_known)
+        memory_keep(&view->log, view->settings.scene, by_hand ? view->settings.camera : "");
+}
+
+static void recall_camera(struct view *view)
+{
+    struct view_camera camera;
+    char text[VIEW_TEXT];
+    if (view->params->remember && !view->settings.camera[0] &&
+        memory_find(view->settings.scene, text, sizeof text) && camera_from_text(text, &camera))
+        memcpy(view->settings.camera, text, sizeof text);
+}
+
+/* Its own file, and those of its materials. */
+static void watch_scene(struct view *view)
+{
+    const struct scene_ref *ref = view->scene;
+    const char *last = NULL;
+    watch_clear(view->watch);
+    watch_add(view->watch, ref->settings.scene);
+    for (uint32_t i = 0; i < ref->info.material_count; ++i) {
+        whit_material_info info;
+        whit_scene_get_material(ref->scene, i, &info);
+        if (info.file && (!last || strcmp(last, info.file) != 0))
+            watch_add(view->watch, info.file);
+        last = info.file;
+    }
+}
+
 void view_open(struct view *view, const char *path)
 {
     char old[VIEW_PATH];
@@ -117,6 +153,7 @@ void view_open(struct view *view, const char *path)
         view_say(view, "the path is too long");
         return;
     }
+    remember_camera(view);
     memcpy(old, view->settings.scene, sizeof old);
     snprintf(view->settings.scene, sizeof view->settings.scene, "%s", path);
     if (strcmp(old, path) == 0)
@@ -125,6 +162,7 @@ void view_open(struct view *view, const char *path)
     view->settings.picture.time_s = 0.0;
     view->camera_known = false;
     view->hint = false;
+    recall_camera(view);
     view->dirty = true;
 }
 
@@ -157,8 +195,10 @@ static whit_result take_frame(struct view *view)
     scene_ref_drop(view->scene);
     view->scene = scene_ref_take(frame->scene);
     view->fallback = frame->settings;
-    if (other_scene)
+    if (other_scene) {
         set_title(view);
+        watch_scene(view);
+    }
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
         learn_camera(view);
     count_picture(view);
@@ -280,6 +320,8 @@ static double wait_seconds(const struct view *view, double now_ms, bool goes_on)
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE)
         wait = fmin(wait, PROGRESS_S);
+    if (view->watch)
+        wait = fmin(wait, WATCH_S);
     if (view->replay)
         wait = fmin(wait, 0.005);
     return wait + 1e-3;
@@ -310,6 +352,10 @@ static whit_result step(struct view *view)
     take_events(view);
     now_ms = clock_ms();
     (void)replay_step(view, now_ms);
+    if (watch_changed(view->watch)) {
+        ++view->settings.reload;
+        view_say(view, "%s was written: reading it again", path_name(view->settings.scene));
+    }
     if (view->toast[0] && now_ms >= view->toast_until_ms) {
         view->toast[0] = '\0';
         view->dirty = true;
@@ -375,7 +421,9 @@ static whit_result open_all(struct view *view)
 
 static void close_all(struct view *view, uint32_t *validation)
 {
+    remember_camera(view);
     replay_close(view);
+    watch_destroy(view->watch);
     engine_destroy(view->engine);
     engine_frame_finish(&view->frame);
     scene_ref_drop(view->scene);
@@ -403,6 +451,8 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
         if (strcmp(params->scenes[i], params->settings.scene) == 0)
             view->scene_index = i;
     }
+    view->watch = watch_create();
+    recall_camera(view);
     whit_result result = open_all(view);
     while (result == WHIT_OK && !is_over(view))
         result = step(view);

@@ -22,6 +22,7 @@ struct view_params {
     const char *record; /* where events go, or NULL */
     const char *replay; /* where they come from, or NULL */
     const char *hint;   /* shown at first, or NULL */
+    bool remember;      /* cameras, from one run to the next */
     const char *const
         *scenes; /* for the arrows, borrowed; settings.scene need not be one of them */
     uint32_t scene_count;

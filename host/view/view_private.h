@@ -69,6 +69,7 @@ struct view {
     uint32_t shown; /* pictures */
     bool picture_set;
 
+    struct watch *watch; /* on the scene's files; NULL: not possible */
     struct replay *replay;
     FILE *record;
     double record_ms;

@@ -1,0 +1,179 @@
+/* The camera that the user moves. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "view/camera.h"
+
+static double distance(const double a[3], const double b[3])
+{
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static struct view_camera front(void)
+{
+    return (struct view_camera){.eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y_degrees = 60.0};
+}
+
+static void assert_near(double a, double b)
+{
+    if (!(fabs(a - b) < 1e-9))
+        fail_msg("%.17g and %.17g", a, b);
+}
+
+static void orbits_keep_distance_and_stay_below_the_pole(void **state)
+{
+    (void)state;
+    struct view_camera c = front();
+    camera_orbit(&c, 1.5707963267948966, 0.0); /* to the right: the eye goes to the left */
+    assert_near(c.eye[0], -5.0);
+    assert_near(c.eye[2], 0.0);
+    for (int i = 0; i < 1000; ++i) {
+        camera_orbit(&c, 0.1 * i, i % 3 ? 0.4 : -0.3);
+        assert_near(distance(c.eye, c.target), 5.0);
+        assert_true(fabs(c.eye[1]) < 5.0 * 0.999);
+    }
+}
+
+static void turning_moves_the_target_alone(void **state)
+{
+    (void)state;
+    struct view_camera c = front();
+    camera_turn(&c, 1.5707963267948966, 0.0);
+    assert_near(c.eye[2], 5.0);
+    assert_near(c.target[0], 5.0); /* to the right */
+    assert_near(c.target[2], 5.0);
+}
+
+static void flying_is_by_the_distance(void **state)
+{
+    (void)state;
+    struct view_camera c = front();
+    camera_fly(&c, 0.0, 0.0, 0.5);
+    assert_near(c.eye[2], 2.5);
+    assert_near(c.target[2], -2.5);
+    camera_fly(&c, 1.0, 0.2, 0.0);
+    assert_near(c.eye[0], 5.0);
+    assert_near(c.eye[1], 1.0);
+}
+
+static void zoom_never_reaches_the_target(void **state)
+{
+    (void)state;
+    struct view_camera c = front();
+    camera_zoom(&c, 0.5);
+    assert_near(c.eye[2], 2.5);
+    for (int i = 0; i < 5000; ++i)
+        camera_zoom(&c, 0.5);
+    assert_true(distance(c.eye, c.target) > 0.0);
+    c.target[0] = c.eye[0] = 1e7;
+    for (int i = 0; i < 5000; ++i)
+        camera_zoom(&c, 0.5);
+    assert_true((float)c.eye[2] != (float)c.target[2] || (float)c.eye[0] != (float)c.target[0]);
+}
+
+/* All corners of the box are in the picture, whatever its shape. */
+static void all_of_a_box_is_shown(void **state)
+{
+    (void)state;
+    const double lo[3] = {-3, 1, 10}, hi[3] = {9, 2, 11};
+    const double aspects[] = {0.3, 1.0, 1.7, 5.0};
+    for (int i = 0; i < 4; ++i) {
+        struct view_camera c;
+        double height = 100.0, width = height * aspects[i];
+        camera_fit(&c, lo, hi, aspects[i]);
+        for (int corner = 0; corner < 8; ++corner) {
+            double p[3], line[4];
+            for (int k = 0; k < 3; ++k)
+                p[k] = corner >> k & 1 ? hi[k] : lo[k];
+            assert_true(camera_project(&c, p, p, width, height, line));
+            assert_true(line[0] > 0.0 && line[0] < width && line[1] > 0.0 && line[1] < height);
+        }
+    }
+    const double nothing_lo[3] = {INFINITY, INFINITY, INFINITY};
+    const double nothing_hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    struct view_camera c;
+    camera_fit(&c, nothing_lo, nothing_hi, 1.0);
+    for (int k = 0; k < 3; ++k)
+        assert_true(isfinite(c.eye[k]) && isfinite(c.target[k]));
+}
+
+static void along_axes(void **state)
+{
+    (void)state;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int from = -1; from <= 1; from += 2) {
+            struct view_camera c = front();
+            char text[256];
+            struct view_camera back;
+            camera_along(&c, axis, from);
+            assert_near(c.eye[axis], 5.0 * from);
+            assert_near(distance(c.eye, c.target), 5.0);
+            camera_to_text(&c, text, sizeof text);
+            assert_true(camera_from_text(text, &back)); /* up is not along the look */
+        }
+    }
+}
+
+static void text_goes_there_and_back(void **state)
+{
+    (void)state;
+    struct view_camera c = front(), back;
+    char text[256], again[256];
+    camera_orbit(&c, 0.7, 0.3);
+    camera_to_text(&c, text, sizeof text);
+    assert_true(camera_from_text(text, &back));
+    camera_to_text(&back, again, sizeof again);
+    assert_string_equal(text, again);
+    static const char *const wrong[] = {
+        "",
+        "0",
+        "camera",
+        "0,0,5,0,0,0,0,1,0",
+        "0,0,5,0,0,0,0,1,0,60,1",
+        "0,0,5,0,0,0,0,1,0,180",
+        "0,0,5,0,0,0,0,0,1,60",
+        "0,0,5,0,0,5,0,1,0,60",
+        "nan,0,5,0,0,0,0,1,0,60",
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i)
+        assert_false(camera_from_text(wrong[i], &back));
+}
+
+static void lines_are_cut_at_the_eye(void **state)
+{
+    (void)state;
+    struct view_camera c = front();
+    const double ahead[3] = {0, 0, 0}, aside[3] = {1, 1, 0}, behind[3] = {1, 0, 9};
+    double line[4];
+    assert_true(camera_project(&c, ahead, aside, 200.0, 100.0, line));
+    assert_near(line[0], 100.0);
+    assert_near(line[1], 50.0);
+    double focal = 50.0 / tan(0.5235987755982988);
+    assert_near(line[2], 100.0 + focal / 5.0);
+    assert_near(line[3], 50.0 - focal / 5.0);
+    assert_true(camera_project(&c, ahead, behind, 200.0, 100.0, line));
+    assert_true(isfinite(line[2]) && line[2] > 100.0);
+    assert_false(camera_project(&c, behind, behind, 200.0, 100.0, line));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(orbits_keep_distance_and_stay_below_the_pole),
+        cmocka_unit_test(turning_moves_the_target_alone),
+        cmocka_unit_test(flying_is_by_the_distance),
+        cmocka_unit_test(zoom_never_reaches_the_target),
+        cmocka_unit_test(all_of_a_box_is_shown),
+        cmocka_unit_test(along_axes),
+        cmocka_unit_test(text_goes_there_and_back),
+        cmocka_unit_test(lines_are_cut_at_the_eye),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
