@@ -6,10 +6,6 @@
 
 #include "base/array.h"
 
-/* Of a kernel with its constants filled in; making a larger one flat takes longer than its first
-   pipeline then saves. */
-enum { FLAT_INSTRUCTIONS_MOST = 8000 };
-
 static VkDescriptorType descriptor_type(enum binding_kind kind)
 {
     return kind == BINDING_TEXELS ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
@@ -99,51 +95,31 @@ fail:
     return result;
 }
 
-/* In place of its words the same without calls, where the driver wins more by that than it costs. A
-   kernel that cannot be made flat stays as it is. */
-static void flatten_kernel(struct kernel_words *kernel)
-{
-    uint32_t *flat = NULL;
-    size_t word_count = 0;
-    if (spirv_flatten(kernel->specialized, kernel->word_count, &flat, &word_count)) {
-        free(kernel->specialized);
-        kernel->specialized = flat;
-        kernel->word_count = word_count;
-    }
-    kernel->flat = true;
-}
-
-enum kernel_use {
-    KERNEL_TO_COUNT, /* its info alone */
-    KERNEL_TO_RUN,
-    KERNEL_WITH_CALLS, /* to run, not flat */
-};
-
-static bool specialize_kernel(const struct pipeline_params *params, enum kernel_use use,
-                              struct kernel_words *out)
+static bool fill_in(const struct pipeline_params *params, bool with_calls, struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
-    bool kept = kernel_cache_load(params, out);
-    if (kept && out->flat && use == KERNEL_WITH_CALLS) {
+    *out = (struct kernel_words){.word_count = word_count};
+    out->flat =
+        !with_calls && spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
+                                      &out->specialized, &out->word_count);
+    return out->flat || spirv_specialize(params->spirv, word_count, params->spec,
+                                         params->spec_count, &out->specialized, &out->word_count);
+}
+
+static bool specialize_kernel(const struct pipeline_params *params, bool with_calls,
+                              struct kernel_words *out)
+{
+    if (kernel_cache_load(params, out)) {
+        if (!out->flat || !with_calls)
+            return true;
         free(out->specialized);
-        kept = false;
     }
-    if (!kept) {
-        *out = (struct kernel_words){.word_count = word_count};
-        if (!spirv_specialize(params->spirv, word_count, params->spec, params->spec_count,
-                              &out->specialized, &out->word_count) ||
-            !spirv_inspect(out->specialized, out->word_count, &out->info)) {
-            free(out->specialized);
-            *out = (struct kernel_words){.word_count = word_count};
-            return false;
-        }
+    if (!fill_in(params, with_calls, out) ||
+        !spirv_inspect(out->specialized, out->word_count, &out->info)) {
+        free(out->specialized);
+        return false;
     }
-    bool flattens =
-        use == KERNEL_TO_RUN && !out->flat && out->info.instructions <= FLAT_INSTRUCTIONS_MOST;
-    if (flattens)
-        flatten_kernel(out);
-    if (!kept || flattens)
-        kernel_cache_save(params, out);
+    kernel_cache_save(params, out);
     return true;
 }
 
@@ -159,9 +135,8 @@ static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_para
 {
     struct pipeline_info *info = &pipeline->info;
     /* GPU-assisted checks make of a flat kernel what lavapipe refuses (VK_ERROR_UNKNOWN). */
-    enum kernel_use use =
-        pipeline->device->validation_of_shaders ? KERNEL_WITH_CALLS : KERNEL_TO_RUN;
-    info->specialized = !specializing_is_off() && specialize_kernel(params, use, kernel);
+    bool with_calls = pipeline->device->validation_of_shaders;
+    info->specialized = !specializing_is_off() && specialize_kernel(params, with_calls, kernel);
     if (!info->specialized) {
         *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
         if (!specializing_is_off())
@@ -190,7 +165,7 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
 {
     struct kernel_words kernel;
     *info = (struct pipeline_info){0};
-    if (!specialize_kernel(params, KERNEL_TO_COUNT, &kernel))
+    if (!specialize_kernel(params, false, &kernel))
         return false;
     free(kernel.specialized);
     *info = (struct pipeline_info){

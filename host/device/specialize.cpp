@@ -58,23 +58,6 @@ std::vector<uint32_t> specialize(const uint32_t *words, size_t word_count, const
     return run(optimizer, words, word_count);
 }
 
-std::vector<uint32_t> flatten(const uint32_t *words, size_t word_count)
-{
-    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
-    // Functions that return early are not inlined.
-    optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
-        .RegisterPass(spvtools::CreateInlineExhaustivePass())
-        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-        .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
-        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass())
-        .RegisterPass(spvtools::CreateCCPPass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateBlockMergePass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass());
-    return run(optimizer, words, word_count);
-}
-
 // malloc()ed, for C; false when there is nothing, or no memory.
 bool hand_over(const std::vector<uint32_t> &words, uint32_t **out, size_t *out_words)
 {
@@ -142,13 +125,6 @@ bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *
                       uint32_t spec_count, uint32_t **out, size_t *out_words)
 try {
     return hand_over(specialize(words, word_count, spec, spec_count), out, out_words);
-} catch (const std::exception &) {
-    return false;
-}
-
-bool spirv_flatten(const uint32_t *words, size_t word_count, uint32_t **out, size_t *out_words)
-try {
-    return hand_over(flatten(words, word_count), out, out_words);
 } catch (const std::exception &) {
     return false;
 }

@@ -13,21 +13,22 @@ extern "C" {
 #endif
 
 /* `spec[i]` is the value of constant i. *out is malloc()ed, free() it; *out_words counts words.
-   Operations keep their order and their NoContraction, so results keep their bits. False when the
+   Operations keep their order and their NoContraction, so results keep their bits. */
+
+/* One function without calls, in a few ms, of a kernel as glslang makes it (see evaluate.h). False
+   and *out NULL when it is no such kernel, or memory runs out. */
+bool spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                    uint32_t spec_count, uint32_t **out, size_t *out_words);
+
+/* By SPIRV-Tools, of any kernel and with its calls, in a hundred times as long. False when the
    optimizer refuses or memory runs out: then the module is to be used as it is. */
 bool spirv_specialize(const uint32_t *words, size_t word_count, const uint32_t *spec,
                       uint32_t spec_count, uint32_t **out, size_t *out_words);
 
-/* A specialized module with all functions inlined, so that locals which callers and callees share
-   become values. Operations as above; what it computes is the same. Twice to four times the
-   instructions, which drivers have to make of it anyway, and more slowly: lavapipe reads a plain
-   scene's kernel in two fifths of the time, one with every effect in two thirds. */
-bool spirv_flatten(const uint32_t *words, size_t word_count, uint32_t **out, size_t *out_words);
-
-/* Of the library that does it; never NULL. */
+/* Of SPIRV-Tools; never NULL. */
 const char *spirv_tools_version(void);
 
-/* What a module has in its functions. */
+/* What a module has in its functions. What is called twice is there twice where calls are gone. */
 struct spirv_info {
     uint32_t instructions;
     uint64_t bindings; /* bit i: a function names a variable bound to binding i of set 0 */

@@ -114,8 +114,8 @@ char *cache_folder(bool make);
 struct kernel_words {
     uint32_t *specialized; /* owned; NULL: as it came */
     size_t word_count;
-    bool flat;              /* see spirv_flatten */
-    struct spirv_info info; /* before it was made flat */
+    bool flat; /* without calls, see spirv_evaluate */
+    struct spirv_info info;
 };
 
 /* kernel_cache.c: specialized kernels of earlier runs. */

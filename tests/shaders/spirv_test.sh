@@ -6,7 +6,8 @@
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$1" "$folder" > "$folder/constants"
+dump=$1
+"$dump" "$folder" > "$folder/constants"
 validations=0
 
 validate() {
@@ -43,6 +44,12 @@ specialise() {
     validate "$folder/variant" "$1 with $2"
 }
 
+# evaluate KERNEL "id:value id:value ...": the same as drivers get it.
+evaluate() {
+    "$dump" "$folder/evaluated" "$(basename "$1" .spv)" "$2" || { echo "$1 with $2 is refused"; exit 1; }
+    validate "$folder/evaluated" "$1 with $2, evaluated"
+}
+
 switches=$(awk '$3 <= 1 && $2 != "SPEC_GROUP_SIZE" { print $1 }' "$folder/constants")
 [ -n "$switches" ]
 none=
@@ -57,10 +64,13 @@ for kernel in "$folder"/*.spv; do
     validate "$kernel" "$kernel"
     specialise "$kernel" "0:64 2:1$none"
     specialise "$kernel" "0:64 2:64$all"
+    evaluate "$kernel" "0:64 2:1$none"
     for id in $switches; do
-        specialise "$kernel" "$(echo "0:64 2:24$all" | sed "s/ $id:1/ $id:0/")"
+        less=$(echo "0:64 2:24$all" | sed "s/ $id:1/ $id:0/")
+        specialise "$kernel" "$less"
+        evaluate "$kernel" "$less"
         specialise "$kernel" "$(echo "0:64 2:24$none" | sed "s/ $id:0/ $id:1/")"
     done
 done
 echo "$validations modules are valid"
-[ "$validations" -gt 50 ]
+[ "$validations" -gt 100 ]

@@ -203,6 +203,21 @@ static void kernels_for_a_scene_draw_the_same(void **state)
     assert_true(plain.kernel_instructions < rich.kernel_instructions);
 }
 
+/* A driver that gets the kernel whole and fills the constants in itself draws the same. */
+static void the_driver_fills_in_the_same(void **state)
+{
+    (void)state;
+    struct drawn a = draw(rich_scene(), &small);
+    assert_int_equal(setenv("WHIT_NO_SPECIALIZE", "1", 1), 0);
+    struct drawn b = draw(rich_scene(), &small);
+    assert_int_equal(unsetenv("WHIT_NO_SPECIALIZE"), 0);
+    assert_true(same_bytes(&a.color, &b.color));
+    assert_true(same_bytes(&a.ids, &b.ids));
+    assert_int_not_equal(a.stats.kernel_instructions, b.stats.kernel_instructions);
+    drawn_finish(&a);
+    drawn_finish(&b);
+}
+
 /* Which effect alone is added to the plain scene. */
 static enum scene_effect alone;
 
@@ -489,6 +504,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kernels_for_a_scene_draw_the_same),
+        cmocka_unit_test(the_driver_fills_in_the_same),
         cmocka_unit_test(effects_alone_draw_the_same),
         cmocka_unit_test(effects_left_out_are_gone),
         cmocka_unit_test(effects_added_do_not_matter),

@@ -1,0 +1,619 @@
+#include "device/evaluate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "device/specialize.h"
+
+void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
+{
+    if (!e->failed && !ARRAY_PUSH(list->words, list->count, list->capacity, word))
+        e->failed = true;
+}
+
+/* 0, which is nobody's, when it cannot be had. */
+uint32_t evaluate_new_id(struct evaluation *e)
+{
+    const struct result_id fresh = {0};
+    if (e->failed || e->result_count >= SPIRV_BOUND_MOST ||
+        !ARRAY_PUSH(e->results, e->result_count, e->result_capacity, fresh)) {
+        e->failed = true;
+        return 0;
+    }
+    return e->result_count - 1;
+}
+
+uint32_t evaluate_id(struct evaluation *e, uint32_t id)
+{
+    if (!e->source[id].to)
+        e->source[id].to = evaluate_new_id(e);
+    return e->source[id].to;
+}
+
+uint32_t evaluate_result(struct evaluation *e, const uint32_t *instruction)
+{
+    uint32_t id = evaluate_id(e, instruction[2]);
+    e->results[id].exact = e->source[instruction[2]].exact;
+    return id;
+}
+
+static void push_words(struct evaluation *e, struct word_list *list, uint32_t count,
+                       const uint32_t *words)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        evaluate_push(e, list, words[i]);
+}
+
+#define EMIT(e, list, op, ...)                                                                     \
+    do {                                                                                           \
+        const uint32_t words_[] = {0, __VA_ARGS__};                                                \
+        uint32_t count_ = sizeof words_ / sizeof *words_;                                          \
+        evaluate_push((e), (list), spirv_head((op), count_));                                      \
+        push_words((e), (list), count_ - 1, words_ + 1);                                           \
+    } while (0)
+
+void evaluate_copy(struct evaluation *e, const uint32_t *instruction)
+{
+    uint32_t length = spirv_length(instruction);
+    struct spirv_shape shape = spirv_shape(spirv_op(instruction));
+    uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
+    evaluate_push(e, &e->body, instruction[0]);
+    if (shape.result) {
+        evaluate_push(e, &e->body, instruction[1]);
+        evaluate_push(e, &e->body, evaluate_result(e, instruction));
+    }
+    for (uint32_t i = head; i < length; ++i)
+        evaluate_push(e, &e->body,
+                      spirv_operand_is_id(shape, i - head) ? evaluate_id(e, instruction[i])
+                                                           : instruction[i]);
+}
+
+uint32_t evaluate_add_variable(struct evaluation *e, uint32_t pointer_type)
+{
+    uint32_t id = evaluate_new_id(e);
+    EMIT(e, &e->variables, OP_VARIABLE, pointer_type, id, STORAGE_FUNCTION);
+    e->results[id].base = id;
+    return id;
+}
+
+/* ---- Constants ---- */
+
+static void know(struct evaluation *e, uint32_t id, uint32_t type, uint32_t value)
+{
+    e->results[id].known = true;
+    e->results[id].type = type;
+    e->results[id].value = value;
+    evaluate_push(e, &e->constants, id);
+}
+
+static void put_constant(struct evaluation *e, uint32_t type, uint32_t id, uint32_t value)
+{
+    bool is_bool = spirv_op(e->words + e->source[type].at) == OP_TYPE_BOOL;
+    if (is_bool)
+        EMIT(e, &e->globals, value ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE, type, id);
+    else
+        EMIT(e, &e->globals, OP_CONSTANT, type, id, value);
+    know(e, id, type, value);
+}
+
+static uint32_t constant_id(struct evaluation *e, uint32_t type, uint32_t value)
+{
+    for (uint32_t i = 0; i < e->constants.count; ++i) {
+        const struct result_id *constant = &e->results[e->constants.words[i]];
+        if (constant->type == type && constant->value == value)
+            return e->constants.words[i];
+    }
+    uint32_t id = evaluate_new_id(e);
+    put_constant(e, type, id, value);
+    return id;
+}
+
+static bool is_word(const struct evaluation *e, uint32_t type)
+{
+    const uint32_t *at = e->words + e->source[type].at;
+    return spirv_op(at) == OP_TYPE_BOOL || (spirv_op(at) == OP_TYPE_INT && at[2] == 32);
+}
+
+/* False: one of the operands is not known, or the operation not worth it. */
+static bool fold(const struct evaluation *e, uint32_t op, uint32_t type, const uint32_t *operands,
+                 uint32_t count, uint32_t *value)
+{
+    uint32_t values[3];
+    if (count > 3 || !is_word(e, type))
+        return false;
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct result_id *operand = &e->results[e->source[operands[i]].to];
+        if (!operand->known)
+            return false;
+        values[i] = operand->value;
+    }
+    return spirv_fold(op, values, count, value);
+}
+
+/* Of a bool or 32-bit constant that the caller sets, with its default otherwise. */
+static uint32_t spec_value(const struct evaluation *e, const uint32_t *instruction,
+                           const uint32_t *values)
+{
+    uint32_t op = spirv_op(instruction), value = values[instruction[2]];
+    if (e->source[instruction[2]].is_set)
+        return op == OP_SPEC_CONSTANT ? value : value != 0;
+    return op == OP_SPEC_CONSTANT ? instruction[3] : op == OP_SPEC_CONSTANT_TRUE;
+}
+
+/* Types, constants and global variables, which keep their ids. `values`: of each id that is set. */
+static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t *values)
+{
+    uint32_t op = spirv_op(at), value;
+    switch (op) {
+    case OP_SPEC_CONSTANT_TRUE:
+    case OP_SPEC_CONSTANT_FALSE:
+    case OP_SPEC_CONSTANT:
+        if (is_word(e, at[1]))
+            put_constant(e, at[1], at[2], spec_value(e, at, values));
+        else
+            e->failed = true;
+        return;
+    case OP_SPEC_CONSTANT_OP:
+        if (fold(e, at[3], at[1], at + 4, spirv_length(at) - 4, &value))
+            put_constant(e, at[1], at[2], value);
+        else
+            e->failed = true;
+        return;
+    case OP_SPEC_CONSTANT_COMPOSITE:
+        evaluate_push(e, &e->globals, spirv_head(OP_CONSTANT_COMPOSITE, spirv_length(at)));
+        push_words(e, &e->globals, spirv_length(at) - 1, at + 1);
+        return;
+    default:
+        push_words(e, &e->globals, spirv_length(at), at);
+        if (op == OP_TYPE_INT && is_word(e, at[1]))
+            e->uint_type = at[1]; /* or int */
+        if (op >= OP_CONSTANT_TRUE && op <= OP_CONSTANT && is_word(e, at[1]))
+            know(e, at[2], at[1], op == OP_CONSTANT ? at[3] : op == OP_CONSTANT_TRUE);
+    }
+}
+
+/* The type of pointers to variables of a function that hold `type`. */
+static uint32_t pointer_type(struct evaluation *e, uint32_t type)
+{
+    for (uint32_t at = 0; at < e->globals.count; at += spirv_length(e->globals.words + at)) {
+        const uint32_t *instruction = e->globals.words + at;
+        if (spirv_op(instruction) == OP_TYPE_POINTER && instruction[2] == STORAGE_FUNCTION &&
+            instruction[3] == type)
+            return instruction[1];
+    }
+    uint32_t id = evaluate_new_id(e);
+    EMIT(e, &e->globals, OP_TYPE_POINTER, id, STORAGE_FUNCTION, type);
+    return id;
+}
+
+/* ---- Blocks ---- */
+
+/* The last block goes on in another one. */
+static void end_delayed(struct evaluation *e)
+{
+    if (e->delayed)
+        EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, e->delayed));
+    e->delayed = 0;
+}
+
+/* What is returned goes to a variable, since there are several returns, or blocks follow. */
+static void end_return(struct evaluation *e, struct instance *in)
+{
+    if (!in->return_waits)
+        return;
+    in->return_waits = false;
+    if (in->result_type) {
+        if (!in->variable)
+            in->variable = evaluate_add_variable(e, pointer_type(e, in->result_type));
+        EMIT(e, &e->body, OP_STORE, in->variable, in->value);
+    }
+    EMIT(e, &e->body, OP_BRANCH, in->after);
+}
+
+static void put_label(struct evaluation *e, uint32_t id)
+{
+    EMIT(e, &e->body, OP_LABEL, id);
+    e->label = id;
+    ++e->block;
+}
+
+static void begin_block(struct evaluation *e, struct instance *in, uint32_t label)
+{
+    struct source_id *block = &e->source[label];
+    in->label = label;
+    while (in->loop_depth > 0 && in->loops[in->loop_depth - 1] == label)
+        --in->loop_depth;
+    in->skips = !block->reached;
+    if (in->skips && !block->is_merge && !block->is_continue)
+        return;
+    if (block->reached && e->delayed == label && block->incoming == 1 && !block->begins_loop &&
+        !block->is_merge && !block->is_continue) {
+        e->delayed = 0; /* goes on in the block in hand */
+        block->visited = true;
+        return;
+    }
+    end_delayed(e);
+    end_return(e, in);
+    put_label(e, evaluate_id(e, label));
+    block->visited = true;
+    if (in->skips && block->is_continue)
+        EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, block->header));
+    else if (in->skips)
+        EMIT(e, &e->body, OP_UNREACHABLE, );
+}
+
+static void enter(struct evaluation *e, uint32_t label)
+{
+    struct source_id *block = &e->source[label];
+    block->reached = true;
+    ++block->incoming;
+    if (block->visited && !block->begins_loop)
+        e->failed = true; /* backwards, but not to a loop */
+}
+
+/* The merge instruction that waits, whose blocks are then needed whether reached or not. */
+static void put_merge(struct evaluation *e, struct instance *in)
+{
+    if (!in->merge)
+        return;
+    const uint32_t *merge = e->words + in->merge;
+    in->merge = 0;
+    evaluate_copy(e, merge);
+    e->source[merge[1]].is_merge = true;
+    if (spirv_op(merge) != OP_LOOP_MERGE)
+        return;
+    e->source[merge[2]].is_continue = true;
+    e->source[merge[2]].header = in->label;
+    if (in->loop_depth < sizeof in->loops / sizeof *in->loops)
+        in->loops[in->loop_depth++] = merge[1];
+    else
+        e->failed = true;
+}
+
+static void branch_to(struct evaluation *e, struct instance *in, uint32_t target)
+{
+    bool is_loop = in->merge && spirv_op(e->words + in->merge) == OP_LOOP_MERGE;
+    e->source[in->label].end_label = e->label;
+    e->source[in->label].chosen = target;
+    if (is_loop)
+        put_merge(e, in);
+    in->merge = 0;
+    enter(e, target);
+    e->delayed = target;
+    if (is_loop || e->source[target].visited)
+        end_delayed(e);
+}
+
+static void branch_either(struct evaluation *e, struct instance *in, const uint32_t *at)
+{
+    const struct result_id *condition = &e->results[evaluate_id(e, at[1])];
+    /* Loops keep their way back, taken or not. */
+    bool back = e->source[at[2]].visited || e->source[at[3]].visited;
+    if (condition->known && !back) {
+        branch_to(e, in, condition->value ? at[2] : at[3]);
+        return;
+    }
+    e->source[in->label].end_label = e->label;
+    put_merge(e, in);
+    evaluate_copy(e, at);
+    enter(e, at[2]);
+    enter(e, at[3]);
+}
+
+/* From which of the blocks that a phi names there is a way to it. */
+static bool arrives(const struct evaluation *e, const struct instance *in, uint32_t from)
+{
+    const struct source_id *block = &e->source[from];
+    return block->reached && block->visited && block->end_label &&
+           (!block->chosen || block->chosen == in->label);
+}
+
+static bool is_same_value(const struct evaluation *e, uint32_t a, uint32_t b)
+{
+    const struct result_id *x = &e->results[a], *y = &e->results[b];
+    return a == b || (x->known && y->known && x->type == y->type && x->value == y->value);
+}
+
+static void walk_phi(struct evaluation *e, struct instance *in, const uint32_t *at)
+{
+    uint32_t length = spirv_length(at), ways = 0, first = 0;
+    bool same = true;
+    for (uint32_t i = 3; i + 1 < length; i += 2) {
+        if (!arrives(e, in, at[i + 1]))
+            continue;
+        uint32_t value = evaluate_id(e, at[i]);
+        first = ways++ == 0 ? value : first;
+        same = same && is_same_value(e, first, value);
+    }
+    if (ways != e->source[in->label].incoming || ways == 0 || e->source[in->label].begins_loop) {
+        e->failed = true; /* from blocks that come later */
+        return;
+    }
+    if (same) {
+        e->source[at[2]].to = first;
+        return;
+    }
+    evaluate_push(e, &e->body, spirv_head(OP_PHI, 3 + 2 * ways));
+    evaluate_push(e, &e->body, at[1]);
+    evaluate_push(e, &e->body, evaluate_result(e, at));
+    for (uint32_t i = 3; i + 1 < length; i += 2) {
+        if (!arrives(e, in, at[i + 1]))
+            continue;
+        evaluate_push(e, &e->body, evaluate_id(e, at[i]));
+        evaluate_push(e, &e->body, e->source[at[i + 1]].end_label);
+    }
+}
+
+/* ---- Calls ---- */
+
+static void walk_function(struct evaluation *e, struct instance *in, uint32_t function_at);
+
+enum { WRAP_WORDS = 8, CALLS_DEEP = 64 };
+
+/* Several returns: the function becomes the only case of a switch, which they break out of. Taken
+   back where only one of them is reached. */
+static void begin_wrap(struct evaluation *e, struct instance *in)
+{
+    uint32_t selector = e->uint_type ? constant_id(e, e->uint_type, 0) : 0;
+    e->failed = e->failed || !selector;
+    in->wrap = e->body.count;
+    in->label_before = e->label;
+    in->wrap_label = evaluate_new_id(e);
+    EMIT(e, &e->body, OP_SELECTION_MERGE, in->after, 0);
+    EMIT(e, &e->body, OP_SWITCH, selector, in->wrap_label);
+    put_label(e, in->wrap_label);
+}
+
+static void take_back_wrap(struct evaluation *e, const struct instance *in)
+{
+    for (uint32_t i = 0; i < WRAP_WORDS; ++i)
+        e->body.words[in->wrap + i] = spirv_head(OP_NOP, 1);
+    e->results[in->wrap_label].same_as = in->label_before;
+}
+
+/* Behind the last block of a call: what it returned. */
+static uint32_t end_call(struct evaluation *e, struct instance *in)
+{
+    if (e->failed || in->returns == 0) {
+        e->failed = true;
+        return 0;
+    }
+    if (in->return_waits && in->returns == 1) {
+        if (in->wrap_label)
+            take_back_wrap(e, in);
+        return in->value;
+    }
+    end_return(e, in);
+    put_label(e, in->after);
+    if (!in->result_type)
+        return 0;
+    uint32_t value = evaluate_new_id(e);
+    EMIT(e, &e->body, OP_LOAD, in->result_type, value, in->variable);
+    return value;
+}
+
+/* Ids of the function are free for what this call makes of them. */
+static void forget(struct evaluation *e, uint32_t function_at)
+{
+    const uint32_t *at = e->words + function_at;
+    for (; spirv_op(at) != OP_FUNCTION_END; at += spirv_length(at)) {
+        struct spirv_shape shape = spirv_shape(spirv_op(at));
+        uint32_t id = spirv_op(at) == OP_LABEL                                  ? at[1]
+                      : spirv_op(at) == OP_FUNCTION_PARAMETER || (shape.result) ? at[2]
+                      : spirv_op(at) == OP_FUNCTION_CALL                        ? at[2]
+                                                                                : 0;
+        struct source_id *source = &e->source[id];
+        source->to = source->holds = source->chosen = source->end_label = 0;
+        source->incoming = source->header = 0;
+        source->reached = source->visited = source->is_merge = source->is_continue = false;
+    }
+}
+
+static void walk_call(struct evaluation *e, struct instance *caller, const uint32_t *call)
+{
+    uint32_t function_at = e->source[call[3]].at;
+    const uint32_t *function = e->words + function_at;
+    bool is_void = spirv_op(e->words + e->source[call[1]].at) == OP_TYPE_VOID;
+    struct instance in = {.caller = caller,
+                          .depth = caller->depth + 1,
+                          .result_type = is_void ? 0 : call[1],
+                          .after = evaluate_new_id(e)};
+    if (spirv_op(function) != OP_FUNCTION || in.depth > CALLS_DEEP) {
+        e->failed = true;
+        return;
+    }
+    forget(e, function_at);
+    evaluate_bind_parameters(e, call, function_at);
+    if (e->source[call[3]].returns > 1)
+        begin_wrap(e, &in);
+    walk_function(e, &in, function_at);
+    e->source[call[2]].to = end_call(e, &in);
+}
+
+static void walk_return(struct evaluation *e, struct instance *in, const uint32_t *at)
+{
+    if (!in->caller) {
+        EMIT(e, &e->body, OP_RETURN, );
+        return;
+    }
+    if (in->loop_depth > 0) { /* no way out of a loop but by its merge block */
+        e->failed = true;
+        return;
+    }
+    ++in->returns;
+    in->return_waits = true;
+    in->value = spirv_op(at) == OP_RETURN_VALUE ? evaluate_id(e, at[1]) : 0;
+}
+
+/* ---- Instructions ---- */
+
+/* Where one known operand decides. True: done. */
+static bool decide(struct evaluation *e, const uint32_t *at)
+{
+    uint32_t op = spirv_op(at);
+    if (op != OP_LOGICAL_AND && op != OP_LOGICAL_OR && op != OP_SELECT)
+        return false;
+    uint32_t operands[2] = {evaluate_id(e, at[3]), evaluate_id(e, at[4])};
+    const struct result_id first = e->results[operands[0]], second = e->results[operands[1]];
+    if (op == OP_SELECT) {
+        if (first.known)
+            e->source[at[2]].to = evaluate_id(e, first.value ? at[4] : at[5]);
+        return first.known;
+    }
+    uint32_t deciding = op == OP_LOGICAL_OR; /* of the two values */
+    if (!first.known && !second.known)
+        return false;
+    bool decided =
+        (first.known && first.value == deciding) || (second.known && second.value == deciding);
+    uint32_t other = first.known ? at[4] : at[3];
+    e->source[at[2]].to = decided ? constant_id(e, at[1], deciding) : evaluate_id(e, other);
+    return true;
+}
+
+static void walk_plain(struct evaluation *e, const uint32_t *at)
+{
+    struct spirv_shape shape = spirv_shape(spirv_op(at));
+    uint32_t value;
+    if (shape.result && fold(e, spirv_op(at), at[1], at + 3, spirv_length(at) - 3, &value)) {
+        e->source[at[2]].to = constant_id(e, at[1], value);
+        return;
+    }
+    if (decide(e, at))
+        return;
+    evaluate_copy(e, at);
+    if (!e->failed && spirv_op(at) == OP_ACCESS_CHAIN)
+        e->results[evaluate_id(e, at[2])].base = e->results[evaluate_id(e, at[3])].base;
+}
+
+static void walk_variable(struct evaluation *e, const uint32_t *at)
+{
+    uint32_t id = evaluate_add_variable(e, at[1]);
+    e->source[at[2]].to = id;
+    if (spirv_length(at) > 4) /* each time, not once in the kernel */
+        EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
+}
+
+static void walk_instruction(struct evaluation *e, struct instance *in, const uint32_t *at)
+{
+    switch (spirv_op(at)) {
+    case OP_LABEL:
+        begin_block(e, in, at[1]);
+        return;
+    case OP_VARIABLE:
+        walk_variable(e, at);
+        return;
+    case OP_LOAD:
+        evaluate_load(e, at);
+        return;
+    case OP_STORE:
+        evaluate_store(e, at);
+        return;
+    case OP_PHI:
+        walk_phi(e, in, at);
+        return;
+    case OP_FUNCTION_CALL:
+        walk_call(e, in, at);
+        return;
+    case OP_LOOP_MERGE:
+    case OP_SELECTION_MERGE:
+        in->merge = (uint32_t)(at - e->words);
+        return;
+    case OP_BRANCH:
+        branch_to(e, in, at[1]);
+        return;
+    case OP_BRANCH_CONDITIONAL:
+        branch_either(e, in, at);
+        return;
+    case OP_RETURN:
+    case OP_RETURN_VALUE:
+        walk_return(e, in, at);
+        return;
+    case OP_SWITCH:
+        e->failed = true;
+        return;
+    default:
+        walk_plain(e, at);
+    }
+}
+
+/* The first block of a call goes on in the block of the caller. */
+static void walk_function(struct evaluation *e, struct instance *in, uint32_t function_at)
+{
+    const uint32_t *at = e->words + function_at;
+    while (spirv_op(at) != OP_LABEL && spirv_op(at) != OP_FUNCTION_END)
+        at += spirv_length(at);
+    if (spirv_op(at) != OP_LABEL) {
+        e->failed = true;
+        return;
+    }
+    in->label = at[1];
+    e->source[in->label].reached = e->source[in->label].visited = true;
+    for (at += 2; !e->failed && spirv_op(at) != OP_FUNCTION_END; at += spirv_length(at)) {
+        if (!in->skips || spirv_op(at) == OP_LABEL)
+            walk_instruction(e, in, at);
+    }
+}
+
+/* ---- The module ---- */
+
+static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t *spec,
+                        uint32_t spec_count)
+{
+    struct instance in = {.caller = NULL};
+    for (uint32_t id = 0; id < e->source_count; ++id) {
+        bool set = spec_of[id] < spec_count;
+        spec_of[id] = set ? spec[spec_of[id]] : 0;
+        e->source[id].is_set = set;
+        if (e->source[id].at && e->source[id].at < e->functions_at)
+            e->source[id].to = id;
+    }
+    for (uint32_t at = SPIRV_HEADER_WORDS; at < e->functions_at;
+         at += spirv_length(e->words + at)) {
+        uint32_t op = spirv_op(e->words + at);
+        if (op == OP_UNDEF || (op >= OP_TYPE_VOID && op <= OP_VARIABLE))
+            walk_global(e, e->words + at, spec_of);
+    }
+    evaluate_count_writes(e);
+    e->label = evaluate_new_id(e);
+    e->first_label = e->label;
+    e->block = 1;
+    if (!e->failed)
+        walk_function(e, &in, e->source[e->entry].at);
+}
+
+static bool begin(struct evaluation *e)
+{
+    if (e->count <= SPIRV_HEADER_WORDS || e->words[0] != SPIRV_MAGIC || e->words[3] == 0 ||
+        e->words[3] > SPIRV_BOUND_MOST)
+        return false;
+    e->source_count = e->result_count = e->result_capacity = e->words[3];
+    e->source = array_alloc_zeroed(e->source_count, sizeof *e->source);
+    e->results = array_alloc_zeroed(e->source_count, sizeof *e->results);
+    return e->source && e->results;
+}
+
+bool spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                    uint32_t spec_count, uint32_t **out, size_t *out_words)
+{
+    struct evaluation e = {.words = words, .count = (uint32_t)word_count};
+    uint32_t *spec_of = NULL;
+    *out = NULL;
+    if (word_count < UINT32_MAX / 2 && begin(&e))
+        spec_of = array_alloc(e.source_count, sizeof *spec_of);
+    if (spec_of) {
+        memset(spec_of, 0xff, e.source_count * sizeof *spec_of);
+        if (evaluate_read(&e, spec_of)) {
+            walk_module(&e, spec_of, spec, spec_count);
+            *out = e.failed ? NULL : evaluate_write(&e, out_words);
+        }
+    }
+    free(spec_of);
+    free(e.source);
+    free(e.results);
+    free(e.globals.words);
+    free(e.constants.words);
+    free(e.variables.words);
+    free(e.body.words);
+    return *out != NULL;
+}

@@ -1,0 +1,154 @@
+/* What variables hold. GLSL compilers hand every argument over in a variable of its own, so that
+   most loads read what was stored a few instructions before. */
+#include "device/evaluate.h"
+
+static uint32_t op_at(const struct evaluation *e, uint32_t id)
+{
+    uint32_t at = e->source[id].at;
+    return at ? spirv_op(e->words + at) : OP_NOP;
+}
+
+/* The variable or parameter that a pointer points into. */
+static uint32_t root_of(const struct evaluation *e, uint32_t pointer)
+{
+    while (op_at(e, pointer) == OP_ACCESS_CHAIN)
+        pointer = e->words[e->source[pointer].at + 3];
+    return pointer;
+}
+
+/* Saturates at 2, so that passes over calls come to an end. True: it was less. */
+static bool add_writes(struct evaluation *e, uint32_t pointer, uint32_t writes)
+{
+    struct source_id *root = &e->source[root_of(e, pointer)];
+    uint32_t before = root->writes;
+    root->writes = before + writes < 2 ? before + writes : 2;
+    return root->writes != before;
+}
+
+/* Whether an argument of `call` is found to be written to. */
+static bool count_call(struct evaluation *e, const uint32_t *call)
+{
+    const uint32_t *at = e->words + e->source[call[3]].at;
+    bool changed = false;
+    at += spirv_length(at);
+    for (uint32_t i = 4; i < spirv_length(call) && spirv_op(at) == OP_FUNCTION_PARAMETER; ++i) {
+        if (e->source[at[2]].writes > 0)
+            changed = add_writes(e, call[i], 2) || changed;
+        at += spirv_length(at);
+    }
+    return changed;
+}
+
+void evaluate_count_writes(struct evaluation *e)
+{
+    bool changed = true;
+    for (bool first = true; changed; first = false) {
+        changed = false;
+        for (uint32_t at = e->functions_at; at < e->count; at += spirv_length(e->words + at)) {
+            const uint32_t *instruction = e->words + at;
+            uint32_t op = spirv_op(instruction);
+            if (op == OP_FUNCTION_CALL)
+                changed = count_call(e, instruction) || changed;
+            else if (first && op == OP_STORE)
+                add_writes(e, instruction[1], op_at(e, instruction[1]) == OP_ACCESS_CHAIN ? 2 : 1);
+            else if (first && op >= OP_ATOMIC_LOAD && op <= OP_ATOMIC_XOR)
+                add_writes(e, instruction[op == OP_ATOMIC_STORE ? 1 : 3], 2);
+            else if (first && op == OP_VARIABLE && spirv_length(instruction) > 4)
+                add_writes(e, instruction[2], 1);
+        }
+    }
+}
+
+uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer)
+{
+    const struct source_id *source = &e->source[pointer];
+    const struct result_id *variable = &e->results[source->to];
+    if (source->holds)
+        return source->holds;
+    return source->to && variable->base == source->to && variable->block == e->block
+               ? variable->stored
+               : 0;
+}
+
+/* A part of a value that is known, in place of a load of that part. */
+static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t *chain)
+{
+    uint32_t whole = evaluate_held(e, chain[3]), length = spirv_length(chain);
+    if (!whole)
+        return false;
+    for (uint32_t i = 4; i < length; ++i) {
+        if (!e->results[evaluate_id(e, chain[i])].known)
+            return false;
+    }
+    uint32_t result = evaluate_result(e, load);
+    evaluate_push(e, &e->body, spirv_head(OP_COMPOSITE_EXTRACT, length));
+    evaluate_push(e, &e->body, load[1]);
+    evaluate_push(e, &e->body, result);
+    evaluate_push(e, &e->body, whole);
+    for (uint32_t i = 4; i < length; ++i)
+        evaluate_push(e, &e->body, e->results[evaluate_id(e, chain[i])].value);
+    return true;
+}
+
+void evaluate_load(struct evaluation *e, const uint32_t *load)
+{
+    uint32_t pointer = load[3], held = evaluate_held(e, pointer);
+    if (held) {
+        e->source[load[2]].to = held;
+        return;
+    }
+    if (op_at(e, pointer) == OP_ACCESS_CHAIN &&
+        load_part(e, load, e->words + e->source[pointer].at))
+        return;
+    evaluate_copy(e, load);
+    uint32_t to = evaluate_id(e, pointer);
+    if (!e->failed && e->results[to].base == to) {
+        e->results[to].stored = e->source[load[2]].to;
+        e->results[to].block = e->block;
+    }
+}
+
+void evaluate_store(struct evaluation *e, const uint32_t *store)
+{
+    uint32_t to = evaluate_id(e, store[1]), value = evaluate_id(e, store[2]);
+    evaluate_copy(e, store);
+    if (e->failed || !e->results[to].base)
+        return;
+    struct result_id *variable = &e->results[e->results[to].base];
+    variable->stored = value;
+    variable->block = e->results[to].base == to ? e->block : 0;
+    /* Written nowhere else, so there is nothing else to read. */
+    if (op_at(e, store[1]) == OP_VARIABLE && e->source[store[1]].writes == 1 &&
+        e->results[value].known)
+        e->source[store[1]].holds = value;
+}
+
+/* Whether the call hands over the same variable twice. */
+static bool is_shared(struct evaluation *e, const uint32_t *call, uint32_t argument)
+{
+    uint32_t base = e->results[evaluate_id(e, call[argument])].base;
+    for (uint32_t i = 4; i < spirv_length(call); ++i) {
+        if (i != argument && e->results[evaluate_id(e, call[i])].base == base)
+            return true;
+    }
+    return false;
+}
+
+void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32_t function_at)
+{
+    const uint32_t *at = e->words + function_at;
+    at += spirv_length(at);
+    for (uint32_t i = 4; i < spirv_length(call); ++i) {
+        if (spirv_op(at) != OP_FUNCTION_PARAMETER) {
+            e->failed = true;
+            return;
+        }
+        struct source_id *parameter = &e->source[at[2]];
+        uint32_t to = evaluate_id(e, call[i]), held = 0;
+        if (e->results[to].base && parameter->writes == 0 && !is_shared(e, call, i))
+            held = evaluate_held(e, call[i]);
+        parameter->to = to;
+        parameter->holds = held;
+        at += spirv_length(at);
+    }
+}

@@ -1,0 +1,205 @@
+/* The module that goes out: what nothing uses is left out. */
+#include "device/evaluate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+/* All that an instruction names. True: something is live that was not. */
+static bool use(struct evaluation *e, const uint32_t *at)
+{
+    struct spirv_shape shape = spirv_shape(spirv_op(at));
+    uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
+    bool changed = false;
+    if (shape.result)
+        e->results[at[1]].live = true;
+    for (uint32_t i = head; i < spirv_length(at); ++i) {
+        if (!spirv_operand_is_id(shape, i - head) || e->results[at[i]].live)
+            continue;
+        e->results[at[i]].live = true;
+        changed = true;
+    }
+    return changed;
+}
+
+static bool is_wanted(const struct evaluation *e, const uint32_t *at)
+{
+    uint32_t op = spirv_op(at);
+    struct spirv_shape shape = spirv_shape(op);
+    if (op == OP_NOP)
+        return false;
+    if (op == OP_STORE && e->results[at[1]].base)
+        return e->results[e->results[at[1]].base].live;
+    return shape.effects || op == OP_LABEL || e->results[at[2]].live;
+}
+
+/* Backwards until nothing more is found: loops, and variables that are read before they are
+   written. */
+static bool mark_body(struct evaluation *e)
+{
+    uint32_t *at = NULL, count = 0, capacity = 0;
+    bool fine = true, changed = true;
+    for (uint32_t word = 0; fine && word < e->body.count;
+         word += spirv_length(e->body.words + word))
+        fine = ARRAY_PUSH(at, count, capacity, word);
+    while (fine && changed) {
+        changed = false;
+        for (uint32_t i = count; i-- > 0;) {
+            const uint32_t *instruction = e->body.words + at[i];
+            if (spirv_op(instruction) != OP_LABEL && is_wanted(e, instruction))
+                changed = use(e, instruction) || changed;
+        }
+    }
+    free(at);
+    return fine;
+}
+
+/* Of what a type, a constant or a global variable is made. Decorated with BuiltIn, constants count
+   whether named or not. */
+static void mark_globals(struct evaluation *e)
+{
+    uint32_t *at = NULL, count = 0, capacity = 0;
+    for (uint32_t word = 0; word < e->globals.count; word += spirv_length(e->globals.words + word))
+        e->failed = !ARRAY_PUSH(at, count, capacity, word) || e->failed;
+    for (uint32_t i = count; !e->failed && i-- > 0;) {
+        const uint32_t *instruction = e->globals.words + at[i];
+        uint32_t op = spirv_op(instruction), first = 2, last = spirv_length(instruction);
+        bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
+        if (!e->results[instruction[is_type ? 1 : 2]].live)
+            continue;
+        if (!is_type) {
+            e->results[instruction[1]].live = true;
+            first = op == OP_VARIABLE ? 4 : op == OP_CONSTANT_COMPOSITE ? 3 : last;
+        } else if (op == OP_TYPE_BOOL || op == OP_TYPE_INT || op == OP_TYPE_FLOAT) {
+            first = last;
+        } else if (op == OP_TYPE_VECTOR || op == OP_TYPE_MATRIX || op == OP_TYPE_IMAGE) {
+            last = 3;
+        } else if (op == OP_TYPE_POINTER) {
+            first = 3;
+        }
+        for (uint32_t k = first; k < last; ++k) {
+            if (instruction[k] < e->source_count)
+                e->results[instruction[k]].live = true;
+        }
+    }
+    free(at);
+}
+
+static void put(struct evaluation *e, struct word_list *out, const uint32_t *words, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        evaluate_push(e, out, words[i]);
+}
+
+/* With the variables that are left. */
+static void put_entry_point(struct evaluation *e, struct word_list *out, const uint32_t *at)
+{
+    uint32_t begin = out->count, i = 3, length = spirv_length(at);
+    while (i < length &&
+           at[i] >> 24 != 0) /* the name ends with a zero byte, in the last place too */
+        ++i;
+    put(e, out, at, i < length ? i + 1 : length);
+    for (++i; i < length; ++i) {
+        if (at[i] < e->source_count && e->results[at[i]].live)
+            evaluate_push(e, out, at[i]);
+    }
+    if (!e->failed)
+        out->words[begin] = spirv_head(OP_ENTRY_POINT, out->count - begin);
+}
+
+/* What stands in front of types, without names and remarks. */
+static void put_head(struct evaluation *e, struct word_list *out)
+{
+    put(e, out, e->words, SPIRV_HEADER_WORDS);
+    for (uint32_t word = SPIRV_HEADER_WORDS; word < e->functions_at;
+         word += spirv_length(e->words + word)) {
+        const uint32_t *at = e->words + word;
+        uint32_t op = spirv_op(at);
+        bool decorates = op == OP_DECORATE || op == OP_MEMBER_DECORATE;
+        bool of_live = decorates && e->source[at[1]].at < e->functions_at && e->results[at[1]].live;
+        if (op == OP_ENTRY_POINT)
+            put_entry_point(e, out, at);
+        else if (op == OP_CAPABILITY || op == OP_EXTENSION || op == OP_EXT_INST_IMPORT ||
+                 op == OP_MEMORY_MODEL || op == OP_EXECUTION_MODE ||
+                 (of_live && !(op == OP_DECORATE && at[2] == DECORATION_SPEC_ID)))
+            put(e, out, at, spirv_length(at));
+    }
+    for (uint32_t id = e->source_count; id < e->result_count; ++id) {
+        const uint32_t exact[] = {spirv_head(OP_DECORATE, 3), id, DECORATION_NO_CONTRACTION};
+        if (e->results[id].live && e->results[id].exact)
+            put(e, out, exact, 3);
+    }
+}
+
+static void put_live(struct evaluation *e, struct word_list *out, const struct word_list *list)
+{
+    for (uint32_t word = 0; word < list->count; word += spirv_length(list->words + word)) {
+        const uint32_t *at = list->words + word;
+        uint32_t op = spirv_op(at);
+        bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
+        if (e->results[at[is_type ? 1 : 2]].live)
+            put(e, out, at, spirv_length(at));
+    }
+}
+
+static void put_body(struct evaluation *e, struct word_list *out)
+{
+    for (uint32_t word = 0; word < e->body.count; word += spirv_length(e->body.words + word)) {
+        uint32_t *at = e->body.words + word;
+        if (!is_wanted(e, at))
+            continue;
+        for (uint32_t i = 4; spirv_op(at) == OP_PHI && i < spirv_length(at); i += 2) {
+            while (e->results[at[i]].same_as)
+                at[i] = e->results[at[i]].same_as;
+        }
+        put(e, out, at, spirv_length(at));
+    }
+}
+
+/* Ids that are live without being named in the body. */
+static void mark_roots(struct evaluation *e, const uint32_t *function)
+{
+    e->results[function[1]].live = true;
+    e->results[function[4]].live = true;
+    for (uint32_t word = SPIRV_HEADER_WORDS; word < e->functions_at;
+         word += spirv_length(e->words + word)) {
+        const uint32_t *at = e->words + word;
+        uint32_t id = spirv_op(at) == OP_DECORATE ? at[1] : 0;
+        if (id && at[2] == DECORATION_BUILTIN && e->source[id].at &&
+            spirv_op(e->words + e->source[id].at) != OP_VARIABLE)
+            e->results[id].live = true;
+    }
+}
+
+uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
+{
+    const uint32_t *function = e->words + e->source[e->entry].at;
+    const uint32_t label[] = {spirv_head(OP_LABEL, 2), e->first_label};
+    const uint32_t end = spirv_head(OP_FUNCTION_END, 1);
+    struct word_list out = {0};
+    mark_roots(e, function);
+    if (!mark_body(e))
+        return NULL;
+    for (uint32_t word = 0; word < e->variables.count;
+         word += spirv_length(e->variables.words + word)) {
+        const uint32_t *at = e->variables.words + word;
+        if (e->results[at[2]].live)
+            e->results[at[1]].live = true;
+    }
+    mark_globals(e);
+    put_head(e, &out);
+    put_live(e, &out, &e->globals);
+    put(e, &out, function, spirv_length(function));
+    put(e, &out, label, 2);
+    put_live(e, &out, &e->variables);
+    put_body(e, &out);
+    put(e, &out, &end, 1);
+    if (e->failed) {
+        free(out.words);
+        return NULL;
+    }
+    out.words[3] = e->result_count;
+    *word_count = out.count;
+    return out.words;
+}
