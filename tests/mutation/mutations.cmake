@@ -250,3 +250,24 @@ change(host/accel/hard_topology.c [[open_edges += end - first == 1;]] [[open_edg
 mutation(broken_promises_are_fine cli_hard RED "a twin that loses rays: exit code 1"
   TARGET whit_leaky)
 change(host/app/hard_command.c [[status == EXIT_FINE ? EXIT_DIFFERS : status;]] [[status;]])
+
+# ---- The reference in double ----
+
+mutation(schlick_by_fourth_power reference_effects RED every_effect_agrees_with_the_device)
+change(shaders/lib/optics.glsl [[return x2 * x2 * x;]] [[return x2 * x2;]])
+
+mutation(reference_schlick_by_fourth_power reference_formula RED glass_follows_fresnel_and_snell)
+change(host/reference/optics.c [[SCHLICK_POWER 5.0]] [[SCHLICK_POWER 4.0]])
+
+mutation(reference_beer_by_halves reference_formula RED bodies_absorb_by_beer)
+change(host/reference/media.c [[exp(-absorption * t)]] [[exp(-0.5 * absorption * t)]])
+
+mutation(reference_without_room reference_formula RED light_falls_with_cosine_and_square)
+change(host/reference/surface.c [[s.room = ROOM]] [[s.room = 0.0 * ROOM]])
+
+mutation(reference_samples_alike reference_effects RED every_effect_agrees_with_the_device)
+change(host/reference/picture.c [[tracer->sample = i;]] [[tracer->sample = 0 * i;]])
+
+mutation(reference_fresnel_of_two_percent reference_scenes RED default_scenes_agree)
+change(host/reference/optics.c [[0.5 * (sine * sine + tangent * tangent)]]
+  [[0.51 * (sine * sine + tangent * tangent)]])

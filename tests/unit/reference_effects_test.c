@@ -212,9 +212,13 @@ static struct image draw_reference(struct accel *accel, const struct reference_p
 static void every_effect_agrees_with_the_device(void **state)
 {
     (void)state;
-    struct reference_params params = {
-        .picture = {.width = SIDE, .height = SIDE, .depth = 6, .samples = 4, .light_samples = 4},
-        .whole_stops = true};
+    struct reference_params params = {.picture = {.width = SIDE,
+                                                  .height = SIDE,
+                                                  .depth = 6,
+                                                  .samples = 4,
+                                                  .schlick = true,
+                                                  .light_samples = 4},
+                                      .whole_stops = true};
     struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
     struct image device = render(&f), whole = draw_reference(f.accel, &params);
     params.whole_stops = false;
