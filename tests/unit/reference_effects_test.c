@@ -164,11 +164,23 @@ static void add_lights(struct scene *scene)
     add_sun(scene, 0.3, -1, -0.2, 0.4f);
 }
 
+/* A map of 16 x 8 pixels. */
+static void add_sky(struct scene *scene)
+{
+    uint32_t random = 3;
+    scene->environment.kind = SCENE_ENVIRONMENT_MAP;
+    scene->environment.width = 16;
+    scene->environment.height = 8;
+    scene->environment.rgb = array_alloc(16 * 8, 3 * sizeof(float));
+    assert_non_null(scene->environment.rgb);
+    for (int i = 0; i < 16 * 8 * 3; ++i)
+        scene->environment.rgb[i] = 0.5f + 0.4f * fixture_signed(&random);
+}
+
 static struct scene *all_effects(void)
 {
     struct scene *scene = dark_scene((double[]){0.5, 3, 8}, (double[]){0, 0.8, 0});
-    set_rgb(scene->environment.zenith, 0.2f, 0.3f, 0.6f);
-    set_rgb(scene->environment.horizon, 0.6f, 0.6f, 0.5f);
+    add_sky(scene);
     set_rgb(scene->ambient, 0.1f, 0.1f, 0.1f);
     add_ground(scene);
     add_bodies(scene);
