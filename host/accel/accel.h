@@ -161,6 +161,8 @@ uint64_t accel_bytes(const struct accel *accel);
 uint32_t accel_stack_size(const struct accel *accel);
 /* Whether any record has TRIANGLE_FILTER_DETAIL. */
 bool accel_filters_vary(const struct accel *accel);
+/* TRIANGLE_* that the records of a primitive have, but those of its place in a tree. */
+uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uint32_t primitive);
 
 /* ---- Traversal on the CPU ---- */
 
@@ -186,7 +188,11 @@ void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_
                     struct gpu_cost *cost, uint32_t *status);
 /* All hits of a ray one after the other, in the order of (t, instance, primitive): the first one
    where `before` is NULL, else the one behind *before, a hit of the same ray. `hit` may be
-   `before`. */
+   `before`. Only the first one minds what params say is not hit. */
+void traverse_next(const struct accel *accel, const struct traverse_params *params,
+                   const struct gpu_ray *ray, const struct gpu_hit *before, struct gpu_hit *hit,
+                   uint32_t *status);
+/* The same at NUMERICS_WATERTIGHT. */
 void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
                          const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status);
 /* The same answer without any tree: every triangle of every instance. */

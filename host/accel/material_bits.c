@@ -69,14 +69,26 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
     return bits;
 }
 
-void material_bits_scan(const struct scene *scene, struct material_bits *out)
+static bool has_area_lights(const struct scene *scene)
 {
-    bool area_lights = false, colors = false;
+    bool area_lights = false;
     for (uint32_t i = 0; i < scene->light_count; ++i)
         area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE ||
                        (scene->lights[i].made_by_whit && scene_light_is_flat(&scene->lights[i]));
+    return area_lights;
+}
+
+static bool has_colors(const struct scene *scene)
+{
+    bool colors = false;
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         colors |= scene->meshes[i].colors != NULL;
+    return colors;
+}
+
+void material_bits_scan(const struct scene *scene, struct material_bits *out)
+{
+    bool area_lights = has_area_lights(scene), colors = has_colors(scene);
     for (uint32_t i = 0; i < scene->material_count; ++i)
         out[i] = material_bits(&scene->materials[i], area_lights, colors);
 }
@@ -90,6 +102,11 @@ void material_bits_whole(const struct scene *scene, const struct material_bits *
             material < scene->material_count && (materials[material].flags & TRIANGLE_FILTER) != 0;
         whole[i] = mesh->sphere_count || filters;
     }
+}
+
+static uint32_t mesh_flags(const struct material_bits *bits, const struct scene_mesh *mesh)
+{
+    return bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
 }
 
 struct gpu_triangle material_bits_record(const struct scene *scene,
@@ -111,10 +128,23 @@ struct gpu_triangle material_bits_record(const struct scene *scene,
     uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
     if (material < scene->material_count) {
         const struct material_bits *bits = &materials[material];
-        out.flags |= bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
+        out.flags |= mesh_flags(bits, mesh);
         out.shadow = bits->shadow;
     }
     return out;
+}
+
+uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uint32_t primitive)
+{
+    const struct scene *scene = accel->scene;
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
+    uint32_t flags = mesh->sphere_count ? TRIANGLE_SPHERE : 0;
+    if (material >= scene->material_count)
+        return flags;
+    struct material_bits bits =
+        material_bits(&scene->materials[material], has_area_lights(scene), has_colors(scene));
+    return flags | mesh_flags(&bits, mesh);
 }
 
 bool accel_filters_vary(const struct accel *accel)

@@ -512,23 +512,30 @@ void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_
     traverse_ray(accel, &params, ray, hit, cost, status);
 }
 
-void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
-                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
+void traverse_next(const struct accel *accel, const struct traverse_params *params,
+                   const struct gpu_ray *ray, const struct gpu_hit *before, struct gpu_hit *hit,
+                   uint32_t *status)
 {
-    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
     struct walk walk;
     struct gpu_hit found;
-    begin_walk(&walk, accel, &params, ray, &found);
+    begin_walk(&walk, accel, params, ray, &found);
     if (before) {
         walk.next = true;
         walk.hit_before = before->t;
         walk.skip_instance = before->instance;
         walk.skip_primitive = before->primitive;
     }
-    traverse_all(&walk, false);
+    traverse_all(&walk, params->brute);
     end_hit(&found, accel, walk.triangle);
     *hit = found;
     *status |= walk.status;
+}
+
+void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
+                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
+{
+    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    traverse_next(accel, &params, ray, before, hit, status);
 }
 
 void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, struct gpu_hit *hit)

@@ -15,13 +15,10 @@ static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
     return depth * (children - 1) + 1;
 }
 
-static uint32_t largest_tile(const struct renderer *renderer)
+static uint32_t largest_tile(const struct renderer *renderer, uint32_t tile_size)
 {
-    const struct render_params *params = &renderer->params;
-    uint32_t tile = params->tile_size         ? params->tile_size
-                    : renderer->has_secondary ? TILE_STACKED_MAX
-                                              : TILE_MAX;
-    if (renderer->accel->no_trees && !params->tile_size)
+    uint32_t tile = tile_size ? tile_size : renderer->has_secondary ? TILE_STACKED_MAX : TILE_MAX;
+    if (renderer->accel->no_trees && !tile_size)
         tile = TILE_STACKED_MAX;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
     uint64_t slot_bytes = 0;
@@ -35,15 +32,15 @@ static uint32_t largest_tile(const struct renderer *renderer)
     return tile;
 }
 
-whit_result pixels_create(struct renderer *renderer)
+whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t tile_size)
 {
     struct pixel_buffers *p = &renderer->pixel_buffers;
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
     uint64_t rows = limit / ((uint64_t)width * sizeof(struct gpu_counts)) / 8 * 8;
-    uint32_t height = pixels_blocks_across(renderer->params.height) * 8;
-    p->band_rows = rows < height ? (uint32_t)rows : height;
+    uint32_t wanted = pixels_blocks_across(height) * 8;
+    p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
     if (p->band_rows == 0) {
         log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
         return WHIT_ERROR_DEVICE;
@@ -51,7 +48,7 @@ whit_result pixels_create(struct renderer *renderer)
     bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] ||
                  renderer->effects.called[SCENE_EFFECT_CATCHERS];
     p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
-    uint32_t tile = largest_tile(renderer);
+    uint32_t tile = largest_tile(renderer, tile_size);
     uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
     uint64_t slots = (uint64_t)tile * tile;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);

@@ -181,9 +181,8 @@ whit_result render_finish_submission(struct renderer *renderer)
     return submit(renderer);
 }
 
-/* All rays of one sample of one chunk. *longest_ms: of its submissions. */
-static whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                                 const struct progress *progress, double *longest_ms)
+static whit_result sample_by_trees(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                   const struct progress *progress, double *longest_ms)
 {
     uint32_t passes = renderer->has_secondary ? PASSES_FIRST : 0, first = 0;
     double start_ms = clock_ms();
@@ -219,6 +218,13 @@ static whit_result render_sample(struct renderer *renderer, const struct gpu_chu
     }
 }
 
+whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                          const struct progress *progress, double *longest_ms)
+{
+    return renderer->accel->no_trees ? brute_sample(renderer, chunk, progress, longest_ms)
+                                     : sample_by_trees(renderer, chunk, progress, longest_ms);
+}
+
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
 {
     uint64_t slots = (uint64_t)progress->tile * progress->tile;
@@ -243,8 +249,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         chunk->sample_index = s;
         chunk->sample_weight = 1.0f / (float)samples;
         camera_sample(&renderer->frame, s, samples, chunk);
-        result = renderer->accel->no_trees ? brute_sample(renderer, chunk, progress, &longest_ms)
-                                           : render_sample(renderer, chunk, progress, &longest_ms);
+        result = render_sample(renderer, chunk, progress, &longest_ms);
         if (result == WHIT_OK)
             result = costs_add(renderer, chunk);
         if (result != WHIT_OK)

@@ -19,7 +19,8 @@ static whit_result create_parts(struct renderer *renderer)
     renderer->has_secondary = renderer_bounces(renderer);
     renderer->node_stack_size = accel_stack_size(renderer->accel);
     renderer->single_identity = renderer->accel->single_identity;
-    whit_result result = pixels_create(renderer);
+    whit_result result =
+        pixels_create(renderer, renderer->params.height, renderer->params.tile_size);
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)
@@ -104,6 +105,7 @@ void renderer_destroy(struct renderer *renderer)
     beside_finish(renderer);
     trace_finish(&renderer->trace);
     brute_finish(&renderer->brute);
+    probe_finish(&renderer->probe);
     pixels_finish(&renderer->pixel_buffers);
     costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);

@@ -81,6 +81,15 @@ struct beside_state {
     bool general;           /* renderer->whitted is the general kernel */
 };
 
+/* What one probed pixel is traced with (probe.c); nothing before the first one. While `active`, the
+   fields of the renderer of the same names are these, and these are the renderer's. */
+struct probe_state {
+    bool active;
+    struct pixel_buffers pixel_buffers; /* of a row of blocks */
+    struct pass whitted, closest, shadow;
+    struct buffer *records; /* gpu_probe, and gpu_probe_ray */
+};
+
 struct renderer {
     struct log log;
     struct device *device;
@@ -95,6 +104,7 @@ struct renderer {
     struct brute_state brute;
     struct trace_state trace;
     struct beside_state beside;
+    struct probe_state probe;
     struct commands *commands;
     struct gpu_frame frame;
     struct image color, ids;            /* of the last picture, where it has more than one band */
@@ -118,8 +128,10 @@ bool renderer_bounces(const struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
-/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer. */
-WHIT_CHECK whit_result pixels_create(struct renderer *renderer);
+/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer, for bands of up
+   to `height` rows and chunks of `tile_size` (0: as large as is fit). */
+WHIT_CHECK whit_result pixels_create(struct renderer *renderer, uint32_t height,
+                                     uint32_t tile_size);
 void pixels_finish(struct pixel_buffers *buffers);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
 uint32_t pixels_blocks_across(uint32_t pixels);
@@ -236,6 +248,9 @@ WHIT_CHECK whit_result beside_prepare(struct renderer *renderer);
 /* Waits for the thread. */
 void beside_finish(struct renderer *renderer);
 
+/* probe.c: all but what `active` has exchanged, which must be back. */
+void probe_finish(struct probe_state *probe);
+
 /* trace.c */
 void trace_finish(struct trace_state *trace);
 
@@ -270,6 +285,11 @@ WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct pro
                                      struct gpu_chunk *chunk);
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
+
+/* render.c: all rays of one sample of one chunk, with trees or without. *longest_ms: of its
+   submissions, if longer. */
+WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                     const struct progress *progress, double *longest_ms);
 
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,

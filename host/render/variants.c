@@ -50,6 +50,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_ORDER = renderer->params.order;
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
+    spec.SPEC_PROBE = renderer->probe.active;
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
@@ -192,6 +193,8 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     bind(&bindings, BIND_FOUND, BINDING_STORAGE, renderer->brute.found);
     bind(&bindings, BIND_PASSED, BINDING_STORAGE, renderer->brute.passed);
     bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, pixels->ray_media);
+    bind(&bindings, BIND_PROBE, BINDING_STORAGE,
+         renderer->probe.active ? renderer->probe.records : NULL);
     return bindings;
 }
 
@@ -228,6 +231,7 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
     struct variant_job job;
     struct gpu_spec spec = variant_spec(renderer);
     spec.SPEC_BRUTE = brute;
+    spec.SPEC_PROBE &= brute == BRUTE_OFF || brute == BRUTE_SHADE;
     variant_job_init(renderer, &spec, &job);
     whit_result result = pipeline_create(renderer->device, &job.params, &pass->pipeline);
     return result == WHIT_OK ? variant_bind_whitted(renderer, pass) : result;
@@ -324,6 +328,9 @@ void passes_finish(struct renderer *renderer)
     pass_finish(&renderer->whitted);
     pass_finish(&renderer->brute.closest);
     pass_finish(&renderer->brute.shadow);
+    pass_finish(&renderer->probe.whitted);
+    pass_finish(&renderer->probe.closest);
+    pass_finish(&renderer->probe.shadow);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);
 }

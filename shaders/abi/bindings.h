@@ -36,6 +36,7 @@
 #define BIND_FOUND          21
 #define BIND_PASSED         22
 #define BIND_RAY_MEDIA      23
-#define BIND_WHITTED_COUNT  24
+#define BIND_PROBE          24
+#define BIND_WHITTED_COUNT  25
 
 #endif

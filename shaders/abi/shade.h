@@ -244,4 +244,58 @@ struct gpu_counts {
 };
 GPU_ASSERT_SIZE(gpu_counts, 32)
 
+/* ---- The rays of one pixel (SPEC_PROBE) ---- */
+
+/* A stacked ray then has the number of its record in `state`, above its bounces. */
+#define STATE_PROBE_SHIFT 16u
+#define PROBE_RAYS_MOST   16383u /* records; as a number: none */
+
+/* In front of the records. */
+struct gpu_probe {
+    gpu_uint pixel_x, pixel_y;
+    gpu_uint capacity; /* records, up to PROBE_RAYS_MOST */
+    gpu_uint count;    /* of rays; those beyond `capacity` have no record */
+};
+GPU_ASSERT_SIZE(gpu_probe, 16)
+
+/* gpu_probe_ray.kind: RAY_*, and why it goes on in the direction of the ray before it. */
+#define PROBE_KIND_MASK 3u
+#define PROBE_STRAIGHT  4u /* behind what blends, or a shadow catcher */
+#define PROBE_THROUGH   8u /* behind a surface with the same medium on both sides */
+#define PROBE_INSIDE    16u /* it meets its surface from inside */
+
+/* gpu_probe_ray.end */
+#define PROBE_WAITS    0u /* on the ray stack */
+#define PROBE_MISSED   1u
+#define PROBE_ABSORBED 2u /* it leaves the scene in a medium of which too little comes back */
+#define PROBE_HIT      3u
+#define PROBE_DEPTH    4u /* not traced: --depth */
+#define PROBE_BAILOUT  5u /* not traced: --bailout */
+#define PROBE_REACHED  6u /* shadow rays: the light, `added` tells how much of it passes */
+#define PROBE_BLOCKED  7u
+
+/* A ray of the pixel's first sample. Rays that were not traced have no origin. */
+struct gpu_probe_ray {
+    gpu_vec3 origin;
+    gpu_uint kind;
+    gpu_vec3 dir; /* unit */
+    gpu_uint end;
+    gpu_vec3 weight; /* of what it brings; shadow rays: of the surface that they start from */
+    gpu_uint parent; /* record of the ray it comes from; PROBE_RAYS_MOST: none, a camera ray */
+    gpu_vec3 added;  /* radiance, to the sample; shadow rays: the share of the light that passes */
+    gpu_float t_max;
+    gpu_vec3 point; /* where it met `primitive`, world */
+    gpu_float t;    /* NUMERICS_EXACT: the key */
+    gpu_vec3 normal; /* unit, interpolated, to the ray's side; without bump maps */
+    gpu_uint material;
+    gpu_float u, v;
+    gpu_uint primitive, instance; /* HIT_NONE: none, or (blocked without trees) not known */
+    gpu_uint skip_primitive, skip_instance;
+    gpu_uint medium; /* material + 1 of what it goes through; 0: air */
+    gpu_uint turn;   /* shadow rays: light * light_samples + sample */
+};
+GPU_ASSERT_SIZE(gpu_probe_ray, 128)
+GPU_ASSERT_AT(gpu_probe_ray, point, 64)
+GPU_ASSERT_AT(gpu_probe_ray, skip_primitive, 112)
+
 #endif

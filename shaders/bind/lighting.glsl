@@ -6,6 +6,7 @@
 #include "light.glsl"
 #include "optics.glsl"
 #include "picture.glsl"
+#include "probe.glsl"
 #include "terminator.glsl"
 
 // Where light is received: what all shadow rays of a hit have in common.
@@ -64,6 +65,9 @@ vec3 light_share(uint slot, uint turn, Surface s, Receiver at, LightTurn light, 
     Hit blocker = find_blocker(slot, turn, origin, to_light, distance, at.instance,
                                above ? at.primitive : HIT_NONE);
     status |= blocker.status;
+    if (SPEC_PROBE != 0u)
+        probe_blocker(turn, origin, to_light, distance, at.instance,
+                      above ? at.primitive : HIT_NONE, blocker);
     if (blocker.primitive != HIT_NONE)
         return vec3(0.0);
     if (SPEC_FILTERS == 0u)
@@ -136,6 +140,8 @@ void add_turn(uint slot, uint turn, gpu_light light, uint point, Surface s, Opti
         share = light_share(slot, turn, s, lit.receiver, at, above, status);
         if (SPEC_SHADOWS != 0u)
             shadow_rays++;
+        if (SPEC_PROBE != 0u && SPEC_SHADOWS != 0u)
+            probe_share(share);
     }
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
         float weight = faces ? cos_light * at.strength : 0.0;

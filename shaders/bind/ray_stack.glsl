@@ -3,6 +3,7 @@
 #define BIND_RAY_STACK_GLSL
 
 #include "picture.glsl"
+#include "probe.glsl"
 
 layout(set = 0, binding = BIND_RAY_STACKS, std430) buffer RayStackBuffer
 {
@@ -21,7 +22,7 @@ struct Ray {
     uvec4 media; // struct gpu_media
     uint steps;  // ray_bounces() and, below them, surfaces that were passed unseen
     uint skip_primitive, skip_instance;
-    uint kind; // RAY_*; with SPEC_COUNT
+    uint kind; // RAY_*; with SPEC_COUNT or SPEC_PROBE
 };
 
 // Where a ray passes more surfaces unseen than the steps of one bounce, it counts as one: so every
@@ -43,6 +44,8 @@ Ray stacked_ray(uint index)
     ray.media = SPEC_MEDIA != 0u ? ray_media[index] : uvec4(0u);
     ray.steps = stacked.state & ((1u << STATE_KIND_SHIFT) - 1u);
     ray.kind = stacked.state >> STATE_KIND_SHIFT;
+    if (SPEC_PROBE != 0u)
+        ray.steps = probe_pop(ray.steps);
     ray.skip_primitive = stacked.skip_primitive;
     ray.skip_instance = stacked.skip_instance;
     return ray;
@@ -61,8 +64,10 @@ void push_ray(uint slot, inout uint top, vec3 origin, vec3 dir, vec3 weight, uin
     stacked.dir = dir;
     stacked.weight = weight;
     stacked.state = steps;
-    if (SPEC_COUNT != 0u)
+    if (SPEC_COUNT != 0u || SPEC_PROBE != 0u)
         stacked.state |= kind << STATE_KIND_SHIFT;
+    if (SPEC_PROBE != 0u)
+        stacked.state |= probe_push(origin, dir, weight, skip_instance, skip_primitive);
     stacked.skip_primitive = skip_primitive;
     stacked.skip_instance = skip_instance;
     ray_stacks[slot * frame.stack_size + top] = stacked;

@@ -22,6 +22,8 @@ bool traced(vec3 weight, bool deep, inout gpu_counts count, inout uint status)
     count.cut_depth_weight += deep ? share : 0.0;
     count.cut_bailout += uint(!deep && small && largest > 0.0);
     count.cut_bailout_weight += !deep && small ? share : 0.0;
+    if (SPEC_PROBE != 0u && (deep || small) && largest > 0.0)
+        probe_cut(weight, deep);
     return !deep && !small;
 }
 
@@ -50,6 +52,8 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
         // A shading normal may bend the ray back to its own side: then straight on.
         if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
+        if (SPEC_PROBE != 0u)
+            probe_next(RAY_REFRACTED, dir);
         if (passes && traced(weight, deep, count, status)) {
             push_beyond(slot, c, dir, weight, steps, o.thin ? ray.media : c.after, RAY_REFRACTED,
                         count, status);
@@ -58,6 +62,8 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
     }
     if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) {
         vec3 weight = ray.weight * o.straight;
+        if (SPEC_PROBE != 0u)
+            probe_next(ray.kind | PROBE_STRAIGHT, ray.dir);
         if (traced(weight, deep, count, status))
             push_beyond(slot, c, ray.dir, weight, steps, ray.media, ray.kind, count, status);
     }
@@ -66,6 +72,8 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
         vec3 dir = reflect(ray.dir, s.ns);
         if (dot(dir, s.ng) <= 0.0)
             dir = reflect(ray.dir, s.ng);
+        if (SPEC_PROBE != 0u)
+            probe_next(RAY_REFLECTED, dir);
         if (traced(weight, deep, count, status)) {
             if (SPEC_SECONDARY != 0u)
                 push_ray(slot, count.stack, offset_origin(s.p, s.error, s.ng), normalize(dir),
@@ -83,6 +91,8 @@ void push_through(uint slot, Ray ray, Crossing c, inout gpu_counts count, inout 
         return;
     uint steps = ray.steps + 1u;
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(steps) > frame.depth;
+    if (SPEC_PROBE != 0u)
+        probe_next(RAY_REFRACTED | PROBE_THROUGH, ray.dir);
     if (traced(ray.weight, deep, count, status)) {
         push_beyond(slot, c, ray.dir, ray.weight, steps, c.after, RAY_REFRACTED, count, status);
         count.refracted++;
@@ -173,6 +183,8 @@ void main()
     uvec2 at = slot_pixel(slot);
     if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
         return;
+    if (SPEC_PROBE != 0u && !is_probed(at))
+        return;
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
 
     gpu_counts count = NO_COUNTS;
@@ -202,9 +214,13 @@ void main()
     uint status = hit.status;
     bool met = hit.primitive != HIT_NONE;
     ray.weight *= medium_transmittance(ray.media, hit.t); // the largest float for a miss
+    if (SPEC_PROBE != 0u)
+        probe_begin(stacked, ray.origin, ray.dir, ray.weight, ray.media, hit);
     vec3 radiance = environment_radiance(ray.dir) * ray.weight;
     if (met)
         radiance = shade_hit(slot, ray, hit, count, status);
+    if (SPEC_PROBE != 0u)
+        probe_end(radiance);
 
     vec4 sum = vec4(radiance * chunk.sample_weight, 1.0);
     if (stacked || chunk.sample_index != 0u)

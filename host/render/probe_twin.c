@@ -1,0 +1,216 @@
+/* What the CPU says of the rays of a probed pixel. It knows no textures: where a surface may let a
+   ray pass, the device's word is taken, and all the rest must agree with it. */
+#include <math.h>
+#include <string.h>
+
+#include "accel/rational.h"
+#include "render/probe.h"
+#include "render/renderer.h"
+
+/* Surfaces on the way of one ray that exact answers can be told to leave out. */
+enum { PASSED_MOST = 64 };
+
+struct asking {
+    const struct renderer *renderer;
+    struct rational *rational;
+    struct probe_ray *ray;
+    struct gpu_ray line;
+    bool by_cutout; /* it came through one, as far as is known here */
+    uint32_t passed_instance[PASSED_MOST], passed_primitive[PASSED_MOST];
+};
+
+static bool is_shadow(const struct asking *a)
+{
+    return (a->ray->traced.kind & PROBE_KIND_MASK) == RAY_SHADOW;
+}
+
+/* From behind, or along the surface: there the kernel's test and this one may round apart. */
+static bool comes_from_behind(const struct gpu_ray *line, const struct gpu_hit *hit)
+{
+    const float ng[3] = {hit->ng_x, hit->ng_y, hit->ng_z};
+    double along = 0.0, size = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double product = (double)ng[i] * (double)line->dir[i];
+        along += product;
+        size += fabs(product);
+    }
+    return along > -1e-6 * size;
+}
+
+/* Whether the material may let the ray go on; only the device can tell whether a cut-out does. */
+static bool may_pass(struct asking *a, const struct gpu_hit *hit)
+{
+    const struct renderer *renderer = a->renderer;
+    const bool *called = renderer->effects.called;
+    uint32_t flags = accel_primitive_flags(renderer->accel, hit->instance, hit->primitive);
+    if ((flags & TRIANGLE_CUTOUT) && called[SCENE_EFFECT_CUTOUTS]) {
+        a->by_cutout = true;
+        return true;
+    }
+    if (!is_shadow(a))
+        return (flags & TRIANGLE_ONE_SIDED) && called[SCENE_EFFECT_CULLING] &&
+               comes_from_behind(&a->line, hit);
+    return (flags & TRIANGLE_NO_SHADOW) ||
+           ((flags & TRIANGLE_FILTER) && called[SCENE_EFFECT_TINTED_SHADOWS]);
+}
+
+static void pass(struct asking *a, const struct gpu_hit *hit)
+{
+    uint32_t at = a->ray->passed++;
+    if (at < PASSED_MOST) {
+        a->passed_instance[at] = hit->instance;
+        a->passed_primitive[at] = hit->primitive;
+    }
+}
+
+static bool was_passed(const struct asking *a, const struct rational_hit *hit)
+{
+    for (uint32_t i = 0; i < a->ray->passed && i < PASSED_MOST; ++i) {
+        if (a->passed_instance[i] == hit->instance && a->passed_primitive[i] == hit->primitive)
+            return true;
+    }
+    return false;
+}
+
+static bool same_bits(float a, float b)
+{
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
+static bool is_device_hit(const struct gpu_probe_ray *traced, const struct gpu_hit *hit)
+{
+    return traced->primitive == hit->primitive && traced->instance == hit->instance &&
+           same_bits(traced->t, hit->t) && same_bits(traced->u, hit->u) &&
+           same_bits(traced->v, hit->v);
+}
+
+/* Without trees; it may be a cut-out that is solid where it is met. */
+static bool blocker_is_unknown(const struct gpu_probe_ray *traced)
+{
+    return traced->end == PROBE_BLOCKED && traced->primitive == HIT_NONE;
+}
+
+/* Hits from the front to the one that the device has, or for want of that to the end. */
+static void ask_twin(struct asking *a)
+{
+    struct probe_ray *ray = a->ray;
+    const struct gpu_probe_ray *traced = &ray->traced;
+    const struct render_params *params = &a->renderer->params;
+    const struct traverse_params walk = {.order = params->order,
+                                         .numerics = params->numerics,
+                                         .skip_instance = traced->skip_instance,
+                                         .skip_primitive = traced->skip_primitive};
+    uint32_t status = 0;
+    struct gpu_hit hit, first = {.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
+    traverse_ray(a->renderer->accel, &walk, &a->line, &hit, NULL, &status);
+    while (hit.primitive != HIT_NONE && !is_device_hit(traced, &hit)) {
+        bool stops = !may_pass(a, &hit);
+        if (stops && first.primitive == HIT_NONE)
+            first = hit;
+        if (stops && !is_shadow(a))
+            break;
+        if (first.primitive == HIT_NONE)
+            pass(a, &hit);
+        traverse_next(a->renderer->accel, &walk, &a->line, &hit, &hit, &status);
+    }
+    if (hit.primitive != HIT_NONE && is_device_hit(traced, &hit)) {
+        ray->twin = hit;
+        ray->equal = true;
+    } else {
+        ray->twin = first;
+        ray->equal = blocker_is_unknown(traced)
+                         ? first.primitive != HIT_NONE || a->by_cutout
+                         : first.primitive == HIT_NONE && traced->primitive == HIT_NONE;
+    }
+    ray->equal &= status == 0;
+}
+
+static bool exact_agrees(const struct asking *a)
+{
+    const struct probe_ray *ray = a->ray;
+    const struct gpu_probe_ray *traced = &ray->traced;
+    bool met = ray->exact_primitive != HIT_NONE;
+    if (is_shadow(a))
+        return met == (traced->end == PROBE_BLOCKED);
+    bool exact_t =
+        a->renderer->params.numerics == NUMERICS_EXACT && ray->exact == PROBE_EXACT_RATIONAL;
+    return ray->exact_primitive == traced->primitive && ray->exact_instance == traced->instance &&
+           (!exact_t || ray->exact_t == (double)traced->t);
+}
+
+static void answer_exactly(struct asking *a, enum probe_exact by, double t, uint32_t instance,
+                           uint32_t primitive)
+{
+    struct probe_ray *ray = a->ray;
+    ray->exact = by;
+    ray->exact_t = primitive == HIT_NONE ? INFINITY : t;
+    ray->exact_instance = instance;
+    ray->exact_primitive = primitive;
+    ray->exact_equal = exact_agrees(a);
+}
+
+/* Where a sphere is in the way, and the ray may meet all there is. */
+static void ask_oracle(struct asking *a)
+{
+    const struct probe_ray *ray = a->ray;
+    struct oracle_hit hit;
+    if (is_shadow(a) || ray->passed > 0 || ray->traced.skip_primitive != HIT_NONE)
+        return;
+    oracle_trace(a->renderer->accel, &a->line, false, &hit);
+    answer_exactly(a, PROBE_EXACT_DOUBLE, hit.t, hit.instance, hit.primitive);
+}
+
+/* A sphere may be met again at its far side. */
+static bool starts_on_triangle(const struct asking *a)
+{
+    const struct gpu_probe_ray *traced = &a->ray->traced;
+    return traced->skip_primitive != HIT_NONE &&
+           !(accel_primitive_flags(a->renderer->accel, traced->skip_instance,
+                                   traced->skip_primitive) &
+             TRIANGLE_SPHERE);
+}
+
+static void ask_exactly(struct asking *a)
+{
+    const struct gpu_probe_ray *traced = &a->ray->traced;
+    const struct rational_hit own = {.instance = traced->skip_instance,
+                                     .primitive = traced->skip_primitive};
+    struct rational_query query = {.own = starts_on_triangle(a) ? &own : NULL};
+    struct rational_hit hit, before;
+    if (a->ray->passed > PASSED_MOST || (blocker_is_unknown(traced) && a->by_cutout))
+        return;
+    rational_trace(a->rational, &a->line, &query, &hit);
+    while (!hit.undecided && hit.primitive != HIT_NONE && was_passed(a, &hit)) {
+        before = hit;
+        query.behind = &before;
+        rational_trace(a->rational, &a->line, &query, &hit);
+    }
+    if (hit.undecided)
+        ask_oracle(a);
+    else
+        answer_exactly(a, PROBE_EXACT_RATIONAL, (double)hit.t, hit.instance, hit.primitive);
+}
+
+whit_result probe_ask_twin(const struct renderer *renderer, struct probe_report *report)
+{
+    struct asking a = {.renderer = renderer, .rational = rational_create(renderer->accel)};
+    if (!a.rational)
+        return render_no_memory(renderer, "exact arithmetic");
+    for (uint32_t i = 0; i < report->ray_count; ++i) {
+        const struct gpu_probe_ray *traced = &report->rays[i].traced;
+        a.ray = &report->rays[i];
+        a.ray->twin = (struct gpu_hit){.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
+        a.ray->equal = true;
+        a.by_cutout = false;
+        if (traced->end == PROBE_DEPTH || traced->end == PROBE_BAILOUT)
+            continue;
+        a.line = (struct gpu_ray){.t_max = traced->t_max};
+        memcpy(a.line.origin, traced->origin, sizeof a.line.origin);
+        memcpy(a.line.dir, traced->dir, sizeof a.line.dir);
+        ask_twin(&a);
+        ask_exactly(&a);
+        report->differing += !a.ray->equal;
+    }
+    rational_destroy(a.rational);
+    return WHIT_OK;
+}

@@ -1,0 +1,458 @@
+/* Probed pixels: their rays are those of the picture, all of them, with its colour; the CPU agrees
+   with every one; and nothing of it is left in other kernels. */
+#include "load/load.h"
+#include "picture_fixture.h"
+#include "render/probe.h"
+#include "render/renderer.h"
+#include "render_scenes.h"
+
+enum { SIDE = 8 };
+
+/* ---- What holds for every probed pixel ---- */
+
+/* Over the pixels of a picture. */
+struct sums {
+    uint64_t kinds[RAY_KIND_COUNT], cut_depth, cut_bailout;
+    uint64_t ends[PROBE_BLOCKED + 1];
+    uint64_t rays, passed, exact, exact_equal, straight, through;
+};
+
+static uint32_t kind_of(const struct probe_ray *ray)
+{
+    return ray->traced.kind & PROBE_KIND_MASK;
+}
+
+static bool is_cut(const struct probe_ray *ray)
+{
+    return ray->traced.end == PROBE_DEPTH || ray->traced.end == PROBE_BAILOUT;
+}
+
+static void add_to_sums(const struct probe_report *report, struct sums *sums)
+{
+    for (uint32_t i = 0; i < report->ray_count; ++i) {
+        const struct probe_ray *ray = &report->rays[i];
+        bool straight = ray->traced.kind & PROBE_STRAIGHT;
+        ++sums->ends[ray->traced.end];
+        sums->cut_depth += ray->traced.end == PROBE_DEPTH;
+        sums->cut_bailout += ray->traced.end == PROBE_BAILOUT;
+        /* What passes through blended surfaces is counted as no further ray. */
+        sums->kinds[kind_of(ray)] += !straight && !is_cut(ray);
+        sums->straight += straight;
+        sums->through += (ray->traced.kind & PROBE_THROUGH) != 0;
+        sums->passed += ray->passed;
+        sums->exact += ray->exact != PROBE_EXACT_NONE;
+        sums->exact_equal += ray->exact != PROBE_EXACT_NONE && ray->exact_equal;
+        ++sums->rays;
+    }
+}
+
+static double distance_between(const float a[3], const float b[3])
+{
+    return hypot(hypot((double)a[0] - (double)b[0], (double)a[1] - (double)b[1]),
+                 (double)a[2] - (double)b[2]);
+}
+
+static double size_of(const float a[3])
+{
+    return distance_between(a, (const float[3]){0, 0, 0});
+}
+
+/* What a ray shares with the one it comes from. */
+static void assert_child(const struct probe_ray *rays, uint32_t i)
+{
+    const struct probe_ray *ray = &rays[i], *parent = &rays[ray->parent];
+    assert_true(ray->parent < i);
+    assert_int_equal(ray->generation, parent->generation + 1);
+    assert_int_equal(parent->traced.end, PROBE_HIT);
+    assert_true(parent->traced.primitive != HIT_NONE);
+    if (kind_of(ray) == RAY_SHADOW) {
+        assert_true(ray->traced.end == PROBE_REACHED || ray->traced.end == PROBE_BLOCKED);
+    } else {
+        /* Where media touch the next ray starts at the last of the surfaces that are crossed. */
+        double far = distance_between(ray->traced.origin, parent->traced.point);
+        assert_true(far <= 1e-4 * (1.0 + size_of(parent->traced.point)));
+        for (int k = 0; k < 3; ++k)
+            assert_true(ray->traced.weight[k] <= parent->traced.weight[k] * 1.000001f);
+    }
+    if (!is_cut(ray))
+        assert_true(fabs(size_of(ray->traced.dir) - 1.0) < 1e-5);
+}
+
+static void assert_ray(const struct probe_ray *rays, uint32_t i)
+{
+    const struct probe_ray *ray = &rays[i];
+    bool shadow = kind_of(ray) == RAY_SHADOW;
+    if (i == 0) {
+        assert_int_equal(ray->parent, HIT_NONE);
+        assert_int_equal(kind_of(ray), RAY_PRIMARY);
+        for (int k = 0; k < 3; ++k)
+            assert_true(ray->traced.weight[k] == 1.0f);
+    } else {
+        assert_child(rays, i);
+    }
+    if (!ray->equal)
+        fail_msg("ray %u, kind %u, end %u: device t %.9g of %u/%u, twin t %.9g of %u/%u", i,
+                 kind_of(ray), ray->traced.end, (double)ray->traced.t, ray->traced.instance,
+                 ray->traced.primitive, (double)ray->twin.t, ray->twin.instance,
+                 ray->twin.primitive);
+    assert_int_not_equal(ray->traced.end, PROBE_WAITS);
+    if (ray->traced.end == PROBE_HIT)
+        assert_true(isfinite(ray->traced.t) && ray->traced.material != HIT_NONE);
+    if (ray->traced.end == PROBE_MISSED)
+        assert_true(isinf(ray->traced.t) && ray->traced.primitive == HIT_NONE);
+    for (int k = 0; shadow && k < 3; ++k)
+        assert_true(ray->traced.added[k] >= 0.0f && ray->traced.added[k] <= 1.0f &&
+                    (ray->traced.end == PROBE_REACHED || ray->traced.added[k] == 0.0f));
+}
+
+/* Of one sample: what its rays add, in the order in which they were traced, is its colour, bit for
+   bit. */
+static void assert_sum_is_color(const struct probe_report *report)
+{
+    float sum[3] = {0, 0, 0};
+    for (uint32_t i = 0; i < report->ray_count; ++i) {
+        for (int k = 0; kind_of(&report->rays[i]) != RAY_SHADOW && k < 3; ++k)
+            sum[k] += report->rays[i].traced.added[k];
+    }
+    assert_memory_equal(sum, report->color, sizeof sum);
+}
+
+static void assert_report(const struct probe_report *report)
+{
+    assert_true(report->ray_count > 0);
+    for (uint32_t i = 0; i < report->ray_count; ++i)
+        assert_ray(report->rays, i);
+    assert_int_equal(report->differing, 0);
+    if (report->samples == 1 && report->dropped == 0)
+        assert_sum_is_color(report);
+}
+
+/* ---- A picture, pixel by pixel ---- */
+
+static struct sums probe_picture(struct fixture *f)
+{
+    struct sums sums = {0};
+    struct image before = render(f), after = {0}, ids = {0};
+    struct render_stats stats, later;
+    renderer_get_stats(f->renderer, &stats);
+    assert_int_equal(renderer_read_ids(f->renderer, &ids), WHIT_OK);
+    for (uint32_t i = 0; i < before.width * before.height; ++i) {
+        struct probe_report report;
+        assert_int_equal(
+            renderer_probe(f->renderer, i % before.width, i / before.width, 0, &report), WHIT_OK);
+        assert_report(&report);
+        assert_int_equal(report.dropped, 0);
+        assert_memory_equal(report.color, &before.pixels[4 * (size_t)i], sizeof report.color);
+        assert_int_equal(report.rays[0].traced.instance, ids.words[2 * (size_t)i]);
+        assert_int_equal(report.rays[0].traced.primitive, ids.words[2 * (size_t)i + 1]);
+        add_to_sums(&report, &sums);
+        probe_report_finish(&report);
+    }
+    if (stats.rays_primary == (uint64_t)before.width * before.height) {
+        assert_int_equal(sums.kinds[RAY_PRIMARY], stats.rays_primary);
+        assert_int_equal(sums.kinds[RAY_SHADOW], stats.rays_shadow);
+        assert_int_equal(sums.kinds[RAY_REFLECTED], stats.rays_reflected);
+        assert_int_equal(sums.kinds[RAY_REFRACTED], stats.rays_refracted);
+        assert_int_equal(sums.cut_depth, stats.rays_cut_depth);
+        assert_int_equal(sums.cut_bailout, stats.rays_cut_bailout);
+    }
+    /* The picture and its figures are what they were. */
+    renderer_get_stats(f->renderer, &later);
+    assert_int_equal(later.dispatches, stats.dispatches);
+    assert_true(later.render_ms == stats.render_ms);
+    assert_int_equal(renderer_read_color(f->renderer, &after), WHIT_OK);
+    assert_memory_equal(after.pixels, before.pixels,
+                        4 * sizeof(float) * before.width * before.height);
+    print_message("  %llu rays: %llu shadow, %llu reflected, %llu refracted, %llu straight; cut "
+                  "%llu + %llu; %llu surfaces let rays pass; exact agrees with %llu of %llu\n",
+                  (unsigned long long)sums.rays, (unsigned long long)sums.kinds[RAY_SHADOW],
+                  (unsigned long long)sums.kinds[RAY_REFLECTED],
+                  (unsigned long long)sums.kinds[RAY_REFRACTED], (unsigned long long)sums.straight,
+                  (unsigned long long)sums.cut_depth, (unsigned long long)sums.cut_bailout,
+                  (unsigned long long)sums.passed, (unsigned long long)sums.exact_equal,
+                  (unsigned long long)sums.exact);
+    image_finish(&before);
+    image_finish(&after);
+    image_finish(&ids);
+    return sums;
+}
+
+static const struct render_params small = {
+    .width = SIDE, .height = SIDE, .camera = glass_camera, .depth = 5, .bailout = 0.05};
+
+static void rays_are_those_of_the_picture(void **state)
+{
+    (void)state;
+    static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT, NUMERICS_FAST};
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
+        struct render_params params = small;
+        params.numerics = levels[i];
+        struct fixture f = fixture_open(glass_scene(), NULL, &params);
+        struct sums sums = probe_picture(&f);
+        for (uint32_t k = 0; k < RAY_KIND_COUNT; ++k)
+            assert_true(sums.kinds[k] > 0);
+        assert_true(sums.cut_depth > 0 && sums.cut_bailout > 0);
+        assert_true(sums.ends[PROBE_MISSED] > 0 && sums.ends[PROBE_REACHED] > 0);
+        assert_true(sums.exact > sums.rays / 2 && sums.exact_equal > 0);
+        if (levels[i] == NUMERICS_EXACT)
+            assert_int_equal(sums.exact_equal, sums.exact);
+        fixture_close(&f);
+    }
+}
+
+/* ---- Surfaces that let rays pass ---- */
+
+/* Behind each other: what textures cut out, what blends, a pane that is not seen from behind, a
+   shadow catcher, a ball of glass and a mirror, under a lamp and a flat emitter. */
+static struct scene *sieve_scene(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 1.5, 7}, (double[]){0, 0.8, 0});
+    uint32_t texture = add_two_texels(scene, 40, 250);
+    struct scene_material m = material("floor");
+    set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
+    add_object(scene, plane(12), m, 0, 0, 0);
+    use_texture(&m, SCENE_SLOT_OPACITY, texture);
+    m.alpha = SCENE_ALPHA_MASK;
+    m.alpha_cutoff = 0.5f;
+    add_object(scene, box(1.5, 1.2, 0.1), m, -0.6, 0.9, 2);
+    m = material("blended");
+    set_rgb(m.diffuse, 0.2f, 0.5f, 0.9f);
+    m.alpha = SCENE_ALPHA_BLEND;
+    m.opacity = 0.4f;
+    add_object(scene, box(0.8, 1.5, 0.1), m, 0.9, 0.9, 1.5);
+    m = material("one-sided");
+    set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
+    m.one_sided = true;
+    add_object(scene, box(8, 8, 14), m, 0, 3, 1.5); /* around all, seen from inside */
+    m = material("catcher");
+    m.shadow_catcher = true;
+    add_object(scene, box(1, 0.1, 1), m, 1.2, 0.1, 2.6);
+    m = material("glass");
+    set_rgb(m.transmission, 0.9f, 0.8f, 0.9f);
+    m.ior = 1.5f;
+    m.fresnel = true;
+    struct scene_mesh ball = {0};
+    assert_int_equal(shape_balls((const double[]){0, 0, 0, 0.5}, 1, &ball), WHIT_OK);
+    add_object(scene, ball, m, 0.2, 0.6, 0.4);
+    m = material("mirror");
+    set_rgb(m.reflection, 0.8f, 0.8f, 0.8f);
+    add_object(scene, box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
+    add_lamp(scene, 2, 3.5, 4, 6.0f);
+    struct scene_light light = {.name = string_copy("pane"),
+                                .kind = SCENE_LIGHT_RECTANGLE,
+                                .node = SCENE_NONE,
+                                .position = {-1, 5, 0},
+                                .direction = {0, -1, 0},
+                                .edge_u = {1, 0, 0},
+                                .edge_v = {0, 0, 1}};
+    set_rgb(light.color, 3, 3, 3);
+    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    return scene;
+}
+
+static const struct render_params sieve_params = {
+    .width = 12, .height = SIDE, .depth = 5, .light_samples = 4};
+
+static void surfaces_let_rays_pass(void **state)
+{
+    (void)state;
+    static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
+        struct render_params params = sieve_params;
+        params.numerics = levels[i];
+        struct fixture f = fixture_open(sieve_scene(), NULL, &params);
+        struct sums sums = probe_picture(&f);
+        assert_true(sums.passed > 0 && sums.straight > 0);
+        assert_true(sums.ends[PROBE_BLOCKED] > 0);
+        assert_true(sums.exact > 0 && sums.exact_equal == sums.exact);
+        fixture_close(&f);
+    }
+}
+
+static void trees_do_not_matter(void **state)
+{
+    (void)state;
+    static const struct accel_params trees[] = {{.mesh.builder = BVH_NONE}, {.flatten = true}};
+    for (size_t i = 0; i < sizeof trees / sizeof *trees; ++i) {
+        struct fixture f = fixture_open(sieve_scene(), &trees[i], &sieve_params);
+        struct sums sums = probe_picture(&f);
+        assert_true(sums.ends[PROBE_BLOCKED] > 0 && sums.passed > 0);
+        fixture_close(&f);
+    }
+}
+
+/* ---- Scenes from files ---- */
+
+static struct fixture open_file(const char *name, const struct render_params *params)
+{
+    char path[256];
+    struct fixture f = {0};
+    snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, name);
+    assert_int_equal(load_scene(&fixture_log, path, NULL, &f.scene), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &f.accel), WHIT_OK);
+    assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, params, &f.renderer),
+                     WHIT_OK);
+    return f;
+}
+
+/* Media that touch and absorb, spheres, cut-outs in textures, lamps made of glowing surfaces. */
+static void scenes_of_all_kinds(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"default.json", "glass-of-water.json", "layers.json",
+                                        "room.json"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        struct render_params params = {.width = 10, .height = 7, .depth = 6, .light_samples = 1};
+        struct fixture f = open_file(names[i], &params);
+        print_message("  %s\n", names[i]);
+        struct sums sums = probe_picture(&f);
+        assert_true(sums.kinds[RAY_SHADOW] > 0);
+        if (i == 1) /* wine that touches its glass */
+            assert_true(sums.through > 0 || sums.kinds[RAY_REFRACTED] > 0);
+        fixture_close(&f);
+    }
+}
+
+/* Passes and buffers of the probe go along with the renderer's. */
+static void another_time(void **state)
+{
+    (void)state;
+    const struct render_params params = {.width = SIDE, .height = 6, .depth = 3};
+    struct fixture f = open_file("spin.json", &params);
+    struct sums before = probe_picture(&f);
+    assert_int_equal(renderer_set_time(f.renderer, 0.7), WHIT_OK);
+    struct sums after = probe_picture(&f);
+    assert_true(before.rays > 0 && after.rays > 0 && before.rays != after.rays);
+    fixture_close(&f);
+}
+
+/* ---- More samples, less room, and nothing ---- */
+
+static void color_is_of_all_samples(void **state)
+{
+    (void)state;
+    struct render_params params = small;
+    params.samples = 4;
+    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    struct sums four = probe_picture(&f);
+    fixture_close(&f);
+    assert_int_equal(four.kinds[RAY_PRIMARY], SIDE * SIDE);
+    /* An adaptive picture begins with 4 samples. */
+    struct image picture = {0};
+    struct probe_report report;
+    f = fixture_open(glass_scene(), NULL, &params);
+    picture = render(&f);
+    fixture_close(&f);
+    params.samples = 0;
+    params.adaptive = 1.0;
+    f = fixture_open(glass_scene(), NULL, &params);
+    assert_int_equal(renderer_probe(f.renderer, 3, 4, 0, &report), WHIT_OK);
+    assert_int_equal(report.samples, 4);
+    assert_memory_equal(report.color, &picture.pixels[4 * (4 * SIDE + 3)], sizeof report.color);
+    probe_report_finish(&report);
+    image_finish(&picture);
+    fixture_close(&f);
+}
+
+/* The pixel with the most rays. */
+static uint32_t busiest_pixel(struct fixture *f, uint32_t *rays)
+{
+    uint32_t best = 0;
+    *rays = 0;
+    for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+        struct probe_report report;
+        assert_int_equal(renderer_probe(f->renderer, i % SIDE, i / SIDE, 0, &report), WHIT_OK);
+        best = report.ray_count > *rays ? i : best;
+        *rays = report.ray_count > *rays ? report.ray_count : *rays;
+        probe_report_finish(&report);
+    }
+    return best;
+}
+
+static void rays_without_room_are_counted(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    uint32_t all, pixel = busiest_pixel(&f, &all);
+    struct probe_report whole, part;
+    assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, 0, &whole), WHIT_OK);
+    assert_int_equal(whole.dropped, 0);
+    assert_true(all > 10);
+    for (uint32_t most = 1; most < all; most += 4) {
+        assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, most, &part),
+                         WHIT_OK);
+        assert_int_equal(part.ray_count, most);
+        assert_int_equal(part.dropped, all - most);
+        assert_report(&part);
+        assert_memory_equal(part.color, whole.color, sizeof part.color);
+        probe_report_finish(&part);
+    }
+    probe_report_finish(&whole);
+    fixture_close(&f);
+}
+
+static void pixels_outside_are_refused(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    struct probe_report report;
+    assert_int_equal(renderer_probe(f.renderer, SIDE, 0, 0, &report), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_probe(f.renderer, 0, SIDE, 0, &report), WHIT_ERROR_USAGE);
+    assert_null(report.rays);
+    assert_int_equal(renderer_probe(f.renderer, SIDE - 1, SIDE - 1, 0, &report), WHIT_OK);
+    probe_report_finish(&report);
+    fixture_close(&f);
+}
+
+static struct pipeline_info kernel_of(const struct pass *pass)
+{
+    struct pipeline_info info;
+    pipeline_get_info(pass->pipeline, &info);
+    assert_true(info.specialized);
+    return info;
+}
+
+/* Before the first probe there is nothing of it; afterwards it is in a kernel of its own. */
+static void pictures_know_nothing_of_it(void **state)
+{
+    (void)state;
+    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    struct renderer *r = f.renderer;
+    struct image picture = render(&f);
+    struct probe_report report;
+    image_finish(&picture);
+    assert_null(r->probe.records);
+    assert_null(r->probe.pixel_buffers.pixels);
+    assert_null(r->probe.whitted.pipeline);
+    uint64_t bytes = r->scene_buffers.bytes;
+    struct pipeline_info before = kernel_of(&r->whitted);
+    assert_false(before.bindings >> BIND_PROBE & 1);
+    assert_int_equal(renderer_probe(r, 2, 2, 0, &report), WHIT_OK);
+    probe_report_finish(&report);
+    assert_false(r->probe.active);
+    struct pipeline_info after = kernel_of(&r->whitted), probe = kernel_of(&r->probe.whitted);
+    assert_int_equal(after.instructions, before.instructions);
+    assert_true(after.bindings == before.bindings);
+    assert_true(probe.bindings >> BIND_PROBE & 1);
+    assert_true(probe.instructions > before.instructions);
+    assert_true(r->scene_buffers.bytes > bytes);
+    print_message("  %u instructions, %u of a probe\n", before.instructions, probe.instructions);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rays_are_those_of_the_picture),
+        cmocka_unit_test(surfaces_let_rays_pass),
+        cmocka_unit_test(trees_do_not_matter),
+        cmocka_unit_test(scenes_of_all_kinds),
+        cmocka_unit_test(another_time),
+        cmocka_unit_test(color_is_of_all_samples),
+        cmocka_unit_test(rays_without_room_are_counted),
+        cmocka_unit_test(pixels_outside_are_refused),
+        cmocka_unit_test(pictures_know_nothing_of_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
