@@ -39,6 +39,9 @@ struct whit_renderer {
     struct log log;
 };
 
+/* renderer_api.c: WHIT_ERROR_USAGE, logged, for a renderer that was made without one. */
+WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
+
 struct whit_image {
     struct image image;
 };

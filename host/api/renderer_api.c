@@ -200,7 +200,7 @@ void whit_renderer_destroy(whit_renderer *renderer)
     free(renderer);
 }
 
-static whit_result need_device(const whit_renderer *renderer)
+whit_result api_need_device(const whit_renderer *renderer)
 {
     if (renderer->renderer)
         return WHIT_OK;
@@ -210,7 +210,7 @@ static whit_result need_device(const whit_renderer *renderer)
 
 whit_result whit_renderer_render(whit_renderer *renderer)
 {
-    whit_result result = need_device(renderer);
+    whit_result result = api_need_device(renderer);
     return result == WHIT_OK ? renderer_render(renderer->renderer) : result;
 }
 
@@ -237,7 +237,7 @@ whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_
 {
     struct render_kernel_info inner;
     *info = (whit_kernel_info){0};
-    whit_result result = need_device(renderer);
+    whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = renderer_get_kernel(renderer->renderer, &inner);
     if (result == WHIT_OK)
@@ -253,7 +253,7 @@ whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
 {
     *out = NULL;
-    whit_result result = need_device(renderer);
+    whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
     whit_image *image = calloc(1, sizeof *image);
@@ -314,7 +314,7 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
                                      whit_image **out)
 {
     *out = NULL;
-    whit_result result = need_device(renderer);
+    whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
     if ((uint32_t)view > WHIT_VIEW_STACK || (uint32_t)kind > WHIT_RAY_KINDS) {
@@ -511,7 +511,7 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
     const void *from = rays;
     void *to = hits;
     if (on == WHIT_TRACE_DEVICE) {
-        whit_result result = need_device(renderer);
+        whit_result result = api_need_device(renderer);
         return result == WHIT_OK ? trace_on_device(renderer, from, count, any, to, cost) : result;
     }
     struct cpu_trace trace = {

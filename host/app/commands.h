@@ -8,7 +8,7 @@
 #include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
-    command_devices, command_bench, command_hard, command_compare, command_view;
+    command_devices, command_bench, command_hard, command_compare, command_view, command_probe;
 
 /* What `whit render` was asked for beside the job. */
 struct render_request {
@@ -88,6 +88,10 @@ struct render_request picture_request_default(void);
 /* Without what only some commands have. */
 whit_renderer_params picture_request_params(const struct render_request *request,
                                             const struct job *job);
+
+/* From the scene to a renderer on a device; failures were said (render_command.c). */
+WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
+                                      struct frames_progress *progress, whit_renderer **renderer);
 
 /* Saves what `request` names of the picture just rendered (render_command.c). */
 whit_result render_save(const struct job *job, const struct render_request *request,

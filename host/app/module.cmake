@@ -5,6 +5,7 @@ add_executable(whit_program
   app/receipt.c app/receipt_output.c app/sample.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
   app/bench_section.c app/bench_table.c app/hard_command.c app/hard_output.c app/compare_command.c
+  app/probe_command.c app/probe_output.c
   app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c
   app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
 set_target_properties(whit_program PROPERTIES

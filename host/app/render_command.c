@@ -222,7 +222,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     return result;
 }
 
-static whit_result prepare(struct job *job, const struct render_request *request,
+whit_result render_prepare(struct job *job, const struct render_request *request,
                            struct frames_progress *progress, whit_renderer **renderer)
 {
     job_begin_device(job);
@@ -288,7 +288,7 @@ static int work(struct job *job, const struct render_request *request)
     struct sequence sequence = {0};
     int status = EXIT_FINE;
     cli_progress_init(&progress.bar, job->quiet);
-    whit_result result = prepare(job, request, &progress, &renderer);
+    whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
     if (result == WHIT_OK)
         result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)

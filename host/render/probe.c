@@ -51,9 +51,11 @@ static whit_result create_buffers(struct renderer *renderer)
 
 static whit_result create_passes(struct renderer *renderer)
 {
-    if (renderer->whitted.pipeline)
+    if (renderer->whitted.pipeline && renderer->whitted.sets[0])
         return WHIT_OK;
-    whit_result result = variant_create_whitted(renderer);
+    whit_result result = renderer->whitted.pipeline
+                             ? variant_bind_whitted(renderer, &renderer->whitted)
+                             : variant_create_whitted(renderer);
     if (result != WHIT_OK) {
         pass_finish(&renderer->whitted);
         pass_finish(&renderer->brute.closest);
@@ -136,6 +138,14 @@ void probe_finish(struct probe_state *probe)
     pixels_finish(&probe->pixel_buffers);
     buffer_destroy(probe->records);
     *probe = (struct probe_state){0};
+}
+
+void probe_drop_pixels(struct renderer *renderer)
+{
+    struct probe_state *probe = &renderer->probe;
+    pass_unbind(&probe->whitted);
+    renderer->scene_buffers.bytes -= probe->pixel_buffers.bytes;
+    pixels_finish(&probe->pixel_buffers);
 }
 
 /* ---- The tree ---- */
@@ -249,6 +259,7 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     struct gpu_probe_ray *records = NULL;
     *out = (struct probe_report){.x = x,
                                  .y = y,
+        .light_samples = renderer->frame.light_samples,
                                  .samples = params->adaptive > 0.0 ? PROBE_ADAPTIVE_SAMPLES
                                                                    : params->samples};
     whit_result result = check(renderer, x, y);

@@ -31,8 +31,9 @@ struct probe_ray {
 
 struct probe_report {
     uint32_t x, y;
-    uint32_t samples; /* that `color` is of; with params.adaptive the 4 of the first pass */
-    float color[4];   /* of the pixel, as in the picture */
+    uint32_t samples;       /* that `color` is of; with params.adaptive the 4 of the first pass */
+    uint32_t light_samples; /* turns of each light: see gpu_probe_ray.turn */
+    float color[4];         /* of the pixel, as in the picture */
     /* Of the first sample, as they were traced: a ray is followed by its shadow rays, then by what
        the surface reflects and lets through, each with all that comes of it. */
     struct probe_ray *rays;

@@ -128,8 +128,8 @@ bool renderer_bounces(const struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
-/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer, for bands of up
-   to `height` rows and chunks of `tile_size` (0: as large as is fit). */
+/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer, for bands of
+   up to `height` rows and chunks of `tile_size` (0: as large as is fit). */
 WHIT_CHECK whit_result pixels_create(struct renderer *renderer, uint32_t height,
                                      uint32_t tile_size);
 void pixels_finish(struct pixel_buffers *buffers);
@@ -250,6 +250,8 @@ void beside_finish(struct renderer *renderer);
 
 /* probe.c: all but what `active` has exchanged, which must be back. */
 void probe_finish(struct probe_state *probe);
+/* Before pictures of another size or depth: its buffers, and what is bound to them. */
+void probe_drop_pixels(struct renderer *renderer);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);

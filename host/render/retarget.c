@@ -38,7 +38,9 @@ static void drop_pixels(struct renderer *renderer)
 static whit_result replace_pixels(struct renderer *renderer)
 {
     drop_pixels(renderer);
-    whit_result result = pixels_create(renderer);
+    probe_drop_pixels(renderer);
+    whit_result result =
+        pixels_create(renderer, renderer->params.height, renderer->params.tile_size);
     if (result == WHIT_OK && renderer->accel->no_trees) {
         passes_finish(renderer);
         renderer->scene_buffers.bytes -= renderer->brute.bytes;

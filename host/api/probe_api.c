@@ -1,0 +1,163 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/handles.h"
+#include "render/probe.h"
+
+const char *whit_probe_end_name(whit_probe_end end)
+{
+    static const char *const names[WHIT_PROBE_ENDS] = {
+        [WHIT_PROBE_MISSED] = "missed",
+        [WHIT_PROBE_OPAQUE] = "hit, opaque",
+        [WHIT_PROBE_DIVIDED] = "hit, goes on",
+        [WHIT_PROBE_ABSORBED] = "absorbed",
+        [WHIT_PROBE_DEPTH] = "bounces used up",
+        [WHIT_PROBE_BAILOUT] = "bail-out",
+        [WHIT_PROBE_REACHED] = "reached the light",
+        [WHIT_PROBE_FILTERED] = "reached it weaker",
+        [WHIT_PROBE_BLOCKED] = "blocked",
+    };
+    return (uint32_t)end < WHIT_PROBE_ENDS ? names[end] : "";
+}
+
+static whit_probe_end shadow_end(const float share[3])
+{
+    bool all = true, none = true;
+    for (int i = 0; i < 3; ++i) {
+        all &= share[i] >= 1.0f;
+        none &= !(share[i] > 0.0f);
+    }
+    return all ? WHIT_PROBE_REACHED : none ? WHIT_PROBE_ABSORBED : WHIT_PROBE_FILTERED;
+}
+
+static whit_probe_end end_of(const struct gpu_probe_ray *traced, bool has_branches)
+{
+    switch (traced->end) {
+    case PROBE_ABSORBED:
+        return WHIT_PROBE_ABSORBED;
+    case PROBE_HIT:
+        return has_branches ? WHIT_PROBE_DIVIDED : WHIT_PROBE_OPAQUE;
+    case PROBE_DEPTH:
+        return WHIT_PROBE_DEPTH;
+    case PROBE_BAILOUT:
+        return WHIT_PROBE_BAILOUT;
+    case PROBE_REACHED:
+        return shadow_end(traced->added);
+    case PROBE_BLOCKED:
+        return WHIT_PROBE_BLOCKED;
+    default:
+        return WHIT_PROBE_MISSED;
+    }
+}
+
+static whit_ray_kind kind_of(const struct probe_ray *ray)
+{
+    return (whit_ray_kind)(ray->traced.kind & PROBE_KIND_MASK);
+}
+
+static void copy(float to[3], const float from[3])
+{
+    memcpy(to, from, 3 * sizeof *to);
+}
+
+static whit_probe_hit hit_of(double t, uint32_t instance, uint32_t primitive)
+{
+    return (whit_probe_hit){.t = t, .instance = instance, .primitive = primitive};
+}
+
+static void set_answers(const struct probe_ray *from, whit_probe_ray *to)
+{
+    const struct gpu_probe_ray *traced = &from->traced;
+    to->device = hit_of((double)traced->t, traced->instance, traced->primitive);
+    to->twin = hit_of((double)from->twin.t, from->twin.instance, from->twin.primitive);
+    to->exact = hit_of(INFINITY, WHIT_NONE, WHIT_NONE);
+    to->equal = from->equal;
+    to->exact_known = from->exact != PROBE_EXACT_NONE;
+    to->exact_equal = to->exact_known && from->exact_equal;
+    if (to->exact_known)
+        to->exact = hit_of(from->exact_t, from->exact_instance, from->exact_primitive);
+    to->passed = from->passed;
+}
+
+static whit_probe_ray ray_of(const struct scene *scene, const struct probe_report *report,
+                             const struct probe_ray *from)
+{
+    const struct gpu_probe_ray *traced = &from->traced;
+    bool shadow = kind_of(from) == WHIT_RAY_SHADOW;
+    whit_probe_ray ray = {
+        .kind = kind_of(from),
+        .straight = (traced->kind & (PROBE_STRAIGHT | PROBE_THROUGH)) != 0,
+        .end = end_of(traced, false),
+        .parent = from->parent,
+        .generation = from->generation,
+        .ray.t_max = traced->t_max,
+        .material = traced->material,
+        .inside = (traced->kind & PROBE_INSIDE) != 0,
+        .medium = traced->medium ? traced->medium - 1 : WHIT_NONE,
+        .ior = traced->medium ? scene->materials[traced->medium - 1].ior : 1.0f,
+        .light = shadow ? traced->turn / report->light_samples : WHIT_NONE,
+        .light_sample = shadow ? traced->turn % report->light_samples : WHIT_NONE,
+    };
+    copy(ray.ray.origin, traced->origin);
+    copy(ray.ray.dir, traced->dir);
+    copy(ray.weight, traced->weight);
+    copy(ray.added, traced->added);
+    copy(ray.point, traced->point);
+    copy(ray.normal, traced->normal);
+    set_answers(from, &ray);
+    return ray;
+}
+
+static whit_result report_from(const whit_renderer *renderer, const struct probe_report *from,
+                               whit_probe_report **out)
+{
+    whit_probe_report *report = calloc(1, sizeof *report);
+    whit_probe_ray *rays = calloc(from->ray_count ? from->ray_count : 1, sizeof *rays);
+    if (!report || !rays) {
+        free(report);
+        free(rays);
+        log_error(&renderer->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < from->ray_count; ++i) {
+        rays[i] = ray_of(renderer->accel->scene, from, &from->rays[i]);
+        if (rays[i].kind != WHIT_RAY_SHADOW && rays[i].parent != WHIT_NONE)
+            rays[rays[i].parent].end = end_of(&from->rays[rays[i].parent].traced, true);
+    }
+    *report = (whit_probe_report){
+        .x = from->x,
+        .y = from->y,
+        .samples = from->samples,
+        .rays = rays,
+        .ray_count = from->ray_count,
+        .dropped = from->dropped,
+        .differing = from->differing,
+    };
+    memcpy(report->color, from->color, sizeof report->color);
+    *out = report;
+    return WHIT_OK;
+}
+
+whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y, uint32_t most_rays,
+                       whit_probe_report **out)
+{
+    struct probe_report report;
+    *out = NULL;
+    whit_result result = api_need_device(renderer);
+    if (result != WHIT_OK)
+        return result;
+    result = renderer_probe(renderer->renderer, x, y, most_rays, &report);
+    if (result == WHIT_OK)
+        result = report_from(renderer, &report, out);
+    probe_report_finish(&report);
+    return result;
+}
+
+void whit_probe_report_destroy(whit_probe_report *report)
+{
+    if (!report)
+        return;
+    free(report->rays);
+    free(report);
+}

@@ -1,0 +1,89 @@
+#!/bin/sh
+# `whit probe`: what it prints, JSON, exit codes, options. sh TEST WHIT SCENES LEAKY
+. "$(dirname "$0")/common.sh"
+LEAKY=$3
+mkdir "$OUT/files"
+J=$OUT/files/probe.json
+GLASS=$SCENES/whitted.json
+S="--size 64x48"
+
+# shellcheck disable=SC2086
+expect 0 "a pixel" probe "$GLASS" $S --pixel 32,30 --quiet --json "$J"
+check "nothing else is said" test ! -s "$OUT/stderr"
+for line in "pixel      32,30 of 64 x 48, 1 sample, watertight" "instance   1 glass ball" "primitive  0" \
+    "material   1 glass, .*whitted.json:12" "position   " "normal     " "depth      5" \
+    "rays       1 primary, .* reflected, .* not recorded" "twin       differs in 0 of "; do
+    check "says \`$line\`" grep -q "^$line" "$OUT/stdout"
+done
+check "the tree begins with the camera ray" grep -q "^primary  .*hit, goes on .*glass ball, glass" "$OUT/stdout"
+check "what comes of it is below it" grep -q "^  refracted  .*its hollow" "$OUT/stdout"
+check "with shadow rays" grep -q "^ *shadow, lamp, point 0 .* passed " "$OUT/stdout"
+check "and bounces that were used up" grep -q "^ *re[a-z]*  .*bounces used up" "$OUT/stdout"
+rows=$(sed -n '/^ray /,$p' "$OUT/stdout" | tail -n +2 | wc -l)
+check "JSON has as many rays ($rows)" test "$(grep -c '"kind":' "$J")" -eq "$rows"
+check "JSON has one camera ray" test "$(grep -c '"parent": null' "$J")" -eq 1
+check "JSON says where" grep -q '"x": 32,' "$J"
+check "JSON has the material's line" grep -q '"line": 12' "$J"
+cp "$J" "$OUT/first.json"
+# shellcheck disable=SC2086
+expect 0 "the same once more" probe "$GLASS" $S --pixel 32,30 --quiet --json "$J"
+check "is the same" cmp -s "$J" "$OUT/first.json"
+
+# The picture's own number: row 30 from above is 17 from below; 12 bytes a pixel behind the head.
+# shellcheck disable=SC2086
+expect 0 "the picture" render "$GLASS" $S --quiet -o "$OUT/whitted.pfm"
+head=$(($(wc -c <"$OUT/whitted.pfm") - 64 * 48 * 12))
+picture=$(od -An -tf4 -j $((head + (17 * 64 + 32) * 12)) -N 12 "$OUT/whitted.pfm")
+probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
+# shellcheck disable=SC2086
+run probe "$GLASS" $S --pixel 32,30 --quiet
+probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
+check "has that colour ($picture; $probed)" sh -c 'echo "$1 $2" | awk "{
+    for (i = 1; i <= 3; i++) { d = \$i - \$(i + 3); if (d * d > 1e-12 * \$i * \$i) exit 1 }
+    exit NF != 6 || \$1 + \$2 + \$3 == 0 }"' sh "$picture" "$probed"
+
+# shellcheck disable=SC2086
+expect 0 "at exact" probe "$CUBE" $S --pixel 32,24 --quiet --numerics exact
+check "exact arithmetic says the same" grep -q "^exact      differs in 0 of [1-9]" "$OUT/stdout"
+check "to the last bit" grep -q "^primary .* =  *=  *1 1 1" "$OUT/stdout"
+# shellcheck disable=SC2086
+expect 0 "the sky" probe "$CUBE" $S --pixel 0,0 --quiet
+check "is nothing" grep -q "^instance   none" "$OUT/stdout"
+# shellcheck disable=SC2086
+expect 0 "without bounces" probe "$GLASS" $S --pixel 32,30 --depth 0 --quiet
+check "nothing is reflected" grep -q " 0 reflected, 0 refracted, 2 not traced" "$OUT/stdout"
+# shellcheck disable=SC2086
+expect 0 "little room" probe "$GLASS" $S --pixel 32,30 --rays 3
+check "is said" grep -q "^whit: warning: [1-9][0-9]* of $rows rays had no room" "$OUT/stderr"
+check "and shown" grep -q " $((rows - 3)) not recorded" "$OUT/stdout"
+
+L="--camera 0,0,5,0,0,0,0,1,0,40 --size 641x481 --pixel 321,240 --quiet"
+# shellcheck disable=SC2086
+expect 0 "a ray to the cube" probe "$CUBE" $L
+# shellcheck disable=SC2086
+"$LEAKY" probe "$CUBE" $L >"$OUT/stdout" 2>"$OUT/stderr"
+check "a twin that loses rays: exit code 1" test $? -eq 1
+check "says so" grep -q "^whit: error: the device and its twin differ in 1 of" "$OUT/stderr"
+check "and where" grep -q "^primary .* at .* nothing " "$OUT/stdout"
+# shellcheck disable=SC2086
+"$LEAKY" probe "$CUBE" $L --numerics fast >"$OUT/stdout" 2>"$OUT/stderr"
+check "which fast promises not: exit code 0" test $? -eq 0
+
+rm "$J"
+refuse 2 "no pixel" "which pixel" probe "$CUBE"
+refuse 2 "a pixel outside" "pixel 640,10: outside of the picture of 640 x 480" probe "$CUBE" --pixel 640,10
+refuse 2 "a pixel below" "pixel 3,48: outside" probe "$CUBE" --size 64x48 --pixel 3,48
+for pixel in 12 12, ,12 1,2,3 -1,2 1.5,2 a,b "1, 2"; do
+    refuse 2 "pixel \`$pixel\`" "two numbers X,Y" probe "$CUBE" --pixel="$pixel"
+done
+refuse 2 "adaptive" "4, 16 or 64" probe "$CUBE" --pixel 1,1 --aa adaptive:0.1
+refuse 2 "too many rays" "1 to 16383" probe "$CUBE" --pixel 1,1 --rays 20000
+refuse 2 "JSON to a pipe" "/dev/stdout" probe "$CUBE" --pixel 1,1 --json -
+refuse 2 "JSON nowhere" "nowhere/x" probe "$CUBE" --pixel 1,1 --json "$OUT/nowhere/x"
+refuse 2 "no such camera" "no camera" probe "$CUBE" --pixel 1,1 --camera nobody --quiet
+refuse 2 "no such scene" "missing.json" probe "$OUT/missing.json" --pixel 1,1 --quiet
+refuse 2 "unknown option" "did you mean .--pixel." probe "$CUBE" --pixle 1,1
+check "no file was left" is_empty "$OUT/files"
+expect 0 "help" probe --help
+check "help names the twin" grep -q "twin" "$OUT/stdout"
+finish
