@@ -4,7 +4,7 @@
 #include "app/commands.h"
 
 static const struct cli_command *const commands[] = {
-    &command_render, &command_scene, &command_trace, &command_probe,   &command_bvh,
+    &command_render, &command_scene, &command_trace,   &command_probe,   &command_bvh,
     &command_bench,  &command_hard,  &command_compare, &command_devices,
 #ifdef WHIT_VIEWER
     &command_view,

@@ -119,10 +119,10 @@ static void print_head(const struct probe *probe)
 
 static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char text[TEXT_MOST])
 {
-    int indent = (int)(ray->generation < 24 ? ray->generation : 24) * 2;
+    int indent = (int)(ray->generation < 20 ? ray->generation : 20) * 2;
     if (ray->kind == WHIT_RAY_SHADOW)
-        snprintf(text, TEXT_MOST, "%*sshadow, %.40s%s%.0u", indent, "",
-                 light_of(probe, ray->light).name, ray->light_sample ? " " : "", ray->light_sample);
+        snprintf(text, TEXT_MOST, "%*sshadow, %.30s, point %u", indent, "",
+                 light_of(probe, ray->light).name, ray->light_sample);
     else
         snprintf(text, TEXT_MOST, "%*s%s%s", indent, "", kinds[ray->kind],
                  ray->straight ? ", straight on" : "");

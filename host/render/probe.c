@@ -259,7 +259,7 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     struct gpu_probe_ray *records = NULL;
     *out = (struct probe_report){.x = x,
                                  .y = y,
-        .light_samples = renderer->frame.light_samples,
+                                 .light_samples = renderer->frame.light_samples,
                                  .samples = params->adaptive > 0.0 ? PROBE_ADAPTIVE_SAMPLES
                                                                    : params->samples};
     whit_result result = check(renderer, x, y);
