@@ -227,7 +227,7 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
 whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
 {
     struct render_params inner;
-    whit_result result = need_device(renderer);
+    whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = render_params_from_public(&renderer->log, params, &inner);
     return result == WHIT_OK ? renderer_set_view(renderer->renderer, &inner) : result;

@@ -314,7 +314,7 @@ static void scenes_of_all_kinds(void **state)
 }
 
 /* Passes and buffers of the probe go along with the renderer's. */
-static void another_time(void **state)
+static void another_time_and_size(void **state)
 {
     (void)state;
     const struct render_params params = {.width = SIDE, .height = 6, .depth = 3};
@@ -323,6 +323,12 @@ static void another_time(void **state)
     assert_int_equal(renderer_set_time(f.renderer, 0.7), WHIT_OK);
     struct sums after = probe_picture(&f);
     assert_true(before.rays > 0 && after.rays > 0 && before.rays != after.rays);
+    struct render_params other = params;
+    other.width = 12;
+    other.height = 9; /* two rows of blocks */
+    other.depth = 4;
+    assert_int_equal(renderer_set_view(f.renderer, &other), WHIT_OK);
+    probe_picture(&f);
     fixture_close(&f);
 }
 
@@ -447,7 +453,7 @@ int main(void)
         cmocka_unit_test(surfaces_let_rays_pass),
         cmocka_unit_test(trees_do_not_matter),
         cmocka_unit_test(scenes_of_all_kinds),
-        cmocka_unit_test(another_time),
+        cmocka_unit_test(another_time_and_size),
         cmocka_unit_test(color_is_of_all_samples),
         cmocka_unit_test(rays_without_room_are_counted),
         cmocka_unit_test(pixels_outside_are_refused),
