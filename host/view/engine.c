@@ -328,6 +328,50 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     wake_window(engine);
 }
 
+/* ---- Pixels ---- */
+
+void engine_probe_finish(struct engine_probe *probe)
+{
+    whit_probe_report_destroy(probe->report);
+    scene_ref_drop(probe->scene);
+    *probe = (struct engine_probe){0};
+}
+
+/* Whether the window's picture is whole and of the session that would be probed. */
+static bool can_probe(const struct engine *engine)
+{
+    const struct engine_lane *lane = &engine->lanes[0];
+    return engine->probe_wanted && lane->session && !lane->stale && lane->drawn == lane->asked &&
+           lane->quality == ENGINE_WHOLE;
+}
+
+static void probe_one(struct engine *engine)
+{
+    struct session *session = engine->lanes[0].session;
+    uint32_t x = engine->probe_x, y = engine->probe_y;
+    struct engine_probe probe = {.settings = session->settings,
+                                 .scene = scene_ref_take(session->scene)};
+    engine->probe_wanted = false;
+    engine->busy = true;
+    session->cancel = false;
+    engine->drawing = session;
+    pthread_mutex_unlock(&engine->lock);
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_probe(session->renderer, x, y, 0, &probe.report);
+    probe.ms = whit_clock_ms() - start_ms;
+    pthread_mutex_lock(&engine->lock);
+    engine->busy = false;
+    engine->drawing = NULL;
+    probe.number = ++engine->probes;
+    engine_probe_finish(&engine->probe);
+    engine->probe = probe;
+    if (result == WHIT_ERROR_CANCELLED)
+        engine->probe_wanted = true; /* of the next picture */
+    else if (result == WHIT_ERROR_DEVICE)
+        lose_device(engine, session);
+    wake_window(engine);
+}
+
 static void run_engine(void *context)
 {
     struct engine *engine = context;
@@ -341,6 +385,10 @@ static void run_engine(void *context)
                 draw_one(engine, &engine->lanes[i], &task);
                 drew = true;
             }
+        }
+        if (!drew && !engine->quit && can_probe(engine)) {
+            probe_one(engine);
+            drew = true;
         }
         if (!drew && !engine->quit && !(engine->job && engine->job->done))
             pthread_cond_wait(&engine->work, &engine->lock);
@@ -397,6 +445,7 @@ void engine_destroy(struct engine *engine)
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_frame_finish(&engine->lanes[i].frame);
     engine_kept_finish(&engine->last);
+    engine_probe_finish(&engine->probe);
     pthread_cond_destroy(&engine->work);
     pthread_cond_destroy(&engine->news);
     pthread_mutex_destroy(&engine->lock);
@@ -473,10 +522,34 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
     return newer;
 }
 
+void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine->probe_wanted = true;
+    engine->probe_x = x;
+    engine->probe_y = y;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+bool engine_take_probe(struct engine *engine, struct engine_probe *probe)
+{
+    pthread_mutex_lock(&engine->lock);
+    bool newer = engine->probe.number > probe->number;
+    if (newer) {
+        engine_probe_finish(probe);
+        *probe = engine->probe;
+        engine->probe = (struct engine_probe){0};
+    }
+    pthread_mutex_unlock(&engine->lock);
+    return newer;
+}
+
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool still = !engine->busy;
+    bool still = !engine->busy && engine->probe.number == 0 &&
+                 (!engine->probe_wanted || engine->lanes[0].failed);
     for (int i = 0; i < ENGINE_LANES; ++i)
         still = still && is_done(&engine->lanes[i]) && engine->lanes[i].frame.number == 0;
     pthread_mutex_unlock(&engine->lock);

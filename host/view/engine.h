@@ -74,6 +74,21 @@ void engine_get_status(struct engine *engine, struct engine_status *status);
    than frame->number. `other`: that of engine_ask_other. */
 bool engine_take(struct engine *engine, bool other, struct engine_frame *frame);
 
+/* The ray tree of a pixel of the window's whole picture. */
+struct engine_probe {
+    uint64_t number;               /* counts up; 0: none yet */
+    struct view_settings settings; /* of the picture */
+    struct scene_ref *scene;       /* held */
+    whit_probe_report *report;     /* NULL where it failed: see engine_status.error */
+    double ms;
+};
+void engine_probe_finish(struct engine_probe *probe);
+/* Traces the pixel, counted from the upper left, as soon as the picture is whole; the last one
+   asked for counts. */
+void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y);
+/* As engine_take. */
+bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
+
 /* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
    is an error. */
 bool engine_is_still(struct engine *engine);

@@ -73,7 +73,11 @@ struct engine {
     char error[ENGINE_MESSAGE];
     bool device_lost;
     struct engine_change change;
-    struct engine_kept last; /* of the drawing thread: the window's last whole picture */
+    bool probe_wanted;
+    uint32_t probe_x, probe_y;
+    uint64_t probes;
+    struct engine_probe probe; /* the newest; number 0: taken */
+    struct engine_kept last;   /* of the drawing thread: the window's last whole picture */
 };
 
 /* What engine_draw is to draw. */

@@ -203,6 +203,7 @@ static void draw_boxes(const struct view *view)
 void hud_draw(struct view *view)
 {
     draw_boxes(view);
+    pick_draw(view);
     draw_hud(view);
     draw_help(view);
     draw_work(view);

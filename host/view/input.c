@@ -114,11 +114,14 @@ static void on_button(struct view *view, const struct view_event *event)
     view->dirty = true;
     if (event->down && ui_has_mouse(view->ui))
         return;
+    bool was_down = input->buttons[event->button];
     input->buttons[event->button] = event->down;
     if (event->down) {
         input->press_x = input->x;
         input->press_y = input->y;
         input->dragged = false;
+    } else if (was_down && !input->dragged && event->button == 0) {
+        pick_at(view, input->x, input->y);
     }
 }
 

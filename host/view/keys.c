@@ -487,8 +487,8 @@ static void say_fullscreen(const struct view *view, char *text, size_t bytes)
 static void escape(struct view *view)
 {
     double now_ms = clock_ms();
-    if (view->help) {
-        view->help = false;
+    if (view->help || view->picked) {
+        view->help = view->picked = false;
         return;
     }
     view->quit = now_ms - view->escape_ms < ESCAPE_MS;
@@ -513,6 +513,7 @@ static const struct key_binding bindings[] = {
     {'[', 0, "[", "half the scale of costs", less_scale, NULL},
     {']', 0, "]", "twice the scale", more_scale, say_scale},
     {'\\', 0, "\\", "scale by the picture", own_scale, NULL},
+    {'F', 0, "F", "look at what is under the mouse", pick_focus, NULL},
     {'N', 0, "N", "boxes of trees", next_boxes, say_boxes},
     {'J', 0, "J", "a level deeper", deeper_boxes, NULL},
     {'J', EVENT_SHIFT, "Shift+J", "a level higher", higher_boxes, say_level},

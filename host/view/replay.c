@@ -50,7 +50,8 @@ bool replay_is_over(const struct view *view)
 /* As good as it gets, and seen. */
 static bool is_still(const struct view *view)
 {
-    return engine_is_still(view->engine) && !view->dirty && !view->shot[0] &&
+    return !view->asked_moving && !view_is_moving(view, clock_ms()) &&
+           engine_is_still(view->engine) && !view->dirty && !view->shot[0] &&
            (view->frame.number > 0 || view->status.error[0]);
 }
 

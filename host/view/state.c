@@ -79,6 +79,23 @@ static json_t *keys_json(const struct view *view)
     return object;
 }
 
+static json_t *probe_json(const struct engine_probe *probe)
+{
+    json_t *object = json_object();
+    const whit_probe_report *r = probe->report;
+    put_count(object, "number", probe->number);
+    if (!r || r->ray_count == 0)
+        return object;
+    put_count(object, "x", r->x);
+    put_count(object, "y", r->y);
+    put_count(object, "rays", r->ray_count);
+    put_count(object, "differing", r->differing);
+    put_count(object, "instance", r->rays[0].device.instance);
+    put_count(object, "primitive", r->rays[0].device.primitive);
+    put_number(object, "t", r->rays[0].device.t);
+    return object;
+}
+
 void state_print(struct view *view, FILE *to)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
@@ -103,6 +120,8 @@ void state_print(struct view *view, FILE *to)
     put_count(root, "shown", view->shown);
     json_object_set_new(root, "keys", keys_json(view));
     json_object_set_new(root, "frame", frame_json(&view->frame));
+    put_bool(root, "picked", view->picked);
+    json_object_set_new(root, "probe", probe_json(&view->probe));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_dumpf(root, to, JSON_COMPACT);
     fputc('\n', to);

@@ -304,7 +304,7 @@ static whit_result draw_window(struct view *view)
 
 /* ---- The loop ---- */
 
-static bool is_moving(const struct view *view, double now_ms)
+bool view_is_moving(const struct view *view, double now_ms)
 {
     return now_ms - view->moved_ms < MOVING_MS || view->clock.playing;
 }
@@ -360,12 +360,14 @@ static whit_result step(struct view *view)
         view->toast[0] = '\0';
         view->dirty = true;
     }
+    view->asked_moving = view_is_moving(view, now_ms);
     if (view->settings.picture.width > 0)
-        engine_ask(view->engine, &view->settings, is_moving(view, now_ms));
+        engine_ask(view->engine, &view->settings, view->asked_moving);
     if (goes_on)
         engine_wait(view->engine, 50.0);
     whit_result result = take_frame(view);
     take_status(view);
+    pick_take(view);
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
     return result;
@@ -426,6 +428,7 @@ static void close_all(struct view *view, uint32_t *validation)
     watch_destroy(view->watch);
     engine_destroy(view->engine);
     engine_frame_finish(&view->frame);
+    engine_probe_finish(&view->probe);
     scene_ref_drop(view->scene);
     ui_destroy(view->ui);
     swapchain_destroy(view->swapchain);

@@ -51,13 +51,17 @@ struct view {
     struct engine_frame frame;
     struct engine_status status;
     uint64_t change_seen;
-    struct scene_ref *scene; /* of `frame` */
+    struct engine_probe probe; /* the picked pixel; number 0: none */
+    bool picked;               /* its panel is open */
+    bool focus;                /* look at it when it is there */
+    struct scene_ref *scene;   /* of `frame` */
 
     struct view_input input;
     struct view_clock clock;
     struct view_rate rate;
-    double moved_ms; /* when the picture was last changed by hand */
-    double drawn_ms; /* when the window was last drawn */
+    bool asked_moving; /* of the last engine_ask */
+    double moved_ms;   /* when the picture was last changed by hand */
+    double drawn_ms;   /* when the window was last drawn */
     double escape_ms;
     enum view_hud hud;
     bool help, hint;
@@ -82,6 +86,8 @@ void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
 void view_changed(struct view *view);
 /* The camera was moved by hand: its text, and quick pictures for a moment. */
 void view_moved(struct view *view);
+/* Whether quick pictures are wanted, as more will follow. */
+bool view_is_moving(const struct view *view, double now_ms);
 /* Another scene, as the file dropped on the window. Keeps all but camera and time. */
 void view_open(struct view *view, const char *path);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */
@@ -89,6 +95,15 @@ void view_use_camera(struct view *view, int index);
 /* The world's bounds of the scene; false where none is loaded, or it is empty. */
 bool view_bounds(const struct view *view, double lo[3], double hi[3]);
 double view_aspect(const struct view *view);
+
+/* pick.c: the pixel at a place of the window. */
+void pick_at(struct view *view, double x, double y);
+/* Looks at what is under the mouse. */
+void pick_focus(struct view *view);
+/* What came of it. */
+void pick_take(struct view *view);
+/* The panel, and the pixel's rays in the scene. */
+void pick_draw(struct view *view);
 
 /* overlay.c: lines in the scene, between ui_begin and ui_end. Cameras that are not perspective have
    none. */
