@@ -1,5 +1,5 @@
 /* Every scene of scenes/ by the kernel made for it and by the one with every effect: the same
-   picture, and no ray of a kind that the scene does not call for. Two of them at every level. */
+   picture, and no ray of a kind that the scene does not call for. One of them at every level. */
 #include <glob.h>
 
 #include "load/load.h"
@@ -84,8 +84,7 @@ static void default_scenes_are_the_same(void **state)
     device_destroy(device);
 }
 
-/* The other levels, whose kernels take as long again to compile: one scene of triangles in
-   instances with mirrors, one of media with a sphere among them. */
+/* The other levels, in one scene: their kernels take as long again to compile. */
 static void other_levels_draw_the_same(void **state)
 {
     (void)state;
@@ -93,7 +92,6 @@ static void other_levels_draw_the_same(void **state)
     assert_int_equal(device_create(&fixture_log, NULL, &device), WHIT_OK);
     check_scene(device, WHIT_SCENES_DIR "/default.json", NUMERICS_FAST);
     check_scene(device, WHIT_SCENES_DIR "/default.json", NUMERICS_EXACT);
-    check_scene(device, WHIT_SCENES_DIR "/glass-of-water.json", NUMERICS_EXACT);
     device_destroy(device);
 }
 
