@@ -49,6 +49,9 @@ struct cli_reader {
     const char *second;     /* the second one, where the command takes two */
     bool done;              /* with `status`: no more options, or an error, or help was printed */
     int status;             /* < 0: go on with the work; else exit with it */
+    const char *where;      /* "FILE:LINE" of options that are not of the command line, or NULL */
+    char *said;             /* gets what is wrong, in place of standard error; or NULL */
+    size_t said_bytes;
 };
 
 void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,

@@ -35,7 +35,7 @@ void cli_reader_init(struct cli_reader *reader, const struct cli_command *comman
                      char **argv)
 {
     *reader = (struct cli_reader){.command = command, .argc = argc, .argv = argv, .status = -1};
-    optind = 1;
+    optind = 0; /* from the beginning, whatever was read before */
     opterr = 0;
 }
 
@@ -46,7 +46,10 @@ bool cli_misuse(struct cli_reader *reader, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    cli_error("%s (see `whit %s --help`)", text, reader->command->name);
+    if (reader->said)
+        snprintf(reader->said, reader->said_bytes, "%s: %s", reader->where, text);
+    else
+        cli_error("%s (see `whit %s --help`)", text, reader->command->name);
     reader->done = true;
     reader->status = EXIT_USAGE;
     return false;

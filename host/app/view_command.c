@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "app/commands.h"
+#include "app/state_file.h"
 #include "view/view.h"
 
 enum view_id {
@@ -16,6 +17,8 @@ enum view_id {
     ID_RECORD,
     ID_REPLAY,
     ID_REMEMBER,
+    ID_STATE,
+    ID_UI_SCALE,
 };
 
 static const struct cli_option options[] = {
@@ -32,6 +35,10 @@ static const struct cli_option options[] = {
     {ID_REMEMBER, "remember", "yes|no",
      "cameras of scenes, from one run to the next (yes; no with\n"
      "--record and --replay)"},
+    {ID_STATE, "state", "FILE",
+     "options that Ctrl+S saved, one a line; those beside it\n"
+     "here come after them"},
+    {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)"},
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_VIEW,
@@ -48,16 +55,49 @@ static const struct cli_option options[] = {
 static const char *const start_hint = "Drag turns the camera, the wheel comes nearer, H lists all "
                                       "keys. Drop a scene here to open it.";
 
-static void read_option(struct cli_reader *reader, int id, struct job *job,
-                        struct render_request *request, struct view_params *view,
-                        uint32_t *remember)
+/* What the options say; its strings are borrowed. */
+struct view_request {
+    struct job job;
+    struct render_request picture;
+    struct view_params view;
+    const char *state;
+    double ui_scale;
+    uint32_t remember; /* REMEMBER_UNSAID: as it suits */
+};
+enum { REMEMBER_UNSAID = 2 };
+
+static void request_init(struct view_request *request)
+{
+    *request =
+        (struct view_request){.picture = picture_request_default(), .remember = REMEMBER_UNSAID};
+    job_init(&request->job);
+}
+
+/* What a file of settings may say; false where the option is another one. */
+static bool read_setting(struct view_request *request, struct cli_reader *reader, int id)
+{
+    if (job_option(&request->job, reader, id) || picture_option(reader, id, &request->picture))
+        return true;
+    if (id == ID_FPS_GOAL)
+        cli_number(reader, 0.1, 1000.0, &request->view.budget_fps);
+    return id == ID_FPS_GOAL;
+}
+
+static void read_state_option(void *user, struct cli_reader *reader, int id)
+{
+    if (!read_setting(user, reader, id))
+        cli_misuse(reader, "--%s is nothing to be saved", reader->option->name);
+}
+
+static void read_option(struct view_request *request, struct cli_reader *reader, int id)
 {
     static const char *const answers[] = {"no", "yes", NULL};
-    if (job_option(job, reader, id) || picture_option(reader, id, request))
+    struct view_params *view = &request->view;
+    if (read_setting(request, reader, id))
         return;
     switch (id) {
     case ID_REMEMBER:
-        cli_choice(reader, answers, remember);
+        cli_choice(reader, answers, &request->remember);
         break;
     case ID_FULLSCREEN:
         view->fullscreen = true;
@@ -68,9 +108,6 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
     case ID_BLIT:
         view->blit = true;
         break;
-    case ID_FPS_GOAL:
-        cli_number(reader, 0.1, 1000.0, &view->budget_fps);
-        break;
     case ID_FRAMES_SHOWN:
         cli_unsigned(reader, 1, 1000000000, &view->frames);
         break;
@@ -80,9 +117,39 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
     case ID_REPLAY:
         view->replay = reader->value;
         break;
+    case ID_STATE:
+        request->state = reader->value;
+        break;
+    case ID_UI_SCALE:
+        if (cli_number(reader, 0.25, 8.0, &request->ui_scale))
+            view->ui_scale = (float)request->ui_scale;
+        break;
     default:
         break;
     }
+}
+
+static void read_options(struct view_request *request, struct cli_reader *reader, int argc,
+                         char **argv)
+{
+    cli_reader_init(reader, &command_view, argc, argv);
+    for (int id; (id = cli_next(reader)) != 0;)
+        read_option(request, reader, id);
+    if (!reader->positional && reader->status < 0)
+        reader->positional = ""; /* the start scene */
+}
+
+/* The settings of a file, whose text is to outlive the request. */
+static bool read_state(struct view_request *request, const char *path, struct state_file *file,
+                       char *said, size_t said_bytes)
+{
+    struct cli_reader reader;
+    if (!state_file_open(file, path, said, said_bytes) ||
+        !state_file_read(file, &command_view, read_state_option, request, &reader, said,
+                         said_bytes))
+        return false;
+    reader.positional = "";
+    return job_options_done(&request->job, &reader) && view_check(&reader, &request->picture.view);
 }
 
 /* ---- Settings ---- */
@@ -176,6 +243,27 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
     whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
     recipe_finish(&recipe);
     return result;
+}
+
+/* view_params.load_state */
+static whit_result load_state(void *user, const char *path, struct view_state *state, char *message,
+                              size_t message_bytes)
+{
+    struct view_request request;
+    struct state_file file = {0};
+    struct view_settings now = state->settings;
+    (void)user;
+    request_init(&request);
+    bool read = read_state(&request, path, &file, message, message_bytes);
+    if (read) {
+        request.job.scene_path = now.scene;
+        fill_settings(&request.job, &request.picture, &state->settings);
+        state->settings.reload = now.reload;
+        state->settings.validation = now.validation;
+        state->fps_goal = request.view.budget_fps;
+    }
+    free(file.text);
+    return read ? WHIT_OK : WHIT_ERROR_INPUT;
 }
 
 /* ---- Scenes ---- */
@@ -282,6 +370,7 @@ static int work(struct job *job, const struct render_request *request, struct vi
     view->fps = job->fps;
     view->cancel = &cli_cancel;
     view->save = save_shot;
+    view->load_state = load_state;
     whit_result result = view_run(view, &cli_log, &validation);
     list_finish(&scenes);
     if (result != WHIT_OK)
@@ -291,26 +380,42 @@ static int work(struct job *job, const struct render_request *request, struct vi
     return validation > 0 ? EXIT_DIFFERS : EXIT_FINE;
 }
 
+static int run_with(struct view_request *request, struct cli_reader *reader)
+{
+    struct job *job = &request->job;
+    if (!job_options_done(job, reader) || !view_check(reader, &request->picture.view))
+        return reader->status;
+    if (job->scene_path && !job->scene_path[0])
+        job->scene_path = NULL;
+    struct view_params *view = &request->view;
+    bool as_it_suits = request->remember == REMEMBER_UNSAID;
+    view->remember = as_it_suits ? !view->record && !view->replay : request->remember == 1;
+    int status = work(job, &request->picture, &request->view);
+    job_finish(job);
+    return status;
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct job job;
-    struct render_request request = picture_request_default();
-    struct view_params view = {0};
-    uint32_t remember = 2; /* not said */
-    job_init(&job);
-    cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &job, &request, &view, &remember);
-    if (!reader.positional && reader.status < 0)
-        reader.positional = ""; /* the start scene */
-    if (!job_options_done(&job, &reader) || !view_check(&reader, &request.view))
-        return reader.status;
-    view.remember = remember == 2 ? !view.record && !view.replay : remember == 1;
-    if (job.scene_path && !job.scene_path[0])
-        job.scene_path = NULL;
-    int status = work(&job, &request, &view);
-    job_finish(&job);
+    struct view_request request;
+    struct state_file file = {0};
+    char said[600];
+    (void)command;
+    request_init(&request);
+    read_options(&request, &reader, argc, argv);
+    const char *state = reader.status < 0 ? request.state : NULL;
+    if (state) { /* comes first, so that the command line has the last word */
+        request_init(&request);
+        if (!read_state(&request, state, &file, said, sizeof said)) {
+            cli_error("%s", said);
+            free(file.text);
+            return EXIT_USAGE;
+        }
+        read_options(&request, &reader, argc, argv);
+    }
+    int status = run_with(&request, &reader);
+    free(file.text);
     return status;
 }
 

@@ -209,14 +209,6 @@ static bool is_done(const struct engine_lane *lane)
     return !lane->wanted || lane->failed || (lane->drawn == lane->asked && best && !lane->stale);
 }
 
-static void set_place(struct view_settings *settings, const struct view_settings *place)
-{
-    memcpy(settings->camera, place->camera, sizeof settings->camera);
-    settings->picture.time_s = place->picture.time_s;
-    settings->picture.width = place->picture.width;
-    settings->picture.height = place->picture.height;
-}
-
 /* Starts the session that a lane lacks, or stops one that nobody wants any more. */
 static void make_session_for(struct engine *engine, struct engine_lane *lane)
 {
@@ -234,17 +226,43 @@ static void make_session_for(struct engine *engine, struct engine_lane *lane)
     job->session->cancel = true;
 }
 
+/* The other side shows what the window's last picture shows, also while that moves: two cameras
+   would make any difference meaningless. False where it has that already. */
+static bool follow_place(const struct engine *engine, const struct engine_lane *lane,
+                         struct engine_task *task)
+{
+    if (!engine->places || engine->lanes[0].failed ||
+        settings_same_camera(&engine->place, &lane->settings))
+        return true;
+    settings_set_camera(&task->settings, &engine->place);
+    return lane->place != engine->places;
+}
+
+/* And while it moves as large as that. */
+static void follow_size(const struct engine *engine, const struct engine_lane *lane,
+                        struct engine_task *task)
+{
+    if (lane == engine->lanes || !engine->lanes[0].moving || engine->places == 0)
+        return;
+    task->divisor = engine->place_divisor;
+    if (task->divisor > 1)
+        task->quality = ENGINE_QUICK;
+}
+
 /* What to draw for a lane now; false: nothing. With the lock. */
 static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     if (is_done(lane))
         return false;
     *task = (struct engine_task){.settings = lane->settings};
+    if (lane != engine->lanes && !follow_place(engine, lane, task))
+        return false;
     task->session = find_session(engine, &lane->settings);
     if (task->session) {
         if (task->session != lane->session)
             lane->ms_per_sample = 0.0;
         engine_plan(engine, lane, task);
+        follow_size(engine, lane, task);
         return true;
     }
     make_session_for(engine, lane);
@@ -253,8 +271,9 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         !settings_same_scene(&lane->session->settings, &lane->settings))
         return false;
     task->session = lane->session;
+    struct view_settings place = task->settings;
     task->settings = lane->session->settings;
-    set_place(&task->settings, &lane->settings);
+    settings_set_camera(&task->settings, &place);
     engine_plan(engine, lane, task);
     return true;
 }
@@ -283,7 +302,14 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
         lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
     bool own = settings_same_kernel(&task->settings, &lane->settings);
     lane->session = task->session;
-    lane->drawn = asked;
+    bool there = settings_same_camera(&task->settings, &lane->settings);
+    lane->drawn = there || lane == engine->lanes ? asked : 0; /* 0: once more, elsewhere */
+    if (lane == engine->lanes) {
+        engine->place = task->settings;
+        engine->place_divisor = task->divisor;
+        ++engine->places;
+    }
+    lane->place = engine->places;
     lane->quality = task->quality;
     lane->stale = !own;
     task->session->last_use = ++engine->uses;
@@ -398,6 +424,13 @@ static void run_engine(void *context)
 
 /* ---- The window's thread ---- */
 
+void engine_set_budget(struct engine *engine, double budget_ms)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine->params.budget_ms = budget_ms;
+    pthread_mutex_unlock(&engine->lock);
+}
+
 whit_result engine_create(const struct engine_params *params, struct engine **out)
 {
     *out = NULL;
@@ -477,7 +510,7 @@ void engine_ask(struct engine *engine, const struct view_settings *settings, boo
     ask(engine, &engine->lanes[0], settings, moving);
     if (other->wanted) {
         struct view_settings there = other->settings;
-        set_place(&there, settings);
+        settings_set_camera(&there, settings);
         ask(engine, other, &there, moving);
     }
     pthread_mutex_unlock(&engine->lock);

@@ -17,12 +17,15 @@ struct engine_params {
 WHIT_CHECK whit_result engine_create(const struct engine_params *params, struct engine **out);
 void engine_destroy(struct engine *engine); /* cancels, waits; NULL is fine */
 
+/* Another budget from now on. */
+void engine_set_budget(struct engine *engine, double budget_ms);
+
 /* What to draw from now on. `moving`: more will follow soon, so be quick: a smaller picture of one
    sample within the budget; else as the settings say, a quick one first. */
 void engine_ask(struct engine *engine, const struct view_settings *settings, bool moving);
 
-/* What B of the split view shows: `settings` are drawn too, at the place of what engine_ask says.
-   NULL: no more. */
+/* What B of the split view shows: `settings` are drawn too, at the place of the last picture of
+   what engine_ask says. NULL: no more. */
 void engine_ask_other(struct engine *engine, const struct view_settings *settings);
 
 enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MOST = 8192 };
@@ -45,8 +48,11 @@ struct engine_frame {
     whit_accel_info accel;
     whit_device_info device;
     double build_ms, compile_ms;
+    uint64_t effects; /* a bit for each that is compiled, in the order of whit_effect_name */
 };
 void engine_frame_finish(struct engine_frame *frame);
+/* Of drawing: on the device where that is measured, present apart. */
+double engine_drawn_ms(const whit_stats *stats);
 
 /* What another kernel, tree or setting changed, from the last whole picture before to the first one
    after, of the same place. */

@@ -21,6 +21,8 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
 {
     double budget_ms =
         engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
+    if (engine->lanes[1].wanted)
+        budget_ms *= 0.5; /* for two pictures */
     const whit_renderer_params *p = &lane->settings.picture;
     double full_ms = (double)p->width * p->height * lane->ms_per_sample;
     if (lane->ms_per_sample <= 0.0)
@@ -160,6 +162,8 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         result = read_boxes(task, frame);
     if (result == WHIT_OK)
         whit_renderer_get_stats(session->renderer, &frame->stats);
+    for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
+        frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
     return result;
 }
 

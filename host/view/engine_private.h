@@ -43,6 +43,7 @@ struct engine_lane {
     struct session *session;     /* that drew last; NULL: none, or gone */
     struct engine_frame frame;   /* the newest picture; number 0: taken */
     uint64_t frames;
+    uint64_t place;       /* engine.places, when it drew */
     double ms_per_sample; /* of pictures of its session; 0: not known */
 };
 
@@ -63,6 +64,9 @@ struct engine {
     struct thread *thread;
     bool quit;
     struct engine_lane lanes[ENGINE_LANES];
+    struct view_settings place; /* of the window's last picture: that of the other one */
+    uint32_t place_divisor;
+    uint64_t places;                                /* how often that was set */
     struct engine_job *job;                         /* NULL: none */
     struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing, or what

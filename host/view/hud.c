@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "view/choices.h"
 #include "view/view_private.h"
 
 static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
@@ -12,12 +13,6 @@ static double traced_rays(const whit_stats *s)
 {
     return (double)s->rays_primary + (double)s->rays_shadow + (double)s->rays_reflected +
            (double)s->rays_refracted;
-}
-
-/* On the device where it is measured: that is what a frame costs, present apart. */
-static double render_ms(const whit_stats *s)
-{
-    return s->render_device_ms >= 0.0 ? s->render_device_ms : s->render_ms;
 }
 
 /* "full size, 4 samples" */
@@ -43,8 +38,8 @@ static void draw_figures(const struct view *view)
     const whit_stats *s = &frame->stats;
     struct swapchain_info chain;
     swapchain_get_info(view->swapchain, &chain);
-    double ms = render_ms(s);
-    ui_text("%6.1f fps   render %7.2f ms   present %6.2f ms", view->rate.fps, ms, chain.present_ms);
+    double ms = engine_drawn_ms(s);
+    ui_text("%5.1f fps  render %.2f ms  present %.2f ms", view->rate.fps, ms, chain.present_ms);
     ui_text("%6.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
     if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
         const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];
@@ -89,19 +84,29 @@ static void draw_more(const struct view *view)
     ui_text_dim("over the picture %.2f ms, image after %.2f ms", chain.draw_ms, chain.wait_ms);
 }
 
-/* "traversal distance -> sign: 0 of 307200 pixels changed" */
+/* "traversal distance -> sign", one change a line; then what that did. */
 static void draw_change(const struct view *view)
 {
     const struct engine_change *c = &view->status.change;
     if (c->number == 0)
         return;
     ui_separator();
-    ui_text("%s: %.2f -> %.2f ms", c->what, c->before_ms, c->after_ms);
+    for (const char *at = c->what; *at;) {
+        const char *end = strstr(at, ", ");
+        int length = end ? (int)(end - at) : (int)strlen(at);
+        ui_text("%.*s", length < 46 ? length : 46, at);
+        at += length + (end ? 2 : 0);
+    }
+    ui_text("%.2f -> %.2f ms", c->before_ms, c->after_ms);
     ui_text_color(c->other_ids ? COLOR_WARNING : COLOR_GOOD, "%llu of %llu pixels changed",
                   (unsigned long long)c->other_ids, (unsigned long long)c->pixels);
     ui_same_line(0);
-    ui_text("what they hit; %llu colours, by %.3g at most, %.2g on average",
-            (unsigned long long)c->other_colors, c->largest, c->mean);
+    ui_text("what they hit,");
+    if (c->other_colors > 0)
+        ui_text("%llu colours by up to %.3g, %.2g on average", (unsigned long long)c->other_colors,
+                c->largest, c->mean);
+    else
+        ui_text("0 colours");
 }
 
 static void draw_hud(const struct view *view)
@@ -125,6 +130,8 @@ static void draw_help(struct view *view)
     const struct key_binding *keys = key_bindings(&count);
     if (!view->help)
         return;
+    bool narrow = (float)view->settings.picture.width < 800.0f * ui_scale(view->ui);
+    int name_most = narrow ? 19 : 40, state_most = narrow ? 12 : 28;
     if (ui_panel_begin("Keys", 0.5f, 0.5f, UI_PANEL_PLAIN)) {
         if (ui_table_begin("keys", 6)) {
             uint32_t rows = (count + 1) / 2;
@@ -136,14 +143,14 @@ static void draw_help(struct view *view)
                 ui_table_next();
                 ui_text_color(COLOR_GOOD, "%s", at < count ? keys[at].keys : "");
                 ui_table_next();
-                ui_text("%s", at < count ? keys[at].name : "");
+                ui_text("%.*s", name_most, at < count ? keys[at].name : "");
                 ui_table_next();
-                ui_text_dim("%.28s", state);
+                ui_text_dim("%.*s", state_most, state);
             }
             ui_table_end();
         }
         ui_text("left drag: around   right drag: look, with WASD QE fly   middle drag: aside");
-        ui_text("wheel: nearer   click: what is there   drop a file: open it");
+        ui_text("wheel: nearer   click: what is there   drop a file: open it, a .view load it");
     }
     ui_panel_end();
 }
@@ -157,7 +164,7 @@ static void draw_work(const struct view *view)
         char text[96];
         snprintf(text, sizeof text, "%s %.1f s", session_stage_name(status->stage),
                  status->stage_ms * 1e-3);
-        ui_progress((float)(status->stage + 0.5) / (float)SESSION_DONE, text);
+        ui_progress((float)((double)status->stage + 0.5) / (float)SESSION_DONE, text);
     }
     ui_panel_end();
 }
@@ -200,12 +207,41 @@ static void draw_boxes(const struct view *view)
     ui_panel_end();
 }
 
+/* Of the window's picture, and of B's where that stands beside it. */
+static void draw_legends(const struct view *view)
+{
+    const struct compare *compare = &view->compare;
+    for (int side = 0; side < (compare->mode == COMPARE_SPLIT ? 2 : 1); ++side) {
+        const struct engine_frame *frame = side ? &compare->other : &view->frame;
+        char rays[64], title[160];
+        if (!frame->rgba || frame->settings.paint == VIEW_PAINT_COLOR ||
+            compare->mode == COMPARE_DIFFERENCE)
+            continue;
+        choice_say(&frame->settings, CHOICE_VIEW_RAYS, rays, sizeof rays);
+        snprintf(title, sizeof title, "%s%s of %s rays%s",
+                 compare->mode != COMPARE_SPLIT ? ""
+                 : side                         ? "B: "
+                                                : "A: ",
+                 settings_paint_title(frame->settings.paint), rays,
+                 frame->settings.paint_scale > 0.0 ? "" : ", scale by the picture");
+        palette_legend(&view->palette, side ? "legend B" : "legend A", title, frame->scale);
+    }
+}
+
+/* What comes first stays where it is; what comes later gives way. */
 void hud_draw(struct view *view)
 {
-    draw_boxes(view);
+    if (view->help) {
+        draw_help(view);
+        draw_messages(view);
+        return;
+    }
     pick_draw(view);
-    draw_hud(view);
-    draw_help(view);
-    draw_work(view);
+    compare_draw(view);
+    draw_legends(view);
     draw_messages(view);
+    draw_work(view);
+    draw_boxes(view);
+    draw_hud(view);
+    panels_draw(view);
 }

@@ -94,6 +94,8 @@ static void on_move(struct view *view, const struct view_event *event)
     input->x = event->x;
     input->y = event->y;
     ui_mouse(view->ui, (float)event->x, (float)event->y);
+    if (compare_event(view, event))
+        return;
     if (held && !input->dragged) {
         dx = event->x - input->press_x;
         dy = event->y - input->press_y;
@@ -113,6 +115,8 @@ static void on_button(struct view *view, const struct view_event *event)
     ui_button_event(view->ui, event->button, event->down);
     view->dirty = true;
     if (event->down && ui_has_mouse(view->ui))
+        return;
+    if (compare_event(view, event))
         return;
     bool was_down = input->buttons[event->button];
     input->buttons[event->button] = event->down;

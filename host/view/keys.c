@@ -6,159 +6,42 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "view/choices.h"
 #include "view/view_private.h"
 
 static const double ESCAPE_MS = 1500.0; /* between the two that quit */
-enum { DEPTH_DEFAULT = 8, DEPTH_MOST = 255, BOXES_LEVEL_MOST = 127 };
-static const double ADAPTIVE_DEFAULT = 0.05;
+enum { BOXES_LEVEL_MOST = 127 };
 
-/* ---- What rays do ---- */
+/* ---- Choices ---- */
 
-static void turn_traversal(struct view *view, int by)
-{
-    static const whit_traversal order[] = {WHIT_TRAVERSAL_DISTANCE, WHIT_TRAVERSAL_SIGN,
-                                           WHIT_TRAVERSAL_BASIC};
-    int at = 0;
-    while (at < 2 && order[at] != view->settings.picture.traversal)
-        ++at;
-    view->settings.picture.traversal = order[(at + by + 3) % 3];
-}
-
-static void next_traversal(struct view *view)
-{
-    turn_traversal(view, 1);
-}
-
-static void last_traversal(struct view *view)
-{
-    turn_traversal(view, -1);
-}
-
-static void say_traversal(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, "%s", settings_traversal_name(view->settings.picture.traversal));
-}
-
-static void next_numerics(struct view *view)
-{
-    static const whit_numerics after[] = {[WHIT_NUMERICS_FAST] = WHIT_NUMERICS_WATERTIGHT,
-                                          [WHIT_NUMERICS_WATERTIGHT] = WHIT_NUMERICS_EXACT,
-                                          [WHIT_NUMERICS_EXACT] = WHIT_NUMERICS_FAST};
-    view->settings.picture.numerics = after[view->settings.picture.numerics];
-}
-
-static void say_numerics(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, "%s", settings_numerics_name(view->settings.picture.numerics));
-}
-
-static void set_build(struct view *view, whit_build build, const char *name)
-{
-    view->settings.trees.build = build;
-    view->settings.trees.bins = 0;
-    view->settings.trees.optimize = false;
-    snprintf(view->settings.build, sizeof view->settings.build, "%s", name);
-}
-
-static void next_builder(struct view *view)
-{
-    switch (view->settings.trees.build) {
-    case WHIT_BUILD_BINNED:
-        set_build(view, WHIT_BUILD_SWEEP, "sweep");
-        break;
-    case WHIT_BUILD_SWEEP:
-        set_build(view, WHIT_BUILD_SPATIAL, "spatial");
-        break;
-    case WHIT_BUILD_SPATIAL:
-        set_build(view, WHIT_BUILD_MEDIAN, "median");
-        break;
-    default:
-        set_build(view, WHIT_BUILD_BINNED, "");
-        break;
+#define TURNS(name, id, by)                                                                        \
+    static void name(struct view *view)                                                            \
+    {                                                                                              \
+        choice_turn(&view->settings, id, by);                                                      \
     }
-}
-
-static void say_builder(const struct view *view, char *text, size_t bytes)
-{
-    bool none = view->settings.trees.build == WHIT_BUILD_NONE;
-    snprintf(text, bytes, "%s",
-             none                      ? "no trees"
-             : view->settings.build[0] ? view->settings.build
-                                       : "binned");
-}
-
-static void switch_trees(struct view *view)
-{
-    if (view->settings.trees.build == WHIT_BUILD_NONE)
-        set_build(view, WHIT_BUILD_BINNED, "");
-    else
-        set_build(view, WHIT_BUILD_NONE, "");
-}
-
-static void say_trees(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, view->settings.trees.build == WHIT_BUILD_NONE ? "off" : "on");
-}
-
-static void switch_instances(struct view *view)
-{
-    view->settings.trees.flatten = !view->settings.trees.flatten;
-}
-
-static void say_instances(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, view->settings.trees.flatten ? "off: one tree" : "on");
-}
-
-static void change_depth(struct view *view, int by)
-{
-    whit_renderer_params *p = &view->settings.picture;
-    int depth = p->no_bounces ? 0 : p->depth ? (int)p->depth : DEPTH_DEFAULT;
-    depth += by;
-    if (depth < 0 || depth > DEPTH_MOST)
-        return;
-    p->no_bounces = depth == 0;
-    p->depth = depth == DEPTH_DEFAULT ? 0 : (uint32_t)depth;
-}
-
-static void less_depth(struct view *view)
-{
-    change_depth(view, -1);
-}
-
-static void more_depth(struct view *view)
-{
-    change_depth(view, 1);
-}
-
-static void say_depth(const struct view *view, char *text, size_t bytes)
-{
-    const whit_renderer_params *p = &view->settings.picture;
-    snprintf(text, bytes, "%u", p->no_bounces ? 0 : p->depth ? p->depth : DEPTH_DEFAULT);
-}
-
-static void next_samples(struct view *view)
-{
-    whit_renderer_params *p = &view->settings.picture;
-    if (p->adaptive > 0.0) {
-        p->adaptive = 0.0;
-        p->samples = 0;
-    } else if (p->samples == 64) {
-        p->samples = 0;
-        p->adaptive = ADAPTIVE_DEFAULT;
-    } else {
-        p->samples = p->samples > 1 ? 4 * p->samples : 4;
+#define SAYS(name, id)                                                                             \
+    static void name(const struct view *view, char *text, size_t bytes)                            \
+    {                                                                                              \
+        choice_say(&view->settings, id, text, bytes);                                              \
     }
-}
-
-static void say_samples(const struct view *view, char *text, size_t bytes)
-{
-    const whit_renderer_params *p = &view->settings.picture;
-    if (p->adaptive > 0.0)
-        snprintf(text, bytes, "adaptive:%g", p->adaptive);
-    else
-        snprintf(text, bytes, "%u a pixel", p->samples ? p->samples : 1);
-}
+TURNS(next_traversal, CHOICE_TRAVERSAL, 1)
+TURNS(last_traversal, CHOICE_TRAVERSAL, -1)
+SAYS(say_traversal, CHOICE_TRAVERSAL)
+TURNS(next_numerics, CHOICE_NUMERICS, 1)
+SAYS(say_numerics, CHOICE_NUMERICS)
+TURNS(next_builder, CHOICE_BUILDER, 1)
+SAYS(say_builder, CHOICE_BUILDER)
+TURNS(switch_trees, CHOICE_TREES, 1)
+SAYS(say_trees, CHOICE_TREES)
+TURNS(switch_instances, CHOICE_INSTANCES, 1)
+SAYS(say_instances, CHOICE_INSTANCES)
+TURNS(less_depth, CHOICE_DEPTH, -1)
+TURNS(more_depth, CHOICE_DEPTH, 1)
+SAYS(say_depth, CHOICE_DEPTH)
+TURNS(next_samples, CHOICE_SAMPLES, 1)
+SAYS(say_samples, CHOICE_SAMPLES)
+TURNS(next_view, CHOICE_VIEW, 1)
+SAYS(say_paint, CHOICE_VIEW)
 
 /* ---- What is painted ---- */
 
@@ -174,22 +57,19 @@ static void next_cost_view(struct view *view)
     view->settings.paint = next < VIEW_PAINT_COUNT ? next : VIEW_PAINT_DEPTH;
 }
 
-static void next_view(struct view *view)
-{
-    view->settings.paint = (view->settings.paint + 1) % VIEW_PAINT_COUNT;
-}
-
-static void say_paint(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, "%s", settings_paint_name(view->settings.paint));
-}
-
+/* Of the difference, where that is shown; else of costs. */
 static void scale_by(struct view *view, double factor)
 {
-    double scale =
-        view->settings.paint_scale > 0.0 ? view->settings.paint_scale : view->frame.scale;
-    if (view->settings.paint != VIEW_PAINT_COLOR && scale > 0.0)
-        view->settings.paint_scale = fmax(1.0, scale * factor);
+    struct compare *compare = &view->compare;
+    bool costs = view->settings.paint != VIEW_PAINT_COLOR;
+    double *scale = &view->settings.paint_scale, shown = costs ? view->frame.scale : 0.0;
+    if (compare->mode == COMPARE_DIFFERENCE) {
+        scale = &compare->scale;
+        shown = compare->heat.scale;
+    }
+    double now = *scale > 0.0 ? *scale : shown;
+    if (now > 0.0)
+        *scale = compare->mode == COMPARE_DIFFERENCE ? now * factor : fmax(1.0, now * factor);
 }
 
 static void less_scale(struct view *view)
@@ -204,13 +84,18 @@ static void more_scale(struct view *view)
 
 static void own_scale(struct view *view)
 {
-    view->settings.paint_scale = 0.0;
+    if (view->compare.mode == COMPARE_DIFFERENCE)
+        view->compare.scale = 0.0;
+    else
+        view->settings.paint_scale = 0.0;
 }
 
 static void say_scale(const struct view *view, char *text, size_t bytes)
 {
-    if (view->settings.paint_scale > 0.0)
-        snprintf(text, bytes, "%g", view->settings.paint_scale);
+    bool difference = view->compare.mode == COMPARE_DIFFERENCE;
+    double scale = difference ? view->compare.scale : view->settings.paint_scale;
+    if (scale > 0.0)
+        snprintf(text, bytes, "%g", scale);
     else
         snprintf(text, bytes, "by the picture");
 }
@@ -243,6 +128,53 @@ static void higher_boxes(struct view *view)
 static void say_level(const struct view *view, char *text, size_t bytes)
 {
     snprintf(text, bytes, "%u", view->settings.boxes_level);
+}
+
+/* ---- Comparing ---- */
+
+static void switch_split(struct view *view)
+{
+    compare_set(view, view->compare.mode == COMPARE_OFF ? COMPARE_SPLIT : COMPARE_OFF);
+}
+
+static void say_split(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->compare.mode == COMPARE_OFF ? "off" : "on");
+}
+
+static void switch_difference(struct view *view)
+{
+    compare_set(view,
+                view->compare.mode == COMPARE_DIFFERENCE ? COMPARE_SPLIT : COMPARE_DIFFERENCE);
+}
+
+static void say_difference(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->compare.mode == COMPARE_DIFFERENCE ? "on" : "off");
+}
+
+/* ---- Panels ---- */
+
+static void switch_settings(struct view *view)
+{
+    view->panels.settings = !view->panels.settings;
+    view->panels.effects = false;
+}
+
+static void say_settings(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->panels.settings ? "open" : "closed");
+}
+
+static void switch_effects(struct view *view)
+{
+    view->panels.effects = !view->panels.effects;
+    view->panels.settings = false;
+}
+
+static void say_effects(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%.40s", view->settings.effects[0] ? view->settings.effects : "auto");
 }
 
 /* ---- Cameras ---- */
@@ -425,17 +357,13 @@ static void reload_scene(struct view *view)
 static void save_picture(struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
-    char path[32];
+    char path[VIEW_FREE_NAME];
     if (!frame->whole || frame->settings.paint != VIEW_PAINT_COLOR) {
         view_say(view, frame->whole ? "costs are saved by `whit render --view`: see Ctrl+C"
                                     : "the picture is not whole yet");
         return;
     }
-    for (int i = 1; i < 10000; ++i) {
-        snprintf(path, sizeof path, "whit-%04d.png", i);
-        if (!file_exists(path))
-            break;
-    }
+    view_free_name("png", path);
     const struct view_shot shot = {.settings = &frame->settings,
                                    .color = frame->color,
                                    .scene = frame->scene->scene,
@@ -517,6 +445,11 @@ static const struct key_binding bindings[] = {
     {'N', 0, "N", "boxes of trees", next_boxes, say_boxes},
     {'J', 0, "J", "a level deeper", deeper_boxes, NULL},
     {'J', EVENT_SHIFT, "Shift+J", "a level higher", higher_boxes, say_level},
+    {'C', 0, "C", "A beside B, frozen now", switch_split, say_split},
+    {'D', 0, "D", "A minus B", switch_difference, say_difference},
+    {'X', 0, "X", "effects and prices", switch_effects, say_effects},
+    {KEY_TAB, 0, "Tab", "settings by mouse", switch_settings, say_settings},
+    {'S', EVENT_CTRL, "Ctrl+S", "save these settings", panels_save, NULL},
     {KEY_HOME, 0, "Home", "all of the scene", fit_scene, NULL},
     {'0', 0, "0", "next camera of the file", next_file_camera, say_camera},
     {'1', 0, "1", "from the front", look_front, NULL},

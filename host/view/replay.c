@@ -44,15 +44,15 @@ void replay_close(struct view *view)
 
 bool replay_is_over(const struct view *view)
 {
-    return view->replay && view->replay->at == view->replay->count;
+    return view->replay && view->replay->at == view->replay->count && !view->shot[0];
 }
 
 /* As good as it gets, and seen. */
 static bool is_still(const struct view *view)
 {
     return !view->asked_moving && !view_is_moving(view, clock_ms()) &&
-           engine_is_still(view->engine) && !view->dirty && !view->shot[0] &&
-           (view->frame.number > 0 || view->status.error[0]);
+           engine_is_still(view->engine) && compare_is_still(view) && !view->dirty &&
+           !view->shot[0] && (view->frame.number > 0 || view->status.error[0]);
 }
 
 /* False where the event has to wait. */

@@ -31,11 +31,24 @@ bool settings_same_kernel(const struct view_settings *a, const struct view_setti
            (p->adaptive > 0.0) == (q->adaptive > 0.0) && counts == other_counts;
 }
 
-bool settings_same_place(const struct view_settings *a, const struct view_settings *b)
+bool settings_same_camera(const struct view_settings *a, const struct view_settings *b)
 {
     const whit_renderer_params *p = &a->picture, *q = &b->picture;
-    return settings_same_scene(a, b) && strcmp(a->camera, b->camera) == 0 &&
-           p->time_s == q->time_s && p->width == q->width && p->height == q->height;
+    return strcmp(a->camera, b->camera) == 0 && p->time_s == q->time_s && p->width == q->width &&
+           p->height == q->height;
+}
+
+bool settings_same_place(const struct view_settings *a, const struct view_settings *b)
+{
+    return settings_same_scene(a, b) && settings_same_camera(a, b);
+}
+
+void settings_set_camera(struct view_settings *settings, const struct view_settings *from)
+{
+    memcpy(settings->camera, from->camera, sizeof settings->camera);
+    settings->picture.time_s = from->picture.time_s;
+    settings->picture.width = from->picture.width;
+    settings->picture.height = from->picture.height;
 }
 
 bool settings_same(const struct view_settings *a, const struct view_settings *b)
@@ -62,6 +75,14 @@ const char *settings_paint_name(uint32_t paint)
     static const char *const names[VIEW_PAINT_COUNT] = {"color", "depth", "visits",
                                                         "boxes", "tris",  "stack"};
     return paint < VIEW_PAINT_COUNT ? names[paint] : "";
+}
+
+const char *settings_paint_title(uint32_t paint)
+{
+    static const char *const titles[VIEW_PAINT_COUNT] = {
+        "colours",   "deepest level",  "nodes visited",
+        "box tests", "triangle tests", "most entries on the stack"};
+    return paint < VIEW_PAINT_COUNT ? titles[paint] : "";
 }
 
 const char *settings_traversal_name(whit_traversal traversal)

@@ -46,6 +46,10 @@ struct view_settings {
 bool settings_same_kernel(const struct view_settings *a, const struct view_settings *b);
 /* Whether the scene of `a` is that of `b`. */
 bool settings_same_scene(const struct view_settings *a, const struct view_settings *b);
+/* Camera, time and size alone, of whatever scenes. */
+bool settings_same_camera(const struct view_settings *a, const struct view_settings *b);
+/* Takes them over. */
+void settings_set_camera(struct view_settings *settings, const struct view_settings *from);
 /* Whether what `a` and `b` see is the same: camera, time, size; not how it is found or shaded. */
 bool settings_same_place(const struct view_settings *a, const struct view_settings *b);
 /* All of it. */
@@ -62,7 +66,8 @@ size_t settings_words(const struct view_settings *settings, const char *separato
 /* `whit render SCENE ... -o picture.png`, which makes the picture of the window. */
 size_t settings_render_line(const struct view_settings *settings, char *text, size_t text_bytes);
 
-const char *settings_paint_name(uint32_t paint); /* "color" */
+const char *settings_paint_name(uint32_t paint);  /* "color" */
+const char *settings_paint_title(uint32_t paint); /* "box tests" */
 const char *settings_traversal_name(whit_traversal traversal);
 const char *settings_numerics_name(whit_numerics numerics);
 

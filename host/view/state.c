@@ -64,6 +64,65 @@ static json_t *change_json(const struct engine_change *change)
     return object;
 }
 
+static json_t *compare_json(const struct view *view)
+{
+    static const char *const modes[] = {"off", "split", "difference"};
+    const struct compare *compare = &view->compare;
+    const struct compare_figures *figures = &compare->figures;
+    const struct compare_heat *heat = &compare->heat;
+    json_t *object = json_object();
+    put_text(object, "mode", modes[compare->mode]);
+    if (compare->mode == COMPARE_OFF)
+        return object;
+    put_number(object, "divider", compare->divider);
+    json_object_set_new(object, "b", frame_json(&compare->other));
+    put_bool(object, "known", figures->known);
+    if (compare->mode == COMPARE_DIFFERENCE) {
+        put_number(object, "scale", heat->scale);
+        put_hash(object, "heat", heat->rgba, (size_t)heat->width * heat->height * 4);
+    } else {
+        put_hash(object, "mixed", compare->mixed,
+                 (size_t)compare->mixed_width * compare->mixed_height * 4);
+    }
+    if (!figures->known)
+        return object;
+    put_number(object, "a_ms", figures->ms[0]);
+    put_number(object, "b_ms", figures->ms[1]);
+    put_count(object, "pixels", figures->difference.pixels);
+    put_count(object, "other_ids", figures->difference.other_ids);
+    put_count(object, "other_colors", figures->difference.other_colors);
+    put_number(object, "largest", figures->difference.largest);
+    put_number(object, "mean", figures->difference.mean);
+    put_bool(object, "has_flip", figures->has_flip);
+    put_number(object, "flip", figures->flip_mean);
+    return object;
+}
+
+/* Places to click, by what stands there. */
+static json_t *items_json(void)
+{
+    json_t *object = json_object();
+    const char *label;
+    float x, y;
+    for (uint32_t i = 0; ui_item(i, &label, &x, &y); ++i) {
+        char text[48];
+        snprintf(text, sizeof text, "%.0f %.0f", (double)x, (double)y);
+        put_text(object, label, text);
+    }
+    return object;
+}
+
+static json_t *prices_json(const struct view *view)
+{
+    json_t *object = json_object();
+    for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i) {
+        const struct effect_price *price = &view->panels.prices[i];
+        if (price->known)
+            put_count(object, whit_effect_name(i), price->other_colors);
+    }
+    return object;
+}
+
 static json_t *keys_json(const struct view *view)
 {
     uint32_t count;
@@ -122,6 +181,10 @@ void state_print(struct view *view, FILE *to)
     json_object_set_new(root, "frame", frame_json(&view->frame));
     put_bool(root, "picked", view->picked);
     json_object_set_new(root, "probe", probe_json(&view->probe));
+    put_number(root, "fps_goal", view->panels.fps_goal);
+    json_object_set_new(root, "compare", compare_json(view));
+    json_object_set_new(root, "items", items_json());
+    json_object_set_new(root, "prices", prices_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_dumpf(root, to, JSON_COMPACT);
     fputc('\n', to);

@@ -3,6 +3,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include <backends/imgui_impl_vulkan.h>
@@ -21,6 +22,116 @@ struct ui {
 };
 
 static float line_scale = 1.0f;
+
+// ---- Where panels are ----
+
+enum { PANELS_MOST = 24, ITEMS_MOST = 96, AGAIN_MOST = 8 };
+
+struct panel {
+    char title[32];
+    ImVec2 size, at; // of the last frame it was in
+    int frame;       // that one
+};
+
+// Of this frame those that were ended are obstacles for the next ones.
+static struct {
+    panel panels[PANELS_MOST];
+    int count, frame, current;
+    int obstacles[PANELS_MOST], obstacle_count;
+    bool changed;
+    int again;
+} layout;
+
+static struct {
+    char label[48];
+    ImVec2 middle;
+} items[ITEMS_MOST];
+static uint32_t item_count;
+
+static int find_panel(const char *title)
+{
+    int oldest = 0;
+    for (int i = 0; i < layout.count; ++i) {
+        if (std::strncmp(layout.panels[i].title, title, sizeof layout.panels[i].title - 1) == 0)
+            return i;
+        if (layout.panels[i].frame < layout.panels[oldest].frame)
+            oldest = i;
+    }
+    int at = layout.count < PANELS_MOST ? layout.count++ : oldest;
+    layout.panels[at] = panel();
+    std::snprintf(layout.panels[at].title, sizeof layout.panels[at].title, "%s", title);
+    return at;
+}
+
+static float gap()
+{
+    return 6.0f * line_scale;
+}
+
+static const panel *obstacle_of(const ImVec2 &at, const ImVec2 &size)
+{
+    for (int i = 0; i < layout.obstacle_count; ++i) {
+        const panel &p = layout.panels[layout.obstacles[i]];
+        if (at.x < p.at.x + p.size.x + gap() && p.at.x < at.x + size.x + gap() &&
+            at.y < p.at.y + p.size.y + gap() && p.at.y < at.y + size.y + gap())
+            return &p;
+    }
+    return nullptr;
+}
+
+// From its corner away from the window's edge, until it covers none of those before.
+static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y)
+{
+    const ImVec2 anchor = at;
+    float height = ImGui::GetIO().DisplaySize.y;
+    for (int turn = 0; turn < PANELS_MOST && y != 0.5f; ++turn) {
+        const panel *other = obstacle_of(at, size);
+        if (!other)
+            break;
+        at.y = y < 0.5f ? other->at.y + other->size.y + gap() : other->at.y - gap() - size.y;
+    }
+    bool outside = at.y < 0.0f || at.y + size.y > height;
+    return outside ? anchor : at; // there is no room: the window is small
+}
+
+// Down to what stands below.
+static float room_below(const ImVec2 &at, float width)
+{
+    float end = ImGui::GetIO().DisplaySize.y - gap();
+    for (int i = 0; i < layout.obstacle_count; ++i) {
+        const panel &p = layout.panels[layout.obstacles[i]];
+        bool beside = at.x >= p.at.x + p.size.x + gap() || p.at.x >= at.x + width + gap();
+        if (!beside && p.at.y >= at.y && p.at.y - gap() < end)
+            end = p.at.y - gap();
+    }
+    float least = 70.0f * line_scale;
+    return end - at.y > least ? end - at.y : least;
+}
+
+static void note_panel(int index)
+{
+    panel &p = layout.panels[index];
+    ImVec2 size = ImGui::GetWindowSize(), at = ImGui::GetWindowPos();
+    bool same = p.size.x == size.x && p.size.y == size.y && p.at.x == at.x && p.at.y == at.y;
+    layout.changed |= !same || p.frame != layout.frame - 1;
+    p.size = size;
+    p.at = at;
+    p.frame = layout.frame;
+    if (layout.obstacle_count < PANELS_MOST)
+        layout.obstacles[layout.obstacle_count++] = index;
+}
+
+static void note_item(const char *label)
+{
+    if (item_count == ITEMS_MOST)
+        return;
+    const char *end = std::strstr(label, "##");
+    int length = end ? (int)(end - label) : (int)std::strlen(label);
+    std::snprintf(items[item_count].label, sizeof items[item_count].label, "%.*s", length, label);
+    ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+    items[item_count].middle = ImVec2(0.5f * (lo.x + hi.x), 0.5f * (lo.y + hi.y));
+    ++item_count;
+}
 
 static void make_fonts(void *user, void *commands)
 {
@@ -169,13 +280,39 @@ void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
         io.MouseDown[i] = ui->pressed[i] || ui->down[i];
         ui->pressed[i] = false;
     }
+    ++layout.frame;
+    layout.obstacle_count = 0;
+    layout.changed = false;
+    item_count = 0;
     ImGui_ImplVulkan_NewFrame();
     ImGui::NewFrame();
 }
 
 void ui_end(struct ui *)
 {
+    layout.again = layout.changed ? layout.again + 1 : 0;
     ImGui::Render();
+}
+
+// Not for ever: numbers may change their width from frame to frame.
+bool ui_wants_again(const struct ui *)
+{
+    return layout.again > 0 && layout.again < AGAIN_MOST;
+}
+
+float ui_scale(const struct ui *ui)
+{
+    return ui->scale;
+}
+
+bool ui_item(uint32_t index, const char **label, float *x, float *y)
+{
+    if (index >= item_count)
+        return false;
+    *label = items[index].label;
+    *x = items[index].middle.x;
+    *y = items[index].middle.y;
+    return true;
 }
 
 void ui_draw(void *, void *commands)
@@ -196,10 +333,26 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
 {
     int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
-    if (!(kind & UI_PANEL_TITLE))
-        flags |=
-            ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
-    place(x, y, kind & UI_PANEL_TITLE ? ImGuiCond_Appearing : ImGuiCond_Always);
+    layout.current = -1;
+    if (kind & UI_PANEL_TITLE) {
+        place(x, y, ImGuiCond_Appearing);
+    } else {
+        layout.current = find_panel(title);
+        const ImVec2 size = layout.panels[layout.current].size, window = ImGui::GetIO().DisplaySize;
+        float inside = 10.0f * line_scale;
+        ImVec2 at(inside + x * (window.x - 2.0f * inside - size.x),
+                  inside + y * (window.y - 2.0f * inside - size.y));
+        at = free_place(at, kind & UI_PANEL_HOLD ? ImVec2(size.x, 0.0f) : size, y);
+        ImGui::SetNextWindowPos(at);
+        if (kind & UI_PANEL_HOLD) {
+            flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse;
+            ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
+                                                ImVec2(window.x, room_below(at, size.x)));
+        } else {
+            flags |=
+                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
+        }
+    }
     if (kind & UI_PANEL_WIDE)
         ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
                                             ImVec2(ImGui::GetIO().DisplaySize.x * 0.9f, 1e6f));
@@ -209,6 +362,7 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
 bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open)
 {
     int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    layout.current = find_panel(title);
     place(x, y, ImGuiCond_Appearing);
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float w = width * line_scale, h = height * line_scale;
@@ -219,6 +373,9 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
 
 void ui_panel_end(void)
 {
+    if (layout.current >= 0)
+        note_panel(layout.current);
+    layout.current = -1;
     ImGui::End();
 }
 
@@ -258,36 +415,60 @@ void ui_same_line(float x)
 {
     ImGui::SameLine(x * ImGui::GetFontSize() * 0.54f);
 }
+static bool noted(bool done, const char *label)
+{
+    note_item(label);
+    return done;
+}
+
 bool ui_button(const char *label)
 {
-    return ImGui::Button(label);
+    return noted(ImGui::Button(label), label);
 }
 bool ui_selectable(const char *label, bool selected)
 {
-    return ImGui::Selectable(label, selected);
+    return noted(ImGui::Selectable(label, selected), label);
 }
 bool ui_checkbox(const char *label, bool *value)
 {
-    return ImGui::Checkbox(label, value);
+    return noted(ImGui::Checkbox(label, value), label);
 }
 
-bool ui_choice(const char *label, const char *const *names, int count, int *value)
+static float field_width()
 {
-    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
-    return ImGui::Combo(label, value, names, count);
+    return 9.0f * ImGui::GetFontSize();
+}
+
+bool ui_choice(const char *label, const char *shown, const char *const *names, int count,
+               int *value)
+{
+    ImGui::SetNextItemWidth(field_width());
+    bool open = ImGui::BeginCombo(label, shown), chosen = false;
+    note_item(label);
+    for (int i = 0; open && i < count; ++i) {
+        if (ui_selectable(names[i], i == *value)) {
+            *value = i;
+            chosen = true;
+        }
+    }
+    if (open)
+        ImGui::EndCombo();
+    return chosen;
 }
 
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic)
 {
-    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
-    return ImGui::SliderScalar(label, ImGuiDataType_Double, value, &lo, &hi, "%.4g",
-                               logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    ImGui::SetNextItemWidth(field_width());
+    bool moved =
+        ImGui::SliderScalar(label, ImGuiDataType_Double, value, &lo, &hi, "%.4g",
+                            logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    return noted(moved, label);
 }
 
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi)
 {
-    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
-    return ImGui::SliderScalar(label, ImGuiDataType_U32, value, &lo, &hi);
+    ImGui::SetNextItemWidth(field_width());
+    return noted(ImGui::SliderScalar(label, ImGuiDataType_U32, value, &lo, &hi), label);
 }
 
 bool ui_tree_begin(const char *label, bool open)
@@ -299,6 +480,30 @@ bool ui_tree_begin(const char *label, bool open)
 void ui_tree_end(void)
 {
     ImGui::TreePop();
+}
+
+void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count)
+{
+    float em = ImGui::GetFontSize(), width = 20.0f * em, height = 0.8f * em;
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    for (int i = 0; i < count; ++i)
+        list->AddRectFilled(ImVec2(at.x + width * (float)i / (float)count, at.y),
+                            ImVec2(at.x + width * (float)(i + 1) / (float)count, at.y + height),
+                            colors[i]);
+    float last = width - ImGui::CalcTextSize(labels[label_count - 1]).x - 0.5f * em, end = 0.0f;
+    for (int i = 0; i < label_count; ++i) {
+        float part = (float)i / (float)(label_count - 1);
+        float wide = ImGui::CalcTextSize(labels[i]).x, x = at.x + part * width;
+        list->AddLine(ImVec2(x, at.y + height), ImVec2(x, at.y + height + 0.25f * em), 0xFFE0E0E0u,
+                      line_scale);
+        float left = part * (width - wide);
+        if (i > 0 && i < label_count - 1 && (left < end || left + wide > last))
+            continue; // no room for it
+        list->AddText(ImVec2(at.x + left, at.y + height + 0.25f * em), 0xFFE0E0E0u, labels[i]);
+        end = left + wide + 0.5f * em;
+    }
+    ImGui::Dummy(ImVec2(width, height + 1.25f * em));
 }
 
 void ui_progress(float part, const char *text)

@@ -46,15 +46,24 @@ bool ui_has_keys(const struct ui *ui);
 /* Everything below is drawn between these two. */
 void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
 void ui_end(struct ui *ui);
+/* Whether panels found their sizes only now: the next frame has them where they belong. */
+bool ui_wants_again(const struct ui *ui);
+float ui_scale(const struct ui *ui);
+/* Where the middle of a button or other thing to click was drawn in the last frame, by its label
+   up to "##", for tests; false past the last one. */
+bool ui_item(uint32_t index, const char **label, float *x, float *y);
 /* A swapchain_draw: what was drawn since the last ui_begin. */
 void ui_draw(void *ui, void *commands);
 
 /* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
-   inside. False when it is folded: end it all the same. */
+   inside, and beside those that were begun before it: further down where y is 0, up where it is 1.
+   False when it is folded: end it all the same. */
 enum ui_panel {
     UI_PANEL_PLAIN = 0, /* no title, cannot be moved, lets the mouse through */
     UI_PANEL_TITLE = 1, /* with a title, can be moved */
     UI_PANEL_WIDE = 2,  /* with room for long lines */
+    UI_PANEL_HOLD = 4,  /* with a title, takes the mouse, cannot be moved, scrolls where the window
+                           is too low */
 };
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
 /* The same with a cross that sets *open to false. */
@@ -69,11 +78,15 @@ void ui_same_line(float x); /* 0: right behind; else from the panel's left, in c
 bool ui_button(const char *label);
 bool ui_selectable(const char *label, bool selected);
 bool ui_checkbox(const char *label, bool *value);
-bool ui_choice(const char *label, const char *const *names, int count, int *value);
+/* `shown`: what it says closed. */
+bool ui_choice(const char *label, const char *shown, const char *const *names, int count,
+               int *value);
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
 bool ui_tree_begin(const char *label, bool open); /* true: ui_tree_end ends it */
 void ui_tree_end(void);
+/* A bar of colours with labels below, evenly from its left to its right end. */
+void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
 void ui_table_header(const char *const *names, int count);

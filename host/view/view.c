@@ -92,9 +92,11 @@ void view_use_camera(struct view *view, int index)
 }
 
 /* What the settings' text says. */
-static void learn_camera(struct view *view)
+void view_learn_camera(struct view *view)
 {
     const char *text = view->settings.camera;
+    if (!view->scene)
+        return;
     view->camera_known = true;
     if (camera_from_text(text, &view->camera)) {
         view->file_camera = -1;
@@ -146,9 +148,20 @@ static void watch_scene(struct view *view)
     }
 }
 
+static bool is_state(const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    return strcmp(extension, "view") == 0;
+}
+
 void view_open(struct view *view, const char *path)
 {
     char old[VIEW_PATH];
+    if (is_state(path)) {
+        panels_load(view, path);
+        return;
+    }
     if (strlen(path) >= sizeof view->settings.scene) {
         view_say(view, "the path is too long");
         return;
@@ -186,11 +199,14 @@ static void count_picture(struct view *view)
     rate->fps = n > 1 && now_ms > first_ms ? 1e3 * (n - 1) / (now_ms - first_ms) : 0.0;
 }
 
-static whit_result take_frame(struct view *view)
+static void take_frame(struct view *view)
 {
-    if (!engine_take(view->engine, false, &view->frame))
-        return WHIT_OK;
-    struct engine_frame *frame = &view->frame;
+    struct engine_frame *frame = &view->frame, next = {.number = view->frame.number};
+    if (!engine_take(view->engine, false, &next))
+        return;
+    compare_leave(&view->compare, frame);
+    engine_frame_finish(frame);
+    *frame = next;
     bool other_scene = view->scene != frame->scene;
     scene_ref_drop(view->scene);
     view->scene = scene_ref_take(frame->scene);
@@ -200,11 +216,9 @@ static whit_result take_frame(struct view *view)
         watch_scene(view);
     }
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
-        learn_camera(view);
+        view_learn_camera(view);
     count_picture(view);
-    view->picture_set = true;
-    view->dirty = true;
-    return swapchain_set_picture(view->swapchain, frame->rgba, frame->width, frame->height);
+    view->compare.stale = true;
 }
 
 /* A switch that cannot be made goes back to what the picture shows; a scene that cannot be read
@@ -292,6 +306,10 @@ static whit_result draw_window(struct view *view)
         ui_rectangle(0, 0, (float)info.width, (float)info.height, 0xFF181410u, true);
     hud_draw(view);
     ui_end(view->ui);
+    if (ui_wants_again(view->ui)) { /* panels find their sizes: kept is what comes of it */
+        view->dirty = true;
+        keep = false;
+    }
     view->drawn_ms = now_ms;
     whit_result result = keep ? swapchain_show_and_keep(view->swapchain, ui_draw, view->ui, &shown)
                               : swapchain_show(view->swapchain, ui_draw, view->ui, &shown);
@@ -365,9 +383,11 @@ static whit_result step(struct view *view)
         engine_ask(view->engine, &view->settings, view->asked_moving);
     if (goes_on)
         engine_wait(view->engine, 50.0);
-    whit_result result = take_frame(view);
+    take_frame(view);
+    whit_result result = compare_step(view);
     take_status(view);
     pick_take(view);
+    panels_step(view);
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
     return result;
@@ -392,7 +412,10 @@ static whit_result open_device(struct view *view)
     if (result == WHIT_OK)
         result = fit_window(view);
     if (result == WHIT_OK)
-        result = ui_create(view->swapchain, window_scale(view->window), &view->ui);
+        result = ui_create(view->swapchain,
+                           view->params->ui_scale > 0.0f ? view->params->ui_scale
+                                                         : window_scale(view->window),
+                           &view->ui);
     return result;
 }
 
@@ -409,7 +432,9 @@ static whit_result open_all(struct view *view)
         .budget_ms = params->budget_fps > 0.0 ? 1e3 / params->budget_fps : 0.0,
         .wake = window_wake,
     };
-    whit_result result = replay_open(view);
+    whit_result result = palette_init(&view->palette);
+    if (result == WHIT_OK)
+        result = replay_open(view);
     if (result == WHIT_OK)
         result = window_create(&view->log, &window, &view->window);
     if (result == WHIT_OK)
@@ -427,6 +452,7 @@ static void close_all(struct view *view, uint32_t *validation)
     replay_close(view);
     watch_destroy(view->watch);
     engine_destroy(view->engine);
+    compare_finish(&view->compare);
     engine_frame_finish(&view->frame);
     engine_probe_finish(&view->probe);
     scene_ref_drop(view->scene);
@@ -446,6 +472,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     view->params = params;
     view->settings = params->settings;
     view->hud = HUD_SMALL;
+    view->panels.fps_goal = params->budget_fps;
     view->hint = params->hint != NULL;
     view->clock.speed = 1.0;
     view->moved_ms = -1e9;

@@ -13,6 +13,12 @@ struct view_shot {
     const whit_stats *stats;
 };
 
+/* What a file of settings says. */
+struct view_state {
+    struct view_settings settings;
+    double fps_goal; /* 0: 30 */
+};
+
 struct view_params {
     struct view_settings settings; /* to begin with; settings.picture's size is the window's */
     bool fullscreen, no_vsync, blit;
@@ -30,6 +36,12 @@ struct view_params {
     /* Saves a picture; the reason of a failure goes to the log. */
     whit_result (*save)(void *user, const struct view_shot *shot, const char *path);
     void *save_user;
+    /* Reads a file of settings, over what *state has of scene and device; `message` gets the reason
+       of a failure, with file and line. May be NULL. */
+    whit_result (*load_state)(void *user, const char *path, struct view_state *state, char *message,
+                              size_t message_bytes);
+    void *load_user;
+    float ui_scale; /* of text and panels; 0: the monitor's */
 };
 
 /* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: what

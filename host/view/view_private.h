@@ -4,6 +4,8 @@
 
 #include "device/swapchain.h"
 #include "view/camera.h"
+#include "view/compare.h"
+#include "view/panels.h"
 #include "view/ui.h"
 #include "view/view.h"
 #include "view/window.h"
@@ -56,6 +58,10 @@ struct view {
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
 
+    struct palette palette;
+    struct compare compare;
+    struct panels panels;
+
     struct view_input input;
     struct view_clock clock;
     struct view_rate rate;
@@ -95,6 +101,8 @@ void view_use_camera(struct view *view, int index);
 /* The world's bounds of the scene; false where none is loaded, or it is empty. */
 bool view_bounds(const struct view *view, double lo[3], double hi[3]);
 double view_aspect(const struct view *view);
+/* The camera as numbers, of what the settings' text says. */
+void view_learn_camera(struct view *view);
 
 /* pick.c: the pixel at a place of the window. */
 void pick_at(struct view *view, double x, double y);

@@ -1,0 +1,100 @@
+#include "app/state_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STATE_BYTES_MOST = 65536, WORDS_MOST = 8, WHERE_BYTES = 600 };
+
+bool state_file_open(struct state_file *file, const char *path, char *said, size_t said_bytes)
+{
+    *file = (struct state_file){.path = path};
+    errno = 0;
+    FILE *from = fopen(path, "r");
+    size_t length = 0;
+    file->text = malloc(STATE_BYTES_MOST + 1);
+    if (from && file->text)
+        length = fread(file->text, 1, STATE_BYTES_MOST + 1, from);
+    bool failed = !from || !file->text || ferror(from);
+    if (failed)
+        snprintf(said, said_bytes, "%s: cannot be read: %s", path, strerror(errno ? errno : EIO));
+    else if (length > STATE_BYTES_MOST || memchr(file->text, '\0', length))
+        snprintf(said, said_bytes, "%s: not a file of settings", path);
+    if (from)
+        fclose(from);
+    if (!failed && length <= STATE_BYTES_MOST && !memchr(file->text, '\0', length)) {
+        file->text[length] = '\0';
+        return true;
+    }
+    free(file->text);
+    file->text = NULL;
+    return false;
+}
+
+/* The next word of a line, in its place; what stands in single quotes is taken as it is, and a
+   backslash keeps the next letter, as a shell does it. NULL at the end; *whole: false where a quote
+   has no end. */
+static char *next_word(char **at, bool *whole)
+{
+    char *from = *at + strspn(*at, " \t\r"), *to = from, *word = from;
+    bool quoted = false;
+    if (!*from)
+        return NULL;
+    for (; *from && (quoted || !strchr(" \t\r", *from)); ++from) {
+        if (*from == '\'') {
+            quoted = !quoted;
+            continue;
+        }
+        if (*from == '\\' && !quoted && from[1])
+            ++from;
+        *to++ = *from;
+    }
+    *whole = !quoted;
+    *at = *from ? from + 1 : from;
+    *to = '\0';
+    return word;
+}
+
+/* Whether the line has as many words as it may; argv[0] is the command. */
+static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MOST + 1])
+{
+    bool whole = true;
+    char *word;
+    while (whole && (word = next_word(&line, &whole)) != NULL) {
+        if (reader->argc == WORDS_MOST)
+            return cli_misuse(reader, "one option a line");
+        argv[reader->argc++] = word;
+    }
+    argv[reader->argc] = NULL;
+    return whole || cli_misuse(reader, "a quote has no end");
+}
+
+bool state_file_read(struct state_file *file, const struct cli_command *command,
+                     void (*read)(void *user, struct cli_reader *reader, int id), void *user,
+                     struct cli_reader *reader, char *said, size_t said_bytes)
+{
+    static char name[] = "whit";
+    static char where[WHERE_BYTES];
+    uint32_t number = 0;
+    for (char *line = file->text, *end; line; line = end) {
+        char *argv[WORDS_MOST + 1] = {name};
+        end = strchr(line, '\n');
+        if (end)
+            *end++ = '\0';
+        snprintf(where, sizeof where, "%.500s:%u", file->path, ++number);
+        cli_reader_init(reader, command, 1, argv);
+        reader->where = where;
+        reader->said = said;
+        reader->said_bytes = said_bytes;
+        bool comment = line[strspn(line, " \t\r")] == '#';
+        if (!comment && split(reader, line, argv)) {
+            for (int id; (id = cli_next(reader)) != 0;)
+                read(user, reader, id);
+        }
+        if (reader->status < 0 && reader->positional)
+            cli_misuse(reader, "`%s` is no option", reader->positional);
+        if (reader->status >= 0)
+            return false;
+    }
+    return reader->status < 0;
+}

@@ -1,0 +1,39 @@
+#include "view/difference.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static void measure_ids(const uint32_t *p, const uint32_t *q, struct difference *out)
+{
+    for (uint64_t i = 0; i < out->pixels; ++i)
+        out->other_ids += p[2 * i] != q[2 * i] || p[2 * i + 1] != q[2 * i + 1];
+}
+
+static void measure_colors(const float *p, const float *q, uint32_t channels,
+                           struct difference *out)
+{
+    uint32_t counted = channels < 3 ? channels : 3;
+    double sum = 0.0;
+    for (uint64_t i = 0; i < out->pixels; ++i) {
+        bool other = false;
+        for (uint64_t c = channels * i; c < channels * i + counted; ++c) {
+            double d = fabs((double)p[c] - (double)q[c]);
+            other = other || p[c] != q[c];
+            sum += d;
+            if (!(d <= out->largest))
+                out->largest = d;
+        }
+        out->other_colors += other;
+    }
+    out->mean = out->pixels > 0 ? sum / (counted * (double)out->pixels) : 0.0;
+}
+
+void difference_measure(const struct difference_side *a, const struct difference_side *b,
+                        uint32_t channels, uint64_t pixels, struct difference *out)
+{
+    *out = (struct difference){.pixels = pixels};
+    if (a->ids && b->ids)
+        measure_ids(a->ids, b->ids, out);
+    if (a->color && b->color)
+        measure_colors(a->color, b->color, channels, out);
+}

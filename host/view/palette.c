@@ -1,0 +1,69 @@
+#include "view/palette.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/ui.h"
+
+/* The middle row of a heat map, which has its legend below and may be wider than its values. */
+static whit_result read_ramp(const whit_image *heat, struct palette *palette)
+{
+    whit_image_info info;
+    whit_image_get_info(heat, &info);
+    uint32_t *rgba = malloc((size_t)info.width * info.height * sizeof *rgba);
+    if (!rgba)
+        return WHIT_ERROR_MEMORY;
+    whit_image_display_bytes(heat, (uint8_t *)rgba);
+    memcpy(palette->colors, rgba + (info.width - PALETTE_COLORS) / 2,
+           PALETTE_COLORS * sizeof *rgba);
+    free(rgba);
+    return WHIT_OK;
+}
+
+whit_result palette_init(struct palette *palette)
+{
+    float ramp[PALETTE_COLORS];
+    whit_image *values = NULL, *heat = NULL;
+    const whit_heat_params params = {.scale = 1.0};
+    for (int i = 0; i < PALETTE_COLORS; ++i)
+        ramp[i] = (float)i / (PALETTE_COLORS - 1);
+    palette->colors[PALETTE_COLORS] = 0xFFFF00FFu;
+    whit_result result = whit_image_create(PALETTE_COLORS, 1, 1, ramp, &values);
+    if (result == WHIT_OK)
+        result = whit_image_heat(values, &params, &heat);
+    if (result == WHIT_OK)
+        result = read_ramp(heat, palette);
+    whit_image_destroy(values);
+    whit_image_destroy(heat);
+    return result;
+}
+
+void palette_paint(const struct palette *palette, const float *values, uint64_t count, double scale,
+                   uint32_t *rgba)
+{
+    const float to_index = (float)((PALETTE_COLORS - 1) / scale);
+    for (uint64_t i = 0; i < count; ++i) {
+        float at = values[i] * to_index;
+        uint32_t index = at < PALETTE_COLORS - 1 ? (uint32_t)(at + 0.5f) : PALETTE_COLORS - 1;
+        rgba[i] = palette->colors[isnan(at) ? PALETTE_COLORS : index];
+    }
+}
+
+void palette_legend(const struct palette *palette, const char *id, const char *title, double scale)
+{
+    enum { TICKS = 5 };
+    char numbers[TICKS][24];
+    const char *labels[TICKS];
+    for (int i = 0; i < TICKS; ++i) {
+        snprintf(numbers[i], sizeof numbers[i], "%.4g%s", scale * i / (TICKS - 1),
+                 i == TICKS - 1 ? "+" : "");
+        labels[i] = numbers[i];
+    }
+    if (ui_panel_begin(id, 1.0f, 1.0f, UI_PANEL_PLAIN)) {
+        ui_text("%s", title);
+        ui_ramp(palette->colors, PALETTE_COLORS, labels, TICKS);
+    }
+    ui_panel_end();
+}

@@ -1,0 +1,24 @@
+/* The colours of heat maps, as whit_image_heat gives them. */
+#ifndef VIEW_PALETTE_H
+#define VIEW_PALETTE_H
+
+#include <stdint.h>
+
+#include "api/whit.h"
+
+enum { PALETTE_COLORS = 256 };
+/* 0xAABBGGRR, from 0 to the scale; [PALETTE_COLORS]: of what is not a number. */
+struct palette {
+    uint32_t colors[PALETTE_COLORS + 1];
+};
+WHIT_CHECK whit_result palette_init(struct palette *palette);
+
+/* `values` of one channel as RGBA; `rgba` has place for one word a pixel. */
+void palette_paint(const struct palette *palette, const float *values, uint64_t count, double scale,
+                   uint32_t *rgba);
+
+/* A bar of the colours with numbers from 0 to `scale`, in a panel at the window's lower right.
+   `id`: of the panel. */
+void palette_legend(const struct palette *palette, const char *id, const char *title, double scale);
+
+#endif

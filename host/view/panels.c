@@ -1,0 +1,293 @@
+#include "view/panels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "view/choices.h"
+#include "view/view_private.h"
+
+enum { NAMES_LAST = 9999, WORDS_BYTES = 8192 };
+static const double FPS_LEAST = 1.0, FPS_MOST = 240.0, FPS_GOAL = 30.0;
+
+/* ---- Files of settings ---- */
+
+static void name_file(int number, const char *extension, char name[VIEW_FREE_NAME])
+{
+    snprintf(name, VIEW_FREE_NAME, "whit-%04d.%.8s", number, extension);
+}
+
+void view_free_name(const char *extension, char name[VIEW_FREE_NAME])
+{
+    for (int i = 1; i <= NAMES_LAST; ++i) {
+        name_file(i, extension, name);
+        if (!file_exists(name))
+            return;
+    }
+}
+
+static void list_states(struct panels *panels)
+{
+    char name[VIEW_FREE_NAME];
+    int last = 0;
+    panels->state_count = 0;
+    panels->states_known = true;
+    for (name_file(1, "view", name); last < NAMES_LAST && file_exists(name);
+         name_file(last + 1, "view", name))
+        ++last;
+    for (int i = last; i > 0 && panels->state_count < STATES_MOST; --i)
+        name_file(i, "view", panels->states[panels->state_count++]);
+}
+
+static whit_result write_state(const struct view *view, const char *path)
+{
+    char words[WORDS_BYTES];
+    struct file_write file;
+    size_t length = settings_words(&view->settings, "\n", words, sizeof words);
+    if (length >= sizeof words)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = file_write_begin(&view->log, path, &file);
+    if (result != WHIT_OK)
+        return result;
+    fprintf(file.stream, "# whit view %s --state %s\n%s\n", view->settings.scene, path, words);
+    if (view->panels.fps_goal > 0.0)
+        fprintf(file.stream, "--fps-goal %.9g\n", view->panels.fps_goal);
+    return file_write_commit(&view->log, &file);
+}
+
+void panels_save(struct view *view)
+{
+    char path[VIEW_FREE_NAME];
+    view_free_name("view", path);
+    if (write_state(view, path) == WHIT_OK)
+        view_say(view, "%s", path);
+    else
+        view_say(view, "%s could not be saved", path);
+    view->panels.states_known = false;
+}
+
+static double fps_goal(const struct view *view)
+{
+    return view->panels.fps_goal > 0.0 ? view->panels.fps_goal : FPS_GOAL;
+}
+
+static void set_fps_goal(struct view *view, double fps)
+{
+    view->panels.fps_goal = fps == FPS_GOAL ? 0.0 : fps;
+    engine_set_budget(view->engine, 1e3 / fps);
+}
+
+void panels_load(struct view *view, const char *path)
+{
+    struct view_state state = {.settings = view->settings};
+    const struct view_params *params = view->params;
+    char message[TOAST_BYTES] = "files of settings cannot be read here";
+    if (!params->load_state ||
+        params->load_state(params->load_user, path, &state, message, sizeof message) != WHIT_OK) {
+        view_say(view, "%s", message);
+        return;
+    }
+    const whit_renderer_params *now = &view->settings.picture, *next = &state.settings.picture;
+    if (next->width != now->width || next->height != now->height)
+        window_set_pixels(view->window, next->width, next->height);
+    view->settings = state.settings;
+    view->camera_known = false; /* read again from the text */
+    view_learn_camera(view);
+    set_fps_goal(view, state.fps_goal > 0.0 ? state.fps_goal : FPS_GOAL);
+    view_say(view, "%s: these settings", path);
+}
+
+/* ---- Settings ---- */
+
+static void draw_choice(struct view *view, enum choice_id id)
+{
+    uint32_t count;
+    char shown[CHOICE_WORDS];
+    const char *const *values = choice_values(id, &count);
+    int value = choice_get(&view->settings, id);
+    if (!values) {
+        uint32_t number = (uint32_t)value;
+        if (ui_slider_count(choice_name(id), &number, 0, 32) && number < count)
+            choice_set(&view->settings, id, number);
+        return;
+    }
+    choice_say(&view->settings, id, shown, sizeof shown);
+    if (ui_choice(choice_name(id), shown, values, (int)count, &value))
+        choice_set(&view->settings, id, (uint32_t)value);
+}
+
+static void draw_hud_choice(struct view *view)
+{
+    static const char *const names[HUD_COUNT] = {"off", "small", "full"};
+    int value = (int)view->hud;
+    if (ui_choice("figures", names[value], names, HUD_COUNT, &value))
+        view->hud = (enum view_hud)value;
+}
+
+static void draw_files(struct view *view)
+{
+    struct panels *panels = &view->panels;
+    const char *names[STATES_MOST];
+    int value = -1;
+    if (!panels->states_known)
+        list_states(panels);
+    for (uint32_t i = 0; i < panels->state_count; ++i)
+        names[i] = panels->states[i];
+    if (ui_button("save"))
+        panels_save(view);
+    ui_same_line(0);
+    if (ui_choice("files", panels->state_count ? "load" : "none saved here", names,
+                  (int)panels->state_count, &value))
+        panels_load(view, names[value]);
+}
+
+static void draw_settings(struct view *view)
+{
+    double fps = fps_goal(view);
+    if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
+        for (enum choice_id id = 0; id < CHOICE_COUNT; ++id) {
+            if (id == CHOICE_VIEW_RAYS && view->settings.paint == VIEW_PAINT_COLOR)
+                continue;
+            draw_choice(view, id);
+        }
+        if (ui_slider("fps goal", &fps, FPS_LEAST, FPS_MOST, true))
+            set_fps_goal(view, fps);
+        draw_hud_choice(view);
+        draw_files(view);
+        if (ui_button("close##settings"))
+            view->panels.settings = false;
+    }
+    ui_panel_end();
+}
+
+/* ---- Effects ---- */
+
+/* `text` without what it says of `name`. */
+static void leave_out(const char *text, const char *name, char *out, size_t bytes)
+{
+    size_t used = 0;
+    out[0] = '\0';
+    while (text && *text) {
+        size_t length = strcspn(text, ",");
+        bool its_own = (text[0] == '+' || text[0] == '-') && strlen(name) == length - 1 &&
+                       strncmp(text + 1, name, length - 1) == 0;
+        if (!its_own && used + length + 2 < bytes)
+            used += (size_t)snprintf(out + used, bytes - used, "%s%.*s", used ? "," : "",
+                                     (int)length, text);
+        text += length + (text[length] != 0);
+    }
+}
+
+/* As --effects says it: only what is other than the base, auto or all, gives. */
+static void switch_effect(struct view *view, uint32_t index, bool called, bool on)
+{
+    struct view_settings *settings = &view->settings;
+    const char *name = whit_effect_name(index);
+    char text[VIEW_TEXT], next[VIEW_TEXT + 64];
+    leave_out(settings->effects, name, text, sizeof text);
+    bool all = strncmp(text, "all", 3) == 0, base = all || called;
+    bool more = base != on;
+    snprintf(next, sizeof next, "%s%s%s%s", text, more && text[0] ? "," : "",
+             more ? (on ? "+" : "-") : "", more ? name : "");
+    if (strcmp(next, "auto") == 0)
+        next[0] = '\0';
+    if (strlen(next) >= sizeof settings->effects) {
+        view_say(view, "too many effects are switched");
+        return;
+    }
+    memcpy(settings->effects, next, strlen(next) + 1);
+    view->panels.pending = view->panels.pending ? -1 : (int)index + 1;
+}
+
+static void draw_price(const struct effect_price *price, bool can)
+{
+    if (!can) {
+        ui_text_dim("by geometry or camera");
+    } else if (!price->known) {
+        ui_text_dim("press to measure");
+    } else {
+        ui_text("%s: %.2f -> %.2f ms,", price->added ? "on" : "off", price->before_ms,
+                price->after_ms);
+        ui_same_line(0);
+        ui_text("%llu of %llu pixels", (unsigned long long)price->other_colors,
+                (unsigned long long)price->pixels);
+    }
+}
+
+static void draw_effect(struct view *view, uint32_t index)
+{
+    whit_effect_info info;
+    const struct engine_frame *frame = &view->frame;
+    whit_scene_get_effect(frame->scene->scene, index, &info);
+    bool in = (frame->effects >> index & 1) != 0, on = in;
+    bool can = in ? whit_effect_can_remove(index) : whit_effect_can_add(index);
+    ui_table_next();
+    if (can) {
+        if (ui_checkbox(info.name, &on))
+            switch_effect(view, index, info.called, on);
+    } else {
+        ui_text("%s  %s", in ? " x" : " -", info.name);
+    }
+    ui_table_next();
+    draw_price(&view->panels.prices[index], can);
+    ui_table_next();
+    if (info.called)
+        ui_text("%.60s", info.reason);
+    else
+        ui_text_dim("not called for");
+}
+
+static void draw_effects(struct view *view)
+{
+    static const char *const titles[] = {"effect", "price of the switch", "called for by"};
+    if (view->frame.number == 0)
+        return;
+    if (ui_panel_begin("Effects", 0.0f, 0.0f, UI_PANEL_HOLD)) {
+        ui_text("--effects %s", view->settings.effects[0] ? view->settings.effects : "auto");
+        if (ui_table_begin("effects", 3)) {
+            ui_table_header(titles, 3);
+            for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i)
+                draw_effect(view, i);
+            ui_table_end();
+        }
+        if (ui_button("close##effects"))
+            view->panels.effects = false;
+    }
+    ui_panel_end();
+}
+
+void panels_step(struct view *view)
+{
+    struct panels *panels = &view->panels;
+    const struct engine_change *change = &view->status.change;
+    if (panels->scene != view->scene) { /* other prices; an address is enough to tell */
+        panels->scene = view->scene;
+        memset(panels->prices, 0, sizeof panels->prices);
+        panels->pending = 0;
+    }
+    if (change->number == panels->change)
+        return;
+    panels->change = change->number;
+    bool alone = strncmp(change->what, "effects ", 8) == 0;
+    if (panels->pending > 0 && alone) {
+        uint32_t index = (uint32_t)panels->pending - 1;
+        panels->prices[index] =
+            (struct effect_price){.known = true,
+                                  .added = (view->frame.effects >> index & 1) != 0,
+                                  .before_ms = change->before_ms,
+                                  .after_ms = change->after_ms,
+                                  .other_colors = change->other_colors,
+                                  .pixels = change->pixels};
+    }
+    panels->pending = 0;
+}
+
+void panels_draw(struct view *view)
+{
+    if (view->panels.settings)
+        draw_settings(view);
+    if (view->panels.effects)
+        draw_effects(view);
+}
