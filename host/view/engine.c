@@ -20,11 +20,17 @@ static void wake_window(struct engine *engine)
 /* ---- Sessions in the making ---- */
 
 /* The first error is the reason; what follows from it is not. One that nobody wants any more, as
-   its scene was left, keeps its errors. */
+   its scene was left, keeps its errors. The validation layers speak to whoever asked for them. */
 static void session_message(void *user, whit_log_level level, const char *message)
 {
     struct session *session = user;
     struct engine *engine = session->owner;
+    const whit_log *log = &engine->params.log;
+    if (strncmp(message, "validation: ", 12) == 0) {
+        if (log->fn)
+            log->fn(log->user, level, message);
+        return;
+    }
     pthread_mutex_lock(&engine->lock);
     char *error = session->ready ? engine->error : session->error;
     if (level == WHIT_LOG_ERROR && !error[0])
@@ -38,11 +44,21 @@ static void run_job(void *context)
     struct engine *engine = job->engine;
     whit_result result =
         session_open(job->session, &job->settings, job->scene,
-                     &(whit_log){session_message, job->session, WHIT_LOG_ERROR}, &job->progress);
+                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING}, &job->progress);
     pthread_mutex_lock(&engine->lock);
     job->result = result;
     job->done = true;
     pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* Without the lock. */
+static void drop_session(struct engine *engine, struct session *session)
+{
+    uint32_t messages = session_close(session);
+    free(session);
+    pthread_mutex_lock(&engine->lock);
+    engine->validation += messages;
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -52,8 +68,7 @@ static void job_destroy(struct engine_job *job)
         return;
     thread_join(job->thread);
     if (job->session)
-        session_close(job->session);
-    free(job->session);
+        drop_session(job->engine, job->session);
     scene_ref_drop(job->scene);
     free(job);
 }
@@ -105,8 +120,7 @@ static void forget_session(struct engine *engine, uint32_t index)
             engine->lanes[i].session = NULL;
     }
     pthread_mutex_unlock(&engine->lock);
-    session_close(session);
-    free(session);
+    drop_session(engine, session);
     pthread_mutex_lock(&engine->lock);
 }
 
@@ -249,11 +263,24 @@ static void follow_size(const struct engine *engine, const struct engine_lane *l
         task->quality = ENGINE_QUICK;
 }
 
+/* Back to what was drawn last, as a switch could not be made. */
+static bool shows_it(const struct engine *engine, const struct engine_lane *lane)
+{
+    return lane == engine->lanes && lane->drawn != lane->asked && lane->quality == ENGINE_WHOLE &&
+           !lane->stale && lane->frames > 0 && settings_same(&lane->last, &lane->settings);
+}
+
 /* What to draw for a lane now; false: nothing. With the lock. */
 static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     if (is_done(lane))
         return false;
+    if (shows_it(engine, lane)) {
+        lane->drawn = lane->asked;
+        engine->error[0] = '\0';
+        wake_window(engine);
+        return false;
+    }
     *task = (struct engine_task){.settings = lane->settings};
     if (lane != engine->lanes && !follow_place(engine, lane, task))
         return false;
@@ -266,9 +293,10 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         return true;
     }
     make_session_for(engine, lane);
-    /* The old kernel goes on at the new place, but not to another scene. */
+    /* The old kernel goes on at another place, but not to another scene. */
     if (lane->failed || !lane->session || lane->drawn == lane->asked ||
-        !settings_same_scene(&lane->session->settings, &lane->settings))
+        !settings_same_scene(&lane->session->settings, &lane->settings) ||
+        settings_same_place(&lane->last, &task->settings))
         return false;
     task->session = lane->session;
     struct view_settings place = task->settings;
@@ -294,7 +322,7 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
 {
     double pixels = (double)frame->width * frame->height;
     double samples = frame->samples ? frame->samples : 8;
-    double ms = frame->stats.render_ms / (pixels * samples);
+    double ms = frame->draw_ms / (pixels * samples);
     /* Small pictures have their own overhead: the larger one tells. */
     if (frame->divisor == 1 || lane->ms_per_sample <= 0.0 || ms > lane->ms_per_sample)
         lane->ms_per_sample = ms;
@@ -312,6 +340,9 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
     lane->place = engine->places;
     lane->quality = task->quality;
     lane->stale = !own;
+    lane->last = task->settings;
+    if (task->brief)
+        lane->divisor = task->divisor;
     task->session->last_use = ++engine->uses;
     frame->number = ++lane->frames;
     engine_frame_finish(&lane->frame);
@@ -334,7 +365,8 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     uint64_t asked = lane->asked;
     session->cancel = false;
     engine->busy = true;
-    engine->drawing = task->quality == ENGINE_QUICK ? NULL : session;
+    engine->drawing = session;
+    engine->brief = task->brief;
     pthread_mutex_unlock(&engine->lock);
     whit_result result = engine_draw(task, &frame);
     if (result == WHIT_OK && frame.whole && lane == &engine->lanes[0])
@@ -456,10 +488,10 @@ whit_result engine_create(const struct engine_params *params, struct engine **ou
     return WHIT_OK;
 }
 
-void engine_destroy(struct engine *engine)
+uint32_t engine_destroy(struct engine *engine)
 {
     if (!engine)
-        return;
+        return 0;
     pthread_mutex_lock(&engine->lock);
     engine->quit = true;
     if (engine->job)
@@ -472,9 +504,9 @@ void engine_destroy(struct engine *engine)
     job_destroy(engine->job);
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
         if (engine->sessions[i])
-            session_close(engine->sessions[i]);
-        free(engine->sessions[i]);
+            drop_session(engine, engine->sessions[i]);
     }
+    uint32_t validation = engine->validation;
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_frame_finish(&engine->lanes[i].frame);
     engine_kept_finish(&engine->last);
@@ -483,6 +515,7 @@ void engine_destroy(struct engine *engine)
     pthread_cond_destroy(&engine->news);
     pthread_mutex_destroy(&engine->lock);
     free(engine);
+    return validation;
 }
 
 static void ask(struct engine *engine, struct engine_lane *lane,
@@ -493,8 +526,9 @@ static void ask(struct engine *engine, struct engine_lane *lane,
         return;
     if (!same) {
         ++lane->asked;
+        lane->asked_ms = whit_clock_ms();
         lane->failed = false;
-        if (engine->drawing)
+        if (engine->drawing && !engine->brief)
             engine->drawing->cancel = true;
     }
     lane->wanted = true;
@@ -578,13 +612,19 @@ bool engine_take_probe(struct engine *engine, struct engine_probe *probe)
     return newer;
 }
 
+static bool is_still(const struct engine_lane *lane)
+{
+    bool waits = lane->wanted && lane->moving && !lane->failed;
+    return is_done(lane) && !waits && lane->frame.number == 0;
+}
+
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
     bool still = !engine->busy && engine->probe.number == 0 &&
                  (!engine->probe_wanted || engine->lanes[0].failed);
     for (int i = 0; i < ENGINE_LANES; ++i)
-        still = still && is_done(&engine->lanes[i]) && engine->lanes[i].frame.number == 0;
+        still = still && is_still(&engine->lanes[i]);
     pthread_mutex_unlock(&engine->lock);
     return still;
 }

@@ -12,10 +12,12 @@ struct engine_params {
     uint32_t sessions;        /* kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
     void *wake_user;
+    whit_log log; /* from any thread: what the validation layers say. May be silent */
 };
 
 WHIT_CHECK whit_result engine_create(const struct engine_params *params, struct engine **out);
-void engine_destroy(struct engine *engine); /* cancels, waits; NULL is fine */
+/* Cancels, waits; NULL is fine. How many messages the validation layers had of its devices. */
+uint32_t engine_destroy(struct engine *engine);
 
 /* Another budget from now on. */
 void engine_set_budget(struct engine *engine, double budget_ms);
@@ -41,6 +43,9 @@ struct engine_frame {
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
     bool whole;                      /* full size and all samples: what `whit render` makes */
+    bool moving;                     /* more was to follow */
+    double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */
+    double draw_ms;                  /* by the clock: all of it, with reading it back */
     double scale;                    /* of a heat map */
     whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MOST */
     uint64_t boxes_total;            /* that there are */
@@ -96,7 +101,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y);
 bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
 
 /* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
-   is an error. */
+   is an error. Never while something moves. */
 bool engine_is_still(struct engine *engine);
 
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */

@@ -6,7 +6,7 @@
 
 static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
 enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
-static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
+static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0, LARGER_MARGIN = 0.8;
 
 static uint32_t samples_of(const struct view_settings *settings)
 {
@@ -16,7 +16,8 @@ static uint32_t samples_of(const struct view_settings *settings)
     return p->adaptive > 0.0 ? 8 : p->samples ? p->samples : 1; /* adaptive: 4 and some */
 }
 
-/* The largest picture of one sample within the budget. */
+/* The largest picture of one sample within the budget. A larger one than the last has to be well
+   within, so that sizes do not flicker. */
 static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
 {
     double budget_ms =
@@ -28,7 +29,8 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
     if (lane->ms_per_sample <= 0.0)
         return DIVISOR_UNKNOWN;
     for (int i = 0; i < DIVISORS; ++i) {
-        if (full_ms <= budget_ms * divisors[i] * divisors[i])
+        double margin = divisors[i] < lane->divisor ? LARGER_MARGIN : 1.0;
+        if (full_ms <= margin * budget_ms * divisors[i] * divisors[i])
             return divisors[i];
     }
     return divisors[DIVISORS - 1];
@@ -49,6 +51,9 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
         quality = ENGINE_FULL;
     task->quality = quality;
     task->divisor = quality == ENGINE_QUICK ? divisor : 1;
+    task->brief = first;
+    task->moving = lane->moving;
+    task->asked_ms = lane->asked_ms;
 }
 
 /* Heat maps stand above a legend, and in the middle where that is wider. */
@@ -148,11 +153,14 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
                    : params.samples      ? params.samples
                                          : 1,
         .whole = task->quality == ENGINE_WHOLE,
+        .moving = task->moving,
+        .asked_ms = task->asked_ms,
         .accel = session->accel_info,
         .device = session->device_info,
         .build_ms = session->build_ms,
         .compile_ms = session->compile_ms,
     };
+    double start_ms = whit_clock_ms();
     whit_result result = whit_renderer_set_view(session->renderer, &params);
     if (result == WHIT_OK)
         result = whit_renderer_render(session->renderer);
@@ -164,6 +172,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         whit_renderer_get_stats(session->renderer, &frame->stats);
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
         frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
+    frame->draw_ms = whit_clock_ms() - start_ms;
     return result;
 }
 

@@ -35,15 +35,18 @@ struct engine_lane {
     bool wanted;
     struct view_settings settings;
     bool moving;
+    double asked_ms;             /* when `settings` came */
     uint64_t asked;              /* counts what is asked for */
     uint64_t drawn;              /* `asked` of the last picture */
     enum engine_quality quality; /* of it */
     bool failed;                 /* it could not be drawn; until asked again */
+    struct view_settings last;   /* drawn */
     bool stale;                  /* drawn by an older session: a better one is in the making */
     struct session *session;     /* that drew last; NULL: none, or gone */
     struct engine_frame frame;   /* the newest picture; number 0: taken */
     uint64_t frames;
     uint64_t place;       /* engine.places, when it drew */
+    uint32_t divisor;     /* of the last quick one; 0: none */
     double ms_per_sample; /* of pictures of its session; 0: not known */
 };
 
@@ -69,9 +72,10 @@ struct engine {
     uint64_t places;                                /* how often that was set */
     struct engine_job *job;                         /* NULL: none */
     struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
-    struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing, or what
-                                is done soon */
-    bool busy;               /* something is being drawn */
+    struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing is */
+    bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */
+    uint32_t validation; /* messages, of sessions that are gone */
+    bool busy;           /* something is being drawn */
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
@@ -90,6 +94,8 @@ struct engine_task {
     struct view_settings settings;
     enum engine_quality quality;
     uint32_t divisor;
+    bool moving, brief; /* brief: within the budget, so let it be finished */
+    double asked_ms;
 };
 
 /* engine_draw.c: how good the next picture of a lane is to be, and how large. */

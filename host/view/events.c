@@ -27,6 +27,9 @@ static const struct key_name {
     {'-', "Minus"},
     {'=', "Equal"},
     {'/', "Slash"},
+    {'[', "["},
+    {']', "]"},
+    {'\\', "\\"},
     {KEY_SHIFT, "Shift"},
     {KEY_CTRL, "Ctrl"},
     {KEY_ALT, "Alt"},
@@ -171,7 +174,6 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         const char *verb;
         enum view_event_kind kind;
     } bare[] = {{"still", EVENT_STILL},
-                {"state", EVENT_STATE},
                 {"minimise", EVENT_MINIMISE},
                 {"restore", EVENT_RESTORE},
                 {"close", EVENT_CLOSE}};
@@ -182,6 +184,10 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
             event->kind = bare[i].kind;
             return true;
         }
+    }
+    if (strcmp(verb, "state") == 0) {
+        (void)parse_path(rest, EVENT_STATE, event); /* may be empty */
+        return strlen(rest) < sizeof event->path;
     }
     if (strcmp(verb, "press") == 0)
         return parse_press(rest, events, count);

@@ -7,7 +7,7 @@
        press [Shift+][Ctrl+][Alt+]NAME   a key down and up
        click X Y                         move there, and the left button down and up
        still                             until the picture is as good as it gets
-       state                             one line of JSON on standard output: see docs/view.md
+       state [NAME]                      one line of JSON on standard output: see docs/view.md
        shot FILE.png                     the window, with what is drawn over the picture
        minimise | restore */
 #ifndef VIEW_EVENTS_H
@@ -72,7 +72,7 @@ struct view_event {
     uint32_t code; /* EVENT_CHAR: Unicode */
     double x, y;   /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
     uint32_t width, height;
-    char path[EVENT_PATH]; /* of files */
+    char path[EVENT_PATH]; /* of files; EVENT_STATE: its name */
 };
 
 /* "T", "Left", "F12", "Comma"; "?" for what has no name. */

@@ -1,10 +1,14 @@
 /* Events from a file, and into one. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/clock.h"
 #include "view/view_private.h"
+
+static const double MANAGER_MS = 1000.0;
+static const double LOOK_MS = 20.0; /* between looks whether the picture is still by now */
 
 struct replay {
     struct view_event *events;
@@ -47,12 +51,42 @@ bool replay_is_over(const struct view *view)
     return view->replay && view->replay->at == view->replay->count && !view->shot[0];
 }
 
-/* As good as it gets, and seen. */
+/* As good as it gets, and seen. While the animation plays it never is: then nothing is waited for.
+ */
 static bool is_still(const struct view *view)
 {
-    return !view->asked_moving && !view_is_moving(view, clock_ms()) &&
-           engine_is_still(view->engine) && compare_is_still(view) && !view->dirty &&
-           !view->shot[0] && (view->frame.number > 0 || view->status.error[0]);
+    uint32_t width, height;
+    struct swapchain_info chain;
+    if (view->clock.playing)
+        return true;
+    window_pixels(view->window, &width, &height);
+    swapchain_get_info(view->swapchain, &chain);
+    if (width != chain.width || height != chain.height)
+        return false; /* the window's own event is on its way */
+    struct engine_status status;
+    engine_get_status(view->engine, &status);
+    if (status.drawing || status.stage != view->status.stage ||
+        strcmp(status.error, view->status.error) != 0)
+        return false; /* the window does not know as yet */
+    return !view_is_moving(view, clock_ms()) && engine_is_still(view->engine) &&
+           compare_is_still(view) && !view->dirty && !view->shot[0] &&
+           (view->frame.number > 0 || view->status.error[0]);
+}
+
+/* The window manager does it, where there is one: false until it has. */
+static bool minimise(struct view *view, bool wanted, double now_ms)
+{
+    struct replay *replay = view->replay;
+    uint32_t width, height;
+    if (replay->wait_until_ms <= 0.0) {
+        replay->wait_until_ms = now_ms + MANAGER_MS;
+        window_set_minimised(view->window, wanted);
+    }
+    window_pixels(view->window, &width, &height);
+    if ((width == 0) != wanted && now_ms < replay->wait_until_ms)
+        return false;
+    replay->wait_until_ms = 0.0;
+    return true;
 }
 
 /* False where the event has to wait. */
@@ -70,7 +104,7 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
     case EVENT_STILL:
         return is_still(view);
     case EVENT_STATE:
-        state_print(view, stdout);
+        state_print(view, event->path, stdout);
         return true;
     case EVENT_SHOT:
         memcpy(view->shot, event->path, sizeof view->shot);
@@ -78,8 +112,7 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
         return true;
     case EVENT_MINIMISE:
     case EVENT_RESTORE:
-        window_set_minimised(view->window, event->kind == EVENT_MINIMISE);
-        return true;
+        return minimise(view, event->kind == EVENT_MINIMISE, now_ms);
     case EVENT_SIZE: /* comes back from the window */
         window_set_pixels(view->window, event->width, event->height);
         return true;
@@ -100,6 +133,16 @@ bool replay_step(struct view *view, double now_ms)
         ++replay->at;
     }
     return replay->at < replay->count;
+}
+
+double replay_wait_s(const struct view *view, double now_ms)
+{
+    const struct replay *replay = view->replay;
+    if (!replay || replay->at == replay->count)
+        return HUGE_VAL;
+    bool waits = replay->events[replay->at].kind == EVENT_WAIT && replay->wait_until_ms > 0.0;
+    double left_ms = waits ? replay->wait_until_ms - now_ms : LOOK_MS;
+    return left_ms > 0.0 ? left_ms * 1e-3 : 0.0;
 }
 
 void record_event(struct view *view, const struct view_event *event)

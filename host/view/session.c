@@ -147,11 +147,13 @@ whit_result session_open(struct session *session, const struct view_settings *se
     return result;
 }
 
-void session_close(struct session *session)
+uint32_t session_close(struct session *session)
 {
     whit_renderer_destroy(session->renderer);
+    uint32_t messages = session->device ? whit_device_validation_messages(session->device) : 0;
     whit_device_destroy(session->device);
     whit_accel_destroy(session->accel);
     scene_ref_drop(session->scene);
     *session = (struct session){0};
+    return messages;
 }

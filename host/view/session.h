@@ -56,6 +56,7 @@ struct session_progress {
 WHIT_CHECK whit_result session_open(struct session *session, const struct view_settings *settings,
                                     struct scene_ref *scene, const whit_log *log,
                                     struct session_progress *progress);
-void session_close(struct session *session);
+/* How many messages the validation layers had of its device. */
+uint32_t session_close(struct session *session);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "base/clock.h"
 #include "base/hash.h"
 #include "view/view_private.h"
 
@@ -155,7 +156,40 @@ static json_t *probe_json(const struct engine_probe *probe)
     return object;
 }
 
-void state_print(struct view *view, FILE *to)
+/* {"count":3,"median":..,"p95":..,"most":..} */
+static json_t *figures_json(struct view_figures *figures)
+{
+    json_t *object = json_object();
+    put_count(object, "count", figures->count);
+    put_number(object, "median", figures_quantile(figures, 0.5));
+    put_number(object, "p95", figures_quantile(figures, 0.95));
+    put_number(object, "most", figures_quantile(figures, 1.0));
+    return object;
+}
+
+static json_t *measure_json(struct view_measure *measure)
+{
+    json_t *object = json_object();
+    double now_ms = clock_ms();
+    put_number(object, "clock_ms", now_ms);
+    put_number(object, "first_ms", measure->first_ms);
+    put_number(object, "ms", now_ms - measure->start_ms);
+    put_number(object, "cpu_ms", clock_cpu_ms() - measure->cpu_ms);
+    put_count(object, "drawn", measure->drawn);
+    uint32_t slow = 0;
+    for (uint32_t i = 0; i < measure->gap.count && i < FIGURES_MOST; ++i)
+        slow += measure->gap.values[i] > 100.0;
+    put_count(object, "gaps_over_100_ms", slow);
+    json_object_set_new(object, "whole_ms", figures_json(&measure->whole));
+    json_object_set_new(object, "quick_ms", figures_json(&measure->quick));
+    json_object_set_new(object, "divisor", figures_json(&measure->size));
+    json_object_set_new(object, "gap_ms", figures_json(&measure->gap));
+    json_object_set_new(object, "latency_ms", figures_json(&measure->latency));
+    json_object_set_new(object, "present_ms", figures_json(&measure->present));
+    return object;
+}
+
+void state_print(struct view *view, const char *name, FILE *to)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
     char words[4096], line[4096];
@@ -164,6 +198,7 @@ void state_print(struct view *view, FILE *to)
     settings_words(&view->settings, " ", words, sizeof words);
     settings_render_line(&view->settings, line, sizeof line);
     swapchain_get_info(view->swapchain, &chain);
+    put_text(root, "at", name);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);
     put_text(root, "render", line);
@@ -186,8 +221,10 @@ void state_print(struct view *view, FILE *to)
     json_object_set_new(root, "items", items_json());
     json_object_set_new(root, "prices", prices_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
+    json_object_set_new(root, "measure", measure_json(&view->measure));
     json_dumpf(root, to, JSON_COMPACT);
     fputc('\n', to);
     fflush(to);
     json_decref(root);
+    measure_begin(view);
 }

@@ -14,6 +14,7 @@
 
 static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */
 static const double TOAST_MS = 4000.0;
+static const double REST_MS = 1000.0; /* without a picture: the next begins another rate */
 static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
 static const double WATCH_S = 0.25;   /* between looks at the scene's files */
 static const double IDLE_S = 5.0;
@@ -193,6 +194,8 @@ static void count_picture(struct view *view)
     struct view_rate *rate = &view->rate;
     const uint32_t most = sizeof rate->shown_ms / sizeof *rate->shown_ms;
     double now_ms = clock_ms();
+    if (rate->count > 0 && now_ms - rate->shown_ms[(rate->count - 1) % most] > REST_MS)
+        rate->count = 0;
     rate->shown_ms[rate->count++ % most] = now_ms;
     uint32_t n = rate->count < most ? rate->count : most;
     double first_ms = rate->shown_ms[(rate->count - n) % most];
@@ -260,10 +263,12 @@ static whit_result fit_window(struct view *view)
     window_pixels(view->window, &width, &height);
     whit_result result = swapchain_resize(view->swapchain, width, height);
     swapchain_get_info(view->swapchain, &info);
-    if (result == WHIT_OK && info.width > 0) {
-        view->settings.picture.width = info.width;
-        view->settings.picture.height = info.height;
-        view->dirty = true;
+    whit_renderer_params *picture = &view->settings.picture;
+    if (result == WHIT_OK && info.width > 0 &&
+        (picture->width != info.width || picture->height != info.height)) {
+        picture->width = info.width;
+        picture->height = info.height;
+        view->dirty = true; /* for another picture */
     }
     return result;
 }
@@ -298,6 +303,10 @@ static whit_result draw_window(struct view *view)
         view->resized = false;
         whit_result result = fit_window(view);
         swapchain_get_info(view->swapchain, &info);
+        if (result == WHIT_OK && info.width == 0 && keep) {
+            log_error(&view->log, "%s: the window has no pixels now", view->shot);
+            return WHIT_ERROR_OUTPUT;
+        }
         if (result != WHIT_OK || info.width == 0)
             return result;
     }
@@ -315,8 +324,10 @@ static whit_result draw_window(struct view *view)
                               : swapchain_show(view->swapchain, ui_draw, view->ui, &shown);
     if (result == WHIT_OK && !shown)
         view->dirty = true;
-    if (result == WHIT_OK && shown && view->picture_set)
+    if (result == WHIT_OK && shown && view->picture_set) {
         ++view->shown;
+        measure_shown(view);
+    }
     return result == WHIT_OK && shown && keep ? keep_shot(view) : result;
 }
 
@@ -340,9 +351,8 @@ static double wait_seconds(const struct view *view, double now_ms, bool goes_on)
         wait = fmin(wait, PROGRESS_S);
     if (view->watch)
         wait = fmin(wait, WATCH_S);
-    if (view->replay)
-        wait = fmin(wait, 0.005);
-    return wait + 1e-3;
+    wait = fmin(wait, replay_wait_s(view, now_ms));
+    return wait > 0.0 ? wait + 1e-3 : 0.0;
 }
 
 static bool is_over(const struct view *view)
@@ -362,6 +372,20 @@ static void take_events(struct view *view)
     }
 }
 
+/* Minimised: nobody sees what would be drawn. */
+static bool is_hidden(const struct view *view)
+{
+    struct swapchain_info info;
+    swapchain_get_info(view->swapchain, &info);
+    return info.width == 0 && view->frame.number > 0;
+}
+
+static void ask(struct view *view, double now_ms)
+{
+    if (view->settings.picture.width > 0 && !is_hidden(view))
+        engine_ask(view->engine, &view->settings, view_is_moving(view, now_ms));
+}
+
 static whit_result step(struct view *view)
 {
     double now_ms = clock_ms();
@@ -378,9 +402,7 @@ static whit_result step(struct view *view)
         view->toast[0] = '\0';
         view->dirty = true;
     }
-    view->asked_moving = view_is_moving(view, now_ms);
-    if (view->settings.picture.width > 0)
-        engine_ask(view->engine, &view->settings, view->asked_moving);
+    ask(view, now_ms);
     if (goes_on)
         engine_wait(view->engine, 50.0);
     take_frame(view);
@@ -388,6 +410,9 @@ static whit_result step(struct view *view)
     take_status(view);
     pick_take(view);
     panels_step(view);
+    ask(view, now_ms); /* a switch that failed was taken back */
+    if (view->params->frames > 0 && view->picture_set)
+        view->dirty = true; /* until there were so many */
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
     return result;
@@ -431,6 +456,7 @@ static whit_result open_all(struct view *view)
     const struct engine_params engine = {
         .budget_ms = params->budget_fps > 0.0 ? 1e3 / params->budget_fps : 0.0,
         .wake = window_wake,
+        .log = {view->log.fn, view->log.user, view->log.level},
     };
     whit_result result = palette_init(&view->palette);
     if (result == WHIT_OK)
@@ -451,14 +477,14 @@ static void close_all(struct view *view, uint32_t *validation)
     remember_camera(view);
     replay_close(view);
     watch_destroy(view->watch);
-    engine_destroy(view->engine);
+    *validation = engine_destroy(view->engine);
     compare_finish(&view->compare);
     engine_frame_finish(&view->frame);
     engine_probe_finish(&view->probe);
     scene_ref_drop(view->scene);
     ui_destroy(view->ui);
     swapchain_destroy(view->swapchain);
-    *validation = view->device ? device_validation_messages(view->device) : 0;
+    *validation += view->device ? device_validation_messages(view->device) : 0;
     device_destroy(view->device);
     window_destroy(view->window);
 }
@@ -476,6 +502,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     view->hint = params->hint != NULL;
     view->clock.speed = 1.0;
     view->moved_ms = -1e9;
+    measure_begin(view);
     view->dirty = true;
     for (uint32_t i = 0; i < params->scene_count; ++i) {
         if (strcmp(params->scenes[i], params->settings.scene) == 0)

@@ -44,8 +44,8 @@ struct view_params {
     float ui_scale; /* of text and panels; 0: the monitor's */
 };
 
-/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: what
-   the validation layers had to say of the window's device. */
+/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: how
+   many messages the validation layers had, of all devices. */
 WHIT_CHECK whit_result view_run(const struct view_params *params, const whit_log *log,
                                 uint32_t *validation);
 

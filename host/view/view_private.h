@@ -27,11 +27,34 @@ struct view_clock { /* of the animation */
     double speed, last_ms;
 };
 
-/* Pictures and present calls of the last moments, for the HUD. */
+/* Pictures of the last moments, for the HUD. */
 struct view_rate {
-    double shown_ms[32];
+    double shown_ms[32]; /* one after the other, without a rest between */
     uint32_t count;
-    double fps;
+    double fps; /* 0: nothing went on */
+};
+
+/* Some figures, the first of many. */
+enum { FIGURES_MOST = 4096 };
+struct view_figures {
+    uint32_t count;
+    double values[FIGURES_MOST];
+};
+
+/* What the user waited for since the last `state`. */
+struct view_measure {
+    double first_ms;             /* when the first picture was shown, by the clock; 0: none yet */
+    double last_ms;              /* the last new picture while something moved; 0: it stood */
+    double cpu_ms;               /* of the process, when this began */
+    double start_ms;             /* when this began */
+    uint32_t drawn;              /* how often the window was drawn */
+    uint64_t number;             /* of the last picture that was counted */
+    struct view_figures whole;   /* ms of render of whole pictures */
+    struct view_figures quick;   /* of those while something moves */
+    struct view_figures size;    /* their divisors */
+    struct view_figures gap;     /* ms from one new picture to the next, while something moves */
+    struct view_figures latency; /* ms from the input to the picture that shows it */
+    struct view_figures present; /* ms in the call that presents */
 };
 
 struct view {
@@ -65,9 +88,9 @@ struct view {
     struct view_input input;
     struct view_clock clock;
     struct view_rate rate;
-    bool asked_moving; /* of the last engine_ask */
-    double moved_ms;   /* when the picture was last changed by hand */
-    double drawn_ms;   /* when the window was last drawn */
+    struct view_measure measure;
+    double moved_ms; /* when the picture was last changed by hand */
+    double drawn_ms; /* when the window was last drawn */
     double escape_ms;
     enum view_hud hud;
     bool help, hint;
@@ -138,16 +161,24 @@ const struct key_binding *key_bindings(uint32_t *count);
 /* False where the key does nothing. */
 bool key_act(struct view *view, int key, unsigned mods);
 
+/* measure.c */
+void measure_begin(struct view *view);
+/* The window was drawn just now, with `view->frame`. */
+void measure_shown(struct view *view);
+double figures_quantile(struct view_figures *figures, double share); /* sorts; 0: of none */
+
 /* hud.c: everything drawn over the picture, between ui_begin and ui_end. */
 void hud_draw(struct view *view);
 
-/* state.c: the line of JSON that tests read. */
-void state_print(struct view *view, FILE *to);
+/* state.c: the line of JSON that tests read, with its name; the measure begins anew. */
+void state_print(struct view *view, const char *name, FILE *to);
 
 /* replay.c */
 WHIT_CHECK whit_result replay_open(struct view *view);
 /* Feeds what is due; true where there is more that waits for time or pictures. */
 bool replay_step(struct view *view, double now_ms);
+/* Until its next event is due; HUGE_VAL without one. */
+double replay_wait_s(const struct view *view, double now_ms);
 bool replay_is_over(const struct view *view);
 void replay_close(struct view *view);
 void record_event(struct view *view, const struct view_event *event);

@@ -288,8 +288,9 @@ bool window_next(struct window *window, struct view_event *event)
 
 void window_pixels(const struct window *window, uint32_t *width, uint32_t *height)
 {
-    int x, y;
-    glfwGetFramebufferSize(window->glfw, &x, &y);
+    int x = 0, y = 0;
+    if (!glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED))
+        glfwGetFramebufferSize(window->glfw, &x, &y);
     *width = (uint32_t)x;
     *height = (uint32_t)y;
 }

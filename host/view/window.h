@@ -29,6 +29,7 @@ void window_wake(void *window);
 /* The next of what was gathered; false when there is none. Positions and sizes are in pixels. */
 bool window_next(struct window *window, struct view_event *event);
 
+/* 0 x 0 while it is minimised. */
 void window_pixels(const struct window *window, uint32_t *width, uint32_t *height);
 float window_scale(const struct window *window); /* of the monitor: 1 at 96 dots an inch */
 void window_set_title(struct window *window, const char *title);

@@ -1,0 +1,72 @@
+/* What the user waits for: how long pictures take, and how far apart they are. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "view/view_private.h"
+
+static void note(struct view_figures *figures, double value)
+{
+    if (figures->count < FIGURES_MOST)
+        figures->values[figures->count] = value;
+    ++figures->count;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double figures_quantile(struct view_figures *figures, double share)
+{
+    uint32_t count = figures->count < FIGURES_MOST ? figures->count : FIGURES_MOST;
+    if (count == 0)
+        return 0.0;
+    qsort(figures->values, count, sizeof *figures->values, compare);
+    return figures->values[(uint32_t)(share * (count - 1) + 0.5)];
+}
+
+void measure_begin(struct view *view)
+{
+    struct view_measure *measure = &view->measure;
+    double first_ms = measure->first_ms;
+    uint64_t number = measure->number;
+    memset(measure, 0, sizeof *measure);
+    measure->first_ms = first_ms;
+    measure->number = number;
+    measure->start_ms = clock_ms();
+    measure->cpu_ms = clock_cpu_ms();
+}
+
+/* A picture that was not shown before. */
+static void count_new(struct view_measure *measure, const struct engine_frame *frame, double now_ms)
+{
+    const whit_stats *s = &frame->stats;
+    double render_ms = s->render_device_ms >= 0.0 ? s->render_device_ms : s->render_ms;
+    measure->number = frame->number;
+    if (frame->whole)
+        note(&measure->whole, render_ms);
+    if (frame->moving) {
+        note(&measure->quick, render_ms);
+        note(&measure->size, frame->divisor);
+        note(&measure->latency, now_ms - frame->asked_ms);
+        if (measure->last_ms > 0.0)
+            note(&measure->gap, now_ms - measure->last_ms);
+    }
+    measure->last_ms = frame->moving ? now_ms : 0.0;
+}
+
+void measure_shown(struct view *view)
+{
+    struct view_measure *measure = &view->measure;
+    struct swapchain_info chain;
+    double now_ms = clock_ms();
+    swapchain_get_info(view->swapchain, &chain);
+    if (measure->first_ms <= 0.0)
+        measure->first_ms = now_ms;
+    ++measure->drawn;
+    note(&measure->present, chain.present_ms);
+    if (view->frame.number > measure->number)
+        count_new(measure, &view->frame, now_ms);
+}
