@@ -117,7 +117,7 @@ static void draw_ray(const struct view *view, const whit_probe_ray *ray)
     if (ray->material != WHIT_NONE)
         whit_scene_get_material(view->probe.scene->scene, ray->material, &material);
     ui_table_next();
-    ui_text_color(kind_colors[ray->kind % WHIT_RAY_KINDS], "%*s%s", (int)(2 * ray->generation), "",
+    ui_text_color(kind_colors[ray->kind % WHIT_RAY_KINDS], "%*s%s", (int)ray->generation, "",
                   kind_names[ray->kind % WHIT_RAY_KINDS]);
     ui_table_next();
     draw_hit(&ray->device);
