@@ -196,8 +196,10 @@ static void every_record_has_the_same_layout(void **state)
 static void kernels_use_these_layouts(void **state)
 {
     (void)state;
-    for (int i = 0; i < KERNEL_COUNT; ++i)
-        assert_true(check_module(kernels[i].words, kernels[i].bytes) > 0);
+    for (int i = 0; i < KERNEL_COUNT; ++i) {
+        uint32_t records = check_module(kernels[i].words, kernels[i].bytes);
+        assert_true(i == KERNEL_PRESENT ? records == 0 : records > 0); /* it knows pixels alone */
+    }
 }
 
 static void check_constants(const uint32_t *words, size_t bytes, bool all)

@@ -1,7 +1,7 @@
 /* hard RAYS: the rays of `whit hard` at edges and vertices from inside closed spheres, at offsets
-   0, 1e3 and 1e5, by whit's levels and by Embree as it comes and ROBUST, all beside exact
-   arithmetic. Fails where a level breaks its promise, or where `fast` leaks nothing: then the rays
-   are no test. */
+   0, 1e3 and 1e5, by whit's levels, on the device and by its twin, and by Embree as it comes and
+   ROBUST, all beside exact arithmetic. Fails where a level breaks its promise, where the device's
+   hits are not the twin's bit for bit, or where `fast` leaks nothing: then the rays are no test. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,9 @@
 #include "accel/hard.h"
 #include "base/array.h"
 #include "base/threads.h"
+#include "device/device.h"
 #include "peers.h"
+#include "render/render.h"
 
 enum { PIECE = 1 << 18, CHUNK = 4096, THREADS = 2 };
 enum { FAST, WATERTIGHT, EXACT, EMBREE, EMBREE_ROBUST, TRACERS };
@@ -34,8 +36,12 @@ struct bench {
     struct embree *embree[2]; /* as it comes, robust; NULL: not installed */
     struct hard_ray *rays;
     struct rational_hit *exact;
-    struct gpu_hit *hits;
-    uint64_t count; /* rays in memory */
+    struct gpu_hit *hits, *device_hits;
+    struct gpu_ray *device_rays;
+    struct device *device;
+    struct renderer *renderers[EXACT + 1];
+    uint64_t differing[EXACT + 1]; /* hits of the device and of the twin */
+    uint64_t count;                /* rays in memory */
     const struct embree *asked;
     struct hard_tally tallies[TRACERS];
 };
@@ -79,10 +85,16 @@ static bool count_level(struct bench *bench, int tracer)
                                              .numerics = levels[tracer],
                                              .count = bench->count};
     struct hard_tally *sum = &bench->tallies[tracer], tally;
+    for (uint64_t i = 0; i < bench->count; ++i)
+        bench->device_rays[i] = bench->rays[i].ray;
+    if (renderer_trace(bench->renderers[tracer], bench->device_rays, bench->count, false,
+                       bench->device_hits, NULL) != WHIT_OK)
+        return false;
     if (hard_trace_twin(&bench->hard, levels[tracer], bench->rays, bench->count, THREADS,
                         bench->hits) != WHIT_OK ||
         hard_judge(&judgement, THREADS, &tally) != WHIT_OK)
         return false;
+    bench->differing[tracer] += hard_count_differing(bench->hits, bench->device_hits, bench->count);
     sum->rays += tally.rays;
     sum->misses += tally.misses;
     sum->leaks += tally.leaks;
@@ -118,18 +130,21 @@ static int print_rows(const struct bench *bench, double offset)
     int failed = 0;
     for (int tracer = FAST; tracer < TRACERS; ++tracer) {
         const struct hard_tally *t = &bench->tallies[tracer];
-        char wrong[24] = "-";
+        char wrong[24] = "-", differing[24] = "-";
         if (t->rays == 0) {
             printf("%-8g%-16s%12s\n", offset, names[tracer], "not installed");
             continue;
         }
         if (tracer <= EXACT) {
             snprintf(wrong, sizeof wrong, "%llu", (unsigned long long)t->wrong);
-            failed |= !hard_promise_kept(levels[tracer], true, t);
+            snprintf(differing, sizeof differing, "%llu",
+                     (unsigned long long)bench->differing[tracer]);
+            failed |= !hard_promise_kept(levels[tracer], true, t) || bench->differing[tracer] > 0;
         }
-        printf("%-8g%-16s%12llu%12llu%13.2e%16llu%10s\n", offset, names[tracer],
+        printf("%-8g%-16s%12llu%12llu%13.2e%16llu%10s%12s\n", offset, names[tracer],
                (unsigned long long)t->rays, (unsigned long long)t->misses,
-               (double)t->misses / (double)t->rays, (unsigned long long)t->other_ids, wrong);
+               (double)t->misses / (double)t->rays, (unsigned long long)t->other_ids, wrong,
+               differing);
     }
     if (bench->tallies[FAST].misses == 0) {
         printf("FAILED: `fast` leaks nothing: these rays test nothing\n");
@@ -147,8 +162,19 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
     int failed = hard_topology_init(bench->hard.scene, &bench->topology) != WHIT_OK;
     for (int i = 0; i < 2; ++i)
         bench->embree[i] = embree_create(bench->hard.scene, &bench->hard.pose, i == 1);
+    for (int tracer = FAST; tracer <= EXACT && !failed; ++tracer) {
+        const struct render_params params = {
+            .width = 16, .height = 16, .numerics = levels[tracer], .trace_rays = PIECE};
+        failed = renderer_create(&errors, bench->device, bench->hard.accel, &params,
+                                 &bench->renderers[tracer]) != WHIT_OK;
+    }
     if (!failed)
         failed = !shoot(bench, seed, ray_count) || print_rows(bench, hard->offset);
+    for (int tracer = FAST; tracer <= EXACT; ++tracer) {
+        renderer_destroy(bench->renderers[tracer]);
+        bench->renderers[tracer] = NULL;
+        bench->differing[tracer] = 0;
+    }
     for (int i = 0; i < 2; ++i)
         embree_destroy(bench->embree[i]);
     hard_topology_finish(&bench->topology);
@@ -166,12 +192,19 @@ int main(int argc, char **argv)
     bench.rays = array_alloc(PIECE, sizeof *bench.rays);
     bench.exact = array_alloc(PIECE, sizeof *bench.exact);
     bench.hits = array_alloc(PIECE, sizeof *bench.hits);
-    if (ray_count == 0 || !bench.rays || !bench.exact || !bench.hits) {
+    bench.device_hits = array_alloc(PIECE, sizeof *bench.device_hits);
+    bench.device_rays = array_alloc(PIECE, sizeof *bench.device_rays);
+    if (ray_count == 0 || !bench.rays || !bench.exact || !bench.hits || !bench.device_hits ||
+        !bench.device_rays) {
         fprintf(stderr, "usage: hard RAYS\n");
         return 2;
     }
-    printf("%-8s%-16s%12s%12s%13s%16s%10s\n", "offset", "tracer", "rays", "misses", "of rays",
-           "other triangle", "wrong");
+    if (device_create(&errors, NULL, &bench.device) != WHIT_OK)
+        return 3;
+    printf("device: %s, %s\n", device_get_info(bench.device)->name,
+           device_get_info(bench.device)->driver);
+    printf("%-8s%-16s%12s%12s%13s%16s%10s%12s\n", "offset", "tracer", "rays", "misses", "of rays",
+           "other triangle", "wrong", "not twin's");
     for (uint32_t i = 0; i < case_count; ++i) {
         const struct hard_case *hard = &cases[i];
         if (hard->mesh != HARD_SPHERE || hard->rays != HARD_AIMED || hard->instanced ||
@@ -183,6 +216,10 @@ int main(int argc, char **argv)
     free(bench.rays);
     free(bench.exact);
     free(bench.hits);
+    free(bench.device_hits);
+    free(bench.device_rays);
+    failed |= device_validation_messages(bench.device) > 0;
+    device_destroy(bench.device);
     if (failed || done == 0)
         printf("FAILED\n");
     return failed || done == 0;
