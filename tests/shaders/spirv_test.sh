@@ -15,9 +15,9 @@ validate() {
     validations=$((validations + 1))
 }
 
-# rounded_as_written KERNEL
+# rounded_as_written KERNEL OPERATIONS: that there are at least
 rounded_as_written() {
-    spirv-dis --raw-id "$1" | awk -v kernel="$1" '
+    spirv-dis --raw-id "$1" | awk -v kernel="$1" -v least="$2" '
         $1 == "OpDecorate" && $3 == "NoContraction" { marked[$2] = 1 }
         $3 ~ /^Op(F(Negate|Add|Sub|Mul|Div|Rem|Mod)|VectorTimesScalar|VectorTimesMatrix|Dot|Matrix.*|OuterProduct)$/ {
             operations++
@@ -30,7 +30,7 @@ rounded_as_written() {
         }
         END {
             printf "%s: %d of %d float operations may be contracted\n", kernel, bad, operations
-            exit bad > 0 || operations < 100
+            exit bad > 0 || operations < least
         }' > "$folder/operations" || { head -5 "$folder/operations"
         echo "FAILED  $(tail -n 1 "$folder/operations")"; exit 1; }
     tail -n 1 "$folder/operations"
@@ -60,8 +60,13 @@ for id in $switches; do
 done
 # A constant that a kernel does not use is not in it: spirv-opt passes over that.
 for kernel in "$folder"/*.spv; do
-    rounded_as_written "$kernel"
     validate "$kernel" "$kernel"
+    case $kernel in
+    */present.spv) # has no constants
+        rounded_as_written "$kernel" 1
+        continue ;;
+    esac
+    rounded_as_written "$kernel" 100
     specialise "$kernel" "0:64 2:1$none"
     specialise "$kernel" "0:64 2:64$all"
     evaluate "$kernel" "0:64 2:1$none"
