@@ -88,11 +88,13 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
 void device_read_fault(struct device *device)
 {
     const char *text = getenv("WHIT_FAULT");
-    const char *colon = text ? strrchr(text, ':') : NULL;
+    const char *colon = text ? strchr(text, ':') : NULL;
+    char *rest = NULL;
     if (!colon || (size_t)(colon - text) >= sizeof device->fault.call)
         return;
     memcpy(device->fault.call, text, (size_t)(colon - text));
-    device->fault.at = (uint32_t)strtoul(colon + 1, NULL, 10);
+    device->fault.at = (uint32_t)strtoul(colon + 1, &rest, 10);
+    device->fault.result = *rest == ':' ? (int32_t)strtol(rest + 1, NULL, 10) : 0;
 }
 
 bool device_fault(struct device *device, const char *expression)
@@ -115,6 +117,11 @@ bool device_may_call(struct device *device, const char *expression, VkResult *vk
         return false;
     }
     if (device_fault(device, expression)) {
+        int32_t result = device->fault.result;
+        if (result != 0) {
+            *vk = (VkResult)result;
+            return result > 0;
+        }
         *vk = loses ? VK_ERROR_DEVICE_LOST : VK_ERROR_OUT_OF_DEVICE_MEMORY;
         return false;
     }

@@ -775,9 +775,12 @@ static whit_result acquire(struct swapchain *swapchain, uint32_t *index, bool *u
 {
     struct device *device = swapchain->device;
     VkResult vk = VK_SUCCESS;
-    if (device_may_call(device, "vkAcquireNextImageKHR", &vk))
+    if (device_may_call(device, "vkAcquireNextImageKHR", &vk)) {
+        VkResult instead = vk;
         vk = vkAcquireNextImageKHR(device->vk, swapchain->vk, UINT64_MAX, swapchain->acquired,
                                    VK_NULL_HANDLE, index);
+        vk = vk == VK_SUCCESS ? instead : vk;
+    }
     return window_result(swapchain, vk, "vkAcquireNextImageKHR", usable);
 }
 
@@ -794,8 +797,11 @@ static whit_result present(struct swapchain *swapchain, uint32_t index, bool *sh
     };
     VkResult vk = VK_SUCCESS;
     double start_ms = clock_ms();
-    if (device_may_call(device, "vkQueuePresentKHR", &vk))
+    if (device_may_call(device, "vkQueuePresentKHR", &vk)) {
+        VkResult instead = vk;
         vk = vkQueuePresentKHR(device->queue, &info);
+        vk = vk == VK_SUCCESS ? instead : vk;
+    }
     swapchain->info.present_ms = clock_ms() - start_ms;
     return window_result(swapchain, vk, "vkQueuePresentKHR", shown);
 }

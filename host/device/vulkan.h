@@ -19,9 +19,12 @@
 
 enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };
 
+/* WHIT_FAULT=CALL:N[:RESULT]: the N-th of these calls gives a VkResult in place of its own. One
+   that is no error is given by a call that was made. */
 struct fault {
     char call[64]; /* "" for none, "*" for any */
     uint32_t at, seen;
+    int32_t result; /* 0: memory ran out, or the device is lost where that can show */
 };
 
 struct device {
@@ -126,7 +129,8 @@ void kernel_cache_save(const struct pipeline_params *params, const struct kernel
 void device_read_fault(struct device *device);
 /* True when the call named by the expression is to fail now. */
 bool device_fault(struct device *device, const char *expression);
-/* False when the call may not be made: *vk is then its result. */
+/* False when the call may not be made: *vk is then its result. Else *vk is what to give in place of
+   VK_SUCCESS. */
 bool device_may_call(struct device *device, const char *expression, VkResult *vk);
 /* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. */
 whit_result device_check(struct device *device, VkResult vk, const char *expression,

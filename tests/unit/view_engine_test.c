@@ -1,0 +1,156 @@
+/* What draws beside the window: devices that are lost, and pictures of one who moves on. */
+#include "base/clock.h"
+#include "device_fixture.h"
+#include "view/engine.h"
+
+enum { WIDTH = 96, HEIGHT = 64 };
+static const double PATIENCE_MS = 60e3;
+
+static struct view_settings settings_of(const char *scene)
+{
+    struct view_settings settings = {.picture = {.width = WIDTH, .height = HEIGHT}};
+    snprintf(settings.scene, sizeof settings.scene, "%s/%s", WHIT_SCENES_DIR, scene);
+    return settings;
+}
+
+/* Takes pictures until the engine has nothing left to do; how many. */
+static uint32_t take_all(struct engine *engine, struct engine_frame *frame)
+{
+    uint32_t count = 0;
+    double start_ms = clock_ms();
+    while (!engine_is_still(engine)) {
+        engine_wait(engine, 20.0);
+        count += engine_take(engine, false, frame);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
+    }
+    return count + engine_take(engine, false, frame);
+}
+
+/* The device is lost at the n-th submission of each device: while the engine is opened, later, or
+   not at all. `once`: the devices after the first are sound. */
+static bool lose_at(unsigned n, bool once, bool *gave_up)
+{
+    struct engine *engine;
+    struct engine_frame frame = {0};
+    struct engine_status status;
+    char fault[32];
+    snprintf(fault, sizeof fault, "vkQueueSubmit:%u", n);
+    setenv("WHIT_FAULT", fault, 1);
+    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct view_settings settings = settings_of("cube.json");
+    engine_ask(engine, &settings, false);
+    if (once) {
+        do {
+            engine_wait(engine, 20.0);
+            engine_get_status(engine, &status);
+        } while (status.stage != SESSION_COMPILING && status.stage != SESSION_DONE);
+        unsetenv("WHIT_FAULT");
+    }
+    take_all(engine, &frame);
+    engine_get_status(engine, &status);
+    bool whole = frame.number > 0 && frame.whole;
+    *gave_up = status.device_lost;
+    if (!whole)
+        assert_true(status.error[0] != '\0'); /* it says why */
+    engine_frame_finish(&frame);
+    unsetenv("WHIT_FAULT");
+    assert_int_equal(engine_destroy(engine), 0);
+    return whole;
+}
+
+static void a_lost_device_is_made_again_or_given_up(void **state)
+{
+    (void)state;
+    uint32_t gave_up = 0, failed = 0, mended = 0;
+    bool whole = false, lost = false;
+    unsigned n = 0;
+    while (!(whole && !lost) && ++n < 40) {
+        whole = lose_at(n, false, &lost);
+        gave_up += lost;
+        failed += !whole && !lost;
+    }
+    print_message("lost at submissions 1 to %u of every device: %u given up, %u not opened\n",
+                  n - 1, gave_up, failed);
+    assert_true(n > 2 && n < 40);
+    assert_true(gave_up > 0);
+    for (unsigned i = 1; i < n; ++i) {
+        whole = lose_at(i, true, &lost);
+        assert_false(lost);
+        mended += whole;
+    }
+    print_message("of the first device: %u of %u made again\n", mended, n - 1);
+    assert_true(mended >= gave_up);
+}
+
+/* Somebody who turns the camera faster than pictures come gets pictures all the same. */
+static void no_look_is_cut_short(void **state)
+{
+    (void)state;
+    struct engine *engine;
+    struct engine_frame frame = {0};
+    uint32_t shown = 0, asked = 0;
+    assert_int_equal(engine_create(&(struct engine_params){.budget_ms = 1e4}, &engine), WHIT_OK);
+    struct view_settings settings = settings_of("default.json");
+    settings.picture.width = 160;
+    settings.picture.height = 108;
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    assert_true(frame.whole);
+    double picture_ms = frame.draw_ms, start_ms = clock_ms();
+    assert_true(picture_ms > 5.0); /* longer than from one question to the next */
+    while (clock_ms() - start_ms < 12.0 * picture_ms) {
+        snprintf(settings.camera, sizeof settings.camera, "%g,2,6,0,1,0,0,1,0,40",
+                 0.001 * (double)++asked);
+        engine_ask(engine, &settings, true);
+        engine_wait(engine, 2.0);
+        shown += engine_take(engine, false, &frame);
+    }
+    print_message("%u pictures of %.0f ms for %u questions in %.0f ms\n", shown, picture_ms, asked,
+                  clock_ms() - start_ms);
+    assert_true(shown >= 3);
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    assert_string_equal(frame.settings.camera, settings.camera); /* the last one is answered */
+    assert_true(frame.whole);
+    engine_frame_finish(&frame);
+    assert_int_equal(engine_destroy(engine), 0);
+}
+
+/* While another tree is made the picture stays as it is: no rougher one comes between. */
+static void a_switch_keeps_the_picture(void **state)
+{
+    (void)state;
+    struct engine *engine;
+    struct engine_frame frame = {0};
+    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct view_settings settings = settings_of("8k.json");
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    settings.trees.build = WHIT_BUILD_MEDIAN;
+    snprintf(settings.build, sizeof settings.build, "median");
+    engine_ask(engine, &settings, false);
+    double start_ms = clock_ms();
+    while (!engine_is_still(engine)) {
+        engine_wait(engine, 20.0);
+        if (engine_take(engine, false, &frame))
+            assert_int_equal(frame.settings.trees.build, WHIT_BUILD_MEDIAN);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
+    }
+    struct engine_status status;
+    engine_get_status(engine, &status);
+    assert_true(frame.whole);
+    assert_int_equal(status.change.number, 1);
+    assert_int_equal(status.change.other_ids, 0);
+    engine_frame_finish(&frame);
+    assert_int_equal(engine_destroy(engine), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lost_device_is_made_again_or_given_up),
+        cmocka_unit_test(no_look_is_cut_short),
+        cmocka_unit_test(a_switch_keeps_the_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

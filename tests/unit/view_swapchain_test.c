@@ -1,0 +1,263 @@
+/* A window's pictures: ways to show them, windows that change, and every checked Vulkan call of it
+   made to fail in turn. */
+#include "device/swapchain.h"
+#include "device_fixture.h"
+#include "kernels.h"
+#include "view/ui.h"
+#include "view/window.h"
+
+enum { WIDTH = 64, HEIGHT = 48, OUT_OF_DATE = -1000001004, SUBOPTIMAL = 1000001003 };
+
+/* All that the viewer does with a window, once. */
+struct shop {
+    struct window *window;
+    struct device *device;
+    struct swapchain *swapchain;
+    struct ui *ui;
+    struct messages messages;
+};
+
+static whit_result shop_open(struct shop *shop, bool validation, bool blit)
+{
+    struct log log = messages_log(&shop->messages);
+    const struct window_params window = {.title = "test", .width = WIDTH, .height = HEIGHT};
+    const struct swapchain_params chain = {.spirv = kernels[KERNEL_PRESENT].words,
+                                           .spirv_bytes = kernels[KERNEL_PRESENT].bytes,
+                                           .vsync = true,
+                                           .blit = blit};
+    shop->device = NULL;
+    shop->swapchain = NULL;
+    shop->ui = NULL;
+    whit_result result = window_create(&log, &window, &shop->window);
+    if (result != WHIT_OK)
+        return result;
+    const struct device_params device = {.validation = validation,
+                                         .surface = window_surface(shop->window)};
+    result = device_create(&log, &device, &shop->device);
+    if (result == WHIT_OK)
+        result = swapchain_create(shop->device, &chain, &shop->swapchain);
+    if (result == WHIT_OK)
+        result = swapchain_resize(shop->swapchain, WIDTH, HEIGHT);
+    return result == WHIT_OK ? ui_create(shop->swapchain, 1.0f, &shop->ui) : result;
+}
+
+static void shop_close(struct shop *shop)
+{
+    ui_destroy(shop->ui);
+    swapchain_destroy(shop->swapchain);
+    device_destroy(shop->device);
+    window_destroy(shop->window);
+    if (shop->messages.validation > 0)
+        print_message("%s", shop->messages.text);
+    assert_int_equal(shop->messages.validation, 0);
+}
+
+/* A picture whose every pixel is its own place. */
+static whit_result set_picture(struct shop *shop)
+{
+    uint8_t rgba[WIDTH * HEIGHT * 4];
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+        rgba[4 * i] = (uint8_t)(i % WIDTH * 3);
+        rgba[4 * i + 1] = (uint8_t)(i / WIDTH * 5);
+        rgba[4 * i + 2] = (uint8_t)(i * 7);
+        rgba[4 * i + 3] = 255;
+    }
+    return swapchain_set_picture(shop->swapchain, rgba, WIDTH, HEIGHT);
+}
+
+static whit_result show_text(struct shop *shop, bool *shown)
+{
+    ui_begin(shop->ui, WIDTH, HEIGHT, 0.01);
+    ui_text_at(1, 1, 0xFFFFFFFFu, "text");
+    ui_end(shop->ui);
+    return swapchain_show(shop->swapchain, ui_draw, shop->ui, shown);
+}
+
+static whit_result check_picture(struct shop *shop)
+{
+    uint8_t rgba[WIDTH * HEIGHT * 4];
+    bool shown = false;
+    whit_result result = swapchain_show_and_keep(shop->swapchain, NULL, NULL, &shown);
+    if (result == WHIT_OK)
+        result = swapchain_read(shop->swapchain, rgba, sizeof rgba);
+    if (result != WHIT_OK)
+        return result;
+    assert_true(shown);
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+        assert_int_equal(rgba[4 * i], (uint8_t)(i % WIDTH * 3));
+        assert_int_equal(rgba[4 * i + 1], (uint8_t)(i / WIDTH * 5));
+        assert_int_equal(rgba[4 * i + 2], (uint8_t)(i * 7));
+    }
+    return WHIT_OK;
+}
+
+static whit_result shop_work(struct shop *shop)
+{
+    bool shown = false;
+    struct swapchain_info info;
+    whit_result result = show_text(shop, &shown); /* before there is a picture */
+    if (result == WHIT_OK)
+        result = set_picture(shop);
+    if (result == WHIT_OK)
+        result = show_text(shop, &shown);
+    if (result == WHIT_OK)
+        result = check_picture(shop);
+    if (result == WHIT_OK)
+        result = swapchain_resize(shop->swapchain, 0, 0); /* minimised */
+    if (result == WHIT_OK)
+        result = show_text(shop, &shown);
+    if (result != WHIT_OK)
+        return result;
+    assert_false(shown);
+    result = swapchain_resize(shop->swapchain, WIDTH, HEIGHT);
+    swapchain_get_info(shop->swapchain, &info);
+    if (result != WHIT_OK)
+        return result;
+    assert_int_equal(info.width, WIDTH);
+    return check_picture(shop);
+}
+
+static whit_result shop_run(struct shop *shop, bool validation, bool blit)
+{
+    whit_result result = shop_open(shop, validation, blit);
+    if (result == WHIT_OK)
+        result = shop_work(shop);
+    return result;
+}
+
+static void pictures_come_whole(void **state)
+{
+    (void)state;
+    for (int blit = 0; blit < 2; ++blit) {
+        struct shop shop;
+        struct swapchain_info info;
+        assert_int_equal(shop_run(&shop, true, blit), WHIT_OK);
+        swapchain_get_info(shop.swapchain, &info);
+        assert_int_equal(info.direct, !blit);
+        assert_int_equal(info.recreated, 2);
+        assert_true(info.image_count >= 2);
+        shop_close(&shop);
+        assert_int_equal(shop.messages.lines, 0);
+    }
+}
+
+/* A few of them with the validation layers, which are slow: these see what is left behind. */
+static void fail_each_call(bool blit, bool validation, unsigned step)
+{
+    whit_result result = WHIT_ERROR_FAILED;
+    unsigned call = 1, runs = 0;
+    for (; result != WHIT_OK && call < 400; call += step, ++runs) {
+        struct shop shop;
+        char fault[32];
+        snprintf(fault, sizeof fault, "*:%u", call);
+        setenv("WHIT_FAULT", fault, 1);
+        result = shop_run(&shop, validation, blit);
+        if (result != WHIT_OK) {
+            assert_true(result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_DEVICE);
+            if (shop.messages.errors - shop.messages.validation != 1)
+                print_message("call %u: %s", call, shop.messages.text);
+            assert_int_equal(shop.messages.errors - shop.messages.validation, 1);
+        }
+        shop_close(&shop);
+    }
+    unsetenv("WHIT_FAULT");
+    assert_int_equal(result, WHIT_OK);
+    print_message("%u of some %u checked calls failed, %s%s\n", runs - 1, call - step,
+                  blit ? "by blit" : "direct", validation ? ", validated" : "");
+    assert_true(call > 60); /* that it failed all along */
+}
+
+static void each_call_may_fail(void **state)
+{
+    (void)state;
+    fail_each_call(false, false, 1);
+    fail_each_call(true, false, 1);
+}
+
+static void nothing_is_left_behind(void **state)
+{
+    (void)state;
+    fail_each_call(false, true, 9);
+    fail_each_call(true, true, 9);
+}
+
+/* What is asked of who shows pictures: that the window changed is told, and the next size mends it.
+ */
+static void change_at(const char *call, int result, bool shown_then)
+{
+    struct shop shop;
+    struct swapchain_info info;
+    char fault[64];
+    bool shown = false;
+    snprintf(fault, sizeof fault, "%s:2:%d", call, result);
+    setenv("WHIT_FAULT", fault, 1);
+    assert_int_equal(shop_open(&shop, true, false), WHIT_OK);
+    assert_int_equal(set_picture(&shop), WHIT_OK);
+    assert_int_equal(show_text(&shop, &shown), WHIT_OK);
+    assert_true(shown);
+    assert_int_equal(show_text(&shop, &shown), WHIT_OK);
+    assert_int_equal(shown, shown_then);
+    swapchain_get_info(shop.swapchain, &info);
+    assert_true(info.stale);
+    assert_int_equal(show_text(&shop, &shown), WHIT_OK); /* not before its new size */
+    assert_false(shown);
+    assert_int_equal(swapchain_resize(shop.swapchain, WIDTH, HEIGHT), WHIT_OK);
+    swapchain_get_info(shop.swapchain, &info);
+    assert_false(info.stale);
+    assert_int_equal(check_picture(&shop), WHIT_OK);
+    unsetenv("WHIT_FAULT");
+    assert_int_equal(shop.messages.lines, 0);
+    shop_close(&shop);
+}
+
+static void windows_that_change(void **state)
+{
+    (void)state;
+    change_at("vkAcquireNextImageKHR", OUT_OF_DATE, false);
+    change_at("vkAcquireNextImageKHR", SUBOPTIMAL, true);
+    change_at("vkQueuePresentKHR", OUT_OF_DATE, false);
+    change_at("vkQueuePresentKHR", SUBOPTIMAL, true);
+}
+
+static void a_lost_device_is_said_once(void **state)
+{
+    (void)state;
+    static const char *const calls[] = {"vkQueueSubmit:2", "vkWaitForFences:2",
+                                        "vkQueuePresentKHR:1:-4", "vkAcquireNextImageKHR:1:-4"};
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
+        struct shop shop;
+        bool shown = false;
+        setenv("WHIT_FAULT", calls[i], 1);
+        assert_int_equal(shop_run(&shop, true, false), WHIT_ERROR_DEVICE);
+        assert_int_equal(shop.messages.errors, 1);
+        assert_non_null(strstr(shop.messages.text, "VK_ERROR_DEVICE_LOST"));
+        assert_int_equal(show_text(&shop, &shown), WHIT_ERROR_DEVICE);
+        assert_false(shown);
+        assert_int_equal(swapchain_resize(shop.swapchain, 8, 8), WHIT_ERROR_DEVICE);
+        assert_int_equal(shop.messages.lines, 1);
+        unsetenv("WHIT_FAULT");
+        shop_close(&shop);
+    }
+}
+
+static void no_surface(void **state)
+{
+    (void)state;
+    struct shop shop;
+    setenv("WHIT_FAULT", "vkCreateSurface:1", 1);
+    assert_int_equal(shop_open(&shop, true, false), WHIT_ERROR_MEMORY);
+    unsetenv("WHIT_FAULT");
+    assert_non_null(strstr(shop.messages.text, "the window's surface"));
+    assert_int_equal(shop.messages.lines, 1);
+    shop_close(&shop);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_come_whole),        cmocka_unit_test(windows_that_change),
+        cmocka_unit_test(a_lost_device_is_said_once), cmocka_unit_test(no_surface),
+        cmocka_unit_test(each_call_may_fail),         cmocka_unit_test(nothing_is_left_behind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
