@@ -6,7 +6,7 @@
 #include "app/document.h"
 #include "app/sample.h"
 
-enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12 };
+enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12, BENCH_PATH = 2200 };
 
 /* What `whit bench` was asked for, and where its answers go. */
 struct bench {
@@ -50,6 +50,9 @@ struct bench_case {
     bool has_counts;
 };
 
+/* Where whit's scene of this name is. */
+WHIT_CHECK whit_result bench_find(const struct bench *bench, const char *name, char *path,
+                                  size_t bytes);
 /* `name` without .json. `quiet`: what goes wrong with its trees is not said. */
 WHIT_CHECK whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
                                   struct bench_scene *scene);
@@ -105,5 +108,7 @@ void table_print(const struct table *table);
 /* ---- The report ---- */
 
 whit_result bench_report(struct bench *bench);
+/* bench_view.c: the viewer, by replay. It needs a display. */
+whit_result bench_view(struct bench *bench);
 
 #endif

@@ -24,6 +24,10 @@ static const struct {
     whit_result (*run)(struct bench *bench);
 } benches[] = {
     {"report", "the tables of the report that whit comes from, beside its figures", bench_report},
+#ifdef WHIT_VIEWER
+    {"view", "the viewer: pictures a second, waits, what it takes when idle; on a display",
+     bench_view},
+#endif
 };
 enum { BENCH_COUNT = sizeof benches / sizeof benches[0] };
 

@@ -38,18 +38,24 @@ whit_result bench_load_file(const char *path, bool quiet, struct bench_scene *sc
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 
-whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
-                       struct bench_scene *scene)
+whit_result bench_find(const struct bench *bench, const char *name, char *path, size_t bytes)
 {
-    char path[2200];
-    *scene = (struct bench_scene){0};
-    snprintf(scene->name, sizeof scene->name, "%s", name);
-    snprintf(path, sizeof path, "%s/%s.json", bench->scenes ? bench->scenes : "scenes", name);
-    if (!bench->scenes && access(path, R_OK) != 0 &&
-        !find_beside_program(name, path, sizeof path)) {
+    snprintf(path, bytes, "%s/%s.json", bench->scenes ? bench->scenes : "scenes", name);
+    if (!bench->scenes && access(path, R_OK) != 0 && !find_beside_program(name, path, bytes)) {
         cli_error("%s.json is not here: --scenes FOLDER says where whit's scenes are", name);
         return WHIT_ERROR_INPUT;
     }
+    return WHIT_OK;
+}
+
+whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
+                       struct bench_scene *scene)
+{
+    char path[BENCH_PATH];
+    *scene = (struct bench_scene){0};
+    snprintf(scene->name, sizeof scene->name, "%s", name);
+    if (bench_find(bench, name, path, sizeof path) != WHIT_OK)
+        return WHIT_ERROR_INPUT;
     return bench_load_file(path, quiet, scene);
 }
 

@@ -15,7 +15,7 @@ add_library(whit_program_needs INTERFACE)
 target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 if(WHIT_VIEWER)
-  target_sources(whit_program PRIVATE app/state_file.c app/view_command.c)
+  target_sources(whit_program PRIVATE app/bench_view.c app/state_file.c app/view_command.c)
   target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
     WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
   # In front of the library, whose modules they call.
