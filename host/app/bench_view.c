@@ -82,6 +82,10 @@ static whit_result run_viewer(const struct bench *bench, const struct view_case 
         return WHIT_OK;
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
+    if (WIFEXITED(status))
+        cli_error("`whit view` ended with exit code %d", WEXITSTATUS(status));
+    else
+        cli_error("`whit view` died of signal %d", WTERMSIG(status));
     return WIFEXITED(status) && WEXITSTATUS(status) == EXIT_DEVICE ? WHIT_ERROR_NO_DEVICE
                                                                    : WHIT_ERROR_FAILED;
 }

@@ -10,7 +10,9 @@ P=$OUT/pictures/x.png
 
 expect 0 "help" --help
 check "help lists render" grep -q "^  render " "$OUT/stdout"
-for command in render scene trace compare devices; do
+commands="render scene trace compare devices"
+"$WHIT" --help | grep -q "^  view " && commands="$commands view" # built with the viewer
+for command in $commands; do
     expect 0 "$command --help" "$command" --help
     check "$command --help shows its usage" grep -q "^usage: whit $command" "$OUT/stdout"
 done

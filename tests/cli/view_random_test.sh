@@ -1,0 +1,83 @@
+#!/bin/sh
+# sh view_random_test.sh WHIT SCENES SECONDS [SEED]: somebody who presses everything. Nothing crashes,
+# nothing is an error, and from the first minute on memory grows by less than 5 %.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+SECONDS_LONG=$3
+SEED=${4:-1}
+mkdir "$OUT/work"
+cd "$OUT/work" || exit 1
+
+# events SECONDS SEED: a replay; what is not waited for comes as fast as the viewer takes it.
+events() {
+    awk -v end="$1" -v state="$2" -v scenes="$SCENES" '
+        function random(n) { # Lewis, Goodman and Miller 1969; by doubles, exactly
+            state = (state * 16807) % 2147483647
+            return int(state / 2147483647 * n)
+        }
+        function pause(most) { ms = random(most); left -= ms; print "wait", ms }
+        BEGIN {
+            keys = split("T Shift+T K M O Minus Equal A B Shift+B V [ ] \\ Home 0 1 2 3 4 5 6 " \
+                "Space Comma Period L 9 Shift+9 R H F1 F2 X C D N J Shift+J G F C D Ctrl+C Ctrl+S Tab Left Right F12", key, " ")
+            names = split("cube 8k spin balls whitted default lens layers glass-of-water", name, " ")
+            state = state % 2147483646 + 1
+            random(2)
+            left = end * 1000
+            while (left > 0) {
+                what = random(100)
+                if (what < 40) print "press", key[1 + random(keys)]
+                else if (what < 55) { # a drag
+                    print "move", random(300), random(200)
+                    b = random(3); b = b == 0 ? "left" : b == 1 ? "right" : "middle"
+                    print "button", b, "down"
+                    for (i = random(12); i >= 0; --i) { print "move", random(300), random(200); pause(30) }
+                    print "button", b, "up"
+                } else if (what < 65) print "wheel", random(3) - 1, random(7) - 3
+                else if (what < 73) print "click", random(300), random(200)
+                else if (what < 76) print "size", 1 + random(500), 1 + random(400)
+                else if (what < 78) print "drop", scenes "/" name[1 + random(names)] ".json"
+                else if (what < 79) print "drop", "/nowhere/" random(10) ".json"
+                else if (what < 80) { print "press F11"; pause(300); print "press F11"; print "size 240 160" }
+                else if (what < 82) { k = substr("WASDQE", 1 + random(6), 1); print "button right down"
+                    print "key", k, "down"; pause(200); print "key", k, "up"; print "button right up" }
+                else if (what < 84) print "char", 32 + random(90)
+                else pause(what < 97 ? 100 : 1500)
+            }
+            print "size 240 160"
+        }'
+}
+
+# rss PID: kB.
+rss() {
+    sed -n 's/^VmRSS:[^0-9]*\([0-9]*\) kB/\1/p' "/proc/$1/status" 2>/dev/null
+}
+
+events "$SECONDS_LONG" "$SEED" >replay
+echo "$(wc -l <replay) events, seed $SEED"
+"$WHIT" view "$CUBE" --size 240x160 --quiet --replay replay >/dev/null 2>"$OUT/stderr" &
+viewer=$!
+waited=0 early=0 most=0 last=0
+while kill -0 $viewer 2>/dev/null && [ $waited -lt $((10 * SECONDS_LONG + 300)) ]; do
+    sleep 1
+    waited=$((waited + 1))
+    now=$(rss $viewer)
+    [ -n "$now" ] || continue
+    last=$now
+    [ $waited -gt 60 ] || early=$((now > early ? now : early))
+    [ $waited -le 60 ] || most=$((now > most ? now : most))
+    [ $((waited % 30)) -ne 0 ] || echo "after $waited s: $now kB"
+done
+check "it went on to the end" test $waited -ge $((SECONDS_LONG / 2))
+check "it ends ($waited s)" sh -c "! kill -0 $viewer 2>/dev/null"
+kill -9 $viewer 2>/dev/null
+wait $viewer
+status=$?
+check "exit code 0 (got $status)" test $status -eq 0
+check "nothing to complain of" test ! -s "$OUT/stderr"
+if [ "$SECONDS_LONG" -gt 120 ]; then
+    check "memory: at most $early kB in the first minute, $most kB after it" \
+        test $((most * 100)) -lt $((early * 105))
+else
+    echo "memory: $last kB at the end; growth is looked at in runs of minutes"
+fi
+finish
