@@ -91,6 +91,8 @@ void compare_draw(struct view *view)
     swapchain_get_info(view->swapchain, &chain);
     if (compare->mode == COMPARE_SPLIT)
         draw_divider(view, chain.width, chain.height);
+    if (view->hud == HUD_OFF)
+        return;
     if (compare->mode == COMPARE_DIFFERENCE && compare_subtracts(view)) {
         char title[96];
         snprintf(title, sizeof title, "|A - B|, largest channel%s",

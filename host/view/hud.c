@@ -214,7 +214,7 @@ static void draw_legends(const struct view *view)
     for (int side = 0; side < (compare->mode == COMPARE_SPLIT ? 2 : 1); ++side) {
         const struct engine_frame *frame = side ? &compare->other : &view->frame;
         char rays[64], title[160];
-        if (!frame->rgba || frame->settings.paint == VIEW_PAINT_COLOR ||
+        if (view->hud == HUD_OFF || !frame->rgba || frame->settings.paint == VIEW_PAINT_COLOR ||
             compare->mode == COMPARE_DIFFERENCE)
             continue;
         choice_say(&frame->settings, CHOICE_VIEW_RAYS, rays, sizeof rays);

@@ -89,7 +89,7 @@ static json_t *compare_json(const struct view *view)
         return object;
     put_number(object, "a_ms", figures->ms[0]);
     put_number(object, "b_ms", figures->ms[1]);
-    put_count(object, "pixels", figures->difference.pixels);
+    put_count(object, "count", figures->difference.pixels);
     put_count(object, "other_ids", figures->difference.other_ids);
     put_count(object, "other_colors", figures->difference.other_colors);
     put_number(object, "largest", figures->difference.largest);
@@ -109,6 +109,20 @@ static json_t *items_json(void)
         char text[48];
         snprintf(text, sizeof text, "%.0f %.0f", (double)x, (double)y);
         put_text(object, label, text);
+    }
+    return object;
+}
+
+static json_t *panels_json(void)
+{
+    json_t *object = json_object();
+    const char *title;
+    float at[4];
+    for (uint32_t i = 0; ui_panel(i, &title, at); ++i) {
+        char text[96];
+        snprintf(text, sizeof text, "%.0f %.0f %.0f %.0f", (double)at[0], (double)at[1],
+                 (double)at[2], (double)at[3]);
+        put_text(object, title, text);
     }
     return object;
 }
@@ -219,6 +233,7 @@ void state_print(struct view *view, const char *name, FILE *to)
     put_number(root, "fps_goal", view->panels.fps_goal);
     json_object_set_new(root, "compare", compare_json(view));
     json_object_set_new(root, "items", items_json());
+    json_object_set_new(root, "panels", panels_json());
     json_object_set_new(root, "prices", prices_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_object_set_new(root, "measure", measure_json(&view->measure));

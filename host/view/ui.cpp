@@ -434,6 +434,17 @@ bool ui_checkbox(const char *label, bool *value)
     return noted(ImGui::Checkbox(label, value), label);
 }
 
+bool ui_panel(uint32_t index, const char **title, float rectangle[4])
+{
+    if (index >= (uint32_t)layout.obstacle_count)
+        return false;
+    const panel &p = layout.panels[layout.obstacles[index]];
+    const float sides[4] = {p.at.x, p.at.y, p.at.x + p.size.x, p.at.y + p.size.y};
+    *title = p.title;
+    std::memcpy(rectangle, sides, sizeof sides);
+    return true;
+}
+
 static float field_width()
 {
     return 9.0f * ImGui::GetFontSize();

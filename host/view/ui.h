@@ -52,6 +52,8 @@ float ui_scale(const struct ui *ui);
 /* Where the middle of a button or other thing to click was drawn in the last frame, by its label
    up to "##", for tests; false past the last one. */
 bool ui_item(uint32_t index, const char **label, float *x, float *y);
+/* Where the panels of the last frame were: left, top, right, bottom; likewise. */
+bool ui_panel(uint32_t index, const char **title, float rectangle[4]);
 /* A swapchain_draw: what was drawn since the last ui_begin. */
 void ui_draw(void *ui, void *commands);
 

@@ -1,0 +1,367 @@
+#!/bin/sh
+# A beside B, their difference in figures, effects with prices, settings by mouse and in files.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+mkdir "$OUT/work"
+cd "$OUT/work" || exit 1
+DEFAULT=$SCENES/default.json
+
+# picture NAME FILE: what `whit render` makes of the state's line.
+picture() {
+    value "$1" render | sed -e 's/^whit //' -e 's/ -o picture.png$//' >"$OUT/line"
+    eval "run $(cat "$OUT/line") -o '$2' --quiet"
+    check "at $1: the line renders (got $status)" test "$status" -eq 0
+}
+# about A B: two numbers that differ by less than a millionth of them.
+about() {
+    awk -v a="$1" -v b="$2" 'BEGIN { d = a - b; exit !(d * d <= 1e-12 * a * a) }'
+}
+more() {
+    awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'
+}
+# columns FILE.pfm FROM TO: those of a picture of 96 x 64, as text.
+columns() {
+    tail -c $((96 * 64 * 12)) "$1" | od -An -v -tx4 -w1152 | cut -d ' ' -f "$((3 * $2 + 2))-$((3 * $3 + 4))"
+}
+
+# figure NAME: of c.json.
+figure() {
+    sed -n "s/.*\"$1\": \([^,]*\).*/\1/p" c.json | head -n 1
+}
+
+# ---- Split ----
+
+play "A beside B" "$DEFAULT" --size 96x64 <<END
+press F2
+press F2
+still
+state start
+shot b.pfm
+press C
+still
+state same
+press T
+still
+state sign
+press T
+press T
+press Minus
+press Minus
+press Minus
+press Minus
+press Minus
+press Minus
+press Minus
+press Minus
+still
+wait 4200
+still
+state flat
+shot split.pfm
+press C
+still
+state ended
+shot a.pfm
+END
+is start compare.mode off
+is same compare.mode split
+is same compare.other_ids 0
+is same compare.other_colors 0
+is same compare.flip 0.0
+check "half of one and half of the other are the picture" \
+    test "$(value same compare.mixed)" = "$(value same frame.pixels)"
+is sign compare.other_colors 0
+is sign compare.count 6144
+is sign words "--size 96x64 --traversal sign"
+is flat compare.other_ids 0
+check "no bounces are other colours" more "$(value flat compare.other_colors)" 100
+check "B stays as it was" test "$(value flat compare.b.pixels)" = "$(value start frame.pixels)"
+is ended compare.mode off
+same frame.pixels flat ended
+
+# The window has A on the left and B on the right; the divider is in between.
+columns a.pfm 0 43 >a.left
+columns b.pfm 52 95 >b.right
+columns split.pfm 0 43 >split.left
+columns split.pfm 52 95 >split.right
+columns b.pfm 0 43 >b.left
+check "44 columns of 64 pixels each" test "$(wc -w <a.left)" -eq $((44 * 64 * 3))
+check "A is on the left" cmp a.left split.left
+check "B is on the right" cmp b.right split.right
+check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
+
+# The figures are those of whit compare, of what whit render makes of the two lines.
+picture start b.exr
+picture flat a.exr
+expect 0 "whit compare" compare a.exr b.exr --json c.json
+for pair in largest:largest flip_mean:flip; do
+    there=$(figure "${pair%:*}") here=$(value flat "compare.${pair#*:}")
+    check "${pair%:*} is that of whit compare ($there, $here)" about "$there" "$here"
+done
+check "as many pixels differ" test "$(figure differing_pixels)" = "$(value flat compare.other_colors)"
+
+# ---- Difference, and the divider ----
+
+play "A minus B" "$DEFAULT" --size 96x64 --depth 0 <<END
+still
+press C
+press Equal
+still
+state one
+press D
+still
+state difference
+press ]
+still
+state scaled
+press \
+still
+state own
+press T
+still
+state order
+press D
+move 48 32
+button left down
+move 24 32
+button left up
+still
+state dragged
+move 80 20
+button left down
+move 90 25
+button left up
+still
+state turned
+END
+is difference compare.mode difference
+check "the scale is above 0" more "$(value difference compare.scale)" 0
+check "] doubles it" about "$(value scaled compare.scale)" \
+    "$(awk -v a="$(value difference compare.scale)" 'BEGIN { printf "%.17g", 2 * a }')"
+differs compare.heat difference scaled
+same compare.heat difference own
+same compare.heat difference order
+check "the scale of costs is not touched" test "$(value scaled words)" = "$(value one words)"
+is dragged compare.divider 0.25
+same words order dragged
+differs words dragged turned
+differs frame.pixels dragged turned
+is turned compare.other_ids 0
+check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
+
+# Costs are numbers, not colours; and there is nothing between the two.
+play "costs of A and B" "$DEFAULT" --size 96x64 --view visits <<END
+still
+press C
+press T
+press T
+still
+state costs
+press V
+press V
+press V
+still
+press D
+still
+state mixed
+END
+check "another order, other visits" more "$(value costs compare.other_colors)" 0
+is costs compare.has_flip false
+is costs compare.other_ids 0
+is mixed keys.next\ view stack
+press_v=$(value mixed compare.known)
+check "both are costs: they are subtracted ($press_v)" test "$press_v" = true
+
+# ---- Effects ----
+
+# at NAME LABEL: where the thing to click is.
+at() {
+    value "$1" "items.$2"
+}
+play "the panel of effects" "$CUBE" --size 640x480 <<END
+press X
+still
+state panel
+END
+shadows=$(at panel shadows)
+play "effects by click" "$CUBE" --size 640x480 <<END
+still
+state start
+press X
+still
+click $shadows
+still
+state off
+click $shadows
+still
+state on
+END
+is off words "--size 640x480 --effects -shadows"
+is on words "--size 640x480"
+is off change.what "effects auto -> -shadows"
+check "the price says how many pixels changed" \
+    test "$(value off prices.shadows)" = "$(value off change.other_colors)"
+check "it is known of what was switched alone" test "$(value off prices)" = "$(value off prices.shadows)" \
+    -o "$(value off prices.highlights)" = "(no prices.highlights)"
+same frame.pixels start on
+
+# ---- Settings by mouse: what their keys do ----
+
+play "the panel of settings" "$CUBE" --size 640x480 <<END
+press Tab
+still
+state panel
+click 5 5
+END
+traversal=$(at panel traversal)
+play "a list opens" "$CUBE" --size 640x480 <<END
+press Tab
+still
+click $traversal
+still
+state list
+END
+play "by mouse" "$CUBE" --size 640x480 <<END
+press T
+still
+state key
+press Shift+T
+still
+press Tab
+still
+click $traversal
+still
+click $(at list sign)
+still
+state mouse
+END
+same words key mouse
+same "keys.traversal order" key mouse
+is mouse words "--size 640x480 --traversal sign"
+
+# ---- Files of settings ----
+
+play "saved" "$DEFAULT" --size 96x64 <<END
+still
+move 40 30
+button left down
+move 49 33
+button left up
+press T
+press M
+press K
+press A
+press Minus
+press O
+press V
+still
+press Ctrl+S
+state saved
+press Ctrl+S
+END
+check "Ctrl+S saves" test -s whit-0001.view
+check "and once more beside" cmp -s whit-0001.view whit-0001.view -a -s whit-0002.view
+check "one option a line" test "$(grep -c '^--' whit-0001.view)" -eq "$(grep -vc '^#' whit-0001.view)"
+check "as many as there are words" test "$(grep -c '^--' whit-0001.view)" -eq \
+    "$(value saved words | grep -o -e ' --' -e '^--' | wc -l)"
+cp "$OUT/states" saved.states
+echo "--numerics exactly" >bad.view
+play "loaded" "$DEFAULT" --state whit-0001.view <<END
+still
+state loaded
+press Ctrl+S
+press T
+press A
+press V
+still
+drop whit-0001.view
+still
+state dropped
+drop bad.view
+state bad
+END
+cat saved.states >>"$OUT/states"
+same words saved loaded
+same words saved dropped
+same words saved bad
+same frame.ids saved loaded
+same frame.pixels saved loaded
+same frame.pixels saved dropped
+check "the message has file and line ($(value bad toast))" \
+    test "$(value bad toast | grep -c '^bad.view:1: --numerics `exactly`: one of')" -eq 1
+check "what was loaded is saved as it was" sh -c \
+    "grep -v '^#' whit-0001.view >1 && grep -v '^#' whit-0003.view | cmp - 1"
+play "the command line has the last word" "$CUBE" --state whit-0001.view --traversal basic <<END
+still
+state last
+END
+check "of all words one is another" test "$(value last words | grep -c -e '--traversal basic .*--numerics')" -eq 1
+
+# refused WHAT PATTERN LINE...: a file of settings with these lines.
+refused() {
+    title=$1
+    pattern=$2
+    shift 2
+    printf '%s\n' "$@" >refused.view
+    expect 2 "$title" view "$CUBE" --state refused.view --frames 1
+    check "$title: says \`$pattern\` ($(cat "$OUT/stderr"))" grep -q "^whit: error: $pattern" "$OUT/stderr"
+}
+refused "nonsense" 'refused.view:3: there is no option `--numeric`' "# a comment" "" "--numeric exact"
+refused "a value" 'refused.view:2: --depth `-1`: a whole number' "--traversal sign" "--depth -1"
+refused "a word" 'refused.view:1: `cube.json` is no option' "cube.json"
+refused "a quote" 'refused.view:1: a quote has no end' "--camera 'here"
+refused "another file" 'refused.view:1: --state is nothing to be saved' "--state refused.view"
+refused "two that exclude each other" 'refused.view:.*--no-bvh and --build' "--no-bvh" "--build sweep"
+expect 2 "no such file" view "$CUBE" --state nowhere.view --frames 1
+check "no such file: says so" grep -q "nowhere.view: cannot be read: No such file" "$OUT/stderr"
+
+# ---- Panels do not cover each other ----
+
+# apart NAME: no two panels of the state overlap.
+apart() {
+    sed -n "/\"at\":\"$1\",/s/.*\"panels\":{\([^}]*\)}.*/\1/p" "$OUT/states" | tr ',' '\n' |
+        sed 's/"//g; s/:/ : /' >"$OUT/panels"
+    overlaps=$(awk -F ' : ' '
+        { split($2, r, " "); for (i = 0; i < NR - 1; ++i) if (r[1] < x1[i] && x0[i] < r[3] &&
+              r[2] < y1[i] && y0[i] < r[4]) print $1 " and " name[i]
+          name[NR - 1] = $1; x0[NR - 1] = r[1]; y0[NR - 1] = r[2]; x1[NR - 1] = r[3]
+          y1[NR - 1] = r[4] }' "$OUT/panels")
+    outside=$(awk -F ' : ' -v w="$2" -v h="$3" '{ split($2, r, " ")
+        if (r[1] < 0 || r[2] < 0 || r[3] > w || r[4] > h) print $1 }' "$OUT/panels")
+    check "at $1: $(grep -c . "$OUT/panels") panels, none over another ($overlaps)" test -z "$overlaps"
+    check "at $1: none outside ($outside)" test -z "$outside"
+    check "at $1: at least $4" test "$(grep -c . "$OUT/panels")" -ge "$4"
+}
+for scale in 1 2; do
+    w=$((640 * scale)) h=$((480 * scale))
+    play "panels, at a scale of $scale" "$CUBE" --size ${w}x$h --ui-scale $scale <<END
+still
+press T
+press C
+press M
+press B
+still
+shot panels-$scale.png
+state split
+press Tab
+still
+shot settings-$scale.png
+state settings
+press X
+still
+state effects
+press D
+press X
+still
+state difference
+press H
+still
+shot help-$scale.png
+state help
+END
+    for name in split settings effects difference help; do
+        apart $name $w $h 1
+    done
+    apart settings $w $h 6
+done
+finish
