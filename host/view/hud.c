@@ -132,7 +132,7 @@ static void draw_help(struct view *view)
         return;
     bool narrow = (float)view->settings.picture.width < 800.0f * ui_scale(view->ui);
     int name_most = narrow ? 19 : 40, state_most = narrow ? 12 : 28;
-    if (ui_panel_begin("Keys", 0.5f, 0.5f, UI_PANEL_PLAIN)) {
+    if (ui_panel_begin("Keys", 0.5f, 0.0f, UI_PANEL_HOLD)) {
         if (ui_table_begin("keys", 6)) {
             uint32_t rows = (count + 1) / 2;
             for (uint32_t i = 0; i < 2 * rows; ++i) {
@@ -232,8 +232,8 @@ static void draw_legends(const struct view *view)
 void hud_draw(struct view *view)
 {
     if (view->help) {
-        draw_help(view);
         draw_messages(view);
+        draw_help(view);
         return;
     }
     pick_draw(view);

@@ -276,13 +276,14 @@ void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)width, (float)height);
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
+    layout.changed = false;
     for (int i = 0; i < 3; ++i) {
         io.MouseDown[i] = ui->pressed[i] || ui->down[i];
+        layout.changed |= io.MouseDown[i] != ui->down[i]; // its release is to be drawn too
         ui->pressed[i] = false;
     }
     ++layout.frame;
     layout.obstacle_count = 0;
-    layout.changed = false;
     item_count = 0;
     ImGui_ImplVulkan_NewFrame();
     ImGui::NewFrame();

@@ -46,7 +46,8 @@ bool ui_has_keys(const struct ui *ui);
 /* Everything below is drawn between these two. */
 void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
 void ui_end(struct ui *ui);
-/* Whether panels found their sizes only now: the next frame has them where they belong. */
+/* Whether panels found their sizes only now, and the next frame has them where they belong; or a
+   button went up already that this frame has down. */
 bool ui_wants_again(const struct ui *ui);
 float ui_scale(const struct ui *ui);
 /* Where the middle of a button or other thing to click was drawn in the last frame, by its label
