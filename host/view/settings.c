@@ -28,7 +28,7 @@ bool settings_same_kernel(const struct view_settings *a, const struct view_setti
            p->no_shadows == q->no_shadows && p->schlick == q->schlick &&
            p->opaque_shadows == q->opaque_shadows && p->traversal == q->traversal &&
            p->numerics == q->numerics && p->no_bounces == q->no_bounces &&
-           (p->adaptive > 0.0) == (q->adaptive > 0.0) && counts == other_counts;
+           (counts || (p->adaptive > 0.0) == (q->adaptive > 0.0)) && counts == other_counts;
 }
 
 bool settings_same_camera(const struct view_settings *a, const struct view_settings *b)
@@ -67,6 +67,8 @@ whit_renderer_params settings_picture(const struct view_settings *settings)
     params.camera = settings->camera[0] ? settings->camera : NULL;
     params.effects = settings->effects[0] ? settings->effects : NULL;
     params.count = settings->paint != VIEW_PAINT_COLOR;
+    if (params.count) /* costs are those of a fixed pattern */
+        params.adaptive = 0.0;
     return params;
 }
 
@@ -177,9 +179,10 @@ static void tree_words(struct words *words, const struct view_settings *settings
 static void shading_words(struct words *words, const struct view_settings *settings)
 {
     const whit_renderer_params *p = &settings->picture;
-    if (p->adaptive > 0.0)
+    bool costs = settings->paint != VIEW_PAINT_COLOR; /* which are not for adaptive samples */
+    if (p->adaptive > 0.0 && !costs)
         option(words, "--aa", "adaptive:%.9g", p->adaptive);
-    else if (p->samples > 1)
+    else if (p->adaptive <= 0.0 && p->samples > 1)
         option(words, "--aa", "%u", p->samples);
     if (p->no_bounces)
         option(words, "--depth", "0");

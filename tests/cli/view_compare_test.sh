@@ -9,6 +9,7 @@ DEFAULT=$SCENES/default.json
 # picture NAME FILE: what `whit render` makes of the state's line.
 picture() {
     value "$1" render | sed -e 's/^whit //' -e 's/ -o picture.png$//' >"$OUT/line"
+    status=
     eval "run $(cat "$OUT/line") -o '$2' --quiet"
     check "at $1: the line renders (got $status)" test "$status" -eq 0
 }
@@ -306,6 +307,25 @@ still
 state last
 END
 check "of all words one is another" test "$(value last words | grep -c -e '--traversal basic .*--numerics')" -eq 1
+
+# What whit render refuses is not among the words: costs are not those of adaptive samples.
+play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END
+still
+press V
+still
+state costs
+press V
+press V
+press V
+press V
+press V
+still
+state colors
+END
+is costs error ""
+is costs frame.view depth
+is costs words "--size 96x64 --view depth"
+is colors words "--size 96x64 --aa adaptive:0.1"
 
 # refused WHAT PATTERN LINE...: a file of settings with these lines.
 refused() {
