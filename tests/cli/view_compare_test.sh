@@ -17,6 +17,9 @@ picture() {
 about() {
     awk -v a="$1" -v b="$2" 'BEGIN { d = a - b; exit !(d * d <= 1e-12 * a * a) }'
 }
+near() { # of numbers that were text
+    awk -v a="$1" -v b="$2" 'BEGIN { d = a - b; exit !(d * d <= 1e-8 * a * a) }'
+}
 more() {
     awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'
 }
@@ -92,14 +95,20 @@ check "B is on the right" cmp b.right split.right
 check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
 
 # The figures are those of whit compare, of what whit render makes of the two lines.
-picture start b.exr
-picture flat a.exr
-expect 0 "whit compare" compare a.exr b.exr --json c.json
+picture start rendered-b.pfm
+picture flat rendered-a.pfm
+expect 0 "whit compare" compare rendered-a.pfm rendered-b.pfm --json c.json
 here=$(value flat compare.largest)
 check "the largest difference is that of whit compare ($(figure largest), $here)" \
     about "$(figure largest)" "$here"
 here=$(value flat compare.flip)
 check "FLIP is that of whit compare ($(figure mean flip), $here)" about "$(figure mean flip)" "$here"
+for side in a b; do
+    tail -c $((96 * 64 * 12)) rendered-$side.pfm | od -An -v -tf4 -w4 >numbers.$side
+done
+mean=$(paste numbers.a numbers.b | awk '{ d = $1 - $2; s += d < 0 ? -d : d } END { print s / NR }')
+here=$(value flat compare.mean)
+check "the mean difference is that of the two pictures ($mean, $here)" near "$mean" "$here"
 check "as many pixels differ" test "$(figure differing_pixels)" = "$(value flat compare.other_colors)"
 
 # ---- Difference, and the divider ----
