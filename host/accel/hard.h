@@ -166,6 +166,10 @@ WHIT_CHECK whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t n
                                        uint32_t thread_count, struct gpu_hit *hits);
 WHIT_CHECK whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
                                   struct hard_tally *tally);
+/* Floats between the two. */
+double hard_ulps_between(float a, float b);
+/* Whether the ray goes further than its origin's coordinates are rounded by. */
+bool hard_goes_far(const struct gpu_ray *ray, float t);
 /* Rays whose hits differ by a bit. */
 uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, uint64_t count);
 /* Of the identities of exact hits, chained by `value`. */

@@ -177,8 +177,7 @@ static bool is_sure(const struct hard_judgement *j, uint64_t i)
     return fabs(oracle.edge_margin) >= 1.0;
 }
 
-/* Floats between the two. */
-static double ulps_between(float a, float b)
+double hard_ulps_between(float a, float b)
 {
     int32_t x, y;
     memcpy(&x, &a, sizeof x);
@@ -187,8 +186,7 @@ static double ulps_between(float a, float b)
     return (double)(p < q ? q - p : p - q);
 }
 
-/* Whether the ray goes further than its origin's coordinates are rounded by. */
-static bool goes_far(const struct gpu_ray *ray, float t)
+bool hard_goes_far(const struct gpu_ray *ray, float t)
 {
     float origin = 0.0f, dir = 0.0f;
     for (int k = 0; k < 3; ++k) {
@@ -250,8 +248,8 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
         return;
     if (same) {
         tally->wrong_keys += hit->t != exact->t;
-        if (goes_far(&j->rays[i].ray, exact->t))
-            tally->ulp_most = fmax(tally->ulp_most, ulps_between(hit->t, exact->t));
+        if (hard_goes_far(&j->rays[i].ray, exact->t))
+            tally->ulp_most = fmax(tally->ulp_most, hard_ulps_between(hit->t, exact->t));
     }
     tally->double_hits += is_double(j, rational, i, status);
 }

@@ -63,6 +63,11 @@ whit_result whit_file_write(const char *path, const void *data, size_t size_byte
     return result;
 }
 
+char *whit_cache_folder(void)
+{
+    return cache_is_off() ? NULL : cache_folder(true);
+}
+
 void whit_file_abandon_all(void)
 {
     file_abandon_all();

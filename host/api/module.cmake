@@ -1,5 +1,5 @@
 whit_module(api
-  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c reference_api.c hard_api.c hard_view.c image_api.c file_api.c
+  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c reference_api.c hard_api.c hard_view.c judge_api.c image_api.c file_api.c
   LINK whit_base whit_image whit_scene whit_load whit_accel whit_device whit_render whit_reference)
 target_include_directories(whit_api PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/base>)
 

@@ -656,6 +656,41 @@ WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *sce
                                       uint64_t *wrong_pixels, uint64_t *other_pixels,
                                       whit_image **out);
 
+/* ---- Judged rays ---- */
+
+/* Rays of a scene with what exact arithmetic says of them (docs/numerics.md), to hold hits against:
+   those of its camera, and rays aimed at its vertices, edges and triangles (of `whit hard`: from in
+   and around its bounds). Both are the same on every machine. `scene` is borrowed. */
+typedef struct whit_judge whit_judge;
+typedef struct whit_judge_params {
+    bool aimed;         /* else from the camera */
+    uint32_t count;     /* about as many; 0: 20000. Of a scene without triangles none are aimed. */
+    const char *camera; /* as in whit_renderer_params */
+    uint32_t width, height; /* the camera's picture, for its shape; 0: 640 x 480 */
+    double time_s;
+    uint32_t threads; /* 0: one a core */
+} whit_judge_params;
+WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
+                                         const whit_log *log, whit_judge **out);
+void whit_judge_destroy(whit_judge *judge);
+const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
+
+/* Of `rays`. Where a ray came by a sphere the answer is that of the walk in double. */
+typedef struct whit_judgement {
+    uint64_t rays, hits; /* hits: exactly */
+    uint64_t misses, false_hits, other_ids;
+    uint64_t leaks; /* of misses, as in whit_hard_row */
+    uint64_t wrong; /* of misses, false hits and other ids: no bound of float errors excuses them */
+    uint64_t non_finite; /* hits with a t, u or v that is no number */
+    /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
+       of hits nearer than 2^-20 of the origin's coordinates. */
+    uint64_t ulp_rays;
+    double ulp_median, ulp_999, ulp_most; /* ulp_999: of 99.9 % of them it is at most this */
+} whit_judgement;
+/* `hits`: one for each of the rays, in their order, found at `numerics`. */
+WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,
+                                       const whit_hit *hits, whit_judgement *out);
+
 /* ---- Images ---- */
 
 typedef struct whit_image_info {
@@ -759,6 +794,9 @@ void whit_file_abandon(whit_file *file);
 /* Writes a whole file beside `path` and renames it. */
 WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,
                                        const whit_log *log);
+/* Where whit keeps what it can make again: $XDG_CACHE_HOME/whit or ~/.cache/whit, made when it is
+   not there; free() it. NULL: there is none, or WHIT_NO_CACHE is set. */
+char *whit_cache_folder(void);
 /* Removes unfinished output; safe in a signal handler. */
 void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);

@@ -4,7 +4,7 @@
 
 #include "app/cli.h"
 #include "app/document.h"
-#include "app/sample.h"
+#include "cost/sample.h"
 
 enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12, BENCH_PATH = 2200 };
 

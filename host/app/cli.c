@@ -19,7 +19,8 @@ static volatile sig_atomic_t interrupt_signal, end_said;
 static timer_t grace_timer;
 static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
-static bool error_said;
+static bool error_said, hushed;
+static volatile sig_atomic_t grace_ms = GRACE_MS;
 /* Read in signal handlers: the one of two that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
@@ -67,7 +68,7 @@ void cli_note(const char *format, ...)
 static void on_message(void *user, whit_log_level level, const char *message)
 {
     (void)user;
-    if (cli_cancel)
+    if (cli_cancel || hushed)
         return;
     if (level == WHIT_LOG_ERROR)
         cli_error("%s", message);
@@ -77,6 +78,11 @@ static void on_message(void *user, whit_log_level level, const char *message)
 
 const whit_log cli_log = {.fn = on_message, .level = WHIT_LOG_WARNING};
 const whit_log cli_log_errors = {.fn = on_message, .level = WHIT_LOG_ERROR};
+
+void cli_hush(bool on)
+{
+    hushed = on;
+}
 
 static int code_of(whit_result result)
 {
@@ -152,7 +158,8 @@ static void on_interrupt(int number)
         _exit(128 + number);
     }
     interrupt_signal = number;
-    const struct itimerspec grace = {.it_value = {.tv_nsec = GRACE_MS * 1000000L}};
+    const struct itimerspec grace = {
+        .it_value = {.tv_sec = grace_ms / 1000, .tv_nsec = grace_ms % 1000 * 1000000L}};
     if (!has_grace_timer || timer_settime(grace_timer, 0, &grace, NULL) != 0) {
         whit_file_abandon_all();
         _exit(128 + number);
@@ -160,11 +167,21 @@ static void on_interrupt(int number)
     errno = reason;
 }
 
-void cli_set_written(uint32_t written, uint32_t count)
+void cli_keep_what_is_done(int milliseconds)
+{
+    grace_ms = milliseconds;
+}
+
+void cli_set_kept(uint32_t done, uint32_t count, const char *what)
 {
     char *text = written_texts[written_text == written_texts[0]];
-    snprintf(text, sizeof written_texts[0], "%u of %u frames were written", written, count);
+    snprintf(text, sizeof written_texts[0], "%u of %u %s", done, count, what);
     written_text = text;
+}
+
+void cli_set_written(uint32_t written, uint32_t count)
+{
+    cli_set_kept(written, count, "frames were written");
 }
 
 void cli_catch_interrupts(void)

@@ -86,6 +86,9 @@ void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
 extern const whit_log cli_log;
 extern const whit_log cli_log_errors;
 
+/* Whether errors of libwhit are kept to itself, as where something is tried that may be refused. */
+void cli_hush(bool on);
+
 /* The exit code for a failed call; makes sure that something was said. */
 int cli_exit_of(whit_result result);
 
@@ -98,6 +101,11 @@ void cli_catch_interrupts(void);
 /* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
    was written. */
 void cli_set_written(uint32_t written, uint32_t count);
+/* Interrupted work gets this long to save what is done, before the handler ends the process. A
+   second signal ends it at once. */
+void cli_keep_what_is_done(int grace_ms);
+/* For the message of interrupted work: "12 of 40 WHAT". */
+void cli_set_kept(uint32_t done, uint32_t count, const char *what);
 /* Ends the process with EXIT_TIME some time after `seconds`, for what does not watch the time by
    itself. */
 void cli_limit_time(double seconds);

@@ -8,7 +8,8 @@
 #include "app/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
-    command_devices, command_bench, command_hard, command_compare, command_view, command_probe;
+    command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
+    command_probe;
 
 /* What `whit render` was asked for beside the job. */
 struct render_request {
@@ -118,6 +119,8 @@ bool recipe_init(struct recipe *recipe, const struct job *job, const struct rend
 bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
                      const struct view_figures *figures);
 void recipe_finish(struct recipe *recipe);
+/* Appends a space and `word`, an argument, quoted for a POSIX shell. */
+void recipe_put_word(FILE *to, const char *word);
 
 /* The device's driver without the name of the device in front. */
 const char *stats_driver(const whit_device_info *device);

@@ -2,10 +2,12 @@
 add_executable(whit_program
   app/main.c app/cli.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
   app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
-  app/receipt.c app/receipt_output.c app/sample.c app/listing.c app/listing_output.c app/triangles.c
+  app/receipt.c app/receipt_output.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
   app/bench_section.c app/bench_table.c app/hard_command.c app/hard_output.c app/compare_command.c
   app/probe_command.c app/probe_output.c
+  app/cost_command.c app/cost_table.c app/cost_json.c app/cost_page.c app/cost_compare.c
+  app/page.c app/plot.c
   app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c
   app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
 set_target_properties(whit_program PROPERTIES
@@ -23,6 +25,9 @@ if(WHIT_VIEWER)
     PkgConfig::IMGUI)
   add_dependencies(whit_program_needs whit_view)
 endif()
+# In front of the library, which it calls.
+target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_cost>)
+add_dependencies(whit_program_needs whit_cost)
 target_link_libraries(whit_program_needs INTERFACE whit PkgConfig::JANSSON
   $<$<BOOL:${WHIT_VIEWER}>:Vulkan::Vulkan> m)
 target_link_libraries(whit_program PRIVATE whit_flags whit_program_needs)

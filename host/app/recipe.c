@@ -5,8 +5,7 @@
 #include "app/commands.h"
 #include "app/document.h"
 
-/* Appends `word`, an argument, quoted for a POSIX shell. */
-static void put_word(FILE *to, const char *word)
+void recipe_put_word(FILE *to, const char *word)
 {
     static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                "_-./,:=+@%";
@@ -66,7 +65,7 @@ static void put_view(FILE *to, const struct job *job, const struct render_reques
         fputs(" --no-bvh", to);
     } else if (job->tree_path) {
         fputs(" --tree", to);
-        put_word(to, job->tree_path);
+        recipe_put_word(to, job->tree_path);
     } else {
         fprintf(to, " --build %s", build);
     }
@@ -93,12 +92,12 @@ static char *command_line(const struct job *job, const struct render_request *re
     if (!to)
         return NULL;
     fputs("whit render", to);
-    put_word(to, job->scene_path);
+    recipe_put_word(to, job->scene_path);
     put_output(to, request->output);
     fprintf(to, " --size %ux%u", request->picture.width, request->picture.height);
     if (request->picture.camera) {
         fputs(" --camera", to);
-        put_word(to, request->picture.camera);
+        recipe_put_word(to, request->picture.camera);
     }
     if (job->time_s != 0.0) {
         fputs(" --time", to);
@@ -125,7 +124,7 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --fresnel schlick", to);
     if (changes_picture(request->effects)) {
         fputs(" --effects", to);
-        put_word(to, request->effects);
+        recipe_put_word(to, request->effects);
     }
     if (job->texture_limit)
         fprintf(to, " --texture-limit %u", job->texture_limit);

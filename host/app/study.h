@@ -3,7 +3,7 @@
 #define APP_STUDY_H
 
 #include "app/job.h"
-#include "app/sample.h"
+#include "cost/sample.h"
 
 enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
 enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };

@@ -165,4 +165,9 @@ WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_m
 double commands_span_ms(const struct commands *commands, uint32_t span);
 uint32_t commands_span_count(const struct commands *commands);
 
+/* $XDG_CACHE_HOME/whit or ~/.cache/whit, made if asked for; NULL when there is no such place. The
+   caller's to free. */
+char *cache_folder(bool make);
+bool cache_is_off(void); /* WHIT_NO_CACHE is set */
+
 #endif

@@ -108,10 +108,6 @@ bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint
 /* cache.c: the pipeline cache and its file. */
 whit_result cache_open(struct device *device);
 void cache_close(struct device *device); /* saves, destroys */
-bool cache_is_off(void);
-/* $XDG_CACHE_HOME/whit or ~/.cache/whit, made if asked for; NULL when there is no such place. The
-   caller's to free. */
-char *cache_folder(bool make);
 
 /* A kernel as the driver gets it. */
 struct kernel_words {

@@ -10,7 +10,7 @@ P=$OUT/pictures/x.png
 
 expect 0 "help" --help
 check "help lists render" grep -q "^  render " "$OUT/stdout"
-commands="render scene trace compare devices"
+commands="render scene trace compare cost devices"
 "$WHIT" --help | grep -q "^  view " && commands="$commands view" # built with the viewer
 for command in $commands; do
     expect 0 "$command --help" "$command" --help

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "app/sample.h"
+#include "cost/sample.h"
 #include "random_fixture.h"
 
 static void quantiles_are_between_neighbours(void **state)

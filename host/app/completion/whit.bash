@@ -15,7 +15,15 @@ _whit() {
         --instance-update) words="rebuild refit" ;;
         --load-path) words="auto storage texel" ;;
         --numerics) words="fast watertight exact" ;;
-        --metric) words="rmse relmse largest mean over differing flip" ;;
+        --metric)
+            words="rmse relmse largest mean over differing flip"
+            [ "${COMP_WORDS[1]}" = cost ] && words="rmse flip"
+            ;;
+        --samples) words="4 16 64" ;;
+        --knobs)
+            words="aa depth bailout light-samples fresnel tinted-shadows shadows textures normal-maps"
+            words="$words terminator numerics instances traversal build load-path"
+            ;;
         --on) words="device cpu brute" ;;
         --stats) words="text json" ;;
         --view)

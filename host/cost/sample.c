@@ -1,4 +1,4 @@
-#include "app/sample.h"
+#include "cost/sample.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Figures that were measured several times: what they say, and whether two of them differ. */
-#ifndef APP_SAMPLE_H
-#define APP_SAMPLE_H
+#ifndef COST_SAMPLE_H
+#define COST_SAMPLE_H
 
 #include "api/whit.h"
 

@@ -1,0 +1,221 @@
+/* Rays with what exact arithmetic says of them, and hits held against that. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "accel/hard.h"
+#include "api/handles.h"
+#include "base/array.h"
+#include "base/threads.h"
+
+enum { RAYS_DEFAULT = 20000, RAYS_MOST = 1 << 24, SEED = 77, CHUNK = 256 };
+
+struct whit_judge {
+    struct log log;
+    struct hard_scene hard;
+    struct hard_topology topology;
+    uint32_t threads;
+    uint64_t count;
+    struct hard_ray *rays;
+    whit_ray *plain;
+    struct rational_hit *exact;
+};
+
+/* ---- Rays ---- */
+
+/* As many as come near `wanted` without more, in the picture's shape. */
+static void grid_of(const whit_judge_params *params, uint32_t wanted, uint32_t *width,
+                    uint32_t *height)
+{
+    double shape =
+        params->width && params->height ? (double)params->width / params->height : 4. / 3.;
+    double across = floor(sqrt(wanted * shape));
+    *width = across < 1.0 ? 1 : (uint32_t)across;
+    *height = wanted / *width ? wanted / *width : 1;
+}
+
+static whit_result camera_rays(whit_judge *judge, const whit_judge_params *params, uint32_t wanted)
+{
+    uint32_t width, height;
+    grid_of(params, wanted, &width, &height);
+    judge->count = (uint64_t)width * height;
+    return render_camera_rays(&judge->log, &judge->hard.pose, params->camera, width, height,
+                              (struct gpu_ray *)judge->plain);
+}
+
+static whit_result make_rays(whit_judge *judge, const whit_judge_params *params, uint32_t wanted)
+{
+    struct gpu_ray *plain = (struct gpu_ray *)judge->plain;
+    whit_result result = WHIT_OK;
+    if (!params->aimed)
+        result = camera_rays(judge, params, wanted);
+    else
+        judge->count = wanted;
+    for (uint64_t i = 0; result == WHIT_OK && i < judge->count; ++i) {
+        if (params->aimed) {
+            judge->rays[i] = hard_ray_make(&judge->hard, judge->hard.rays, SEED, i);
+            plain[i] = judge->rays[i].ray;
+        } else {
+            judge->rays[i] = (struct hard_ray){plain[i], HIT_NONE, HIT_NONE};
+        }
+    }
+    return result;
+}
+
+/* ---- Spheres, which exact arithmetic does not decide ---- */
+
+static void answer_chunk(void *context, uint32_t chunk)
+{
+    whit_judge *judge = context;
+    uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; i < end && i < judge->count; ++i) {
+        struct rational_hit *exact = &judge->exact[i];
+        struct oracle_hit hit;
+        if (!exact->undecided)
+            continue;
+        oracle_trace(judge->hard.accel, &judge->rays[i].ray, false, &hit);
+        *exact = (struct rational_hit){
+            .t = (float)hit.t, .primitive = hit.primitive, .instance = hit.instance};
+    }
+}
+
+static whit_result find_answers(whit_judge *judge)
+{
+    whit_result result =
+        hard_trace_exact(&judge->hard, judge->rays, judge->count, judge->threads, judge->exact);
+    if (result == WHIT_OK)
+        threads_for(judge->threads, (uint32_t)((judge->count + CHUNK - 1) / CHUNK), answer_chunk,
+                    judge);
+    return result;
+}
+
+/* ---- Life ---- */
+
+static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_judge_params *params)
+{
+    uint32_t wanted = params->count ? params->count : RAYS_DEFAULT;
+    if (wanted > RAYS_MOST) {
+        log_error(&judge->log, "%u rays: at most %d", wanted, RAYS_MOST);
+        return WHIT_ERROR_USAGE;
+    }
+    judge->threads = params->threads;
+    if (scene->scene->triangle_total == 0)
+        return WHIT_OK;
+    judge->rays = array_alloc(wanted, sizeof *judge->rays);
+    judge->plain = array_alloc(wanted, sizeof *judge->plain);
+    judge->exact = array_alloc(wanted, sizeof *judge->exact);
+    if (!judge->rays || !judge->plain || !judge->exact) {
+        log_error(&judge->log, "out of memory for %u rays", wanted);
+        return WHIT_ERROR_MEMORY;
+    }
+    whit_result result = hard_scene_borrow(&judge->log, scene->scene, params->time_s, &judge->hard);
+    if (result == WHIT_OK)
+        result = hard_topology_init(scene->scene, &judge->topology);
+    if (result == WHIT_OK)
+        result = make_rays(judge, params, wanted);
+    return result == WHIT_OK ? find_answers(judge) : result;
+}
+
+whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
+                              const whit_log *log, whit_judge **out)
+{
+    const whit_judge_params defaults = {0};
+    whit_judge *judge = calloc(1, sizeof *judge);
+    *out = NULL;
+    if (!judge)
+        return WHIT_ERROR_MEMORY;
+    judge->log = log_from_public(log);
+    whit_result result = fill(judge, scene, params ? params : &defaults);
+    if (result != WHIT_OK) {
+        whit_judge_destroy(judge);
+        return result;
+    }
+    *out = judge;
+    return WHIT_OK;
+}
+
+void whit_judge_destroy(whit_judge *judge)
+{
+    if (!judge)
+        return;
+    hard_topology_finish(&judge->topology);
+    hard_scene_finish(&judge->hard);
+    free(judge->rays);
+    free(judge->plain);
+    free(judge->exact);
+    free(judge);
+}
+
+const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count)
+{
+    *count = judge->count;
+    return judge->plain;
+}
+
+/* ---- Hits ---- */
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of 1000 the one at `rank`. */
+static double at_share(const float *sorted, uint64_t count, uint64_t rank)
+{
+    uint64_t at = (count * rank + 999) / 1000;
+    return count ? (double)sorted[at ? at - 1 : 0] : 0.0;
+}
+
+static whit_result measure_t(const whit_judge *judge, const whit_hit *hits, whit_judgement *out)
+{
+    float *ulps = array_alloc((size_t)judge->count, sizeof *ulps);
+    uint64_t count = 0;
+    if (!ulps) {
+        log_error(&judge->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    for (uint64_t i = 0; i < judge->count; ++i) {
+        const struct rational_hit *exact = &judge->exact[i];
+        const whit_hit *hit = &hits[i];
+        if (hit->primitive == WHIT_NONE)
+            continue;
+        bool finite = isfinite(hit->t) && isfinite(hit->u) && isfinite(hit->v);
+        out->non_finite += !finite;
+        if (finite && hit->primitive == exact->primitive && hit->instance == exact->instance &&
+            hard_goes_far(&judge->rays[i].ray, exact->t))
+            ulps[count++] = (float)hard_ulps_between(hit->t, exact->t);
+    }
+    qsort(ulps, (size_t)count, sizeof *ulps, compare_floats);
+    out->ulp_rays = count;
+    out->ulp_median = at_share(ulps, count, 500);
+    out->ulp_999 = at_share(ulps, count, 999);
+    out->ulp_most = at_share(ulps, count, 1000);
+    free(ulps);
+    return WHIT_OK;
+}
+
+whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, const whit_hit *hits,
+                            whit_judgement *out)
+{
+    const struct hard_judgement judgement = {.hard = &judge->hard,
+                                             .topology = &judge->topology,
+                                             .rays = judge->rays,
+                                             .exact = judge->exact,
+                                             .hits = (const struct gpu_hit *)hits,
+                                             .numerics = (uint32_t)numerics,
+                                             .count = judge->count};
+    struct hard_tally tally;
+    *out = (whit_judgement){.rays = judge->count};
+    if (judge->count == 0)
+        return WHIT_OK;
+    whit_result result = hard_judge(&judgement, judge->threads, &tally);
+    if (result != WHIT_OK)
+        return result;
+    out->hits = tally.hits;
+    out->misses = tally.misses;
+    out->false_hits = tally.false_hits;
+    out->other_ids = tally.other_ids;
+    out->leaks = tally.leaks;
+    out->wrong = tally.wrong;
+    return measure_t(judge, hits, out);
+}

@@ -1,0 +1,349 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost.h"
+
+enum cost_id {
+    ID_HTML = PICTURE_ID_END,
+    ID_JSON,
+    ID_CSV,
+    ID_MARKDOWN,
+    ID_UNDER,
+    ID_WITHIN,
+    ID_METRIC,
+    ID_QUICK,
+    ID_SPEND,
+    ID_SAMPLES,
+    ID_RAYS,
+    ID_KNOBS,
+    ID_COMPARE,
+};
+
+enum { RAYS_QUICK = 2000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16, GRACE_MS = 4000 };
+
+static const struct cli_option options[] = {
+    PICTURE_OPTION_PLACE,
+    JOB_OPTION_TIME,
+    {ID_HTML, "html", "FILE", "the report as one page, with plots and pictures"},
+    {ID_JSON, "json", "FILE", "all figures as JSON"},
+    {ID_CSV, "csv", "FILE", "a row for each setting"},
+    {ID_MARKDOWN, "markdown", "FILE", "the tables as Markdown"},
+    {ID_UNDER, "under", "E", "find the cheapest settings with an error of at most E"},
+    {ID_WITHIN, "within", "T", "find the best picture that takes at most T ms"},
+    {ID_METRIC, "metric", "rmse|flip", "what E is (rmse)"},
+    {ID_QUICK, "quick", NULL, "20 s, 16 samples, 2000 rays"},
+    {ID_SPEND, "spend", "S", "seconds that it may take, more or less (150)"},
+    {ID_SAMPLES, "samples", "4|16|64",
+     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)"},
+    {ID_RAYS, "rays", "N", "of each of the two sets; 0: none (20000)"},
+    {ID_KNOBS, "knobs", "NAME,...", "only these (all that the scene calls for)"},
+    {ID_COMPARE, "compare", NULL, "two files of --json in place of the scene: what differs"},
+    JOB_OPTION_DEVICE,
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
+    {'q', "quiet", NULL, "no notes, no progress, only errors"},
+    {0, NULL, NULL, NULL},
+};
+
+/* ---- Options ---- */
+
+static void read_knobs(struct cli_reader *reader, uint64_t *knobs)
+{
+    const char *names[64];
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    for (uint32_t i = 0; i < count; ++i)
+        names[i] = table[i].name;
+    for (const char *at = reader->value; at;) {
+        char name[32];
+        size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
+        uint32_t found = knob_find(name);
+        if (found == WHIT_NONE) {
+            const char *nearest = cli_nearest(name, names, count);
+            cli_misuse(reader, "--knobs: there is no knob `%s`%s%s%s", name,
+                       nearest ? "; did you mean `" : "", nearest ? nearest : "",
+                       nearest ? "`?" : "");
+            return;
+        }
+        *knobs |= UINT64_C(1) << found;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+}
+
+static void read_samples(struct cli_reader *reader, uint32_t *samples)
+{
+    static const char *const choices[] = {"4", "16", "64", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        *samples = 4u << (2 * choice);
+}
+
+/* False when it is none of the files. */
+static bool read_file(struct cli_reader *reader, int id, struct cost *cost)
+{
+    const char **file = id == ID_HTML       ? &cost->html
+                        : id == ID_JSON     ? &cost->json
+                        : id == ID_CSV      ? &cost->csv
+                        : id == ID_MARKDOWN ? &cost->markdown
+                                            : NULL;
+    if (file)
+        *file = reader->value;
+    return file != NULL;
+}
+
+static void read_option(struct cli_reader *reader, int id, struct cost *cost)
+{
+    static const char *const metrics[] = {"rmse", "flip", NULL};
+    struct render_request request = {.picture = cost->picture};
+    if (read_file(reader, id, cost) || job_option(&cost->job, reader, id))
+        return;
+    switch (id) {
+    case ID_UNDER:
+        cli_number(reader, 1e-12, 1e6, &cost->under);
+        break;
+    case ID_WITHIN:
+        cli_number(reader, 1e-3, 1e9, &cost->within_ms);
+        break;
+    case ID_METRIC:
+        cli_choice(reader, metrics, &cost->metric);
+        break;
+    case ID_QUICK:
+        cost->quick = true;
+        break;
+    case ID_SPEND:
+        cli_number(reader, 0.1, 1e6, &cost->request.seconds);
+        break;
+    case ID_SAMPLES:
+        read_samples(reader, &cost->request.samples_most);
+        break;
+    case ID_RAYS:
+        if (cli_unsigned(reader, 0, RAYS_MOST, &cost->request.rays) && cost->request.rays == 0)
+            cost->request.rays = WHIT_NONE;
+        break;
+    case ID_KNOBS:
+        read_knobs(reader, &cost->request.knobs);
+        break;
+    case ID_COMPARE:
+        cost->compares = true;
+        break;
+    default:
+        picture_option(reader, id, &request);
+        cost->picture = request.picture;
+        break;
+    }
+}
+
+static bool check_files(struct cli_reader *reader, const struct cost *cost)
+{
+    const char *const names[] = {"--html", "--json", "--csv", "--markdown"};
+    const char *const files[] = {cost->html, cost->json, cost->csv, cost->markdown};
+    for (int i = 0; i < 4; ++i) {
+        if (!cli_no_dash(reader, names[i], files[i], "for a pipe give /dev/stdout"))
+            return false;
+        for (int k = 0; k < i; ++k)
+            if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
+                return cli_misuse(reader, "%s: %s and %s name the same file", files[i], names[k],
+                                  names[i]);
+        if (files[i] && !cli_can_write(files[i])) {
+            reader->status = EXIT_USAGE;
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_request(struct cli_reader *reader, struct cost *cost)
+{
+    if (reader->status >= 0)
+        return false;
+    if (cost->compares && !reader->second)
+        return cli_misuse(reader, "--compare needs two files that --json wrote");
+    if (!cost->compares && reader->second)
+        return cli_misuse(reader, "too many arguments: `%s`", reader->second);
+    if (cost->compares)
+        return true;
+    if (!job_options_done(&cost->job, reader) || !check_files(reader, cost))
+        return false;
+    struct cost_request *request = &cost->request;
+    if (request->seconds == 0.0)
+        request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
+    if (request->samples_most == 0 && cost->quick)
+        request->samples_most = SAMPLES_QUICK;
+    if (request->rays == 0)
+        request->rays = cost->quick ? RAYS_QUICK : 20000;
+    if (request->rays == WHIT_NONE)
+        request->rays = 0;
+    if (cost->under > 0.0)
+        request->goals[request->goal_count++] = (struct cost_goal){
+            .kind = COST_UNDER, .metric = (enum cost_metric)cost->metric, .limit = cost->under};
+    if (cost->within_ms > 0.0)
+        request->goals[request->goal_count++] =
+            (struct cost_goal){.kind = COST_WITHIN,
+                               .metric = (enum cost_metric)cost->metric,
+                               .limit = cost->within_ms};
+    return true;
+}
+
+/* ---- Work ---- */
+
+static void on_progress(void *user, double done, double seconds_left, const char *what)
+{
+    (void)seconds_left;
+    (void)what;
+    cli_progress_update(user, done);
+}
+
+static whit_result find_out(struct cost *cost)
+{
+    struct job *job = &cost->job;
+    struct cost_request *request = &cost->request;
+    job_begin_device(job);
+    whit_result result = job_load(job);
+    if (result == WHIT_OK)
+        job_print_notes(job, false);
+    if (result == WHIT_OK)
+        result = job_build(job);
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (result != WHIT_OK)
+        return result;
+    char *cache = whit_cache_folder();
+    cli_progress_init(&cost->progress, job->quiet);
+    request->device = job->device;
+    request->scene = job->scene;
+    request->accel = job->accel;
+    request->accel_params = job_accel_params(job);
+    request->picture = picture_params(&cost->picture, job);
+    request->keep_pictures = cost->html != NULL;
+    request->cache = cache;
+    request->progress = on_progress;
+    request->progress_user = &cost->progress;
+    request->hush = cli_hush;
+    request->log = &cli_log;
+    cli_keep_what_is_done(GRACE_MS);
+    result = cost_measure(request, &cost->report);
+    cli_progress_finish(&cost->progress);
+    free(cache);
+    return result;
+}
+
+static whit_result save_all(const struct cost *cost)
+{
+    whit_result result = WHIT_OK;
+    if (cost->json)
+        result = cost_save_json(cost->report, cost->job.scene_path, cost->command, cost->json);
+    if (result == WHIT_OK && cost->csv)
+        result = cost_save_csv(cost);
+    if (result == WHIT_OK && cost->markdown)
+        result = cost_save_markdown(cost);
+    if (result == WHIT_OK && cost->html)
+        result = cost_save_page(cost);
+    return result;
+}
+
+/* What may change nothing has changed something; what was asked for was not found. */
+static int judge(const struct cost_report *report)
+{
+    int status = EXIT_FINE;
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (!row->broken)
+            continue;
+        cli_error("%s %s: it may change nothing, yet %llu pixels and %llu ids differ", row->knob,
+                  row->setting, (unsigned long long)row->pixels_changed,
+                  (unsigned long long)row->ids_changed);
+        status = EXIT_DIFFERS;
+    }
+    for (uint32_t i = 0; i < report->answer_count; ++i) {
+        const struct cost_answer *answer = &report->answers[i];
+        if (answer->kept)
+            continue;
+        cli_error("no setting was found %s %.6g%s",
+                  answer->goal.kind == COST_WITHIN ? "within" : "with an error of at most",
+                  answer->goal.limit, answer->goal.kind == COST_WITHIN ? " ms" : "");
+        status = EXIT_DIFFERS;
+    }
+    return status;
+}
+
+static void say_stopped(struct cost *cost)
+{
+    uint32_t measured = 0;
+    for (uint32_t i = 0; i < cost->report->row_count; ++i)
+        measured += cost->report->rows[i].measured;
+    cli_set_kept(measured, cost->report->row_count, "settings were measured");
+}
+
+static int work(struct cost *cost)
+{
+    whit_result result = find_out(cost);
+    if (!cost->report)
+        return cli_exit_of(result);
+    whit_result saved = save_all(cost);
+    int status = cost_print_text(cost);
+    if (result != WHIT_OK) {
+        say_stopped(cost);
+        return cli_exit_of(result);
+    }
+    if (saved != WHIT_OK)
+        return cli_exit_of(saved);
+    if (status == EXIT_FINE)
+        status = judge(cost->report);
+    return status == EXIT_FINE ? job_check_validation(&cost->job) : status;
+}
+
+/* As a shell takes it; NULL: no memory. */
+static char *command_line(int argc, char **argv)
+{
+    char *line = NULL;
+    size_t bytes;
+    FILE *to = open_memstream(&line, &bytes);
+    if (!to)
+        return NULL;
+    fputs("whit", to);
+    for (int i = 0; i < argc; ++i)
+        recipe_put_word(to, argv[i]);
+    if (fclose(to) == 0)
+        return line;
+    free(line);
+    return NULL;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct cost cost = {.picture = picture_request_default().picture};
+    job_init(&cost.job);
+    cli_reader_init(&reader, command, argc, argv);
+    for (int id; (id = cli_next(&reader)) != 0;)
+        read_option(&reader, id, &cost);
+    if (!check_request(&reader, &cost))
+        return reader.status;
+    if (cost.compares)
+        return cost_compare_files(reader.positional, reader.second);
+    cost.command = command_line(argc, argv);
+    int status = cost.command ? work(&cost) : cli_exit_of(WHIT_ERROR_MEMORY);
+    cost_report_destroy(cost.report);
+    free(cost.command);
+    job_finish(&cost.job);
+    return status;
+}
+
+const struct cli_command command_cost = {
+    .name = "cost",
+    .arguments = "SCENE [options]",
+    .summary = "Measures what each setting costs in this scene, and what it gets wrong.",
+    .details =
+        "Every knob that the scene calls for, beside the usual settings of `whit render`: times "
+        "in\n"
+        "turns, with intervals of 95 %, and errors against the reference in double, which is kept\n"
+        "in the user's cache folder. Hits are held against exact arithmetic, for rays of the\n"
+        "picture and for rays aimed at the scene's edges and vertices. Exit code 1 when a setting\n"
+        "that may change nothing changes a picture, or when --under or --within cannot be met.\n"
+        "`whit cost --compare A B`: two files of --json. Ctrl+C keeps what is measured.\n",
+    .options = options,
+    .takes_two = true,
+    .run = run,
+};

@@ -1,0 +1,269 @@
+/* Answers from the figures of a report. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cost/cost.h"
+
+static const double AS_RIGHT = 0.01, AS_GOOD = 0.02;
+
+const char *cost_metric_name(enum cost_metric metric)
+{
+    static const char *const names[] = {"rmse", "flip"};
+    return names[metric];
+}
+
+double cost_error_of(const whit_difference *difference, enum cost_metric metric)
+{
+    return metric == COST_FLIP ? difference->flip_mean : difference->rmse;
+}
+
+/* ---- Rows ---- */
+
+static bool is_ranked(const struct cost_row *row)
+{
+    return row->measured && !row->broken && !row->hits[COST_CAMERA].unanswered;
+}
+
+/* What cannot be told from the usual picture's time counts as that. */
+static double rank_ms(const struct cost_report *report, const struct cost_row *row)
+{
+    const struct cost_row *usual = &report->rows[0];
+    return row == usual || row->price.verdict ? row->ms[report->clock] : usual->ms[report->clock];
+}
+
+/* Of two that are equal in both the one above in the table is taken. */
+static bool beats(const struct cost_report *report, enum cost_metric metric,
+                  const struct cost_row *a, const struct cost_row *b)
+{
+    double a_ms = rank_ms(report, a), b_ms = rank_ms(report, b);
+    double a_error = cost_error_of(&a->error, metric), b_error = cost_error_of(&b->error, metric);
+    if (!is_ranked(a) || a_ms > b_ms || a_error > b_error * (1.0 + AS_RIGHT))
+        return false;
+    return a_ms < b_ms || a_error < b_error * (1.0 - AS_RIGHT) || a < b;
+}
+
+void cost_mark_best(struct cost_report *report, enum cost_metric metric)
+{
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        report->rows[i].best = is_ranked(&report->rows[i]);
+        for (uint32_t j = 0; report->rows[i].best && j < report->row_count; ++j)
+            if (j != i && beats(report, metric, &report->rows[j], &report->rows[i]))
+                report->rows[i].best = false;
+    }
+}
+
+/* Without what samples do, where that is known. */
+static double own_error(const struct cost_row *row, enum cost_metric metric)
+{
+    return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
+}
+
+/* Rays of both sets whose hit is not the exact one. */
+static uint64_t inexact_hits(const struct cost_row *row)
+{
+    uint64_t sum = 0;
+    for (uint32_t set = 0; set < COST_SETS; ++set) {
+        const whit_judgement *judged = &row->hits[set].judged;
+        sum += judged->misses + judged->false_hits + judged->other_ids;
+    }
+    return sum;
+}
+
+enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row)
+{
+    const struct cost_row *usual = &report->rows[0];
+    bool samples = row->alone.pixel_count == 0;
+    double before = samples ? usual->error.rmse : usual->alone.rmse;
+    double after = own_error(row, COST_RMSE);
+    bool more_right = after < before * (1.0 - AS_RIGHT);
+    bool less_right = after > before * (1.0 + AS_RIGHT);
+    if (row->change == KNOB_HITS && row->hits[COST_AIMED].traced) {
+        more_right = more_right || inexact_hits(row) < inexact_hits(usual);
+        less_right = less_right || inexact_hits(row) > inexact_hits(usual);
+    }
+    if (row->price.verdict < 0)
+        return less_right ? COST_USE_TRADE : COST_USE_FREE;
+    return more_right ? COST_USE_TRADE : COST_USE_NONE;
+}
+
+/* ---- Choices ---- */
+
+/* What a setting does to the usual picture. Errors are added: squares of RMSE, means of FLIP. */
+struct effect {
+    double ratio, error;
+    bool known;
+};
+struct search {
+    const struct cost_report *report;
+    const struct cost_goal *goal;
+    const struct knob *table;
+    uint32_t count, aa;
+    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MOST];
+    double tolerated; /* second pass: errors up to this are as good as the least; < 0: first pass */
+    uint8_t settings[COST_CHOICE_KNOBS];
+    struct cost_choice best;
+};
+
+static double to_sum(double error, enum cost_metric metric)
+{
+    return metric == COST_RMSE ? error * error : error;
+}
+
+static double from_sum(double sum, enum cost_metric metric)
+{
+    sum = fmax(sum, 0.0);
+    return metric == COST_RMSE ? sqrt(sum) : sum;
+}
+
+static struct effect effect_of(const struct search *search, const struct cost_row *row)
+{
+    const struct cost_row *usual = &search->report->rows[0];
+    enum cost_metric metric = search->goal->metric;
+    struct effect out = {.known = is_ranked(row)};
+    out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
+    out.error = row->knob_index == search->aa ? to_sum(cost_error_of(&row->error, metric), metric)
+                                              : to_sum(own_error(row, metric), metric) -
+                                                    to_sum(own_error(usual, metric), metric);
+    return out;
+}
+
+static void collect(struct search *search)
+{
+    const struct cost_report *report = search->report;
+    enum cost_metric metric = search->goal->metric;
+    for (uint32_t k = 0; k < search->count; ++k)
+        search->effects[k][search->table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
+    search->effects[search->aa][search->table[search->aa].usual].error =
+        to_sum(cost_error_of(&report->rows[0].error, metric), metric);
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (row->knob_index != WHIT_NONE && row->measured)
+            search->effects[row->knob_index][row->setting_index] = effect_of(search, row);
+    }
+}
+
+/* Of knobs that change nothing: the fastest. A tree has to earn its building in one picture. */
+static void take_free(struct search *search)
+{
+    const struct cost_report *report = search->report;
+    double ratios[COST_CHOICE_KNOBS];
+    for (uint32_t k = 0; k < search->count; ++k) {
+        search->settings[k] = (uint8_t)search->table[k].usual;
+        ratios[k] = 1.0;
+    }
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        uint32_t k = row->knob_index;
+        if (k == WHIT_NONE || !is_ranked(row) || row->change != KNOB_NOTHING)
+            continue;
+        double ratio = row->price.ratio[report->clock].median;
+        double saved_ms = report->rows[0].ms[COST_WALL] * (1.0 - ratio);
+        double built_ms = row->build_ms >= 0.0 ? row->build_ms - report->rows[0].build_ms : 0.0;
+        if (row->price.verdict < 0 && ratio < ratios[k] && built_ms < saved_ms) {
+            ratios[k] = ratio;
+            search->settings[k] = (uint8_t)row->setting_index;
+        }
+    }
+}
+
+static bool is_searched(const struct search *search, uint32_t knob)
+{
+    return search->table[knob].change == KNOB_SHADING;
+}
+
+static bool is_better(const struct search *search, double ms, double error)
+{
+    const struct cost_choice *best = &search->best;
+    if (search->goal->kind == COST_WITHIN && ms > search->goal->limit)
+        return false;
+    if (search->goal->kind == COST_UNDER && error > search->goal->limit)
+        return false;
+    if (!best->found)
+        return true;
+    if (search->goal->kind == COST_UNDER || search->tolerated >= 0.0)
+        return ms < best->ms && (search->tolerated < 0.0 || error <= search->tolerated);
+    return error < best->error;
+}
+
+static void walk(struct search *search, uint32_t knob, double ratio, double sum)
+{
+    if (knob == search->count) {
+        double ms = search->report->usual_ms_most * ratio;
+        double error = from_sum(sum, search->goal->metric);
+        if (!is_better(search, ms, error))
+            return;
+        search->best = (struct cost_choice){.ms = ms, .error = error, .found = true};
+        memcpy(search->best.settings, search->settings, sizeof search->settings);
+        return;
+    }
+    if (!is_searched(search, knob)) {
+        const struct effect *effect = &search->effects[knob][search->settings[knob]];
+        walk(search, knob + 1, ratio * effect->ratio, sum);
+        return;
+    }
+    for (uint32_t s = 0; s < knob_setting_count(&search->table[knob]); ++s) {
+        const struct effect *effect = &search->effects[knob][s];
+        search->settings[knob] = (uint8_t)s;
+        if (effect->known)
+            walk(search, knob + 1, ratio * effect->ratio, sum + effect->error);
+    }
+}
+
+struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal)
+{
+    struct search search = {
+        .report = report, .goal = goal, .aa = knob_find("aa"), .tolerated = -1.0};
+    search.table = knob_table(&search.count);
+    collect(&search);
+    take_free(&search);
+    walk(&search, 0, 1.0, 0.0);
+    if (goal->kind == COST_WITHIN && search.best.found) {
+        search.tolerated = search.best.error * (1.0 + AS_GOOD);
+        walk(&search, 0, 1.0, 0.0);
+    }
+    return search.best;
+}
+
+void cost_choice_apply(const struct cost_choice *choice, struct knob_target *target)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    for (uint32_t k = 0; k < count; ++k) {
+        if (choice->settings[k] != table[k].usual)
+            knob_apply(&table[k], choice->settings[k], target);
+    }
+}
+
+static void add_word(char *text, size_t text_bytes, const char *word)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, text_bytes - used, "%s%s", used ? " " : "", word);
+}
+
+void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes)
+{
+    static const struct knob_target none;
+    struct knob_target target = none;
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    text[0] = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+        char option[COST_NAME];
+        target.effects[0] = 0;
+        target.picture.effects = NULL;
+        knob_apply(&table[k], choice->settings[k], &target);
+        knob_option(&table[k], choice->settings[k], option, sizeof option);
+        if (option[0] && !target.picture.effects)
+            add_word(text, text_bytes, option);
+    }
+    /* Effects left out share one option. */
+    target.effects[0] = 0;
+    target.picture.effects = NULL;
+    cost_choice_apply(choice, &target);
+    if (target.picture.effects) {
+        add_word(text, text_bytes, "--effects");
+        add_word(text, text_bytes, target.effects);
+    }
+}

@@ -1,0 +1,162 @@
+/* What each setting of each knob costs in one scene and picture, and what it gets wrong: measured
+   beside the usual settings, pair by pair, and held against the reference in double.
+
+   Times are of pictures of `timed_width` x `timed_height`, as large as the time allows, and told as
+   ratios to the usual settings at that size; milliseconds are these times what the usual picture
+   takes at full size. Errors are of pictures of report->judged_width x judged_height. */
+#ifndef COST_COST_H
+#define COST_COST_H
+
+#include "cost/knobs.h"
+#include "cost/sample.h"
+
+enum cost_clock { COST_WALL, COST_CPU, COST_DEVICE, COST_CLOCKS };
+const char *cost_clock_name(enum cost_clock clock); /* "wall" */
+
+/* Two renderers in turns. */
+enum { COST_ROUNDS_MOST = 41, COST_ROUNDS_LEAST = 7 };
+struct cost_price {
+    uint32_t rounds, width, height;
+    struct sample_median usual_ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
+    struct sample_median setting_ms[COST_CLOCKS];
+    struct sample_median ratio[COST_CLOCKS];      /* setting / usual, of each pair */
+    struct sample_median difference[COST_CLOCKS]; /* setting - usual */
+    double usual_most_ms;                         /* 90 % took at most this, by the wall clock */
+    int verdict; /* by the report's clock: 1 dearer, -1 cheaper, 0 not distinguishable */
+};
+/* Renders both `rounds` times in turns (once before the clocks count). `first`, `second`: what they
+   are set to draw; NULL where they stay as they are. The same renderer twice: with both. For the
+   viewer's price list too: stops at the renderers' cancel flag. */
+WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
+                                  whit_renderer *setting, const whit_renderer_params *second,
+                                  enum cost_clock clock, uint32_t rounds, struct cost_price *out);
+/* The clock that counts: the device's where it has one, the CPU's where that is the device. */
+enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
+
+/* The two sets of rays. */
+enum cost_set { COST_CAMERA, COST_AIMED, COST_SETS };
+const char *cost_set_name(enum cost_set set); /* "picture" */
+struct cost_hits {
+    bool traced, unanswered; /* unanswered: the device said that its hits are not to be trusted */
+    double ms;               /* of all rays, by the device or the wall clock */
+    whit_judgement judged;
+};
+
+enum { COST_NAME = 96, COST_NOTE = 160 };
+struct cost_row {
+    char knob[32], setting[32], option[COST_NAME];
+    uint32_t knob_index, setting_index; /* WHIT_NONE: the usual picture, or a combination */
+    enum knob_change change;
+    bool measured;        /* price and errors are there */
+    char note[COST_NOTE]; /* why not, or what is wrong with it; "" */
+    struct cost_price price;
+    double ms[COST_CLOCKS];               /* of the full picture; device < 0: not measured */
+    double ms_low, ms_high;               /* by the report's clock: the interval of the ratio */
+    double build_ms;                      /* of its trees; < 0: not built anew */
+    whit_difference error;                /* to the reference of the most samples */
+    whit_difference alone;                /* to the reference of one sample; pixel_count 0: samples
+                                             are what differs */
+    uint64_t pixels_changed, ids_changed; /* from the usual picture, at the judged size */
+    uint64_t non_finite;
+    bool broken; /* KNOB_NOTHING, and yet something changed */
+    struct cost_hits hits[COST_SETS];
+    bool best;           /* in the Pareto set: nothing measured is cheaper and as right */
+    whit_image *picture; /* at the judged size, or NULL */
+    whit_image *flip;    /* its FLIP map to the reference, or NULL */
+};
+
+/* What is asked for: cost_choose. */
+enum cost_goal_kind { COST_UNDER, COST_WITHIN }; /* an error, a time in ms */
+enum cost_metric { COST_RMSE, COST_FLIP };
+const char *cost_metric_name(enum cost_metric metric); /* "rmse" */
+enum { COST_GOALS_MOST = 2, COST_CHOICE_KNOBS = 32 };
+struct cost_goal {
+    enum cost_goal_kind kind;
+    enum cost_metric metric;
+    double limit;
+};
+struct cost_answer {
+    struct cost_goal goal;
+    bool found, kept; /* kept: measured, it holds */
+    uint32_t row;     /* that measured it; WHIT_NONE */
+    double ms, error; /* predicted */
+};
+
+enum { COST_ROWS_MOST = 64, COST_ABSENT_MOST = 64, COST_KNOBS_ALL = 0 };
+struct cost_absent {
+    char name[64], why[64];
+};
+
+struct cost_report {
+    uint32_t width, height, judged_width, judged_height;
+    uint32_t reference_samples, reference_depth, reference_light_samples;
+    double reference_ms[2]; /* of one sample, of the most: 0 where a cache had it */
+    bool reference_cached[2];
+    enum cost_clock clock;
+    bool complete; /* else it was stopped: rows that are not measured are left out */
+    double spent_ms;
+    char device[256], driver[256], kind[16], load_path[16];
+    uint64_t scene_hash;
+    uint32_t row_count; /* row 0: the usual settings */
+    struct cost_row rows[COST_ROWS_MOST];
+    uint32_t absent_count;
+    struct cost_absent absent[COST_ABSENT_MOST];
+    double usual_ms_most; /* 90 % of pictures took at most this, at full size, by the wall clock */
+    uint32_t answer_count;
+    struct cost_answer answers[COST_GOALS_MOST];
+    whit_image *reference; /* of the most samples, or NULL */
+};
+
+struct cost_request {
+    whit_device *device;
+    const whit_scene *scene;
+    whit_accel *accel; /* with the usual settings; goes to the picture's time */
+    whit_accel_params accel_params;
+    whit_renderer_params picture; /* size, camera, time, cancel; what knobs do not set */
+    uint64_t knobs;               /* bits of knob_table; 0: all */
+    double seconds;               /* that it may take, roughly */
+    uint32_t samples_most;        /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
+    uint32_t rays;                /* of each set; 0: none */
+    uint32_t goal_count;
+    struct cost_goal goals[COST_GOALS_MOST]; /* each gets a row that measures the choice */
+    bool keep_pictures;
+    const char *cache; /* folder of references, or NULL */
+    void (*progress)(void *user, double done, double seconds_left, const char *what);
+    void (*hush)(bool on); /* while a setting is tried that devices may refuse; or NULL */
+    void *progress_user;
+    const whit_log *log;
+};
+
+/* Stopped by picture.cancel: WHIT_ERROR_CANCELLED, and *out has what is done. *out is NULL where
+   there is nothing. */
+WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
+void cost_report_destroy(struct cost_report *report);
+
+/* ---- Answers (choose.c) ---- */
+
+double cost_error_of(const whit_difference *difference, enum cost_metric metric);
+
+/* By the report's figures: ratios multiply, squared errors and FLIP add up. Numerics and instances
+   stay as they are, for what they get wrong is not told by one picture; of knobs that change
+   nothing the fastest setting is taken. The cheapest with an error of at most `limit`; the one with
+   the least error of those that 9 of 10 times take at most `limit` ms by the wall clock; errors
+   that differ by 2 % count as equal. */
+struct cost_choice {
+    uint8_t settings[COST_CHOICE_KNOBS]; /* of each knob of the table */
+    double ms, error;                    /* predicted: wall clock of the full picture; the metric */
+    bool found;
+};
+struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
+void cost_choice_apply(const struct cost_choice *choice, struct knob_target *target);
+/* As options of `whit render`. */
+void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);
+
+/* What a row is good for beside the usual settings. */
+enum cost_use { COST_USE_TRADE, COST_USE_NONE, COST_USE_FREE };
+/* NONE: neither cheaper nor more right; FREE: cheaper and as right (within 1 %). */
+enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row);
+
+/* Marks the Pareto set by the report's clock and metric. */
+void cost_mark_best(struct cost_report *report, enum cost_metric metric);
+
+#endif

@@ -1,0 +1,305 @@
+#include "cost/measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PROBE_SHRINK = 4 };
+/* Of the time, for references and for the usual settings. */
+static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.06;
+
+whit_result measure_still_wanted(const struct measure *measure)
+{
+    const volatile bool *cancel = measure->request->picture.cancel;
+    return cancel && *cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+void measure_say(const struct measure *measure, const char *what)
+{
+    const struct cost_request *request = measure->request;
+    double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
+    if (request->progress)
+        request->progress(request->progress_user, fmin(spent_s / request->seconds, 0.99),
+                          fmax(request->seconds - spent_s, 0.0), what);
+}
+
+/* ---- What is measured with ---- */
+
+static void describe(const struct cost_request *request, struct cost_report *report)
+{
+    whit_device_info device;
+    whit_scene_info scene;
+    whit_device_get_info(request->device, &device);
+    whit_scene_get_info(request->scene, &scene);
+    report->width = request->picture.width ? request->picture.width : 640;
+    report->height = request->picture.height ? request->picture.height : 480;
+    report->scene_hash = scene.hash;
+    snprintf(report->device, sizeof report->device, "%s", device.name);
+    snprintf(report->driver, sizeof report->driver, "%s", device.driver);
+    snprintf(report->kind, sizeof report->kind, "%s", device.kind);
+}
+
+/* The usual renderer, and what a pixel of it takes. */
+static whit_result open_renderer(struct measure *measure)
+{
+    struct cost_report *report = measure->report;
+    uint32_t width = report->width / PROBE_SHRINK, height = report->height / PROBE_SHRINK;
+    whit_stats stats;
+    width = width > 16 ? width : 16;
+    height = height > 16 ? height : 16;
+    const whit_renderer_params params = measure_sized(&measure->usual, width, height);
+    measure_say(measure, "the usual settings");
+    whit_result result = whit_renderer_create(measure->request->device, measure->request->accel,
+                                              &params, &measure->renderer);
+    for (int i = 0; result == WHIT_OK && i < 3; ++i) {
+        double start_ms = whit_clock_ms();
+        result = whit_renderer_render(measure->renderer);
+        measure->usual_pixel_ms = (whit_clock_ms() - start_ms) / ((double)width * height);
+    }
+    if (result != WHIT_OK)
+        return result;
+    whit_renderer_get_stats(measure->renderer, &stats);
+    report->clock = cost_clock_of(measure->request->device, measure->renderer);
+    snprintf(report->load_path, sizeof report->load_path, "%s", stats.load_path);
+    return WHIT_OK;
+}
+
+whit_result measure_open(struct measure *measure, const struct cost_request *request,
+                         struct cost_report *report)
+{
+    *measure = (struct measure){.request = request, .report = report, .start_ms = whit_clock_ms()};
+    measure->usual.accel = request->accel_params;
+    measure->usual.picture = request->picture;
+    measure->usual.picture.samples = 1;
+    measure->usual.picture.adaptive = 0.0;
+    whit_result result = open_renderer(measure);
+    if (result == WHIT_OK)
+        result = measure_references(measure, REFERENCE_SHARE * request->seconds);
+    return result == WHIT_OK ? measure_judges(measure) : result;
+}
+
+void measure_close(struct measure *measure)
+{
+    whit_image_destroy(measure->references[0]);
+    if (measure->request->keep_pictures && !measure->report->reference)
+        measure->report->reference = measure->references[1];
+    else
+        whit_image_destroy(measure->references[1]);
+    whit_image_destroy(measure->usual_color);
+    whit_image_destroy(measure->usual_ids);
+    for (uint32_t set = 0; set < COST_SETS; ++set)
+        whit_judge_destroy(measure->judges[set]);
+    free(measure->hits);
+    whit_renderer_destroy(measure->renderer);
+    whit_renderer_destroy(measure->beside);
+}
+
+/* ---- Rows ---- */
+
+static void note_absence(struct cost_report *report, const struct knob *knob, uint32_t setting,
+                         const char *why)
+{
+    if (report->absent_count == COST_ABSENT_MOST)
+        return;
+    struct cost_absent *absent = &report->absent[report->absent_count++];
+    snprintf(absent->name, sizeof absent->name, "%s %s", knob->name, knob->settings[setting].name);
+    snprintf(absent->why, sizeof absent->why, "%s", why);
+}
+
+static void add_row(struct cost_report *report, const struct knob *knob, uint32_t index,
+                    uint32_t setting)
+{
+    struct cost_row *row = &report->rows[report->row_count++];
+    *row = (struct cost_row){.knob_index = index,
+                             .setting_index = setting,
+                             .change = knob->change,
+                             .build_ms = -1.0,
+                             .ms = {-1.0, -1.0, -1.0}};
+    snprintf(row->knob, sizeof row->knob, "%s", knob->name);
+    snprintf(row->setting, sizeof row->setting, "%s", knob->settings[setting].name);
+    knob_option(knob, setting, row->option, sizeof row->option);
+}
+
+static bool is_wanted(const struct cost_request *request, const struct cost_report *report,
+                      uint32_t knob, uint32_t setting)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> knob & 1))
+        return false;
+    /* The reference says nothing of more samples than it has; adaptive ones are up to 64. */
+    double samples = table[knob].settings[setting].value;
+    return strcmp(table[knob].name, "aa") != 0 ||
+           (samples < 1.0 ? 64.0 : samples) <= report->reference_samples;
+}
+
+static void list_rows(const struct cost_request *request, struct cost_report *report)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    report->rows[0] = (struct cost_row){.knob = "usual",
+                                        .knob_index = WHIT_NONE,
+                                        .setting_index = WHIT_NONE,
+                                        .change = KNOB_NOTHING,
+                                        .ms = {-1.0, -1.0, -1.0}};
+    report->row_count = 1;
+    for (uint32_t k = 0; k < count; ++k) {
+        for (uint32_t s = 0; s < knob_setting_count(&table[k]); ++s) {
+            const char *why = knob_absence(&table[k], s, request->scene, report->load_path);
+            if (s == table[k].usual || !is_wanted(request, report, k, s))
+                continue;
+            if (why)
+                note_absence(report, &table[k], s, why);
+            else if (report->row_count < COST_ROWS_MOST)
+                add_row(report, &table[k], k, s);
+        }
+    }
+}
+
+static whit_result measure_setting(struct measure *measure, uint32_t index)
+{
+    struct cost_report *report = measure->report;
+    struct cost_row *row = &report->rows[index];
+    struct knob_target target;
+    uint32_t count;
+    const struct knob *knob = &knob_table(&count)[row->knob_index];
+    char what[COST_NAME];
+    snprintf(what, sizeof what, "%s %s", row->knob, row->setting);
+    measure_say(measure, what);
+    knob_target_copy(&target, &measure->usual);
+    knob_apply(knob, row->setting_index, &target);
+    double left_s = measure->request->seconds - (whit_clock_ms() - measure->start_ms) * 1e-3;
+    double share_s = fmax(left_s, 0.0) / (report->row_count - index);
+    return measure_row(measure, &target, knob->level, share_s, row);
+}
+
+static whit_result measure_rows(struct measure *measure)
+{
+    struct cost_report *report = measure->report;
+    list_rows(measure->request, report);
+    measure_say(measure, "the usual settings");
+    whit_result result =
+        measure_usual(measure, USUAL_SHARE * measure->request->seconds, &report->rows[0]);
+    for (uint32_t i = 1; result == WHIT_OK && i < report->row_count; ++i) {
+        result = measure_still_wanted(measure);
+        if (result == WHIT_OK)
+            result = measure_setting(measure, i);
+    }
+    return result;
+}
+
+/* ---- Choices ---- */
+
+static void destroy_pictures(struct cost_row *row)
+{
+    whit_image_destroy(row->picture);
+    whit_image_destroy(row->flip);
+    row->picture = row->flip = NULL;
+}
+
+static bool is_kept(const struct cost_goal *goal, const struct cost_row *row)
+{
+    return goal->kind == COST_WITHIN ? row->ms[COST_WALL] <= goal->limit
+                                     : cost_error_of(&row->error, goal->metric) <= goal->limit;
+}
+
+static enum knob_level level_of(const struct cost_choice *choice)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    enum knob_level level = KNOB_VIEW;
+    for (uint32_t k = 0; k < count; ++k)
+        if (choice->settings[k] != table[k].usual && table[k].level > level)
+            level = table[k].level;
+    return level;
+}
+
+static whit_result measure_choice(struct measure *measure, const struct cost_choice *choice,
+                                  struct cost_answer *answer)
+{
+    struct cost_report *report = measure->report;
+    struct knob_target target;
+    struct cost_row *row = &report->rows[report->row_count];
+    *row = (struct cost_row){.knob_index = WHIT_NONE,
+                             .setting_index = WHIT_NONE,
+                             .change = KNOB_SHADING,
+                             .ms = {-1.0, -1.0, -1.0}};
+    snprintf(row->knob, sizeof row->knob, "chosen");
+    snprintf(row->setting, sizeof row->setting, "%s %.4g%s",
+             answer->goal.kind == COST_WITHIN ? "within" : "under", answer->goal.limit,
+             answer->goal.kind == COST_WITHIN ? " ms" : "");
+    cost_choice_text(choice, row->option, sizeof row->option);
+    measure_say(measure, row->setting);
+    knob_target_copy(&target, &measure->usual);
+    cost_choice_apply(choice, &target);
+    answer->row = report->row_count++;
+    whit_result result =
+        measure_row(measure, &target, level_of(choice), 0.05 * measure->request->seconds, row);
+    answer->kept = result == WHIT_OK && row->measured && is_kept(&answer->goal, row);
+    return result;
+}
+
+/* What is measured teaches how far off the prediction is: then once more with a narrower limit. */
+static whit_result answer_goal(struct measure *measure, const struct cost_goal *goal)
+{
+    enum { TRIES = 3 };
+    struct cost_report *report = measure->report;
+    struct cost_answer *answer = &report->answers[report->answer_count++];
+    struct cost_goal aim = *goal;
+    whit_result result = WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < TRIES; ++i) {
+        const struct cost_choice choice = cost_choose(report, &aim);
+        if (answer->row && choice.found)
+            --report->row_count; /* of the try before */
+        if (!choice.found && i > 0)
+            break;
+        *answer = (struct cost_answer){.goal = *goal,
+                                       .found = choice.found,
+                                       .row = WHIT_NONE,
+                                       .ms = choice.ms,
+                                       .error = choice.error};
+        if (!choice.found || report->row_count == COST_ROWS_MOST)
+            break;
+        destroy_pictures(&report->rows[report->row_count]);
+        result = measure_choice(measure, &choice, answer);
+        if (answer->kept)
+            break;
+        aim.limit *= 0.8;
+    }
+    return result;
+}
+
+whit_result cost_measure(const struct cost_request *request, struct cost_report **out)
+{
+    struct measure measure;
+    struct cost_report *report = calloc(1, sizeof *report);
+    *out = NULL;
+    if (!report)
+        return WHIT_ERROR_MEMORY;
+    describe(request, report);
+    whit_result result = measure_open(&measure, request, report);
+    if (result == WHIT_OK)
+        result = measure_rows(&measure);
+    for (uint32_t i = 0; result == WHIT_OK && i < request->goal_count; ++i)
+        result = answer_goal(&measure, &request->goals[i]);
+    report->complete = result == WHIT_OK;
+    measure_close(&measure);
+    report->spent_ms = whit_clock_ms() - measure.start_ms;
+    cost_mark_best(report, COST_RMSE);
+    if ((result == WHIT_OK || result == WHIT_ERROR_CANCELLED) && report->rows[0].measured)
+        *out = report;
+    else
+        cost_report_destroy(report);
+    return result;
+}
+
+void cost_report_destroy(struct cost_report *report)
+{
+    if (!report)
+        return;
+    for (uint32_t i = 0; i < COST_ROWS_MOST; ++i)
+        destroy_pictures(&report->rows[i]);
+    whit_image_destroy(report->reference);
+    free(report);
+}

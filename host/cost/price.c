@@ -1,0 +1,100 @@
+#include "cost/cost.h"
+
+#include <string.h>
+
+const char *cost_clock_name(enum cost_clock clock)
+{
+    static const char *const names[] = {"wall", "cpu", "device"};
+    return names[clock];
+}
+
+enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer)
+{
+    whit_device_info info;
+    whit_stats stats;
+    whit_device_get_info(device, &info);
+    whit_renderer_get_stats(renderer, &stats);
+    if (strcmp(info.kind, "cpu") == 0)
+        return COST_CPU; /* what other programs do moves the wall clock, and this one less */
+    return stats.render_device_ms >= 0.0 ? COST_DEVICE : COST_WALL;
+}
+
+struct pricing {
+    whit_renderer *renderers[2];
+    double ms[COST_CLOCKS][2][COST_ROUNDS_MOST];
+    bool has_device;
+};
+
+static whit_result run_once(void *user, uint32_t way, uint32_t round)
+{
+    struct pricing *pricing = user;
+    whit_stats stats;
+    double cpu_ms = whit_clock_cpu_ms(), wall_ms = whit_clock_ms();
+    whit_result result = whit_renderer_render(pricing->renderers[way]);
+    pricing->ms[COST_WALL][way][round] = whit_clock_ms() - wall_ms;
+    pricing->ms[COST_CPU][way][round] = whit_clock_cpu_ms() - cpu_ms;
+    whit_renderer_get_stats(pricing->renderers[way], &stats);
+    pricing->ms[COST_DEVICE][way][round] = stats.render_device_ms;
+    pricing->has_device = pricing->has_device && stats.render_device_ms >= 0.0;
+    return result;
+}
+
+static struct sample_median median_of(const double *values, uint32_t count)
+{
+    double copy[COST_ROUNDS_MOST];
+    memcpy(copy, values, count * sizeof *copy);
+    return sample_median_of(copy, count);
+}
+
+static double most_of(const struct pricing *pricing, uint32_t rounds)
+{
+    double values[COST_ROUNDS_MOST];
+    memcpy(values, pricing->ms[COST_WALL][0], rounds * sizeof *values);
+    sample_sort(values, rounds);
+    return sample_quantile(values, rounds, 0.9);
+}
+
+static void conclude(const struct pricing *pricing, enum cost_clock clock, uint32_t rounds,
+                     struct cost_price *out)
+{
+    double values[COST_ROUNDS_MOST];
+    out->usual_most_ms = most_of(pricing, rounds);
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
+        const double *usual = pricing->ms[c][0], *setting = pricing->ms[c][1];
+        if (c == COST_DEVICE && !pricing->has_device)
+            continue;
+        out->usual_ms[c] = median_of(usual, rounds);
+        out->setting_ms[c] = median_of(setting, rounds);
+        int verdict = sample_compare(setting, usual, rounds, values, &out->difference[c]);
+        if (c == (uint32_t)clock)
+            out->verdict = verdict;
+        for (uint32_t i = 0; i < rounds; ++i)
+            values[i] = setting[i] / (usual[i] > 0.0 ? usual[i] : 1e-6);
+        out->ratio[c] = sample_median_of(values, rounds);
+    }
+}
+
+whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
+                       whit_renderer *setting, const whit_renderer_params *second,
+                       enum cost_clock clock, uint32_t rounds, struct cost_price *out)
+{
+    struct pricing pricing = {.renderers = {usual, setting}, .has_device = true};
+    whit_result result = WHIT_OK;
+    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    *out = (struct cost_price){.rounds = rounds};
+    if (first)
+        result = whit_renderer_set_view(usual, first);
+    if (result == WHIT_OK && second)
+        result = whit_renderer_set_view(setting, second);
+    for (uint32_t way = 0; result == WHIT_OK && way < 2; ++way)
+        result = run_once(&pricing, way, 0); /* warms up */
+    if (result == WHIT_OK)
+        result = sample_in_turns(2, rounds, run_once, &pricing);
+    if (result == WHIT_OK)
+        conclude(&pricing, clock, rounds, out);
+    if (second) {
+        out->width = second->width;
+        out->height = second->height;
+    }
+    return result;
+}

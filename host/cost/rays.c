@@ -1,0 +1,82 @@
+/* Hits of a renderer on the two sets of rays. */
+#include <stdlib.h>
+
+#include "cost/measure.h"
+
+enum { TRACES = 3 };
+
+const char *cost_set_name(enum cost_set set)
+{
+    static const char *const names[] = {"picture", "aimed"};
+    return names[set];
+}
+
+whit_result measure_judges(struct measure *measure)
+{
+    const struct cost_request *request = measure->request;
+    uint64_t most = 0;
+    whit_result result = WHIT_OK;
+    for (uint32_t set = 0; result == WHIT_OK && request->rays && set < COST_SETS; ++set) {
+        const whit_judge_params params = {
+            .aimed = set == COST_AIMED,
+            .count = request->rays,
+            .camera = request->picture.camera,
+            .width = measure->report->width,
+            .height = measure->report->height,
+            .time_s = request->picture.time_s,
+        };
+        uint64_t count;
+        measure_say(measure, "exact hits");
+        result = whit_judge_create(request->scene, &params, request->log, &measure->judges[set]);
+        if (result == WHIT_OK)
+            whit_judge_rays(measure->judges[set], &count);
+        most = result == WHIT_OK && count > most ? count : most;
+        if (result == WHIT_OK)
+            result = measure_still_wanted(measure);
+    }
+    measure->hits = result == WHIT_OK && most ? calloc((size_t)most, sizeof *measure->hits) : NULL;
+    return result == WHIT_OK && most && !measure->hits ? WHIT_ERROR_MEMORY : result;
+}
+
+/* The least of some times, after one that warms up. */
+static whit_result trace(struct measure *measure, whit_renderer *renderer, const whit_judge *judge,
+                         double *least_ms)
+{
+    uint64_t count;
+    const whit_ray *rays = whit_judge_rays(judge, &count);
+    whit_result result = WHIT_OK;
+    *least_ms = -1.0;
+    for (int i = 0; result == WHIT_OK && i <= TRACES; ++i) {
+        double start_ms = whit_clock_ms();
+        result = whit_trace(renderer, WHIT_TRACE_DEVICE, rays, count, false, measure->hits, NULL);
+        double ms = whit_trace_device_ms(renderer);
+        ms = ms >= 0.0 ? ms : whit_clock_ms() - start_ms;
+        if (i > 0 && (*least_ms < 0.0 || ms < *least_ms))
+            *least_ms = ms;
+    }
+    return result;
+}
+
+whit_result measure_hits(struct measure *measure, whit_renderer *renderer, whit_numerics numerics,
+                         struct cost_row *row)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t set = 0; result == WHIT_OK && set < COST_SETS; ++set) {
+        struct cost_hits *hits = &row->hits[set];
+        uint64_t count = 0;
+        if (measure->judges[set])
+            whit_judge_rays(measure->judges[set], &count);
+        if (count == 0)
+            continue;
+        result = trace(measure, renderer, measure->judges[set], &hits->ms);
+        hits->unanswered = result == WHIT_ERROR_STATUS;
+        hits->traced = result == WHIT_OK || hits->unanswered;
+        if (result == WHIT_OK)
+            result = whit_judge_hits(measure->judges[set], numerics, measure->hits, &hits->judged);
+        else if (hits->unanswered)
+            result = WHIT_OK;
+        if (result == WHIT_OK)
+            result = measure_still_wanted(measure);
+    }
+    return result;
+}

@@ -1,0 +1,171 @@
+/* Pictures of the reference in double, made once and kept in a folder. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cost/measure.h"
+
+/* Raised when pictures of the reference change: then those that are kept are of no use. */
+enum { KEPT_VERSION = 2, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
+enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
+
+static bool calls_for_area_lights(const whit_scene *scene)
+{
+    uint32_t knob = knob_find("light-samples"), count;
+    return knob_absence(&knob_table(&count)[knob], 1, scene, NULL) == NULL;
+}
+
+static whit_renderer_params reference_params(const struct measure *measure, uint32_t shrink,
+                                             uint32_t samples)
+{
+    whit_renderer_params params = measure->request->picture;
+    params.width = measure->report->width / shrink ? measure->report->width / shrink : 1;
+    params.height = measure->report->height / shrink ? measure->report->height / shrink : 1;
+    params.samples = samples;
+    params.adaptive = 0.0;
+    params.depth = MEASURE_DEPTH;
+    params.no_bounces = false;
+    params.bailout = MEASURE_BAILOUT;
+    params.light_samples = measure->report->reference_light_samples;
+    return params;
+}
+
+/* FNV-1a. */
+static uint64_t hash_text(const char *text)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    for (; *text; ++text)
+        hash = (hash ^ (unsigned char)*text) * UINT64_C(1099511628211);
+    return hash;
+}
+
+/* free() it; NULL: nowhere. */
+static char *kept_path(const struct measure *measure, const whit_renderer_params *params)
+{
+    char key[512], *path;
+    const char *folder = measure->request->cache;
+    if (!folder)
+        return NULL;
+    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %u %u %u %.17g %s", KEPT_VERSION,
+             WHIT_VERSION, measure->report->scene_hash, params->width, params->height,
+             params->samples, params->depth, params->light_samples, params->time_s,
+             params->camera ? params->camera : "");
+    size_t bytes = strlen(folder) + 64;
+    path = malloc(bytes);
+    if (path)
+        snprintf(path, bytes, "%s/reference-%016" PRIx64 ".pfm", folder, hash_text(key));
+    return path;
+}
+
+static bool is_kept(const struct measure *measure, uint32_t shrink)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < 2; ++i) {
+        const whit_renderer_params params =
+            reference_params(measure, shrink, i ? measure->report->reference_samples : 1);
+        char *path = kept_path(measure, &params);
+        all = all && path && access(path, R_OK) == 0;
+        free(path);
+    }
+    return all;
+}
+
+static whit_image *read_kept(const char *path, const whit_renderer_params *params)
+{
+    whit_image *image = NULL;
+    whit_image_info info = {0};
+    if (!path || access(path, R_OK) != 0 || whit_image_load(path, NULL, &image) != WHIT_OK)
+        return NULL;
+    whit_image_get_info(image, &info);
+    if (info.width == params->width && info.height == params->height && !info.integers)
+        return image;
+    whit_image_destroy(image);
+    return NULL;
+}
+
+static whit_result render(const struct measure *measure, const whit_renderer_params *params,
+                          whit_image **out, double *ms)
+{
+    whit_reference *reference = NULL;
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_reference_create(measure->request->accel, params, 0, &reference);
+    if (result == WHIT_OK)
+        result = whit_reference_render(reference, out, NULL);
+    whit_reference_destroy(reference);
+    *ms = whit_clock_ms() - start_ms;
+    return result;
+}
+
+static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index)
+{
+    struct cost_report *report = measure->report;
+    const whit_renderer_params params =
+        reference_params(measure, shrink, index ? report->reference_samples : 1);
+    char *path = kept_path(measure, &params);
+    measure->references[index] = read_kept(path, &params);
+    report->reference_cached[index] = measure->references[index] != NULL;
+    whit_result result = WHIT_OK;
+    if (!measure->references[index]) {
+        result =
+            render(measure, &params, &measure->references[index], &report->reference_ms[index]);
+        /* What cannot be kept is made again. */
+        if (result == WHIT_OK && path &&
+            whit_image_save(measure->references[index], path, NULL, 0, NULL) != WHIT_OK)
+            result = WHIT_OK;
+    }
+    free(path);
+    return result;
+}
+
+static bool fits(const struct cost_report *report, double pixel_ms, uint32_t shrink, double seconds)
+{
+    double width = report->width / shrink, height = report->height / shrink;
+    double all_ms = pixel_ms * width * height * (report->reference_samples + 1);
+    return all_ms <= seconds * 1e3 || width / 2.0 < SIDE_LEAST || height / 2.0 < SIDE_LEAST;
+}
+
+/* By how much the picture is smaller than the request's, so that references take `seconds`; where
+   that would be much, fewer samples instead. */
+static whit_result choose_shrink(struct measure *measure, double seconds, uint32_t *shrink)
+{
+    struct cost_report *report = measure->report;
+    whit_image *image = NULL;
+    double ms = 0.0;
+    for (*shrink = 1; *shrink < SHRINK_MOST; *shrink *= 2) {
+        if (is_kept(measure, *shrink))
+            return WHIT_OK;
+    }
+    const whit_renderer_params probe = reference_params(measure, SHRINK_MOST, 1);
+    whit_result result = render(measure, &probe, &image, &ms);
+    whit_image_destroy(image);
+    double pixel_ms = ms / ((double)probe.width * probe.height);
+    if (measure->request->samples_most == 0 && !fits(report, pixel_ms, SHRINK_GOOD, seconds))
+        report->reference_samples = SAMPLES_FEW;
+    *shrink = 1;
+    while (*shrink < SHRINK_MOST && !fits(report, pixel_ms, *shrink, seconds))
+        *shrink *= 2;
+    return result;
+}
+
+whit_result measure_references(struct measure *measure, double seconds)
+{
+    struct cost_report *report = measure->report;
+    uint32_t shrink = 1;
+    report->reference_depth = MEASURE_DEPTH;
+    report->reference_samples =
+        measure->request->samples_most ? measure->request->samples_most : SAMPLES_MANY;
+    report->reference_light_samples =
+        calls_for_area_lights(measure->request->scene) ? MEASURE_LIGHT_SAMPLES : 16;
+    measure_say(measure, "reference in double");
+    whit_result result = choose_shrink(measure, seconds, &shrink);
+    const whit_renderer_params params = reference_params(measure, shrink, 1);
+    report->judged_width = params.width;
+    report->judged_height = params.height;
+    for (uint32_t i = 0; result == WHIT_OK && i < 2; ++i) {
+        measure_say(measure, "reference in double");
+        result = make(measure, shrink, i);
+    }
+    return result;
+}

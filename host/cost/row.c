@@ -1,0 +1,297 @@
+/* One row of the table. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cost/measure.h"
+
+enum { SHRINK_MOST = 16, BUILDS = 3 };
+/* Below it what a dispatch costs by itself would count. */
+static const double FRAME_MS_LEAST = 10.0;
+
+whit_renderer_params measure_sized(const struct knob_target *target, uint32_t width,
+                                   uint32_t height)
+{
+    whit_renderer_params params = target->picture;
+    params.width = width;
+    params.height = height;
+    return params;
+}
+
+/* ---- Errors ---- */
+
+static whit_result compare(const struct measure *measure, const whit_image *reference,
+                           const whit_image *image, bool flip, whit_difference *out,
+                           whit_image **map)
+{
+    const whit_compare_params params = {.no_flip = !flip};
+    return whit_image_compare(reference, image, &params, measure->request->log, out, map);
+}
+
+/* How many pixels are other bytes than the usual picture's. */
+static whit_result compare_with_usual(const struct measure *measure, const whit_image *color,
+                                      const whit_image *ids, struct cost_row *row)
+{
+    whit_difference found;
+    whit_result result = compare(measure, measure->usual_color, color, false, &found, NULL);
+    if (result != WHIT_OK)
+        return result;
+    row->pixels_changed = found.differing_pixels;
+    result = compare(measure, measure->usual_ids, ids, false, &found, NULL);
+    row->ids_changed = found.differing_pixels;
+    row->broken = row->change == KNOB_NOTHING && (row->pixels_changed || row->ids_changed) &&
+                  result == WHIT_OK;
+    return result;
+}
+
+static bool changes_samples(const struct cost_row *row)
+{
+    return strcmp(row->knob, "aa") == 0;
+}
+
+/* The renderer has drawn the judged picture. */
+static whit_result judge(struct measure *measure, whit_renderer *renderer, struct cost_row *row)
+{
+    whit_image *color = NULL, *ids = NULL, *map = NULL;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
+    if (result == WHIT_OK && !measure->usual_color) {
+        measure->usual_color = color;
+        measure->usual_ids = ids;
+    }
+    if (result == WHIT_OK)
+        result = compare_with_usual(measure, color, ids, row);
+    if (result == WHIT_OK)
+        result = compare(measure, measure->references[1], color, true, &row->error, &map);
+    if (result == WHIT_OK && !changes_samples(row))
+        result = compare(measure, measure->references[0], color, true, &row->alone, NULL);
+    row->non_finite = row->error.nonfinite_b;
+    if (measure->request->keep_pictures && result == WHIT_OK) {
+        row->flip = map;
+        map = NULL;
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &row->picture);
+    }
+    if (color != measure->usual_color)
+        whit_image_destroy(color);
+    if (ids != measure->usual_ids)
+        whit_image_destroy(ids);
+    whit_image_destroy(map);
+    return result;
+}
+
+/* ---- Times ---- */
+
+/* The largest picture of which enough pairs fit into `ms`; *rounds: how many. */
+static void plan(const struct measure *measure, double ratio, double ms, uint32_t *width,
+                 uint32_t *height, uint32_t *rounds)
+{
+    const struct cost_report *report = measure->report;
+    double pair_ms = 0.0;
+    for (uint32_t shrink = 1; shrink <= SHRINK_MOST; shrink *= 2) {
+        uint32_t w = report->width / shrink, h = report->height / shrink;
+        double usual_ms = measure->usual_pixel_ms * w * h;
+        if (shrink > 1 && (w < 16 || h < 16 || usual_ms * sqrt(fmax(ratio, 1.0)) < FRAME_MS_LEAST))
+            break;
+        *width = w;
+        *height = h;
+        pair_ms = usual_ms * (1.0 + ratio);
+        /* And once to warm up. */
+        if (pair_ms * (COST_ROUNDS_LEAST + 1) <= ms)
+            break;
+    }
+    double fit = ms / fmax(pair_ms, 1e-3) - 1.0;
+    *rounds = fit < COST_ROUNDS_LEAST  ? COST_ROUNDS_LEAST
+              : fit > COST_ROUNDS_MOST ? COST_ROUNDS_MOST
+                                       : (uint32_t)fit;
+}
+
+/* From the ratios, and from what the usual picture takes at full size. */
+static void scale_times(const struct cost_report *report, struct cost_row *row)
+{
+    const struct cost_row *usual = &report->rows[0];
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
+        bool known = row->price.ratio[c].count > 0 && usual->ms[c] >= 0.0;
+        row->ms[c] = known ? usual->ms[c] * row->price.ratio[c].median : -1.0;
+    }
+    row->ms_low = usual->ms[report->clock] * row->price.ratio[report->clock].low;
+    row->ms_high = usual->ms[report->clock] * row->price.ratio[report->clock].high;
+}
+
+static whit_result price(struct measure *measure, const struct knob_target *target,
+                         whit_renderer *renderer, double seconds, double ratio,
+                         struct cost_row *row)
+{
+    uint32_t width, height, rounds;
+    plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
+    const whit_renderer_params first = measure_sized(&measure->usual, width, height);
+    const whit_renderer_params second = measure_sized(target, width, height);
+    whit_result result = cost_price(measure->renderer, &first, renderer, &second,
+                                    measure->report->clock, rounds, &row->price);
+    if (result == WHIT_OK)
+        scale_times(measure->report, row);
+    return result;
+}
+
+/* ---- A setting ---- */
+
+static whit_result build(struct measure *measure, const struct knob_target *target,
+                         whit_accel **out, double *build_ms)
+{
+    double times[BUILDS];
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < BUILDS; ++i) {
+        whit_accel_info info;
+        whit_accel *accel = NULL;
+        result = whit_accel_create(measure->request->scene, &target->accel, &accel);
+        if (result != WHIT_OK)
+            break;
+        whit_accel_get_info(accel, &info);
+        times[i] = info.build_ms;
+        whit_accel_destroy(*out);
+        *out = accel;
+        result = measure_still_wanted(measure);
+    }
+    if (result == WHIT_OK)
+        *build_ms = sample_median_of(times, BUILDS).median;
+    return result;
+}
+
+/* Renders the judged picture: some drivers finish a kernel when it first runs, so twice. */
+static whit_result draw_judged(const struct measure *measure, whit_renderer *renderer, double *ms)
+{
+    whit_result result = whit_renderer_render(renderer);
+    double start_ms = whit_clock_ms();
+    if (result == WHIT_OK)
+        result = measure_still_wanted(measure);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    *ms = whit_clock_ms() - start_ms;
+    return result;
+}
+
+static bool is_refusal(whit_result result)
+{
+    return result == WHIT_ERROR_STATUS || result == WHIT_ERROR_USAGE ||
+           result == WHIT_ERROR_DEVICE || result == WHIT_ERROR_INPUT;
+}
+
+/* Set to the judged picture. Views share one renderer: making another would compile its kernel once
+   more. The caller's to give back. */
+static whit_result take_renderer(struct measure *measure, const whit_renderer_params *params,
+                                 enum knob_level level, whit_accel *accel, whit_renderer **out)
+{
+    if (level == KNOB_VIEW && measure->beside) {
+        *out = measure->beside;
+        measure->beside = NULL;
+        return whit_renderer_set_view(*out, params);
+    }
+    return whit_renderer_create(measure->request->device, accel, params, out);
+}
+
+static void give_renderer(struct measure *measure, enum knob_level level, whit_renderer *renderer)
+{
+    if (level == KNOB_VIEW)
+        measure->beside = renderer;
+    else
+        whit_renderer_destroy(renderer);
+}
+
+static whit_result find_out(struct measure *measure, const struct knob_target *target,
+                            enum knob_level level, whit_accel *accel, double end_ms,
+                            struct cost_row *row)
+{
+    const struct cost_report *report = measure->report;
+    const whit_renderer_params params =
+        measure_sized(target, report->judged_width, report->judged_height);
+    whit_renderer *renderer = NULL;
+    double ms = 0.0;
+    whit_result result = take_renderer(measure, &params, level, accel, &renderer);
+    if (result == WHIT_OK)
+        result = draw_judged(measure, renderer, &ms);
+    if (result == WHIT_OK)
+        result = judge(measure, renderer, row);
+    if (result == WHIT_OK && row->change != KNOB_SHADING)
+        result = measure_hits(measure, renderer, params.numerics, row);
+    double usual_ms = measure->usual_pixel_ms * params.width * params.height;
+    if (result == WHIT_OK)
+        result = price(measure, target, renderer, (end_ms - whit_clock_ms()) * 1e-3,
+                       fmin(fmax(ms / usual_ms, 0.1), 100.0), row);
+    give_renderer(measure, level, renderer);
+    return result;
+}
+
+whit_result measure_row(struct measure *measure, const struct knob_target *target,
+                        enum knob_level level, double seconds, struct cost_row *row)
+{
+    double end_ms = whit_clock_ms() + seconds * 1e3;
+    whit_accel *accel = NULL;
+    whit_result result = WHIT_OK;
+    row->build_ms = -1.0;
+    if (level == KNOB_TREE)
+        result = build(measure, target, &accel, &row->build_ms);
+    if (measure->request->hush)
+        measure->request->hush(true);
+    if (result == WHIT_OK)
+        result =
+            find_out(measure, target, level, accel ? accel : measure->request->accel, end_ms, row);
+    if (measure->request->hush)
+        measure->request->hush(false);
+    whit_accel_destroy(accel);
+    row->measured = result == WHIT_OK;
+    if (!is_refusal(result))
+        return result;
+    snprintf(row->note, sizeof row->note, "%s",
+             result == WHIT_ERROR_STATUS ? "no answer: the device says that its picture is not to "
+                                           "be trusted"
+                                         : "this device or scene refuses it");
+    return WHIT_OK;
+}
+
+/* ---- The usual settings ---- */
+
+/* Of the full picture. The row's price is the picture beside itself: its ratio says how well this
+   machine measures. */
+static whit_result price_usual(struct measure *measure, double seconds, struct cost_row *row)
+{
+    struct cost_report *report = measure->report;
+    const whit_renderer_params full = measure_sized(&measure->usual, report->width, report->height);
+    double pair_ms = 2.0 * measure->usual_pixel_ms * full.width * full.height;
+    double fit = seconds * 1e3 / pair_ms;
+    uint32_t rounds = fit < COST_ROUNDS_LEAST  ? COST_ROUNDS_LEAST
+                      : fit > COST_ROUNDS_MOST ? COST_ROUNDS_MOST
+                                               : (uint32_t)fit;
+    whit_result result = cost_price(measure->renderer, &full, measure->renderer, &full,
+                                    report->clock, rounds, &row->price);
+    for (uint32_t c = 0; result == WHIT_OK && c < COST_CLOCKS; ++c) {
+        bool known = row->price.usual_ms[c].count > 0;
+        row->ms[c] = known ? row->price.usual_ms[c].median : -1.0;
+    }
+    report->usual_ms_most = row->price.usual_most_ms;
+    row->ms_low = row->price.usual_ms[report->clock].low;
+    row->ms_high = row->price.usual_ms[report->clock].high;
+    return result;
+}
+
+whit_result measure_usual(struct measure *measure, double seconds, struct cost_row *row)
+{
+    const struct cost_report *report = measure->report;
+    const whit_renderer_params judged =
+        measure_sized(&measure->usual, report->judged_width, report->judged_height);
+    whit_accel_info info;
+    double ms;
+    whit_accel_get_info(measure->request->accel, &info);
+    row->build_ms = info.build_ms;
+    whit_result result = whit_renderer_set_view(measure->renderer, &judged);
+    if (result == WHIT_OK)
+        result = draw_judged(measure, measure->renderer, &ms);
+    if (result == WHIT_OK)
+        result = judge(measure, measure->renderer, row);
+    if (result == WHIT_OK)
+        result = measure_hits(measure, measure->renderer, measure->usual.picture.numerics, row);
+    if (result == WHIT_OK)
+        result = price_usual(measure, seconds, row);
+    row->measured = result == WHIT_OK;
+    return result;
+}
