@@ -81,7 +81,7 @@ fi
 expect 0 "compared with itself" cost --compare "$J" "$J"
 check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
-check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -eq 2
+check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
 # shellcheck disable=SC2086
 expect 0 "one knob" cost "$WHITTED" $small --spend 1 --knobs fresnel --rays 0 --json "$J"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
