@@ -2,7 +2,8 @@
    `whit cost` to find. WHIT_TEST_WRONG names it:
    slow      renderers of at least 16 bounces take 10 % more CPU time
    schlick   pictures by Schlick's approximation are 5 % too bright
-   triangle  trees by medians have one triangle moved */
+   triangle  trees by medians have one triangle moved: the 11th, which a camera before the cube sees
+ */
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +75,6 @@ whit_result __wrap_whit_accel_create(const whit_scene *scene, const whit_accel_p
     whit_result result = __real_whit_accel_create(scene, params, out);
     if (result == WHIT_OK && is_wrong("triangle") && params->build == WHIT_BUILD_MEDIAN)
         for (int k = 0; k < 3; ++k)
-            (*out)->accel->triangles[0].v0[k] *= 2.0f;
+            (*out)->accel->triangles[10].v0[k] *= 0.5f;
     return result;
 }
