@@ -4,6 +4,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <poll.h>
 #include <pthread.h>
@@ -305,6 +308,13 @@ void child_reply_free(struct child_reply *reply)
         munmap(reply->data, reply->size_bytes);
     if (reply)
         *reply = (struct child_reply){0};
+}
+
+void platform_share_heaps(void)
+{
+#ifdef __GLIBC__ /* else up to 8 a core, each as large as its threads ever were */
+    (void)mallopt(M_ARENA_MAX, 2);
+#endif
 }
 
 bool platform_is_terminal(int fd)

@@ -54,6 +54,10 @@ void child_reply_free(struct child_reply *reply);
 void platform_hold_forks(void);
 void platform_release_forks(void);
 
+/* From here on threads share a few heaps, so that what one gave back is there for the next: for
+   programs that go on long, and start many threads. Before any thread. */
+void platform_share_heaps(void);
+
 bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */
 uint64_t platform_peak_memory_bytes(void);

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/platform.h"
 #include "base/watch.h"
 #include "kernels.h"
 #include "view/memory.h"
@@ -494,6 +495,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     struct view *view = calloc(1, sizeof *view);
     if (!view)
         return WHIT_ERROR_MEMORY;
+    platform_share_heaps();
     view->log = (struct log){log->fn, log->user, log->level};
     view->params = params;
     view->settings = params->settings;
