@@ -1,0 +1,194 @@
+/* A hand and a window manager for the viewer's tests, on a display of their own: minimises and
+   restores windows when they ask for it, and does what it reads, one line each, to the one window
+   that there is:
+       key NAME | move X Y | button N down|up | close | wait MS
+   Events are sent to the window as an X server would send them. Ends with its window. */
+#include <poll.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+
+static Display *display;
+static Window window;
+static int x, y;
+
+static void sleep_ms(long ms)
+{
+    const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
+    nanosleep(&time, NULL);
+}
+
+static void set_state(Window of, long state)
+{
+    Atom atom = XInternAtom(display, "WM_STATE", False);
+    long data[2] = {state, None};
+    XChangeProperty(display, of, atom, atom, 32, PropModeReplace, (unsigned char *)data, 2);
+}
+
+static void manage(const XEvent *event)
+{
+    if (event->type == MapRequest) {
+        window = event->xmaprequest.window;
+        XMapWindow(display, window);
+        set_state(window, NormalState);
+    } else if (event->type == ConfigureRequest) {
+        const XConfigureRequestEvent *r = &event->xconfigurerequest;
+        XWindowChanges changes = {.x = r->x,
+                                  .y = r->y,
+                                  .width = r->width,
+                                  .height = r->height,
+                                  .border_width = r->border_width,
+                                  .sibling = r->above,
+                                  .stack_mode = r->detail};
+        XConfigureWindow(display, r->window, (unsigned)r->value_mask, &changes);
+    } else if (event->type == ClientMessage &&
+               event->xclient.message_type == XInternAtom(display, "WM_CHANGE_STATE", False)) {
+        XUnmapWindow(display, event->xclient.window);
+        set_state(event->xclient.window, IconicState);
+    } else if (event->type == DestroyNotify && event->xdestroywindow.window == window) {
+        exit(0);
+    }
+    XFlush(display);
+}
+
+static void manage_all(void)
+{
+    while (XPending(display)) {
+        XEvent event;
+        XNextEvent(display, &event);
+        manage(&event);
+    }
+}
+
+static void press(const char *name)
+{
+    XKeyEvent event = {.display = display,
+                       .window = window,
+                       .root = DefaultRootWindow(display),
+                       .x = x,
+                       .y = y,
+                       .same_screen = True,
+                       .keycode = XKeysymToKeycode(display, XStringToKeysym(name))};
+    for (int down = 1; down >= 0; --down) {
+        static Time time = 1000; /* GLFW takes two keys at the same time for one */
+        event.time = time += 50;
+        event.type = down ? KeyPress : KeyRelease;
+        XSendEvent(display, window, False, down ? KeyPressMask : KeyReleaseMask, (XEvent *)&event);
+    }
+}
+
+static void move(void)
+{
+    XMotionEvent event = {.type = MotionNotify,
+                          .display = display,
+                          .window = window,
+                          .root = DefaultRootWindow(display),
+                          .x = x,
+                          .y = y,
+                          .same_screen = True};
+    XSendEvent(display, window, False, PointerMotionMask, (XEvent *)&event);
+}
+
+static void button(unsigned number, bool down)
+{
+    XButtonEvent event = {.type = down ? ButtonPress : ButtonRelease,
+                          .display = display,
+                          .window = window,
+                          .root = DefaultRootWindow(display),
+                          .x = x,
+                          .y = y,
+                          .button = number,
+                          .same_screen = True};
+    XSendEvent(display, window, False, down ? ButtonPressMask : ButtonReleaseMask,
+               (XEvent *)&event);
+}
+
+static void close_window(void)
+{
+    XClientMessageEvent event = {.type = ClientMessage,
+                                 .display = display,
+                                 .window = window,
+                                 .message_type = XInternAtom(display, "WM_PROTOCOLS", False),
+                                 .format = 32};
+    event.data.l[0] = (long)XInternAtom(display, "WM_DELETE_WINDOW", False);
+    XSendEvent(display, window, False, NoEventMask, (XEvent *)&event);
+}
+
+static bool obey(const char *line)
+{
+    char word[32], more[32];
+    unsigned number;
+    int ms;
+    if (sscanf(line, "key %31s", word) == 1)
+        press(word);
+    else if (sscanf(line, "move %d %d", &x, &y) == 2)
+        move();
+    else if (sscanf(line, "button %u %31s", &number, more) == 2)
+        button(number, strcmp(more, "down") == 0);
+    else if (sscanf(line, "wait %d", &ms) == 1)
+        for (; ms > 0; ms -= 10, manage_all())
+            sleep_ms(10);
+    else if (strncmp(line, "close", 5) == 0)
+        close_window();
+    else
+        return false;
+    XFlush(display);
+    return true;
+}
+
+/* Windows go while events are on their way to them. */
+static int ignore(Display *of, XErrorEvent *event)
+{
+    (void)of;
+    (void)event;
+    return 0;
+}
+
+/* Without a buffer that would hide lines from poll. */
+static bool read_line(char *line, size_t bytes)
+{
+    size_t length = 0;
+    char c = 0;
+    while (length + 1 < bytes && c != '\n' && read(STDIN_FILENO, &c, 1) == 1)
+        line[length++] = c;
+    line[length] = '\0';
+    return length > 0;
+}
+
+int main(void)
+{
+    char line[128];
+    display = XOpenDisplay(NULL);
+    if (!display)
+        return 1;
+    XSetErrorHandler(ignore);
+    XSelectInput(display, DefaultRootWindow(display),
+                 SubstructureRedirectMask | SubstructureNotifyMask);
+    XSync(display, False);
+    puts("ready"); /* windows may come */
+    fflush(stdout);
+    while (!window) {
+        XEvent event;
+        XNextEvent(display, &event);
+        manage(&event);
+    }
+    for (bool more = true;;) { /* until the window is gone */
+        struct pollfd from[2] = {{.fd = ConnectionNumber(display), .events = POLLIN},
+                                 {.fd = more ? STDIN_FILENO : -1, .events = POLLIN}};
+        manage_all();
+        poll(from, 2, -1);
+        if (!from[1].revents)
+            continue;
+        more = read_line(line, sizeof line);
+        if (more && !obey(line)) {
+            fprintf(stderr, "view_hand: what is `%s`?\n", line);
+            return 2;
+        }
+    }
+}

@@ -1,0 +1,113 @@
+#!/bin/sh
+# sh view_hand_test.sh WHIT SCENES HAND: the viewer with a window manager and real events: minimised
+# and restored, used by hand, recorded and replayed, closed.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+HAND=$3
+mkfifo "$OUT/orders"
+
+# hand: starts it, ready for a window; orders go to file descriptor 4.
+hand() {
+    "$HAND" <"$OUT/orders" >"$OUT/hand" &
+    hand=$!
+    exec 4>"$OUT/orders"
+    turns=0
+    until grep -q ready "$OUT/hand" 2>/dev/null || [ $turns -ge 100 ]; do
+        sleep 0.05
+        turns=$((turns + 1))
+    done
+}
+rest() {
+    exec 4>&-
+    kill $hand 2>/dev/null
+    wait $hand 2>/dev/null
+}
+
+hand
+play "minimise, restore" "$CUBE" --size 96x64 <<END
+still
+state start
+minimise
+still
+state minimised
+press T
+wait 200
+state switched
+wait 1000
+state hidden
+restore
+still
+state back
+END
+rest
+is start window_width 96
+is minimised window_width 0
+is minimised window_height 0
+is hidden "keys.traversal order" sign
+same frame.number minimised hidden
+is hidden measure.drawn 0
+is back window_width 96
+is back frame.whole true
+is back change.other_ids 0
+same frame.ids start back
+
+# What somebody does is recorded; the replay ends where he did.
+cat >"$OUT/hands" <<END
+wait 3000
+key t
+wait 50
+key k
+wait 600
+move 40 30
+button 1 down
+move 50 34
+wait 30
+move 60 38
+wait 30
+button 1 up
+wait 300
+button 4 down
+button 4 up
+wait 1500
+close
+END
+hand
+cat "$OUT/hands" >&4 &
+run view "$CUBE" --size 96x64 --quiet --record "$OUT/record"
+rest
+check "closed by its cross: exit code 0 (got $status)" test "$status" -eq 0
+check "nothing to complain of" test ! -s "$OUT/stderr"
+for line in "key T down" "key T up" "key K down" "button left down" "button left up" "wheel 0 1" close; do
+    check "\`$line\` was recorded" grep -q "^$line$" "$OUT/record"
+done
+check "and where the mouse was" grep -q "^move 60 38$" "$OUT/record"
+sed '/^close$/d' "$OUT/record" >"$OUT/again"
+printf 'still\nstate end\n' >>"$OUT/again"
+for turn in 1 2; do
+    play "replay $turn" "$CUBE" --size 96x64 <"$OUT/again"
+    value end words >"$OUT/words.$turn"
+    value end frame.ids >"$OUT/ids.$turn"
+    is end "keys.traversal order" sign
+    is end "keys.tree builder" sweep
+    is end "keys.next camera of the file" "by hand"
+done
+check "two replays end in the same words" cmp "$OUT/words.1" "$OUT/words.2"
+check "and hits" cmp "$OUT/ids.1" "$OUT/ids.2"
+# The same by arithmetic: a drag of 20 x 8 pixels and a notch of the wheel.
+cp "$OUT/words.1" "$OUT/recorded"
+play "by replay alone" "$CUBE" --size 96x64 <<END
+still
+press T
+press K
+move 40 30
+button left down
+move 50 34
+move 60 38
+button left up
+wheel 0 1
+still
+state end
+END
+check "the record holds what was done ($(value end words))" \
+    test "$(value end words)" = "$(cat "$OUT/recorded")"
+finish
