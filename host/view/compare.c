@@ -345,6 +345,8 @@ void compare_set(struct view *view, enum compare_mode mode)
         compare->frozen = view->settings;
         compare->divider = 0.5;
         compare->figures.known = false;
+        free(compare->heat.rgba);
+        compare->heat = (struct compare_heat){0};
         engine_ask_other(view->engine, &compare->frozen);
         view_say(view, "B stays as it is now; what you change is A. C ends it, D subtracts them");
     }

@@ -415,8 +415,9 @@ static void say_fullscreen(const struct view *view, char *text, size_t bytes)
 static void escape(struct view *view)
 {
     double now_ms = clock_ms();
-    if (view->help || view->picked) {
+    if (view->help || view->picked || view->panels.settings || view->panels.effects) {
         view->help = view->picked = false;
+        view->panels.settings = view->panels.effects = false;
         return;
     }
     view->quit = now_ms - view->escape_ms < ESCAPE_MS;

@@ -93,6 +93,7 @@ void panels_load(struct view *view, const char *path)
     if (next->width != now->width || next->height != now->height)
         window_set_pixels(view->window, next->width, next->height);
     view->settings = state.settings;
+    view->resized = true;       /* the window may have kept its size */
     view->camera_known = false; /* read again from the text */
     view_learn_camera(view);
     set_fps_goal(view, state.fps_goal > 0.0 ? state.fps_goal : FPS_GOAL);
@@ -198,7 +199,8 @@ static void switch_effect(struct view *view, uint32_t index, bool called, bool o
         return;
     }
     memcpy(settings->effects, next, strlen(next) + 1);
-    view->panels.pending = view->panels.pending ? -1 : (int)index + 1;
+    bool together = view->panels.pending && view->status.drawing;
+    view->panels.pending = together ? -1 : (int)index + 1;
 }
 
 static void draw_price(const struct effect_price *price, bool can)
