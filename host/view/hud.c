@@ -243,5 +243,6 @@ void hud_draw(struct view *view)
     draw_work(view);
     draw_boxes(view);
     draw_hud(view);
+    price_draw(view);
     panels_draw(view);
 }

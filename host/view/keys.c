@@ -426,6 +426,11 @@ static void escape(struct view *view)
         view_say(view, "Escape once more quits");
 }
 
+static void say_prices(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->prices_open ? "shown" : "not shown");
+}
+
 static const struct key_binding bindings[] = {
     {'T', 0, "T", "traversal order", next_traversal, say_traversal},
     {'T', EVENT_SHIFT, "Shift+T", "traversal order, back", last_traversal, NULL},
@@ -448,6 +453,7 @@ static const struct key_binding bindings[] = {
     {'J', EVENT_SHIFT, "Shift+J", "a level higher", higher_boxes, say_level},
     {'C', 0, "C", "A beside B, frozen now", switch_split, say_split},
     {'D', 0, "D", "A minus B", switch_difference, say_difference},
+    {'P', 0, "P", "prices of this view", price_switch, say_prices},
     {'X', 0, "X", "effects and prices", switch_effects, say_effects},
     {KEY_TAB, 0, "Tab", "settings by mouse", switch_settings, say_settings},
     {'S', EVENT_CTRL, "Ctrl+S", "save these settings", panels_save, NULL},

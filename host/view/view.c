@@ -11,6 +11,7 @@
 #include "base/watch.h"
 #include "kernels.h"
 #include "view/memory.h"
+#include "view/prices.h"
 #include "view/view_private.h"
 
 static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */
@@ -478,6 +479,7 @@ static void close_all(struct view *view, uint32_t *validation)
     remember_camera(view);
     replay_close(view);
     watch_destroy(view->watch);
+    prices_stop(view->prices);
     *validation = engine_destroy(view->engine);
     compare_finish(&view->compare);
     engine_frame_finish(&view->frame);

@@ -81,6 +81,9 @@ struct view {
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
 
+    struct prices *prices; /* NULL: none are asked for */
+    bool prices_open;
+
     struct palette palette;
     struct compare compare;
     struct panels panels;
@@ -135,6 +138,10 @@ void pick_focus(struct view *view);
 void pick_take(struct view *view);
 /* The panel, and the pixel's rays in the scene. */
 void pick_draw(struct view *view);
+
+/* price_panel.c: the prices of this view, asked for or no more. */
+void price_switch(struct view *view);
+void price_draw(struct view *view);
 
 /* overlay.c: lines in the scene, between ui_begin and ui_end. Cameras that are not perspective have
    none. */

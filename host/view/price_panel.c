@@ -1,0 +1,118 @@
+/* Key P: the price list of this view, beside each switch. */
+#include <stdio.h>
+#include <string.h>
+
+#include "view/prices.h"
+#include "view/view_private.h"
+
+static const double PRICES_SECONDS = 12.0;
+static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
+                      COLOR_ERROR = 0xFF6070FFu;
+
+void price_switch(struct view *view)
+{
+    view->prices_open = !view->prices_open;
+    if (!view->prices_open) {
+        prices_stop(view->prices);
+        view->prices = NULL;
+    } else if (!view->scene) {
+        view->prices_open = false;
+    } else {
+        view->prices = prices_start(&view->frame.settings, view->scene, PRICES_SECONDS, window_wake,
+                                    view->window);
+        if (!view->prices)
+            view_say(view, "out of memory");
+    }
+}
+
+/* What the setting says, on top of what the window has. Trees have keys of their own. */
+static void use(struct view *view, const struct cost_row *row)
+{
+    uint32_t count;
+    const struct knob *knob = &knob_table(&count)[row->knob_index];
+    struct view_settings *s = &view->settings;
+    struct knob_target target = {.accel = s->trees, .picture = s->picture};
+    snprintf(target.effects, sizeof target.effects, "%s", s->effects);
+    knob_apply(knob, row->setting_index, &target);
+    s->picture = target.picture;
+    s->picture.camera = s->picture.effects = s->picture.load_path = NULL;
+    snprintf(s->effects, sizeof s->effects, "%s", target.effects);
+    view_changed(view);
+}
+
+static void draw_row(struct view *view, const struct cost_report *report,
+                     const struct cost_row *row, uint32_t index)
+{
+    uint32_t count;
+    const struct knob *knobs = knob_table(&count);
+    const whit_difference *error = &row->error;
+    char label[COST_NAME + 16];
+    bool usable = row->knob_index < count && knobs[row->knob_index].level != KNOB_TREE;
+    ui_table_next();
+    ui_text_dim("%s", row->knob);
+    ui_table_next();
+    snprintf(label, sizeof label, "%s##price%u", row->setting, index);
+    if (!usable)
+        ui_text("%s", row->setting);
+    else if (ui_selectable(label, false))
+        use(view, row);
+    if (!row->measured) {
+        ui_table_next();
+        ui_text_dim("%.40s", row->note);
+        for (int i = 0; i < 2; ++i)
+            ui_table_next();
+        return;
+    }
+    ui_table_next();
+    if (index > 0 && row->price.verdict == 0)
+        ui_text_dim("as before");
+    else
+        ui_text_color(row->price.verdict < 0 ? COLOR_GOOD : 0xFFFFFFFFu, "%.1f ms",
+                      row->ms[report->clock]);
+    ui_table_next();
+    if (row->broken)
+        ui_text_color(COLOR_ERROR, "changed %llu pixels", (unsigned long long)row->pixels_changed);
+    else
+        ui_text("%.3g", cost_error_of(error, COST_FLIP));
+    ui_table_next();
+    ui_text_color(COLOR_GOOD, "%s", row->best ? "*" : "");
+}
+
+static void draw_table(struct view *view, const struct cost_report *report)
+{
+    static const char *const columns[] = {"knob", "setting", "a picture", "FLIP", "best"};
+    if (ui_table_begin("prices", 5)) {
+        ui_table_header(columns, 5);
+        for (uint32_t i = 0; i < report->row_count; ++i)
+            draw_row(view, report, &report->rows[i], i);
+        ui_table_end();
+    }
+    ui_text_dim("FLIP: to the picture in double with %u samples; best: nothing is cheaper and as "
+                "right. `whit cost` measures longer.",
+                report->reference_samples);
+}
+
+void price_draw(struct view *view)
+{
+    struct prices_state state;
+    bool open = true;
+    if (!view->prices)
+        return;
+    prices_get_state(view->prices, &state);
+    if (ui_window_begin("Prices", 1.0f, 0.0f, 420.0f, 380.0f, &open)) {
+        if (!settings_same_place(&state.settings, &view->settings))
+            ui_text_color(COLOR_WARNING, "of another view: press P twice");
+        if (!state.finished) {
+            char text[PRICES_TEXT + 32];
+            snprintf(text, sizeof text, "%.60s, %.0f s", state.what, state.seconds_left);
+            ui_progress((float)state.done, text);
+        } else if (state.report) {
+            draw_table(view, state.report);
+        } else {
+            ui_text_color(COLOR_ERROR, "%s", state.what);
+        }
+    }
+    ui_panel_end();
+    if (!open)
+        price_switch(view);
+}

@@ -1,0 +1,142 @@
+#include "view/prices.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/threads.h"
+
+enum { REFERENCE_SAMPLES = 16 };
+
+struct prices {
+    pthread_mutex_t lock;
+    struct thread *thread;
+    struct view_settings settings;
+    struct scene_ref *scene;
+    double seconds;
+    volatile bool cancel;
+    void (*wake)(void *user);
+    void *wake_user;
+    /* Under the lock. */
+    bool finished;
+    double done, seconds_left;
+    char what[PRICES_TEXT];
+    struct cost_report *report;
+};
+
+static void tell(void *user, double done, double seconds_left, const char *what)
+{
+    struct prices *prices = user;
+    pthread_mutex_lock(&prices->lock);
+    prices->done = done;
+    prices->seconds_left = seconds_left;
+    snprintf(prices->what, sizeof prices->what, "%s", what);
+    pthread_mutex_unlock(&prices->lock);
+    prices->wake(prices->wake_user);
+}
+
+static void on_message(void *user, whit_log_level level, const char *message)
+{
+    struct prices *prices = user;
+    if (level != WHIT_LOG_ERROR)
+        return;
+    pthread_mutex_lock(&prices->lock);
+    snprintf(prices->what, sizeof prices->what, "%s", message);
+    pthread_mutex_unlock(&prices->lock);
+}
+
+static whit_result measure(struct prices *prices, const whit_log *log, whit_device *device,
+                           whit_accel *accel, struct cost_report **report)
+{
+    struct cost_request request = {
+        .device = device,
+        .scene = prices->scene->scene,
+        .accel = accel,
+        .accel_params = prices->settings.trees,
+        .picture = settings_picture(&prices->settings),
+        .seconds = prices->seconds,
+        .samples_most = REFERENCE_SAMPLES,
+        .progress = tell,
+        .progress_user = prices,
+        .log = log,
+    };
+    request.accel_params.cancel = request.picture.cancel = &prices->cancel;
+    request.picture.count = false;
+    return cost_measure(&request, report);
+}
+
+static void run(void *context)
+{
+    struct prices *prices = context;
+    const struct view_settings *settings = &prices->settings;
+    const whit_log log = {on_message, prices, WHIT_LOG_ERROR};
+    const whit_device_params params = {.selector = settings->device[0] ? settings->device : NULL,
+                                       .validation = settings->validation};
+    whit_accel_params trees = settings->trees;
+    whit_device *device = NULL;
+    whit_accel *accel = NULL;
+    struct cost_report *report = NULL;
+    trees.cancel = &prices->cancel;
+    tell(prices, 0.0, prices->seconds, "building trees");
+    whit_result result = whit_accel_create(prices->scene->scene, &trees, &accel);
+    if (result == WHIT_OK)
+        result = whit_device_create(&params, &log, &device);
+    if (result == WHIT_OK)
+        result = measure(prices, &log, device, accel, &report);
+    whit_device_destroy(device);
+    whit_accel_destroy(accel);
+    pthread_mutex_lock(&prices->lock);
+    prices->report = report;
+    prices->finished = true;
+    if (result != WHIT_OK && !report && !prices->what[0])
+        snprintf(prices->what, sizeof prices->what, "it could not be measured");
+    pthread_mutex_unlock(&prices->lock);
+    prices->wake(prices->wake_user);
+}
+
+struct prices *prices_start(const struct view_settings *settings, struct scene_ref *scene,
+                            double seconds, void (*wake)(void *user), void *wake_user)
+{
+    struct prices *prices = calloc(1, sizeof *prices);
+    if (!prices)
+        return NULL;
+    prices->settings = *settings;
+    prices->settings.paint = VIEW_PAINT_COLOR; /* costs are not what pictures cost */
+    prices->scene = scene_ref_take(scene);
+    prices->seconds = seconds;
+    prices->wake = wake;
+    prices->wake_user = wake_user;
+    pthread_mutex_init(&prices->lock, NULL);
+    prices->thread = thread_start(run, prices);
+    if (prices->thread)
+        return prices;
+    prices_stop(prices);
+    return NULL;
+}
+
+void prices_stop(struct prices *prices)
+{
+    if (!prices)
+        return;
+    prices->cancel = true;
+    thread_join(prices->thread);
+    cost_report_destroy(prices->report);
+    scene_ref_drop(prices->scene);
+    pthread_mutex_destroy(&prices->lock);
+    free(prices);
+}
+
+void prices_get_state(struct prices *prices, struct prices_state *state)
+{
+    pthread_mutex_lock(&prices->lock);
+    *state = (struct prices_state){
+        .finished = prices->finished,
+        .done = prices->done,
+        .seconds_left = prices->seconds_left,
+        .report = prices->finished ? prices->report : NULL,
+        .settings = prices->settings,
+    };
+    memcpy(state->what, prices->what, sizeof state->what);
+    pthread_mutex_unlock(&prices->lock);
+}

@@ -1,0 +1,28 @@
+/* The price list of the picture in the window: what each switch would cost here, and what it would
+   get wrong. Measured in a thread of its own, on a device of its own, beside the window. */
+#ifndef VIEW_PRICES_H
+#define VIEW_PRICES_H
+
+#include "cost/cost.h"
+#include "view/session.h"
+
+struct prices;
+
+/* Measures for about `seconds`. `wake`: from the thread, when there is more to see. NULL where
+   memory or threads run out. */
+struct prices *prices_start(const struct view_settings *settings, struct scene_ref *scene,
+                            double seconds, void (*wake)(void *user), void *wake_user);
+/* Stops it, waits, frees; NULL is fine. */
+void prices_stop(struct prices *prices);
+
+enum { PRICES_TEXT = 160 };
+struct prices_state {
+    bool finished;
+    double done, seconds_left;        /* 0..1 */
+    char what[PRICES_TEXT];           /* that is measured; where it failed: why */
+    const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
+    struct view_settings settings;    /* that it is of */
+};
+void prices_get_state(struct prices *prices, struct prices_state *state);
+
+#endif
