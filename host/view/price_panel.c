@@ -6,6 +6,7 @@
 #include "view/view_private.h"
 
 static const double PRICES_SECONDS = 12.0;
+enum { TABLE_DRAWS = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
                       COLOR_ERROR = 0xFF6070FFu;
 
@@ -18,6 +19,7 @@ void price_switch(struct view *view)
     } else if (!view->scene) {
         view->prices_open = false;
     } else {
+        view->prices_drawn = 0;
         view->prices = prices_start(&view->frame.settings, view->scene, PRICES_SECONDS, window_wake,
                                     view->window);
         if (!view->prices)
@@ -99,6 +101,10 @@ void price_draw(struct view *view)
     if (!view->prices)
         return;
     prices_get_state(view->prices, &state);
+    if (state.finished && view->prices_drawn < TABLE_DRAWS) {
+        ++view->prices_drawn; /* a table finds its columns in the draws after its first */
+        view->dirty = true;
+    }
     if (ui_window_begin("Prices", 1.0f, 0.0f, 420.0f, 380.0f, &open)) {
         if (!settings_same_place(&state.settings, &view->settings))
             ui_text_color(COLOR_WARNING, "of another view: press P twice");

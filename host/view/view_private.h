@@ -83,6 +83,7 @@ struct view {
 
     struct prices *prices; /* NULL: none are asked for */
     bool prices_open;
+    int prices_drawn; /* draws of its table */
 
     struct palette palette;
     struct compare compare;
