@@ -89,9 +89,9 @@ static void draw_table(struct view *view, const struct cost_report *report)
             draw_row(view, report, &report->rows[i], i);
         ui_table_end();
     }
-    ui_text_dim("FLIP: to the picture in double with %u samples; best: nothing is cheaper and as "
-                "right. `whit cost` measures longer.",
-                report->reference_samples);
+    ui_text_dim("FLIP: to the picture in double, %u samples.", report->reference_samples);
+    ui_text_dim("*: nothing is cheaper and as right.");
+    ui_text_dim("Click a setting to take it; `whit cost` measures longer.");
 }
 
 void price_draw(struct view *view)

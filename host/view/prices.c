@@ -19,7 +19,7 @@ struct prices {
     void (*wake)(void *user);
     void *wake_user;
     /* Under the lock. */
-    bool finished;
+    bool finished, news;
     double done, seconds_left;
     char what[PRICES_TEXT];
     struct cost_report *report;
@@ -29,6 +29,7 @@ static void tell(void *user, double done, double seconds_left, const char *what)
 {
     struct prices *prices = user;
     pthread_mutex_lock(&prices->lock);
+    prices->news = true;
     prices->done = done;
     prices->seconds_left = seconds_left;
     snprintf(prices->what, sizeof prices->what, "%s", what);
@@ -88,7 +89,7 @@ static void run(void *context)
     whit_accel_destroy(accel);
     pthread_mutex_lock(&prices->lock);
     prices->report = report;
-    prices->finished = true;
+    prices->finished = prices->news = true;
     if (result != WHIT_OK && !report && !prices->what[0])
         snprintf(prices->what, sizeof prices->what, "it could not be measured");
     pthread_mutex_unlock(&prices->lock);
@@ -125,6 +126,23 @@ void prices_stop(struct prices *prices)
     scene_ref_drop(prices->scene);
     pthread_mutex_destroy(&prices->lock);
     free(prices);
+}
+
+bool prices_have_news(struct prices *prices)
+{
+    pthread_mutex_lock(&prices->lock);
+    bool news = prices->news;
+    prices->news = false;
+    pthread_mutex_unlock(&prices->lock);
+    return news;
+}
+
+bool prices_are_still(struct prices *prices)
+{
+    struct prices_state state = {.finished = true};
+    if (prices)
+        prices_get_state(prices, &state);
+    return state.finished;
 }
 
 void prices_get_state(struct prices *prices, struct prices_state *state)

@@ -23,6 +23,9 @@ struct prices_state {
     const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
     struct view_settings settings;    /* that it is of */
 };
+/* Whether there is more to see than at the last call. */
+bool prices_have_news(struct prices *prices);
+bool prices_are_still(struct prices *prices); /* finished; NULL is fine */
 void prices_get_state(struct prices *prices, struct prices_state *state);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "view/prices.h"
 #include "view/view_private.h"
 
 static void put_text(json_t *object, const char *name, const char *text)
@@ -203,6 +204,23 @@ static json_t *measure_json(struct view_measure *measure)
     return object;
 }
 
+static json_t *price_list_json(const struct view *view)
+{
+    json_t *object = json_object();
+    struct prices_state state = {0};
+    uint64_t broken = 0;
+    if (view->prices)
+        prices_get_state(view->prices, &state);
+    for (uint32_t i = 0; state.report && i < state.report->row_count; ++i)
+        broken += state.report->rows[i].broken;
+    put_bool(object, "open", view->prices_open);
+    put_bool(object, "finished", state.finished);
+    put_count(object, "rows", state.report ? state.report->row_count : 0);
+    put_count(object, "broken", broken);
+    put_text(object, "why", state.finished && !state.report ? state.what : "");
+    return object;
+}
+
 void state_print(struct view *view, const char *name, FILE *to)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
@@ -235,6 +253,7 @@ void state_print(struct view *view, const char *name, FILE *to)
     json_object_set_new(root, "items", items_json());
     json_object_set_new(root, "panels", panels_json());
     json_object_set_new(root, "prices", prices_json(view));
+    json_object_set_new(root, "price_list", price_list_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_object_set_new(root, "measure", measure_json(&view->measure));
     json_dumpf(root, to, JSON_COMPACT);

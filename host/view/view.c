@@ -411,6 +411,8 @@ static whit_result step(struct view *view)
     whit_result result = compare_step(view);
     take_status(view);
     pick_take(view);
+    if (view->prices && prices_have_news(view->prices))
+        view->dirty = true;
     panels_step(view);
     ask(view, now_ms); /* a switch that failed was taken back */
     if (view->params->frames > 0 && view->picture_set)
