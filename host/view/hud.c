@@ -39,8 +39,11 @@ static void draw_figures(const struct view *view)
     struct swapchain_info chain;
     swapchain_get_info(view->swapchain, &chain);
     double ms = engine_drawn_ms(s);
-    ui_text("%5.1f fps  render %.2f ms  present %.2f ms", view->rate.fps, ms, chain.present_ms);
-    ui_text("%6.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
+    char fps[24] = "still";
+    if (view->rate.fps > 0.0 && view_is_moving(view, clock_ms()))
+        snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
+    ui_text("%9s  render %.2f ms  present %.2f ms", fps, ms, chain.present_ms);
+    ui_text("%.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
     if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
         const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];
         ui_same_line(0);
