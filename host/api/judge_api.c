@@ -18,6 +18,7 @@ struct whit_judge {
     struct hard_ray *rays;
     whit_ray *plain;
     struct rational_hit *exact;
+    bool by_walk; /* some answers are those of the walk in double */
 };
 
 /* ---- Rays ---- */
@@ -82,6 +83,8 @@ static whit_result find_answers(whit_judge *judge)
 {
     whit_result result =
         hard_trace_exact(&judge->hard, judge->rays, judge->count, judge->threads, judge->exact);
+    for (uint64_t i = 0; result == WHIT_OK && i < judge->count; ++i)
+        judge->by_walk = judge->by_walk || judge->exact[i].undecided;
     if (result == WHIT_OK)
         threads_for(judge->threads, (uint32_t)((judge->count + CHUNK - 1) / CHUNK), answer_chunk,
                     judge);
@@ -197,6 +200,9 @@ static whit_result measure_t(const whit_judge *judge, const whit_hit *hits, whit
 whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, const whit_hit *hits,
                             whit_judgement *out)
 {
+    /* `exact` promises of spheres what `watertight` does. */
+    if (judge->by_walk && numerics == WHIT_NUMERICS_EXACT)
+        numerics = WHIT_NUMERICS_WATERTIGHT;
     const struct hard_judgement judgement = {.hard = &judge->hard,
                                              .topology = &judge->topology,
                                              .rays = judge->rays,

@@ -680,7 +680,8 @@ typedef struct whit_judgement {
     uint64_t rays, hits; /* hits: exactly */
     uint64_t misses, false_hits, other_ids;
     uint64_t leaks; /* of misses, as in whit_hard_row */
-    uint64_t wrong; /* of misses, false hits and other ids: no bound of float errors excuses them */
+    uint64_t wrong; /* of misses, false hits and other ids: no bound of float errors excuses them;
+                       of `exact` all, but where rays came by spheres: then as of `watertight` */
     uint64_t non_finite; /* hits with a t, u or v that is no number */
     /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
        of hits nearer than 2^-20 of the origin's coordinates. */

@@ -18,10 +18,14 @@ struct render_request {
     double bailout; /* 0: every ray is traced */
     uint32_t light_samples, tile_size;
     bool no_shadows, opaque_shadows, schlick;
-    const char *effects;   /* NULL: auto */
-    struct cost_view view; /* instead of colours */
-    bool counters;         /* costs in --stats */
-    struct frames frames;  /* with them `output` and `ids` are patterns */
+    const char *effects; /* NULL: auto */
+    /* 0: not asked for; else settings are chosen (cost_choice.c), none may be given. */
+    double budget_ms, max_error;
+    bool has_shading;         /* some were given */
+    char chosen_effects[256]; /* that `effects` may point to */
+    struct cost_view view;    /* instead of colours */
+    bool counters;            /* costs in --stats */
+    struct frames frames;     /* with them `output` and `ids` are patterns */
 };
 
 /* ---- Options of pictures: what `render` and `view` share (picture.c) ---- */
@@ -91,8 +95,12 @@ whit_renderer_params picture_request_params(const struct render_request *request
                                             const struct job *job);
 
 /* From the scene to a renderer on a device; failures were said (render_command.c). */
-WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
+WHIT_CHECK whit_result render_prepare(struct job *job, struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
+
+/* Settings for budget_ms or max_error, by figures of `whit cost`, which are measured when none are
+   kept; says which (cost_choice.c). The device is open. WHIT_ERROR_FAILED: none does it. */
+WHIT_CHECK whit_result render_choose(struct job *job, struct render_request *request);
 
 /* Saves what `request` names of the picture just rendered (render_command.c). */
 whit_result render_save(const struct job *job, const struct render_request *request,

@@ -7,6 +7,7 @@ add_executable(whit_program
   app/bench_section.c app/bench_table.c app/hard_command.c app/hard_output.c app/compare_command.c
   app/probe_command.c app/probe_output.c
   app/cost_command.c app/cost_table.c app/cost_json.c app/cost_page.c app/cost_compare.c
+  app/cost_choice.c
   app/page.c app/plot.c
   app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c
   app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)

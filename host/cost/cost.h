@@ -131,6 +131,8 @@ struct cost_request {
    there is nothing. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
+/* Of a text (FNV-1a), for names of files in a cache. */
+uint64_t cost_hash(const char *text);
 
 /* ---- Answers (choose.c) ---- */
 

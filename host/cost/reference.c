@@ -32,8 +32,7 @@ static whit_renderer_params reference_params(const struct measure *measure, uint
     return params;
 }
 
-/* FNV-1a. */
-static uint64_t hash_text(const char *text)
+uint64_t cost_hash(const char *text)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
     for (; *text; ++text)
@@ -55,7 +54,7 @@ static char *kept_path(const struct measure *measure, const whit_renderer_params
     size_t bytes = strlen(folder) + 64;
     path = malloc(bytes);
     if (path)
-        snprintf(path, bytes, "%s/reference-%016" PRIx64 ".pfm", folder, hash_text(key));
+        snprintf(path, bytes, "%s/reference-%016" PRIx64 ".pfm", folder, cost_hash(key));
     return path;
 }
 

@@ -13,6 +13,10 @@ whit_result __real_whit_renderer_create(whit_device *device, whit_accel *accel,
                                         const whit_renderer_params *params, whit_renderer **out);
 whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
                                         const whit_renderer_params *params, whit_renderer **out);
+whit_result __real_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params);
+whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params);
 whit_result __real_whit_renderer_render(whit_renderer *renderer);
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer);
 whit_result __real_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
@@ -31,14 +35,27 @@ static bool is_wrong(const char *what)
     return wanted && strcmp(wanted, what) == 0;
 }
 
+static void note_depth(const whit_renderer *renderer, const whit_renderer_params *params)
+{
+    if (params->depth >= 16)
+        slow_one = renderer;
+    else if (slow_one == renderer)
+        slow_one = NULL;
+}
+
+whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params)
+{
+    note_depth(renderer, params);
+    return __real_whit_renderer_set_view(renderer, params);
+}
+
 whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
                                         const whit_renderer_params *params, whit_renderer **out)
 {
     whit_result result = __real_whit_renderer_create(device, accel, params, out);
-    if (result == WHIT_OK && params->depth >= 16)
-        slow_one = *out;
-    else if (slow_one == *out)
-        slow_one = NULL;
+    if (result == WHIT_OK)
+        note_depth(*out, params);
     if (result == WHIT_OK && params->schlick)
         schlick_one = *out;
     else if (schlick_one == *out)

@@ -1,0 +1,156 @@
+/* --budget-ms and --max-error: settings by what `whit cost` measures of this scene, size and
+   device, once; figures are kept in the user's cache folder. */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/cost.h"
+
+enum { KEPT_VERSION = 1, SAMPLES = 16 };
+/* Of the time: what is predicted is a median of some other minute. */
+static const double ROOM = 0.9;
+
+/* Of the figures; false: there is no such folder. */
+static bool kept_path(const struct job *job, const struct render_request *request, char *path,
+                      size_t path_bytes)
+{
+    char key[1024];
+    const struct picture *picture = &request->picture;
+    whit_device_info device;
+    whit_scene_info scene;
+    whit_device_get_info(job->device, &device);
+    whit_scene_get_info(job->scene, &scene);
+    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
+             WHIT_VERSION, scene.hash, picture->width, picture->height, job->time_s,
+             picture->camera ? picture->camera : "", device.name, device.driver);
+    char *folder = whit_cache_folder();
+    if (folder)
+        snprintf(path, path_bytes, "%s/cost-%016" PRIx64 ".json", folder, cost_hash(key));
+    free(folder);
+    return folder != NULL;
+}
+
+/* All that changes a picture: orders and builders are the user's. */
+static uint64_t shading_knobs(void)
+{
+    uint32_t count;
+    uint64_t bits = 0;
+    const struct knob *table = knob_table(&count);
+    for (uint32_t k = 0; k < count; ++k)
+        if (table[k].change == KNOB_SHADING)
+            bits |= UINT64_C(1) << k;
+    return bits;
+}
+
+static void on_progress(void *user, double done, double seconds_left, const char *what)
+{
+    (void)seconds_left;
+    (void)what;
+    cli_progress_update(user, done);
+}
+
+static whit_result measure(struct job *job, const struct render_request *request,
+                           struct cost_report **report)
+{
+    struct cli_progress progress;
+    char *cache = whit_cache_folder();
+    const struct cost_request wanted = {
+        .device = job->device,
+        .scene = job->scene,
+        .accel = job->accel,
+        .accel_params = job_accel_params(job),
+        .picture = picture_request_params(request, job),
+        .knobs = shading_knobs(),
+        .seconds = COST_SECONDS_QUICK,
+        .samples_most = SAMPLES,
+        .cache = cache,
+        .progress = on_progress,
+        .progress_user = &progress,
+        .hush = cli_hush,
+        .log = &cli_log,
+    };
+    if (!job->quiet)
+        cli_note("measuring what settings cost in this scene, once");
+    cli_progress_init(&progress, job->quiet);
+    whit_result result = cost_measure(&wanted, report);
+    cli_progress_finish(&progress);
+    free(cache);
+    return result;
+}
+
+/* As they are kept, or measured and then kept. The same figures give the same picture. */
+static whit_result find_figures(struct job *job, const struct render_request *request,
+                                struct cost_report *out)
+{
+    char path[4200];
+    bool has_path = kept_path(job, request, path, sizeof path);
+    struct cost_report *measured = NULL;
+    if (has_path && access(path, R_OK) == 0 && cost_load_json(path, true, out, NULL) &&
+        out->complete)
+        return WHIT_OK;
+    whit_result result = measure(job, request, &measured);
+    if (result == WHIT_OK) {
+        *out = *measured;
+        if (has_path)
+            result = cost_save_json(measured, job->scene_path, "whit render", path);
+    }
+    cost_report_destroy(measured);
+    return result;
+}
+
+static void take(const struct cost_choice *choice, struct job *job, struct render_request *request)
+{
+    struct knob_target target = {.picture = picture_request_params(request, job)};
+    cost_choice_apply(choice, &target);
+    request->picture.samples = target.picture.samples;
+    request->picture.adaptive = target.picture.adaptive;
+    request->picture.depth = target.picture.no_bounces ? 0 : target.picture.depth;
+    request->bailout = target.picture.bailout > 0.0 ? target.picture.bailout : 0.0;
+    request->light_samples = target.picture.light_samples;
+    request->schlick = target.picture.schlick;
+    request->opaque_shadows = target.picture.opaque_shadows;
+    request->no_shadows = target.picture.no_shadows;
+    if (target.picture.effects) {
+        snprintf(request->chosen_effects, sizeof request->chosen_effects, "%s", target.effects);
+        request->effects = request->chosen_effects;
+    }
+}
+
+static whit_result choose(const struct cost_report *report, struct job *job,
+                          struct render_request *request)
+{
+    bool within = request->budget_ms > 0.0;
+    char options[COST_NAME * 4];
+    const struct cost_goal goal = {
+        .kind = within ? COST_WITHIN : COST_UNDER,
+        .metric = COST_RMSE,
+        .limit = within ? ROOM * request->budget_ms : ROOM * request->max_error,
+    };
+    const struct cost_choice choice = cost_choose(report, &goal);
+    if (!choice.found) {
+        cli_error(within ? "no setting takes at most %.6g ms here"
+                         : "no setting has an error of at most %.6g here",
+                  within ? request->budget_ms : request->max_error);
+        return WHIT_ERROR_FAILED;
+    }
+    cost_choice_text(&choice, options, sizeof options);
+    cli_note("chosen: %s; predicted: %.1f ms, RMSE %.3g", options[0] ? options : "what is usual",
+             choice.ms, choice.error);
+    take(&choice, job, request);
+    return WHIT_OK;
+}
+
+whit_result render_choose(struct job *job, struct render_request *request)
+{
+    struct cost_report *report = calloc(1, sizeof *report);
+    if (!report) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    whit_result result = find_figures(job, request, report);
+    if (result == WHIT_OK)
+        result = choose(report, job, request);
+    free(report);
+    return result;
+}
