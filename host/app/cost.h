@@ -20,6 +20,9 @@ struct cost {
     struct cost_report *report;
 };
 
+/* cost_request.progress of a cli_progress. */
+void cost_on_progress(void *user, double done, double seconds_left, const char *what);
+
 /* Seconds that `whit cost` may take by itself, with --quick, and for `whit render`'s choices. */
 #define COST_SECONDS       150.0
 #define COST_SECONDS_QUICK 20.0

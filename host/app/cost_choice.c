@@ -43,13 +43,6 @@ static uint64_t shading_knobs(void)
     return bits;
 }
 
-static void on_progress(void *user, double done, double seconds_left, const char *what)
-{
-    (void)seconds_left;
-    (void)what;
-    cli_progress_update(user, done);
-}
-
 static whit_result measure(struct job *job, const struct render_request *request,
                            struct cost_report **report)
 {
@@ -65,7 +58,7 @@ static whit_result measure(struct job *job, const struct render_request *request
         .seconds = COST_SECONDS_QUICK,
         .samples_most = SAMPLES,
         .cache = cache,
-        .progress = on_progress,
+        .progress = cost_on_progress,
         .progress_user = &progress,
         .hush = cli_hush,
         .log = &cli_log,

@@ -188,7 +188,7 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
 
 /* ---- Work ---- */
 
-static void on_progress(void *user, double done, double seconds_left, const char *what)
+void cost_on_progress(void *user, double done, double seconds_left, const char *what)
 {
     (void)seconds_left;
     (void)what;
@@ -218,7 +218,7 @@ static whit_result find_out(struct cost *cost)
     request->picture = picture_params(&cost->picture, job);
     request->keep_pictures = cost->html != NULL;
     request->cache = cache;
-    request->progress = on_progress;
+    request->progress = cost_on_progress;
     request->progress_user = &cost->progress;
     request->hush = cli_hush;
     request->log = &cli_log;
