@@ -136,13 +136,21 @@ if command -v python3 >/dev/null; then
     # Nothing meets what a convex body reflects: 16 bounces are what 8 are.
     sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
     deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --samples 4 --spend 8"
-    # shellcheck disable=SC2086
-    run cost $deep --csv "$C"
-    export WHIT_TEST_WRONG=slow
-    # shellcheck disable=SC2086
-    run cost $deep --csv "$D"
-    unset WHIT_TEST_WRONG
-    right=$(value "$C" depth 16 ratio) slowed=$(value "$D" depth 16 ratio)
+    # What else goes on at that moment may be more than 10 %: then once or twice more.
+    for try in 1 2 3; do
+        # shellcheck disable=SC2086
+        run cost $deep --csv "$C"
+        export WHIT_TEST_WRONG=slow
+        # shellcheck disable=SC2086
+        run cost $deep --csv "$D"
+        unset WHIT_TEST_WRONG
+        right=$(value "$C" depth 16 ratio) slowed=$(value "$D" depth 16 ratio)
+        if holds "0.9 < $right < 1.1" && holds "0.05 < $slowed - $right < 0.15" &&
+            [ "$(value "$D" depth 16 verdict)" = 1 ] && [ "$(value "$D" depth 4 verdict)" != 1 ]; then
+            break
+        fi
+        echo "        try $try: x $right and x $slowed"
+    done
     check "16 bounces cost about what 8 do (x $right)" holds "0.9 < $right < 1.1"
     check "10 % more work is found (x $slowed)" test "$(value "$D" depth 16 verdict)" = 1
     check "about as much as it is" holds "0.05 < $slowed - $right < 0.15"
