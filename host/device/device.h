@@ -1,6 +1,7 @@
-/* All of Vulkan: devices, buffers, compute pipelines, submission. No Vulkan type leaves this
-   module, and nothing here knows what a triangle is. Vulkan 1.2, compute only, no extension
-   required. Not thread-safe: one thread per device at a time. */
+/* All of Vulkan: devices, buffers, compute pipelines, submission; windows in swapchain.h. No Vulkan
+   type leaves this module, only handles as pointers, and nothing here knows what a triangle is.
+   Vulkan 1.2; without a window compute only, and no extension required. Not thread-safe: one thread
+   per device at a time. */
 #ifndef DEVICE_DEVICE_H
 #define DEVICE_DEVICE_H
 

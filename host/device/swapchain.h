@@ -45,8 +45,8 @@ struct swapchain_info {
 };
 void swapchain_get_info(const struct swapchain *swapchain, struct swapchain_info *info);
 
-/* What draws over the picture, by VkHandles that are passed as pointers (see
-   swapchain_get_handles). `commands` is a VkCommandBuffer inside the render pass. */
+/* What draws over the picture; `commands` is a VkCommandBuffer inside the render pass of
+   swapchain_get_handles. */
 typedef void (*swapchain_draw)(void *user, void *commands);
 
 /* Shows the picture with what `draw` (may be NULL) puts over it. *shown: false where there was

@@ -75,7 +75,6 @@ struct view {
 
     struct engine_frame frame;
     struct engine_status status;
-    uint64_t change_seen;
     struct engine_probe probe; /* the picked pixel; number 0: none */
     bool picked;               /* its panel is open */
     bool focus;                /* look at it when it is there */
