@@ -49,6 +49,7 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     float z_error = 40.0f * UNIT * larger(fabsf(z_lo), fabsf(z_hi)) + TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
+    out->edge_error = edge_error;
     out->outside = below && above;
     out->inside = (all_below || all_above) && fabsf(det) < LARGE && fabsf(out->t) < LARGE &&
                   weights_error < 0.25f;

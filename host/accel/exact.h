@@ -12,7 +12,8 @@ struct exact_bounds {
     bool outside; /* surely missed */
     bool inside;  /* surely met, and t, u, v are good */
     float t, u, v;
-    float lo, hi; /* lo <= key <= hi if it is met */
+    float lo, hi;     /* lo <= key <= hi if it is met */
+    float edge_error; /* no edge function is off by more */
 };
 
 /* Vertices relative to the ray's origin, as for intersect_triangle. */

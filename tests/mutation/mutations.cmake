@@ -197,6 +197,13 @@ change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
+mutation(filter_with_half_its_bound accel_filter RED errors_stay_within_their_bounds)
+change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 2.0625f *]])
+change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
+
+mutation(filter_with_half_its_bound_in_kernels device_filter RED bounds_are_those_of_c)
+change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
+
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
 change(host/accel/exact.c [[float t_error = weights_error * (z_hi - z_lo) + z_error;]]
   [[float t_error = 0.0f * z_error;]])

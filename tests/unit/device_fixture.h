@@ -117,4 +117,27 @@ static inline void commands_finish(struct commands *commands)
     assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
 }
 
+/* Runs a kernel that has `count` cases in its first buffer and answers each in its second, 64 a
+   group. */
+static inline void kernel_answer(struct device *device, const uint32_t *spirv, size_t spirv_bytes,
+                                 uint32_t count, const void *cases, size_t case_bytes,
+                                 void *answers, size_t answer_bytes)
+{
+    struct buffer *in = buffer_make(device, count * case_bytes, BUFFER_STORAGE, "cases");
+    struct buffer *out = buffer_make(device, count * answer_bytes, BUFFER_STORAGE, "answers");
+    assert_int_equal(buffer_write(in, 0, cases, count * case_bytes), WHIT_OK);
+    const struct pipeline_params params = storage_params(spirv, spirv_bytes, 2, "answers");
+    struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_bind(commands, run.pipeline, run.set);
+    commands_dispatch(commands, (count + 63) / 64, 1, 1);
+    commands_finish(commands);
+    assert_int_equal(buffer_read(out, 0, answers, count * answer_bytes), WHIT_OK);
+    commands_destroy(commands);
+    kernel_free(&run);
+    buffer_destroy(in);
+    buffer_destroy(out);
+}
+
 #endif

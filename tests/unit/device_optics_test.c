@@ -73,22 +73,8 @@ static struct optics_case *add_angle(double angle, double eta)
 static void run_cases(void)
 {
     assert_true(count > 0);
-    struct buffer *in = buffer_make(device, count * sizeof *cases, BUFFER_STORAGE, "cases");
-    struct buffer *out = buffer_make(device, count * sizeof *answers, BUFFER_STORAGE, "answers");
-    assert_int_equal(buffer_write(in, 0, cases, count * sizeof *cases), WHIT_OK);
-    const struct pipeline_params params =
-        storage_params(device_optics, sizeof device_optics, 2, "optics");
-    struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
-    struct commands *commands = commands_make(device);
-    assert_int_equal(commands_begin(commands), WHIT_OK);
-    commands_bind(commands, run.pipeline, run.set);
-    commands_dispatch(commands, (count + 63) / 64, 1, 1);
-    commands_finish(commands);
-    assert_int_equal(buffer_read(out, 0, answers, count * sizeof *answers), WHIT_OK);
-    commands_destroy(commands);
-    kernel_free(&run);
-    buffer_destroy(in);
-    buffer_destroy(out);
+    kernel_answer(device, device_optics, sizeof device_optics, count, cases, sizeof *cases, answers,
+                  sizeof *answers);
 }
 
 /* --- oracles -------------------------------------------------------------------------------- */

@@ -1,0 +1,315 @@
+/* The filter of NUMERICS_EXACT where its floats are worst. Triangles and rays are climbed towards
+   the largest error that its bound allows for; quotients are off by up to 2.5 units in the last
+   place, as Vulkan allows. What is found is measured in fractions. */
+#include "hard_fixture.h"
+
+#include "fraction_fixture.h"
+
+enum { VERTICES = 3, STEPS_MOST = 5 };
+
+/* `steps`: of the three quotients of a ray, in floats, where 2.5 ulp let them go so far. */
+struct subject {
+    float at[15]; /* origin, direction, vertices */
+    int steps[3];
+};
+
+/* ---- What the filter says, of a device that divides as badly as it may ---- */
+
+struct view {
+    struct ray_setup ray;
+    struct vec3 origin, dir, v[VERTICES]; /* as given */
+    struct exact_bounds bounds;
+    float edge[VERTICES];
+};
+
+static float moved_quotient(float quotient, double exact, int steps)
+{
+    int exponent;
+    frexp(exact, &exponent);
+    float moved = quotient;
+    for (int i = 0; i < abs(steps); ++i)
+        moved = nextafterf(moved, steps < 0 ? -INFINITY : INFINITY);
+    double off = fabs((double)moved - exact);
+    return off <= 2.5 * ldexp(1.0, exponent - FLT_MANT_DIG) ? moved : quotient;
+}
+
+static void look_at(const struct subject *s, struct view *out)
+{
+    out->origin = vec3_load(s->at);
+    out->dir = vec3_load(s->at + 3);
+    struct ray_setup *ray = &out->ray;
+    *ray = make_ray_setup(out->origin, out->dir);
+    struct vec3 d = turn_dominant(ray, out->dir), relative[VERTICES], turned[VERTICES];
+    ray->shear.x = moved_quotient(ray->shear.x, (double)d.x / (double)d.z, s->steps[0]);
+    ray->shear.y = moved_quotient(ray->shear.y, (double)d.y / (double)d.z, s->steps[1]);
+    ray->shear.z = moved_quotient(ray->shear.z, 1.0 / (double)d.z, s->steps[2]);
+    bound_ray_setup(ray);
+    for (int i = 0; i < VERTICES; ++i) {
+        out->v[i] = vec3_load(s->at + 6 + 3 * i);
+        relative[i] = vec3_sub(out->v[i], out->origin);
+        turned[i] = turn_dominant(ray, relative[i]);
+    }
+    exact_filter(ray, relative[0], relative[1], relative[2], &out->bounds);
+    struct sheared sheared = shear_triangle(ray, turned[0], turned[1], turned[2]);
+    out->edge[0] = sheared.ea;
+    out->edge[1] = sheared.eb;
+    out->edge[2] = sheared.ec;
+}
+
+/* ---- What to climb: in double, which is sure to some 2^-40 of the bounds here ---- */
+
+enum aim {
+    EDGE_ERROR, /* of an edge function, of its bound */
+    WRONG_SIGN, /* what an edge function comes out as, on the other side of 0, of its bound */
+    T_ERROR,    /* of t, of half the interval of the key */
+};
+
+struct truth {
+    double edge[VERTICES], t;
+};
+
+static struct truth truth_in_double(const struct view *view)
+{
+    struct vec3 d = turn_dominant(&view->ray, view->dir);
+    struct vec3 o = turn_dominant(&view->ray, view->origin);
+    double x[VERTICES], y[VERTICES], z[VERTICES], sum = 0.0, weighted = 0.0;
+    struct truth truth;
+    for (int i = 0; i < VERTICES; ++i) {
+        struct vec3 v = turn_dominant(&view->ray, view->v[i]);
+        z[i] = (double)v.z - (double)o.z;
+        x[i] = (double)v.x - (double)o.x - (double)d.x / (double)d.z * z[i];
+        y[i] = (double)v.y - (double)o.y - (double)d.y / (double)d.z * z[i];
+    }
+    for (int i = 0; i < VERTICES; ++i) {
+        int j = (i + 1) % VERTICES, k = (i + 2) % VERTICES;
+        truth.edge[i] = x[k] * y[j] - y[k] * x[j];
+        sum += truth.edge[i];
+        weighted += truth.edge[i] * z[i];
+    }
+    truth.t = weighted / sum / (double)d.z;
+    return truth;
+}
+
+static double score_of(const struct subject *s, enum aim aim)
+{
+    struct view view;
+    look_at(s, &view);
+    struct truth truth = truth_in_double(&view);
+    if (aim == T_ERROR) {
+        double half = 0.5 * ((double)view.bounds.hi - (double)view.bounds.lo);
+        return view.bounds.inside ? fabs((double)view.bounds.t - truth.t) / half : -INFINITY;
+    }
+    double most = -INFINITY;
+    for (int i = 0; i < VERTICES; ++i) {
+        double error = fabs((double)view.edge[i] - truth.edge[i]);
+        most = fmax(most, aim == EDGE_ERROR ? error : error - fabs(truth.edge[i]));
+    }
+    return most / (double)view.bounds.edge_error;
+}
+
+static float either_sign(float x)
+{
+    return random_bits() % 2 ? x : -x;
+}
+
+/* Just above a power of two roundings are largest. */
+static float coordinate(void)
+{
+    uint32_t kind = random_bits() % 3;
+    float mantissa = random_bits() % 2 ? 1.0f : 1.0f + random_float();
+    return kind == 0   ? random_within(1.0f)
+           : kind == 1 ? either_sign(mantissa)
+                       : either_sign(ldexpf(mantissa, (int)(random_bits() % 6) - 3));
+}
+
+/* An edge right across a ray along a diagonal of space, as seen from far away for its size. Such
+   quotients are 1, where 2.5 ulp are most, and all errors of both ends may add up. */
+static void start_across(struct subject *s)
+{
+    float size = ldexpf(1.0f + random_float(), -6 - (int)(random_bits() % 6));
+    float away = 1.0f + ldexpf(random_float(), -(int)(random_bits() % 12));
+    for (int k = 0; k < 3; ++k) {
+        float sign = either_sign(1.0f);
+        s->at[k] = either_sign(ldexpf(random_float(), -24));
+        s->at[3 + k] = sign;
+        s->at[6 + k] = sign * (k < 2 ? away + size : away);
+        s->at[9 + k] = sign * (k < 2 ? away - size : away);
+        s->at[12 + k] = sign * (k < 2 ? away + random_within(size) : away);
+        s->steps[k] = random_bits() % 2 ? STEPS_MOST : -STEPS_MOST;
+    }
+}
+
+static void start_anywhere(struct subject *s)
+{
+    for (int i = 0; i < 15; ++i)
+        s->at[i] = coordinate();
+    for (int k = 0; k < 3; ++k)
+        s->steps[k] = (int)(random_bits() % (2 * STEPS_MOST + 1)) - STEPS_MOST;
+    if (random_bits() % 2) /* at the middle of the triangle */
+        for (int k = 0; k < 3; ++k)
+            s->at[3 + k] = (s->at[6 + k] + s->at[9 + k] + s->at[12 + k]) / 3.0f - s->at[k];
+}
+
+static void change_number(struct subject *s, int i)
+{
+    uint32_t bits, how = random_bits() % 8;
+    if (how == 0)
+        s->at[i] = -s->at[i];
+    else if (how == 1)
+        s->at[i] = either_sign(s->at[random_bits() % 15]);
+    else if (how == 2)
+        s->at[i] *= random_bits() % 2 ? 2.0f : 0.5f;
+    else if (how == 3)
+        s->at[i] = coordinate();
+    else { /* by floats */
+        uint32_t by = random_bits() % (1u << random_bits() % 23) + 1;
+        memcpy(&bits, &s->at[i], sizeof bits);
+        bits += random_bits() % 2 ? by : 0u - by;
+        memcpy(&s->at[i], &bits, sizeof bits);
+    }
+    float size = fabsf(s->at[i]); /* within which double is enough */
+    if (!(size >= 0x1p-40f && size <= 16.0f))
+        s->at[i] = either_sign(1.0f);
+}
+
+static struct subject changed(const struct subject *s, bool ieee)
+{
+    struct subject other = *s;
+    for (uint32_t n = random_bits() % 3 + 1; n > 0; --n) {
+        uint32_t i = random_bits() % 18;
+        if (i < 15)
+            change_number(&other, (int)i);
+        else if (!ieee)
+            other.steps[i - 15] = (int)(random_bits() % (2 * STEPS_MOST + 1)) - STEPS_MOST;
+    }
+    return other;
+}
+
+static void climb(struct subject *s, enum aim aim, bool ieee, uint32_t steps)
+{
+    double score = score_of(s, aim);
+    for (uint32_t i = 0; i < steps; ++i) {
+        struct subject other = changed(s, ieee);
+        double there = score_of(&other, aim);
+        if (there >= score) {
+            *s = other;
+            score = there;
+        }
+    }
+}
+
+/* ---- What was found, in fractions ---- */
+
+/* The edge functions of the triangle as it is given, in the filter's own units: of vertices p and q
+   relative to the origin, d.(p x q) / d.z, z being the dominant axis. */
+static void edges_in_fractions(const struct view *view, mpq_t edge[VERTICES])
+{
+    mpq_t p[VERTICES][3], d[3], o[3];
+    for (int k = 0; k < 3; ++k)
+        mpq_inits(p[0][k], p[1][k], p[2][k], d[k], o[k], NULL);
+    set_vector(d, turn_dominant(&view->ray, view->dir));
+    set_vector(o, turn_dominant(&view->ray, view->origin));
+    for (int i = 0; i < VERTICES; ++i) {
+        set_vector(p[i], turn_dominant(&view->ray, view->v[i]));
+        for (int k = 0; k < 3; ++k)
+            mpq_sub(p[i][k], p[i][k], o[k]);
+    }
+    for (int i = 0; i < VERTICES; ++i) {
+        set_triple(edge[i], d, p[(i + 2) % VERTICES], p[(i + 1) % VERTICES]);
+        mpq_div(edge[i], edge[i], d[2]);
+    }
+    for (int k = 0; k < 3; ++k)
+        mpq_clears(p[0][k], p[1][k], p[2][k], d[k], o[k], NULL);
+}
+
+/* The largest error of an edge function, of its bound. */
+static double worst_edge(const struct view *view)
+{
+    mpq_t edge[VERTICES], computed;
+    double most = 0.0;
+    mpq_inits(edge[0], edge[1], edge[2], computed, NULL);
+    edges_in_fractions(view, edge);
+    for (int i = 0; i < VERTICES; ++i) {
+        mpq_set_d(computed, (double)view->edge[i]);
+        mpq_sub(computed, computed, edge[i]);
+        most = fmax(most, fabs(mpq_get_d(computed)));
+    }
+    mpq_clears(edge[0], edge[1], edge[2], computed, NULL);
+    return most / (double)view->bounds.edge_error;
+}
+
+/* Whether the filter is sure of what is not so. */
+static bool is_wrong(struct rational *rational, const struct view *view)
+{
+    const struct exact_bounds *said = &view->bounds;
+    float key = NAN;
+    bool met = rational_meet(rational, view->origin, view->dir, view->v, &key, NULL);
+    return (said->outside && met) || (said->inside && !met) ||
+           (met && !(said->lo <= key && key <= said->hi));
+}
+
+struct search {
+    const char *name;
+    enum aim aim;
+    bool across, ieee;
+    double at_least; /* what the search must come to, or it shows nothing */
+};
+
+static void hunt(const struct search *search, struct rational *rational)
+{
+    enum { CLIMBS = 60, CLIMB_STEPS = 20000 };
+    uint32_t wrong = 0, beyond = 0;
+    double most_edge = 0.0, most = 0.0;
+    random_state = 1;
+    for (int i = 0; i < CLIMBS; ++i) {
+        struct subject s;
+        struct view view;
+        if (search->across)
+            start_across(&s);
+        else
+            start_anywhere(&s);
+        if (search->ieee)
+            memset(s.steps, 0, sizeof s.steps);
+        if (search->aim == WRONG_SIGN)
+            climb(&s, EDGE_ERROR, search->ieee, CLIMB_STEPS);
+        climb(&s, search->aim, search->ieee, CLIMB_STEPS);
+        look_at(&s, &view);
+        double edge = worst_edge(&view);
+        most_edge = fmax(most_edge, edge);
+        most = fmax(most, score_of(&s, search->aim));
+        beyond += edge > 1.0;
+        wrong += is_wrong(rational, &view);
+    }
+    print_message(
+        "%-36s %u errors beyond their bounds, %u wrong answers at the ends of %d climbs of "
+        "%d steps; at most %.3f of the bound, edges %.3f\n",
+        search->name, beyond, wrong, (int)CLIMBS, (int)CLIMB_STEPS, most, most_edge);
+    assert_int_equal(beyond, 0);
+    assert_int_equal(wrong, 0);
+    assert_true(most >= search->at_least && most <= 1.0);
+}
+
+static void errors_stay_within_their_bounds(void **state)
+{
+    (void)state;
+    static const struct search searches[] = {
+        {"edge functions", EDGE_ERROR, true, false, 0.55},
+        {"edge functions of any ray", EDGE_ERROR, false, false, 0.25},
+        {"edge functions, quotients of IEEE", EDGE_ERROR, true, true, 0.2},
+        {"signs of edge functions", WRONG_SIGN, true, false, 0.55},
+        {"t", T_ERROR, false, false, 0.2},
+    };
+    struct rational *rational = rational_create(NULL);
+    assert_non_null(rational);
+    for (size_t i = 0; i < sizeof searches / sizeof *searches; ++i)
+        hunt(&searches[i], rational);
+    rational_destroy(rational);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_stay_within_their_bounds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
