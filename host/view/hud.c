@@ -7,7 +7,8 @@
 #include "view/view_private.h"
 
 static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
-                      COLOR_GOOD = 0xFFD0E090u;
+                      COLOR_GOOD = 0xFFD0E090u, COLOR_TEXT = 0xFFFFFFFFu;
+static const float ROOM_FOR_BOTH = 400.0f; /* pixels, of figures and a panel below them */
 
 static double traced_rays(const whit_stats *s)
 {
@@ -42,7 +43,8 @@ static void draw_figures(const struct view *view)
     char fps[24] = "still";
     if (view->rate.fps > 0.0 && view_is_moving(view, clock_ms()))
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
-    ui_text("%9s  render %.2f ms  present %.2f ms", fps, ms, chain.present_ms);
+    ui_text("%9s  render %.2f ms", fps, ms);
+    ui_text_beside(COLOR_TEXT, " present %.2f ms", chain.present_ms);
     ui_text("%.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
     if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
         const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];
@@ -103,8 +105,7 @@ static void draw_change(const struct view *view)
     ui_text("%.2f -> %.2f ms", c->before_ms, c->after_ms);
     ui_text_color(c->other_ids ? COLOR_WARNING : COLOR_GOOD, "%llu of %llu pixels changed",
                   (unsigned long long)c->other_ids, (unsigned long long)c->pixels);
-    ui_same_line(0);
-    ui_text("what they hit,");
+    ui_text_beside(COLOR_TEXT, "what they hit,");
     if (c->other_colors > 0)
         ui_text("%llu colours by up to %.3g, %.2g on average", (unsigned long long)c->other_colors,
                 c->largest, c->mean);
@@ -112,48 +113,118 @@ static void draw_change(const struct view *view)
         ui_text("0 colours");
 }
 
+/* Whether there is no room for figures beside much else. */
+static bool is_low(const struct view *view)
+{
+    return (float)view->settings.picture.height < ROOM_FOR_BOTH * ui_scale(view->ui);
+}
+
+static bool holds_panel(const struct view *view)
+{
+    return view->panels.settings || view->panels.effects;
+}
+
 static void draw_hud(const struct view *view)
 {
-    if (view->hud == HUD_OFF || view->frame.number == 0)
+    bool costs = view->frame.settings.paint != VIEW_PAINT_COLOR;
+    bool busy = costs || view->compare.mode != COMPARE_OFF;
+    if (view->hud == HUD_OFF || view->frame.number == 0 || (is_low(view) && holds_panel(view)))
         return;
-    if (ui_panel_begin("figures", 0.0f, 0.0f, UI_PANEL_PLAIN)) {
+    if (ui_panel_begin("figures", 0.0f, 0.0f,
+                       view->hud == HUD_FULL ? UI_PANEL_STAYS : UI_PANEL_PLAIN)) {
         draw_figures(view);
         draw_names(view);
         draw_quality(view);
         if (view->hud == HUD_FULL)
             draw_more(view);
-        draw_change(view);
+        if (!(is_low(view) && busy))
+            draw_change(view);
     }
     ui_panel_end();
 }
 
+/* Keys, what they do and their state, once or twice across the window; the widths in characters.
+ */
+enum {
+    SHEET_CELLS = 3,
+    SHEET_KEYS = 10,
+    SHEET_NAME = 23,
+    SHEET_STATE = 22,
+    SHEET_STATE_LEAST = 11
+};
+
+static int lay_out_sheet(int widths[2 * SHEET_CELLS])
+{
+    const int least = SHEET_KEYS + 16 + SHEET_STATE_LEAST;
+    int groups = ui_characters(2 * SHEET_CELLS) >= 2 * least ? 2 : 1;
+    int room = ui_characters(groups * SHEET_CELLS) / groups - SHEET_KEYS;
+    int state = room - SHEET_NAME;
+    state = state < SHEET_STATE_LEAST ? SHEET_STATE_LEAST
+            : state < SHEET_STATE     ? state
+                                      : SHEET_STATE;
+    int name = room - state < SHEET_NAME ? room - state : SHEET_NAME;
+    for (int i = 0; i < groups; ++i) {
+        widths[i * SHEET_CELLS] = SHEET_KEYS;
+        widths[i * SHEET_CELLS + 1] = name;
+        widths[i * SHEET_CELLS + 2] = state;
+    }
+    return groups;
+}
+
+static void draw_key(const struct view *view, const struct key_binding *key)
+{
+    char state[VIEW_TEXT] = "";
+    if (key && key->state)
+        key->state(view, state, sizeof state);
+    ui_cell(COLOR_GOOD, key ? key->keys : "");
+    ui_cell(COLOR_TEXT, !key ? "" : key->title ? key->title : key->name);
+    ui_cell(0xFFA0A0A0u, state);
+}
+
+static void draw_keys(const struct view *view)
+{
+    const struct key_binding *rows[KEYS_MOST];
+    uint32_t count, told = 0;
+    int widths[2 * SHEET_CELLS], groups = lay_out_sheet(widths);
+    const struct key_binding *keys = key_bindings(&count);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (keys[i].keys)
+            rows[told++] = &keys[i];
+    }
+    if (!ui_table_begin("keys", groups * SHEET_CELLS))
+        return;
+    ui_table_widths(widths, groups * SHEET_CELLS);
+    uint32_t high = (told + (uint32_t)groups - 1) / (uint32_t)groups;
+    for (uint32_t i = 0; i < high; ++i) {
+        for (uint32_t at = i; at < high * (uint32_t)groups; at += high)
+            draw_key(view, at < told ? rows[at] : NULL);
+    }
+    ui_table_end();
+}
+
 static void draw_help(struct view *view)
 {
-    uint32_t count;
-    const struct key_binding *keys = key_bindings(&count);
+    static const char *const mouse[][2] = {
+        {"left", "drag: around; click: what is there"},
+        {"right", "drag: look; held with W A S D Q E: fly"},
+        {"middle", "drag: aside"},
+        {"wheel", "nearer"},
+        {"drop", "open a file; a .view: its settings"},
+    };
+    const int widths[2] = {SHEET_KEYS,
+                           ui_characters(2) - SHEET_KEYS < 38 ? ui_characters(2) - SHEET_KEYS : 38};
     if (!view->help)
         return;
-    bool narrow = (float)view->settings.picture.width < 800.0f * ui_scale(view->ui);
-    int name_most = narrow ? 19 : 40, state_most = narrow ? 12 : 28;
     if (ui_panel_begin("Keys", 0.5f, 0.0f, UI_PANEL_HOLD)) {
-        if (ui_table_begin("keys", 6)) {
-            uint32_t rows = (count + 1) / 2;
-            for (uint32_t i = 0; i < 2 * rows; ++i) {
-                uint32_t at = i / 2 + (i % 2) * rows;
-                char state[VIEW_TEXT] = "";
-                if (at < count && keys[at].state)
-                    keys[at].state(view, state, sizeof state);
-                ui_table_next();
-                ui_text_color(COLOR_GOOD, "%s", at < count ? keys[at].keys : "");
-                ui_table_next();
-                ui_text("%.*s", name_most, at < count ? keys[at].name : "");
-                ui_table_next();
-                ui_text_dim("%.*s", state_most, state);
+        draw_keys(view);
+        if (ui_table_begin("mouse", 2)) {
+            ui_table_widths(widths, 2);
+            for (size_t i = 0; i < sizeof mouse / sizeof *mouse; ++i) {
+                ui_cell(COLOR_GOOD, mouse[i][0]);
+                ui_cell(COLOR_TEXT, mouse[i][1]);
             }
             ui_table_end();
         }
-        ui_text("left drag: around   right drag: look, with WASD QE fly   middle drag: aside");
-        ui_text("wheel: nearer   click: what is there   drop a file: open it, a .view load it");
     }
     ui_panel_end();
 }
@@ -178,11 +249,11 @@ static void draw_messages(const struct view *view)
     bool hint = view->hint && view->params->hint;
     if (!toast && !error && !hint)
         return;
-    if (ui_panel_begin("messages", 0.0f, 1.0f, (enum ui_panel)(UI_PANEL_PLAIN | UI_PANEL_WIDE))) {
+    if (ui_panel_begin("messages", 0.0f, 1.0f, UI_PANEL_STAYS)) {
         if (error)
             ui_text_color(COLOR_ERROR, "%s", view->status.error);
         if (toast)
-            ui_text_color(0xFFFFFFFFu, "%s", view->toast);
+            ui_text_color(COLOR_TEXT, "%s", view->toast);
         if (hint)
             ui_text_color(COLOR_GOOD, "%s", view->params->hint);
     }
@@ -231,7 +302,7 @@ static void draw_legends(const struct view *view)
     }
 }
 
-/* What comes first stays where it is; what comes later gives way. */
+/* What comes first stays where it is; what comes later gives way, or is left out. */
 void hud_draw(struct view *view)
 {
     if (view->help) {
@@ -240,12 +311,15 @@ void hud_draw(struct view *view)
         return;
     }
     pick_draw(view);
+    draw_messages(view);
+    if (is_low(view))
+        panels_draw(view);
+    draw_work(view);
+    draw_hud(view);
     compare_draw(view);
     draw_legends(view);
-    draw_messages(view);
-    draw_work(view);
     draw_boxes(view);
-    draw_hud(view);
     price_draw(view);
-    panels_draw(view);
+    if (!is_low(view))
+        panels_draw(view);
 }

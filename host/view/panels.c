@@ -218,6 +218,12 @@ static void draw_price(const struct effect_price *price, bool can)
     }
 }
 
+/* In a narrow window effects are told without. */
+static bool say_reasons(void)
+{
+    return ui_characters(3) >= 70;
+}
+
 static void draw_effect(struct view *view, uint32_t index)
 {
     whit_effect_info info;
@@ -234,6 +240,8 @@ static void draw_effect(struct view *view, uint32_t index)
     }
     ui_table_next();
     draw_price(&view->panels.prices[index], can);
+    if (!say_reasons())
+        return;
     ui_table_next();
     if (info.called)
         ui_text("%.60s", info.reason);
@@ -248,8 +256,9 @@ static void draw_effects(struct view *view)
         return;
     if (ui_panel_begin("Effects", 0.0f, 0.0f, UI_PANEL_HOLD)) {
         ui_text("--effects %s", view->settings.effects[0] ? view->settings.effects : "auto");
-        if (ui_table_begin("effects", 3)) {
-            ui_table_header(titles, 3);
+        int columns = say_reasons() ? 3 : 2;
+        if (ui_table_begin("effects", columns)) {
+            ui_table_header(titles, columns);
             for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i)
                 draw_effect(view, i);
             ui_table_end();

@@ -114,16 +114,19 @@ static json_t *items_json(void)
     return object;
 }
 
-static json_t *panels_json(void)
+/* Of all, or of those that are cut. */
+static json_t *panels_json(bool all)
 {
     json_t *object = json_object();
     const char *title;
     float at[4];
-    for (uint32_t i = 0; ui_panel(i, &title, at); ++i) {
+    bool cut;
+    for (uint32_t i = 0; ui_panel(i, &title, at, &cut); ++i) {
         char text[96];
         snprintf(text, sizeof text, "%.0f %.0f %.0f %.0f", (double)at[0], (double)at[1],
                  (double)at[2], (double)at[3]);
-        put_text(object, title, text);
+        if (all || cut)
+            put_text(object, title, text);
     }
     return object;
 }
@@ -251,7 +254,8 @@ void state_print(struct view *view, const char *name, FILE *to)
     put_number(root, "fps_goal", view->panels.fps_goal);
     json_object_set_new(root, "compare", compare_json(view));
     json_object_set_new(root, "items", items_json());
-    json_object_set_new(root, "panels", panels_json());
+    json_object_set_new(root, "panels", panels_json(true));
+    json_object_set_new(root, "cut_panels", panels_json(false));
     json_object_set_new(root, "prices", prices_json(view));
     json_object_set_new(root, "price_list", price_list_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));

@@ -31,6 +31,7 @@ struct panel {
     char title[32];
     ImVec2 size, at; // of the last frame it was in
     int frame;       // that one
+    bool cut;        // some of it is beyond its right side
 };
 
 // Of this frame those that were ended are obstacles for the next ones.
@@ -38,7 +39,7 @@ static struct {
     panel panels[PANELS_MOST];
     int count, frame, current;
     int obstacles[PANELS_MOST], obstacle_count;
-    bool changed;
+    bool changed, wraps;
     int again;
 } layout;
 
@@ -79,10 +80,23 @@ static const panel *obstacle_of(const ImVec2 &at, const ImVec2 &size)
     return nullptr;
 }
 
-// From its corner away from the window's edge, until it covers none of those before.
-static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y)
+static float inside()
 {
-    const ImVec2 anchor = at;
+    return 10.0f * line_scale;
+}
+
+// Of a panel, at most.
+static float panel_width()
+{
+    return ImGui::GetIO().DisplaySize.x - 2.0f * inside();
+}
+
+// Where panels are that have no room.
+static const ImVec2 NOWHERE(-1e5f, -1e5f);
+
+// From its corner away from the window's edge, until it covers none of those before.
+static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &otherwise)
+{
     float height = ImGui::GetIO().DisplaySize.y;
     for (int turn = 0; turn < PANELS_MOST && y != 0.5f; ++turn) {
         const panel *other = obstacle_of(at, size);
@@ -91,7 +105,7 @@ static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y)
         at.y = y < 0.5f ? other->at.y + other->size.y + gap() : other->at.y - gap() - size.y;
     }
     bool outside = at.y < 0.0f || at.y + size.y > height;
-    return outside ? anchor : at; // there is no room: the window is small
+    return outside ? otherwise : at; // there is no room: the window is small
 }
 
 // Down to what stands below.
@@ -116,8 +130,9 @@ static void note_panel(int index)
     layout.changed |= !same || p.frame != layout.frame - 1;
     p.size = size;
     p.at = at;
+    p.cut = ImGui::GetScrollMaxX() > 0.0f;
     p.frame = layout.frame;
-    if (layout.obstacle_count < PANELS_MOST)
+    if (layout.obstacle_count < PANELS_MOST && at.x > NOWHERE.x)
         layout.obstacles[layout.obstacle_count++] = index;
 }
 
@@ -324,59 +339,64 @@ void ui_draw(void *, void *commands)
 static void place(float x, float y, ImGuiCond when)
 {
     ImVec2 window = ImGui::GetIO().DisplaySize;
-    float inside = 10.0f * line_scale;
-    ImGui::SetNextWindowPos(
-        ImVec2(inside + x * (window.x - 2.0f * inside), inside + y * (window.y - 2.0f * inside)),
-        when, ImVec2(x, y));
+    ImGui::SetNextWindowPos(ImVec2(inside() + x * (window.x - 2.0f * inside()),
+                                   inside() + y * (window.y - 2.0f * inside())),
+                            when, ImVec2(x, y));
+}
+
+// Beside those that were begun before; what says nothing new gives way to them altogether.
+static void place_beside(const ImVec2 &size, float x, float y, enum ui_panel kind)
+{
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const ImVec2 anchor(inside() + x * (window.x - 2.0f * inside() - size.x),
+                        inside() + y * (window.y - 2.0f * inside() - size.y));
+    bool stays = (kind & (UI_PANEL_HOLD | UI_PANEL_STAYS)) != 0;
+    ImVec2 at = free_place(anchor, kind & UI_PANEL_HOLD ? ImVec2(size.x, 0.0f) : size, y,
+                           stays ? anchor : NOWHERE);
+    float height = kind & UI_PANEL_HOLD ? room_below(at, size.x) : 1e6f;
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f), ImVec2(panel_width(), height));
 }
 
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
 {
     int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
-                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
-    layout.current = -1;
-    if (kind & UI_PANEL_TITLE) {
-        place(x, y, ImGuiCond_Appearing);
-    } else {
-        layout.current = find_panel(title);
-        const ImVec2 size = layout.panels[layout.current].size, window = ImGui::GetIO().DisplaySize;
-        float inside = 10.0f * line_scale;
-        ImVec2 at(inside + x * (window.x - 2.0f * inside - size.x),
-                  inside + y * (window.y - 2.0f * inside - size.y));
-        at = free_place(at, kind & UI_PANEL_HOLD ? ImVec2(size.x, 0.0f) : size, y);
-        ImGui::SetNextWindowPos(at);
-        if (kind & UI_PANEL_HOLD) {
-            flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse;
-            ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
-                                                ImVec2(window.x, room_below(at, size.x)));
-        } else {
-            flags |=
-                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs;
-        }
-    }
-    if (kind & UI_PANEL_WIDE)
-        ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f),
-                                            ImVec2(ImGui::GetIO().DisplaySize.x * 0.9f, 1e6f));
-    return ImGui::Begin(title, nullptr, flags);
+                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
+                ImGuiWindowFlags_NoMove;
+    flags |= kind & UI_PANEL_HOLD
+                 ? ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_HorizontalScrollbar
+                 : ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs;
+    layout.current = find_panel(title);
+    place_beside(layout.panels[layout.current].size, x, y, kind);
+    layout.wraps = !(kind & UI_PANEL_HOLD);
+    bool open = ImGui::Begin(title, nullptr, flags);
+    if (layout.wraps)
+        ImGui::PushTextWrapPos(panel_width() - ImGui::GetStyle().WindowPadding.x);
+    return open;
 }
 
 bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open)
 {
-    int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                ImGuiWindowFlags_HorizontalScrollbar;
     layout.current = find_panel(title);
+    layout.wraps = false;
     place(x, y, ImGuiCond_Appearing);
     ImVec2 window = ImGui::GetIO().DisplaySize;
-    float w = width * line_scale, h = height * line_scale;
-    ImGui::SetNextWindowSize(ImVec2(w < window.x ? w : window.x, h < window.y ? h : window.y),
+    float w = width * line_scale, h = height * line_scale, high = window.y - 2.0f * inside();
+    ImGui::SetNextWindowSize(ImVec2(w < panel_width() ? w : panel_width(), h < high ? h : high),
                              ImGuiCond_Appearing);
+    ImGui::SetNextWindowContentSize(ImVec2(
+        w - 2.0f * ImGui::GetStyle().WindowPadding.x - ImGui::GetStyle().ScrollbarSize, 0.0f));
     return ImGui::Begin(title, open, flags);
 }
 
 void ui_panel_end(void)
 {
-    if (layout.current >= 0)
-        note_panel(layout.current);
-    layout.current = -1;
+    if (layout.wraps)
+        ImGui::PopTextWrapPos();
+    layout.wraps = false;
+    note_panel(layout.current);
     ImGui::End();
 }
 
@@ -401,11 +421,33 @@ void ui_text_color(uint32_t color, const char *format, ...)
     va_list args;
     va_start(args, format);
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.9f);
     ImGui::TextV(format, args);
-    ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
     va_end(args);
+}
+
+void ui_text_beside(uint32_t color, const char *format, ...)
+{
+    char text[256];
+    va_list args;
+    va_start(args, format);
+    std::vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x +
+                ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(text).x;
+    if (end <= panel_width() - ImGui::GetStyle().WindowPadding.x)
+        ImGui::SameLine();
+    ui_text_color(color, "%s", text);
+}
+
+void ui_cell(uint32_t color, const char *text)
+{
+    ImGui::TableNextColumn();
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(0.0f); // the cell's right side
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
 }
 
 void ui_separator(void)
@@ -435,13 +477,14 @@ bool ui_checkbox(const char *label, bool *value)
     return noted(ImGui::Checkbox(label, value), label);
 }
 
-bool ui_panel(uint32_t index, const char **title, float rectangle[4])
+bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut)
 {
     if (index >= (uint32_t)layout.obstacle_count)
         return false;
     const panel &p = layout.panels[layout.obstacles[index]];
     const float sides[4] = {p.at.x, p.at.y, p.at.x + p.size.x, p.at.y + p.size.y};
     *title = p.title;
+    *cut = p.cut;
     std::memcpy(rectangle, sides, sizeof sides);
     return true;
 }
@@ -528,7 +571,27 @@ bool ui_table_begin(const char *id, int columns)
 {
     return ImGui::BeginTable(id, columns,
                              ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                 ImGuiTableFlags_SizingFixedFit);
+                                 ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX);
+}
+
+static float character_width()
+{
+    return ImGui::CalcTextSize("0").x;
+}
+
+int ui_characters(int columns)
+{
+    const ImGuiStyle &style = ImGui::GetStyle();
+    float room = panel_width() - 2.0f * style.WindowPadding.x - style.ScrollbarSize -
+                 (float)columns * (2.0f * style.CellPadding.x + 1.0f);
+    return (int)(room / character_width());
+}
+
+void ui_table_widths(const int *characters, int count)
+{
+    for (int i = 0; i < count; ++i)
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
+                                (float)characters[i] * character_width() + 1.0f);
 }
 
 void ui_table_header(const char *const *names, int count)

@@ -53,20 +53,20 @@ float ui_scale(const struct ui *ui);
 /* Where the middle of a button or other thing to click was drawn in the last frame, by its label
    up to "##", for tests; false past the last one. */
 bool ui_item(uint32_t index, const char **label, float *x, float *y);
-/* Where the panels of the last frame were: left, top, right, bottom; likewise. */
-bool ui_panel(uint32_t index, const char **title, float rectangle[4]);
+/* Where the panels of the last frame were: left, top, right, bottom; likewise. *cut: one has to
+   scroll sideways to see all of it. */
+bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut);
 /* A swapchain_draw: what was drawn since the last ui_begin. */
 void ui_draw(void *ui, void *commands);
 
 /* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
    inside, and beside those that were begun before it: further down where y is 0, up where it is 1.
-   False when it is folded: end it all the same. */
+   It cannot be moved. Where there is no room beside them it is not seen; nor in ui_panel. */
 enum ui_panel {
-    UI_PANEL_PLAIN = 0, /* no title, cannot be moved, lets the mouse through */
-    UI_PANEL_TITLE = 1, /* with a title, can be moved */
-    UI_PANEL_WIDE = 2,  /* with room for long lines */
-    UI_PANEL_HOLD = 4,  /* with a title, takes the mouse, cannot be moved, scrolls where the window
-                           is too low */
+    UI_PANEL_PLAIN = 0, /* no title, lets the mouse through; text that is too long is wrapped */
+    UI_PANEL_STAYS = 1, /* is seen all the same */
+    UI_PANEL_HOLD = 2,  /* likewise; with a title, takes the mouse, scrolls where the window is
+                           too small */
 };
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
 /* The same with a cross that sets *open to false. */
@@ -76,6 +76,8 @@ void ui_panel_end(void);
 void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_color(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
+/* On the line of what stands before where that has room for it, else on the next one. */
+void ui_text_beside(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
 void ui_separator(void);
 void ui_same_line(float x); /* 0: right behind; else from the panel's left, in characters */
 bool ui_button(const char *label);
@@ -92,6 +94,10 @@ void ui_tree_end(void);
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
+/* Instead of a header: how wide columns are, text that is longer is wrapped by ui_cell. */
+void ui_table_widths(const int *characters, int count);
+void ui_cell(uint32_t color, const char *text); /* ui_table_next and a text */
+int ui_characters(int columns); /* that so many columns across the window have room for */
 void ui_table_header(const char *const *names, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);

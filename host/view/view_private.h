@@ -159,8 +159,9 @@ bool input_step(struct view *view, double now_ms);
 struct key_binding {
     int key;
     unsigned mods;
-    const char *keys; /* as the cheat sheet says it */
-    const char *name;
+    const char *keys;  /* as the cheat sheet says them; NULL: they are in another row of it */
+    const char *title; /* what it says of them; NULL: the name */
+    const char *name;  /* of the state */
     void (*act)(struct view *view);
     void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: none */
 };
