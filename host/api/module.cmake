@@ -16,7 +16,9 @@ target_link_libraries(whit
   PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP Vulkan::Vulkan
     SPIRV-Tools-opt stdc++ Threads::Threads m)
 
-set(public_headers api/whit.h base/whit_base.h)
+set(public_headers api/whit.h api/whit_accel.h api/whit_compare.h api/whit_device.h api/whit_file.h
+  api/whit_hard.h api/whit_image.h api/whit_probe.h api/whit_reference.h api/whit_renderer.h
+  api/whit_scene.h api/whit_types.h base/whit_base.h)
 foreach(header ${public_headers})
   get_filename_component(name ${header} NAME)
   configure_file(${header} ${PROJECT_BINARY_DIR}/include/whit/${name} COPYONLY)

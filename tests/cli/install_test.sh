@@ -7,8 +7,10 @@ SOURCE=$3
 OUT=$(mktemp -d)
 trap 'rm -rf "$OUT"' EXIT
 "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix" >"$OUT/log" 2>&1 || { cat "$OUT/log"; exit 1; }
-for file in bin/whit include/whit/whit.h include/whit/whit_base.h; do
-    test -s "$OUT/prefix/$file" && echo "ok      $file is installed"
+headers=$(cd "$SOURCE/host" && ls api/whit*.h base/whit_base.h)
+for file in bin/whit $(echo "$headers" | sed 's,.*/,include/whit/,'); do
+    test -s "$OUT/prefix/$file" || { echo "FAILED  $file is not installed"; exit 1; }
+    echo "ok      $file is installed"
 done
 "$CMAKE" -S "$SOURCE/tests/example" -B "$OUT/build" -DCMAKE_PREFIX_PATH="$OUT/prefix" \
     ${CFLAGS_EXTRA:+"-DCMAKE_C_FLAGS=$CFLAGS_EXTRA"} >"$OUT/log" 2>&1 &&

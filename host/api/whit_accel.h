@@ -1,0 +1,93 @@
+/* Part of whit.h: trees over scenes. */
+#ifndef WHIT_ACCEL_H
+#define WHIT_ACCEL_H
+
+#include "whit_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum whit_build {
+    WHIT_BUILD_BINNED = 0,  /* surface area heuristic over equal bins */
+    WHIT_BUILD_MEDIAN,      /* halves */
+    WHIT_BUILD_SWEEP,       /* surface area heuristic over every position */
+    WHIT_BUILD_SPATIAL,     /* splits space too, which may put a triangle in several leaves */
+    WHIT_BUILD_SWEEP_NAIVE, /* the tree of SWEEP in quadratic time, for comparison */
+    WHIT_BUILD_NONE,        /* no tree: rays test every triangle */
+} whit_build;
+
+typedef struct whit_accel_params {
+    whit_build build;
+    bool optimize;                       /* improve the finished trees by reinsertion */
+    uint32_t bins;                       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
+    uint32_t leaf_limit;                 /* triangles in a leaf, 1..15; 0: 4 */
+    float spatial_alpha, spatial_budget; /* of WHIT_BUILD_SPATIAL: see docs/cli.md; 0: defaults;
+                                            budget < 0: none */
+    uint32_t threads;                    /* 0: one a core; never changes the tree */
+    whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
+    bool instance_refit;       /* moving instances keep their tree, with new boxes */
+    bool flatten;              /* no tree over instances: one tree over all their triangles */
+    bool validate;             /* check the tree after the build (always in debug builds) */
+    const char
+        *tree_path;      /* mesh trees saved by whit_accel_save, instead of building; NULL: build */
+    double time_limit_s; /* for WHIT_BUILD_SWEEP_NAIVE; 0: none */
+    const volatile bool *cancel;
+} whit_accel_params;
+
+WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
+                                         whit_accel **out);
+void whit_accel_destroy(whit_accel *accel);
+
+typedef struct whit_accel_info {
+    uint32_t node_count, leaf_count, triangle_count, depth, instance_depth;
+    uint32_t
+        reference_count; /* triangles in leaves: more than triangle_count where some are split */
+    uint64_t bytes;
+    double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
+    char builder[48]; /* of the mesh trees, also of saved ones: "binned:7", "spatial+opt" */
+} whit_accel_info;
+void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
+
+/* Checks every tree: each triangle in a leaf, children inside parents, indices in range, no cycle,
+   leaf sizes, depth. WHIT_ERROR_STATUS, with the first violation in the log. */
+WHIT_CHECK whit_result whit_accel_validate(const whit_accel *accel);
+/* Saves the mesh trees with a checksum, for whit_accel_params.tree_path and the same scene. */
+WHIT_CHECK whit_result whit_accel_save(const whit_accel *accel, const char *path);
+
+enum { WHIT_DEPTH_BINS = 130, WHIT_LEAF_BINS = 16 };
+/* What trees are like: of all mesh trees together, a mesh with several instances once. */
+typedef struct whit_accel_report {
+    uint64_t leaves_at_depth[WHIT_DEPTH_BINS]; /* the root is depth 0 */
+    uint64_t leaves_of_size[WHIT_LEAF_BINS];   /* triangles in a leaf */
+    double sah_cost;                           /* mean over meshes, weighted by area */
+    double epo;              /* end-point overlap (Aila, Karras and Laine 2013, section 3) */
+    double overlap;          /* area shared by siblings, relative to the area of their parents */
+    double predicted_visits; /* of a random line that meets the root: pairs, by areas */
+    double predicted_triangles;
+    double measured_visits; /* the same of random rays on the CPU */
+    double measured_triangles;
+    uint64_t measured_rays;
+} whit_accel_report;
+WHIT_CHECK whit_result whit_accel_get_report(const whit_accel *accel, whit_accel_report *report);
+
+/* A box of a tree's node, in world space: parallel to the axes of its own space, not always to the
+   world's. Corner i has the upper end of axis k where bit k of i is set. */
+typedef struct whit_box {
+    float corners[8][3];
+    uint32_t instance; /* WHIT_NONE: of the tree over instances, or of one tree over all of them */
+    uint32_t level;    /* the root is 0 */
+    bool leaf;
+} whit_box;
+/* The nodes at `level`, and the leaves above it, of the tree over instances, or of the mesh trees
+   of every instance, at `time_s`, which the accel must stand at. At most `most` of them; *boxes is
+   one block, free() it. *total: how many there are. */
+WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
+                                        uint32_t level, uint64_t most, whit_box **boxes,
+                                        uint64_t *total);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,69 @@
+/* Part of whit.h: images, their files, heat maps. */
+#ifndef WHIT_IMAGE_H
+#define WHIT_IMAGE_H
+
+#include "whit_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct whit_image_info {
+    uint32_t width, height, channels;
+    bool integers;
+} whit_image_info;
+void whit_image_get_info(const whit_image *image, whit_image_info *info);
+/* width * height * channels values, row 0 at the top; the other one gives NULL. */
+const float *whit_image_floats(const whit_image *image);
+const uint32_t *whit_image_words(const whit_image *image);
+
+/* Of a picture of floats what its .png holds: RGBA, width * height * 4 bytes. */
+void whit_image_display_bytes(const whit_image *image, uint8_t *rgba);
+
+typedef struct whit_text {
+    const char *key, *value;
+} whit_text;
+/* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` is the recipe kept
+   inside the picture. */
+WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
+                                       const whit_text *texts, uint32_t text_count,
+                                       const whit_log *log);
+WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out);
+/* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.
+ */
+WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
+                                         const float *pixels, whit_image **out);
+/* The picture whose .png holds these RGBA bytes; alpha is left out. */
+WHIT_CHECK whit_result whit_image_create_display(uint32_t width, uint32_t height,
+                                                 const uint8_t *rgba, whit_image **out);
+void whit_image_destroy(whit_image *image);
+
+/* True for a path that whit_image_save can write; `integers` asks for hit identities. */
+bool whit_image_format_known(const char *path, bool integers);
+
+/* A picture of one channel as a heat map with a legend below: colours that the colour-blind can
+   tell apart (viridis), dark is 0, bright is `scale` and above. Linear RGB, at least as wide as a
+   legend that can be read: narrower pictures are centred. */
+typedef struct whit_heat_params {
+    double scale;      /* 0: whit_image_heat_scale */
+    const char *title; /* of the legend, or NULL; ASCII, shortened when it does not fit */
+    const char *unit;  /* of the numbers, at the legend's right end, or NULL */
+    bool is_signed;    /* from -scale (blue) over 0 (white) to scale (brown); of three channels the
+                          one farthest from 0 */
+} whit_heat_params;
+/* The 99.5th percentile, rounded up to a number that reads well; of the largest value where that
+   is 0; 1 where all are. */
+double whit_image_heat_scale(const whit_image *values);
+WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
+                                       whit_image **out);
+
+/* The bytes of a PNG, as whit_image_save writes it; free() them. */
+WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
+                                             uint32_t text_count, const whit_log *log,
+                                             uint8_t **data, size_t *size_bytes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

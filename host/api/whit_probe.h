@@ -1,0 +1,86 @@
+/* Part of whit.h: why a pixel looks as it does. */
+#ifndef WHIT_PROBE_H
+#define WHIT_PROBE_H
+
+#include "whit_renderer.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Why a ray ended. */
+typedef enum whit_probe_end {
+    WHIT_PROBE_MISSED = 0, /* it meets nothing, and sees the environment */
+    WHIT_PROBE_OPAQUE,     /* it meets a surface that calls for no further ray */
+    WHIT_PROBE_DIVIDED,    /* it meets a surface that reflects it or lets it through */
+    WHIT_PROBE_ABSORBED,   /* too little is left of it behind what it went through */
+    WHIT_PROBE_DEPTH,      /* not traced: its bounces were used up */
+    WHIT_PROBE_BAILOUT,    /* not traced: it could add less than params.bailout */
+    WHIT_PROBE_REACHED,    /* shadow rays: all of the light passes */
+    WHIT_PROBE_FILTERED,   /* shadow rays: some of it does */
+    WHIT_PROBE_BLOCKED,    /* shadow rays */
+    WHIT_PROBE_ENDS,
+} whit_probe_end;
+/* "missed", "hit, opaque", "hit, goes on", ... */
+const char *whit_probe_end_name(whit_probe_end end);
+
+typedef struct whit_probe_hit {
+    double t;                     /* infinity: none */
+    uint32_t instance, primitive; /* WHIT_NONE: none */
+} whit_probe_hit;
+
+typedef struct whit_probe_ray {
+    whit_ray_kind kind;
+    bool straight; /* it is what passes a blended surface, a shadow catcher, or a surface that has
+                      the same medium on both sides */
+    whit_probe_end end;
+    uint32_t parent;     /* index of the ray that it comes from, below its own; WHIT_NONE: none */
+    uint32_t generation; /* 0: the camera ray */
+    whit_ray ray;        /* one that was not traced starts where its parent ended */
+    float weight[3];     /* of what it brings to the pixel; shadow rays: of their surface */
+    float added[3]; /* radiance that it added, without its branches, by weight; shadow rays: the
+                       share of the light that passes */
+    /* What the device met, its twin on the CPU, and exact arithmetic. Without trees the device does
+       not know what blocks a light. */
+    whit_probe_hit device, twin, exact;
+    bool equal; /* twin: ids and every bit of t, and of u and v. Whether a cut-out is solid is the
+                   device's word; shadow rays: any blocker that the device may have met */
+    bool exact_known; /* false: not traced, or a sphere is in the way of a ray that is no camera ray
+                       */
+    bool exact_equal; /* ids (shadow rays: blocked or not), at WHIT_NUMERICS_EXACT t as well */
+    uint32_t passed;  /* cut-outs, and one-sided surfaces from behind, that it went through; shadow
+                         rays: also filters, and what casts no shadow */
+    /* Of what it met; WHIT_NONE: nothing. */
+    uint32_t material;
+    float point[3], normal[3];    /* unit, interpolated, to the ray's side; without bump maps */
+    bool inside;                  /* met from inside */
+    uint32_t medium;              /* material of what it went through; WHIT_NONE: air */
+    float ior;                    /* of that */
+    uint32_t light, light_sample; /* shadow rays; else WHIT_NONE */
+} whit_probe_ray;
+
+typedef struct whit_probe_report {
+    uint32_t x, y;
+    uint32_t samples; /* that `color` is of; of an adaptive picture the 4 of its first pass */
+    float color[4];   /* as in the picture: the same bytes */
+    /* The tree of the first sample: a ray is followed by its shadow rays, then by its branches,
+       each with its own, in the order in which they were traced. The first one is the camera ray.
+     */
+    whit_probe_ray *rays;
+    uint32_t ray_count;
+    uint32_t dropped;   /* rays that there was no room for */
+    uint32_t differing; /* rays of which the twin says something else */
+} whit_probe_report;
+
+/* Traces pixel (x, y), from the upper left, once more, and nothing else; the picture that was
+   rendered stays. The first call compiles a kernel. `most_rays`: that are recorded; 0: 16383, which
+   is the limit. WHIT_ERROR_USAGE outside of the picture. */
+WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y,
+                                  uint32_t most_rays, whit_probe_report **out);
+void whit_probe_report_destroy(whit_probe_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,199 @@
+/* Part of whit.h: pictures and rays, on a device or by its twin. */
+#ifndef WHIT_RENDERER_H
+#define WHIT_RENDERER_H
+
+#include "whit_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Rendering ---- */
+
+/* Which of two nodes that a ray meets is visited first. Never changes a picture. */
+typedef enum whit_traversal {
+    WHIT_TRAVERSAL_DISTANCE = 0, /* the one entered earlier */
+    WHIT_TRAVERSAL_SIGN,  /* by the ray's sign on the axis where their centres are farthest apart */
+    WHIT_TRAVERSAL_BASIC, /* as they come */
+} whit_traversal;
+
+/* What decides whether a ray meets a triangle, and which one first: see docs/numerics.md. */
+typedef enum whit_numerics {
+    WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
+    WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
+                            between triangles; hits may depend on the tree */
+    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest;
+                            needs trees when on a device. Spheres: as watertight */
+} whit_numerics;
+
+typedef struct whit_renderer_params {
+    uint32_t width, height; /* pixels; 0: 640 x 480 */
+    const char *camera;     /* name or index of a camera of the scene, or
+                               "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
+    double time_s;          /* of the animation */
+    uint32_t samples;       /* a pixel: 1, 4, 16 or 64; 0: 1 */
+    uint32_t depth;         /* most bounces; 0: 8 */
+    bool no_bounces;        /* depth 0: what the primary ray sees, with its shadows */
+    double bailout;         /* rays that can add less than this to a pixel are not traced;
+                               0: 1/1024, < 0: all are */
+    bool no_shadows;
+    double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
+                               instead of 4, and then 64; `samples` is not read; 0: off */
+    uint32_t light_samples; /* of an area light, a fixed pattern: 1, 4, 16 or 64; 0: 16 */
+    bool schlick;           /* Schlick's approximation in place of exact Fresnel */
+    bool opaque_shadows;    /* glass and blended surfaces cast full shadows */
+    /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
+       for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
+       changes the picture. */
+    const char *effects;
+    /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
+       compiles that of the scene; the pictures are the same. Errors of that thread are logged from
+       it. Without trees: not done. */
+    bool compile_beside;
+    uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
+    const volatile bool *cancel;
+    /* Called from the rendering thread with the share done, 0..1; may be NULL. */
+    void (*progress)(void *user, double done);
+    void *progress_user;
+    double time_limit_s;   /* from whit_renderer_create on; 0: none */
+    const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
+    whit_traversal traversal;
+    whit_numerics numerics;
+    bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
+} whit_renderer_params;
+
+/* `device` may be NULL: then only whit_trace on the CPU works. */
+WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
+                                            const whit_renderer_params *params,
+                                            whit_renderer **out);
+void whit_renderer_destroy(whit_renderer *renderer);
+
+/* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that it must not be trusted
+   (logged in words). May be called again: the same bytes. */
+WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
+
+/* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
+   pipelines. The picture is that of a renderer made at that time, byte for byte. */
+WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
+
+/* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
+   samples, adaptive, light_samples, bailout, depth and no_bounces, and nothing else. `camera` is
+   borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
+   After an error there is nothing to render before a call that succeeds. */
+WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
+                                              const whit_renderer_params *params);
+
+/* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
+const char *whit_effect_name(uint32_t index);
+/* Whether whit_renderer_params.effects may say "+NAME" and "-NAME" of it: what geometry or camera
+   decide cannot be switched. */
+bool whit_effect_can_add(uint32_t index);
+bool whit_effect_can_remove(uint32_t index);
+/* Whether the kernel of a renderer has an effect in it. */
+bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect);
+
+/* What is left of the kernel for this renderer, and of the same with every effect. */
+typedef struct whit_kernel_info {
+    uint32_t instructions, general_instructions; /* SPIR-V, in functions */
+    uint32_t bindings, general_bindings;         /* descriptors */
+} whit_kernel_info;
+/* Takes some 50 ms. WHIT_ERROR_USAGE without a device, WHIT_ERROR_DEVICE when the kernel cannot be
+   specialized. */
+WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
+                                                whit_kernel_info *info);
+
+typedef enum whit_aov {
+    WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
+    WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
+} whit_aov;
+WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
+
+typedef enum whit_ray_kind {
+    WHIT_RAY_PRIMARY = 0,
+    WHIT_RAY_SHADOW,
+    WHIT_RAY_REFLECTED,
+    WHIT_RAY_REFRACTED,
+    WHIT_RAY_KINDS,
+} whit_ray_kind;
+
+/* What traversals cost; see struct gpu_cost in shaders/abi/bvh.h. Sums, but for stack and depth,
+   which are the largest. */
+typedef struct whit_cost {
+    uint64_t rays;
+    uint64_t pairs; /* inner nodes opened: box tests are twice that */
+    uint64_t leaves, instances, triangles;
+    uint32_t stack, depth;
+    /* A record is a ray of a batch, or a sample of a pixel that has rays of the kind. */
+    uint64_t records;
+    uint64_t stack_sum, depth_sum; /* over records: means are these over `records` */
+    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one record */
+} whit_cost;
+
+typedef enum whit_view {
+    WHIT_VIEW_DEPTH = 0, /* deepest level of the trees that was looked at */
+    WHIT_VIEW_VISITS,    /* nodes opened: pairs + leaves + instances */
+    WHIT_VIEW_BOXES,     /* box tests */
+    WHIT_VIEW_TRIS,      /* triangle tests */
+    WHIT_VIEW_STACK,     /* most refs on the node stack */
+} whit_view;
+/* One number a pixel, as floats of one channel: what the rays of `kind` of its first sample cost
+   (WHIT_RAY_KINDS: of all kinds). With params.count. */
+WHIT_CHECK whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view,
+                                                whit_ray_kind kind, whit_image **out);
+
+typedef struct whit_stats {
+    double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
+    uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
+    double mrays_per_s; /* all rays over render_ms */
+    uint64_t device_bytes;
+    /* Rays that were not traced, and the largest sum of their weights in one pixel: depth, for
+       params.depth; bailout, for params.bailout. */
+    uint64_t rays_cut_depth, rays_cut_bailout;
+    double weight_cut_depth, weight_cut_bailout;
+    /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
+    double bailout_bound;
+    uint64_t pixels_by_samples[4]; /* of 1, 4, 16 and 64 samples */
+    uint32_t kernel_instructions;  /* SPIR-V, of its functions; see whit_renderer_get_kernel */
+    bool general;                  /* drawn by the general kernel: see params.compile_beside */
+    uint32_t dispatches, tiles, tile_size;
+    const char *load_path;           /* "storage" or "texel" */
+    whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
+} whit_stats;
+void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
+
+/* ---- Rays ---- */
+
+/* Directions need not be unit; t counts in their lengths. Hits with t_min <= t <= t_max. */
+typedef struct whit_ray {
+    float origin[3], t_min, dir[3], t_max;
+} whit_ray;
+/* `u`, `v` weigh the second and third vertex; ng is (v1 - v0) x (v2 - v0) in world space, as long
+   as it comes. Of a sphere u and v are its normal in object space on the unit square (octahedral,
+   +y in the middle), and ng is that normal by the inverse transpose. */
+typedef struct whit_hit {
+    float t; /* infinity: miss */
+    float u, v;
+    uint32_t primitive, instance; /* WHIT_NONE: miss */
+    float ng[3];
+} whit_hit;
+
+typedef enum whit_trace_on {
+    WHIT_TRACE_DEVICE = 0,
+    WHIT_TRACE_CPU_FLOAT, /* the twin: the same bits */
+    WHIT_TRACE_CPU_BRUTE, /* the twin without trees */
+} whit_trace_on;
+
+/* `cost`: what all rays together cost, or NULL (on the device it needs params.count).
+   Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
+   that are not finite miss. Cut-outs count as solid. */
+WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
+                                  uint64_t count, bool any, whit_hit *hits, whit_cost *cost);
+/* Device time of the traversals of the last whit_trace on the device, without transfers; < 0: not
+   measured. */
+double whit_trace_device_ms(const whit_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

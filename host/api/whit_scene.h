@@ -1,0 +1,110 @@
+/* Part of whit.h: scenes, and what is in them. */
+#ifndef WHIT_SCENE_H
+#define WHIT_SCENE_H
+
+#include "whit_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct whit_load_params {
+    double time_limit_s;         /* for a foreign importer; 0: 60 */
+    uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
+    uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */
+    const volatile bool *cancel; /* polled; NULL: never */
+} whit_load_params;
+
+/* .json scene files and .obj .gltf .glb .ply .stl models. */
+WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
+                                       const whit_log *log, whit_scene **out);
+void whit_scene_destroy(whit_scene *scene);
+/* Frees the texels that the scene holds on the host, for programs that make no further renderer
+   from it: making one is WHIT_ERROR_USAGE afterwards. Renderers made before are not touched. */
+void whit_scene_drop_pictures(whit_scene *scene);
+
+typedef struct whit_scene_info {
+    uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,
+        camera_count, note_count, effect_count;
+    uint64_t mesh_triangle_count; /* each mesh once */
+    uint64_t triangle_count;      /* over all instances */
+    uint64_t sphere_count;        /* likewise */
+    uint64_t file_bytes;          /* of all files read */
+    uint64_t hash;
+    uint32_t channel_count;  /* animated properties of nodes */
+    double time_end_s;       /* 0: nothing moves */
+    double lo[3], hi[3];     /* world bounds at time 0; lo > hi when empty */
+    const char *environment; /* "gradient" or "map": what rays that miss see */
+    bool environment_made_by_whit;
+} whit_scene_info;
+void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
+
+/* Item `index` of a kind, described; zeroed when there is no such item. Strings live as long as
+   the scene. */
+typedef struct whit_mesh_info {
+    const char *name;
+    uint32_t vertex_count, triangle_count, group_count, sphere_count;
+    bool has_normals, has_uvs, has_colors;
+} whit_mesh_info;
+typedef struct whit_material_info {
+    const char *name, *file; /* file: NULL when made by whit */
+    uint32_t line;
+    const char *model; /* "phong", "metal-rough", "unlit" */
+    int32_t illum;     /* -1: none */
+    float diffuse[3], specular[3], emission[3], reflection[3], transmission[3];
+    float shininess, ior, opacity, metallic, roughness;
+    uint32_t texture_count;
+} whit_material_info;
+typedef struct whit_light_info {
+    const char *name;
+    const char *kind; /* "point", "directional", "spot", "area-sample", "rectangle", "triangle" */
+    double position[3], direction[3]; /* world, at time 0 */
+    float color[3];
+    bool made_by_whit;
+} whit_light_info;
+typedef struct whit_camera_info {
+    const char *name;
+    const char *kind;                /* "perspective", "orthographic", "panorama" */
+    double eye[3], target[3], up[3]; /* world, at time 0 */
+    double fov_y_degrees, height;
+    double lens_radius, focus_distance; /* world units; 0: a pinhole; 0: the target's distance */
+    bool made_by_whit;
+} whit_camera_info;
+typedef struct whit_instance_info {
+    const char *name;
+    uint32_t mesh;
+    double object_to_world[12]; /* row-major 3x4, at time 0 */
+} whit_instance_info;
+typedef struct whit_effect_info {
+    const char *name;
+    bool called;
+    const char *reason; /* "" when not called for */
+} whit_effect_info;
+typedef struct whit_note_info {
+    bool warning;
+    const char *text;
+} whit_note_info;
+void whit_scene_get_mesh(const whit_scene *scene, uint32_t index, whit_mesh_info *info);
+void whit_scene_get_material(const whit_scene *scene, uint32_t index, whit_material_info *info);
+void whit_scene_get_light(const whit_scene *scene, uint32_t index, whit_light_info *info);
+void whit_scene_get_camera(const whit_scene *scene, uint32_t index, whit_camera_info *info);
+void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_instance_info *info);
+void whit_scene_get_effect(const whit_scene *scene, uint32_t index, whit_effect_info *info);
+void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info *info);
+
+/* Every world-space triangle at `time_s`, in the order of instance, then primitive. Spheres are not
+   among them. */
+typedef struct whit_triangle {
+    float vertices[9];
+    uint32_t instance, primitive;
+} whit_triangle;
+/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). */
+WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time_s,
+                                            bool (*fn)(void *user, const whit_triangle *triangle),
+                                            void *user);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

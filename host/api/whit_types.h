@@ -1,0 +1,34 @@
+/* Part of whit.h: handles, and where messages go. */
+#ifndef WHIT_TYPES_H
+#define WHIT_TYPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "whit_base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define WHIT_NONE UINT32_MAX /* no primitive, no instance: a miss */
+
+typedef struct whit_scene whit_scene;       /* geometry, materials, lights, cameras */
+typedef struct whit_accel whit_accel;       /* trees over one scene, on the CPU */
+typedef struct whit_device whit_device;     /* one Vulkan device */
+typedef struct whit_renderer whit_renderer; /* an accel on a device, with settings */
+typedef struct whit_image whit_image;       /* pixels in host memory */
+
+/* Where messages go. Zeroed: nowhere. */
+typedef struct whit_log {
+    whit_log_fn fn;
+    void *user;
+    whit_log_level level; /* messages above it are not made */
+} whit_log;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
