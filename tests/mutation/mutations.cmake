@@ -76,6 +76,9 @@ change(shaders/bind/traverse.glsl [[if (ref != REF_DONE)
 
 # ---- Boxes, triangles, traversal ----
 
+mutation(offset_four_times_too_far render_shadow RED narrow_gaps_stay_dark)
+change(shaders/bind/surface.glsl [[s.error = rounding_bound(7.0)]] [[s.error = rounding_bound(28.0)]])
+
 mutation(t_min_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
 change(shaders/kernel/whitted.comp [[ray.origin, ray.dir, 0.0, FLOAT_LARGEST,]]
   [[ray.origin, ray.dir, 1e-3, FLOAT_LARGEST,]])

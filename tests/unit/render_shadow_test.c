@@ -446,6 +446,73 @@ static void cut_walks_through_sheets_are_reported(void **state)
     }
 }
 
+/* Two squares in one mesh: a floor, and, `ulps` of its largest coordinate above it, one that is
+   seen from below alone. Neither is along an axis. */
+static struct scene_mesh sheets_mesh(double offset, uint32_t ulps)
+{
+    static const double u[3] = {0.8, 0.36, -0.48}, v[3] = {0, 0.8, 0.6}, n[3] = {0.6, -0.48, 0.64};
+    static const uint32_t corners[12] = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
+    struct scene_mesh mesh = {.vertex_count = 8, .triangle_count = 4};
+    float far = (float)offset + 1.0f, ulp = nextafterf(far, INFINITY) - far;
+    mesh.positions = malloc(24 * sizeof(float));
+    mesh.indices = malloc(sizeof corners);
+    mesh.materials = calloc(4, sizeof(uint32_t));
+    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    memcpy(mesh.indices, corners, sizeof corners);
+    for (int i = 0; i < 8; ++i)
+        for (int k = 0; k < 3; ++k) {
+            double along = i % 4 == 1 || i % 4 == 2 ? 0.5 : -0.5, up = i % 4 > 1 ? 0.5 : -0.5;
+            double away = i > 3 ? ulps * (double)ulp : 0.0, size = i > 3 ? 1.5 : 1.1;
+            mesh.positions[3 * i + k] =
+                (float)(offset + size * (along * u[k] + up * v[k]) + away * n[k]);
+        }
+    return mesh;
+}
+
+/* How many of the floor's pixels the sun reaches through the sheet above. */
+static uint32_t lit_pixels(double offset, uint32_t ulps)
+{
+    static const double n[3] = {0.6, -0.48, 0.64};
+    const struct render_params params = {.width = 33, .height = 33, .depth = 1};
+    const double middle_of_floor[3] = {offset, offset, offset};
+    double eye[3];
+    for (int k = 0; k < 3; ++k)
+        eye[k] = offset + 1.5 * n[k];
+    struct scene *scene = dark_scene(eye, middle_of_floor);
+    struct scene_material white = material("floor"), lid = material("lid");
+    set_rgb(white.diffuse, 1, 1, 1);
+    lid.one_sided = true;
+    add_object(scene, sheets_mesh(offset, ulps), white, 0, 0, 0);
+    lid.name = string_copy("lid");
+    uint32_t index = scene_add_material(scene, lid);
+    struct scene_mesh *mesh = &scene->meshes[scene->mesh_count - 1];
+    mesh->materials[2] = mesh->materials[3] = index;
+    add_sun(scene, -0.6, 0.48, -0.64, 1.0f);
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    uint32_t lit = 0;
+    for (size_t i = 0; i < 33 * 33; ++i)
+        lit += image.pixels[4 * i] > 0.0f;
+    image_finish(&image);
+    fixture_close(&f);
+    return lit;
+}
+
+/* S2 of the catalogue of hard cases. From 28 ulp on no light gets between, by the sum of the bounds
+   in hard_gap_test.c, which looks for the narrowest gap; at 1 ulp, and below the floor, it does. */
+static void narrow_gaps_stay_dark(void **state)
+{
+    (void)state;
+    static const double offsets[] = {0.0, 1e3, 1e5};
+    for (int i = 0; i < 3; ++i) {
+        uint32_t touching = lit_pixels(offsets[i], 1), narrow = lit_pixels(offsets[i], 28);
+        print_message("  at %g: %u of %d pixels lit through a gap of 1 ulp, %u through 28\n",
+                      offsets[i], touching, 33 * 33, narrow);
+        assert_true(touching > 0);
+        assert_int_equal(narrow, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -455,6 +522,7 @@ int main(void)
         cmocka_unit_test(coarse_balls_are_shaded_like_fine_ones),
         cmocka_unit_test(flat_meshes_do_not_change),
         cmocka_unit_test(closed_rooms_stay_dark),
+        cmocka_unit_test(narrow_gaps_stay_dark),
         cmocka_unit_test(catchers_show_shadows_alone),
         cmocka_unit_test(cut_walks_through_sheets_are_reported),
     };

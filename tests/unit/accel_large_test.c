@@ -1,0 +1,82 @@
+/* Ten million triangles in one mesh: nothing overflows, every triangle is in the tree, rays are
+   answered, and what it takes is told (U11 of the catalogue of hard cases). Not run by tools/test.
+ */
+#include "hard_fixture.h"
+
+#include <sys/resource.h>
+
+#include "accel/hard.h"
+#include "base/clock.h"
+
+enum { STEPS = 2237, RAYS = 20000 };
+
+static double peak_gib(void)
+{
+    struct rusage usage;
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    return (double)usage.ru_maxrss * 0x1p-20; /* from KiB */
+}
+
+/* From above at a vertex, a point of an edge or of the inside; where the landscape goes on all
+ * round. */
+static struct gpu_ray ray_at_record(const struct accel *accel, uint32_t i)
+{
+    const struct gpu_triangle *t;
+    do
+        t = &accel->triangles[random_bits() % accel->record_count];
+    while (!(fabsf(t->v0[0]) < 4.9f && fabsf(t->v0[2]) < 4.9f));
+    struct vec3 a = vec3_load(t->v0), b = vec3_load(t->v1), c = vec3_load(t->v2);
+    float s = i % 3 ? random_float() : 0.0f, r = i % 3 == 2 ? (1.0f - s) * random_float() : 0.0f;
+    struct vec3 target = vec3_add(a, vec3_scale(vec3_sub(b, a), s));
+    target = vec3_add(target, vec3_scale(vec3_sub(c, a), r));
+    return ray_through(vec3_add(target, vec3_add(random_point(1.0f), vec3_make(0, 8, 0))), target);
+}
+
+static void ten_million_triangles(void **state)
+{
+    (void)state;
+    struct scene_mesh mesh;
+    struct scene *scene = NULL;
+    struct accel *accel = NULL;
+    const struct accel_params params = {.validate = true};
+    assert_int_equal(shape_terrain(10.0, 2.0, STEPS, 5, &mesh), WHIT_OK);
+    assert_int_equal(hard_scene_of_mesh(&silent, "terrain", &mesh, NULL, &scene), WHIT_OK);
+    assert_int_equal(scene->triangle_total, 2 * STEPS * STEPS);
+    double before = peak_gib(), begin_ms = clock_ms();
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    print_message("%u triangles: %u nodes, depth %u, built in %.1f s, with validation %.1f s; peak "
+                  "memory %.2f GiB, %.2f of it the scene before\n",
+                  accel->record_count, accel->node_count, accel->mesh_depth,
+                  accel->meshes[0].build_ms * 1e-3, (clock_ms() - begin_ms) * 1e-3, peak_gib(),
+                  before);
+    assert_int_equal(accel->record_count, 2 * STEPS * STEPS);
+    struct rational *rational = rational_create(accel);
+    assert_non_null(rational);
+    uint32_t other[LEVELS] = {0}, missed[LEVELS] = {0};
+    random_state = 11;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_ray ray = ray_at_record(accel, i);
+        struct rational_hit exact;
+        rational_trace(rational, &ray, NULL, &exact);
+        for (int l = 0; l < LEVELS; ++l) {
+            struct gpu_hit hit;
+            level_trace(&levels[l], accel, ORDER_DISTANCE, false, &ray, &hit, NULL);
+            missed[l] += hit.primitive == HIT_NONE && exact.primitive != HIT_NONE;
+            other[l] += hit.primitive != exact.primitive;
+        }
+    }
+    print_message("U11 of %u rays %u missed at watertight, %u other triangles; at exact %u, %u\n",
+                  (uint32_t)RAYS, missed[0], other[0], missed[1], other[1]);
+    assert_int_equal(missed[0] + missed[1] + other[1], 0);
+    rational_destroy(rational);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ten_million_triangles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
