@@ -524,3 +524,22 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
     };
     return trace_on_cpu(renderer, &trace, cost);
 }
+
+whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels, whit_cost *cost)
+{
+    struct cpu_trace trace = {.renderer = renderer};
+    struct gpu_ray *rays = NULL;
+    whit_result result = api_need_device(renderer);
+    if (result == WHIT_OK)
+        result = renderer_camera_rays(renderer->renderer, pixels, &rays, &trace.count);
+    if (result != WHIT_OK)
+        return result;
+    trace.rays = rays;
+    trace.hits = malloc((size_t)trace.count * sizeof *trace.hits);
+    result = trace.hits ? trace_on_cpu(renderer, &trace, cost) : WHIT_ERROR_MEMORY;
+    if (!trace.hits)
+        log_error(&renderer->log, "out of memory");
+    free(trace.hits);
+    free(rays);
+    return result;
+}

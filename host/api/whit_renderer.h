@@ -192,6 +192,12 @@ WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, con
    measured. */
 double whit_trace_device_ms(const whit_renderer *renderer);
 
+/* What camera rays of the picture that was set last cost, without counting in its kernel: the twin
+   traces those of at most `pixels` pixels, all or a smaller picture of the view, up to what they
+   meet first. On the calling thread, some microseconds a ray. */
+WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
+                                                  whit_cost *cost);
+
 #ifdef __cplusplus
 }
 #endif

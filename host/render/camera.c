@@ -347,3 +347,25 @@ whit_result render_camera_rays(const struct log *log, const struct scene_pose *p
             camera_ray(&frame, kind, x, y, &sample, rays++);
     return WHIT_OK;
 }
+
+whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t most,
+                                 struct gpu_ray **rays, uint64_t *count)
+{
+    const struct render_params *params = &renderer->params;
+    uint32_t width = params->width, height = params->height;
+    for (uint32_t by = 2; (uint64_t)width * height > most && width * height > 1; ++by) {
+        width = (params->width + by - 1) / by;
+        height = (params->height + by - 1) / by;
+    }
+    *count = (uint64_t)width * height;
+    *rays = malloc((size_t)*count * sizeof **rays);
+    if (!*rays)
+        return render_no_memory(renderer, "camera rays");
+    whit_result result =
+        render_camera_rays(&renderer->log, &renderer->pose, params->camera, width, height, *rays);
+    if (result != WHIT_OK) {
+        free(*rays);
+        *rays = NULL;
+    }
+    return result;
+}

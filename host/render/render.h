@@ -83,6 +83,11 @@ WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct sc
                                           const char *camera, uint32_t width, uint32_t height,
                                           struct gpu_ray *rays);
 
+/* The same of the picture that was set last, or of a smaller one of at most `most` pixels whose
+   sides are that of it over a whole number. *rays: free(). */
+WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t most,
+                                            struct gpu_ray **rays, uint64_t *count);
+
 /* Whether kernels are made with an effect. */
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
 /* What is left of the kernel for this renderer, and of the same with every effect. */

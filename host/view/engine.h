@@ -50,6 +50,8 @@ struct engine_frame {
     whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MOST */
     uint64_t boxes_total;            /* that there are */
     whit_stats stats;
+    double visits;        /* nodes opened, of a camera ray on average; < 0: not known */
+    uint64_t visits_rays; /* that it is of */
     whit_accel_info accel;
     whit_device_info device;
     double build_ms, compile_ms;

@@ -123,6 +123,28 @@ static whit_result read_boxes(const struct engine_task *task, struct engine_fram
     return result;
 }
 
+/* Camera rays whose visits are counted on the CPU, which is some 3 ms for a whole picture. */
+enum { VISITS_MOVING = 512, VISITS_WHOLE = 4096 };
+
+/* As the kernel counted, or its twin; without trees there is nothing to count. */
+static whit_result count_visits(const struct engine_task *task, struct engine_frame *frame)
+{
+    const whit_stats *stats = &frame->stats;
+    whit_cost cost = stats->costs[WHIT_RAY_PRIMARY];
+    uint32_t pixels = task->quality == ENGINE_WHOLE ? VISITS_WHOLE : VISITS_MOVING;
+    whit_result result = WHIT_OK;
+    frame->visits = -1.0;
+    if (task->settings.trees.build == WHIT_BUILD_NONE)
+        return WHIT_OK;
+    if (cost.rays == 0)
+        result = whit_renderer_sample_costs(task->session->renderer, pixels, &cost);
+    if (result != WHIT_OK || cost.rays == 0)
+        return result;
+    frame->visits = (double)(cost.pairs + cost.leaves + cost.instances) / (double)cost.rays;
+    frame->visits_rays = cost.rays;
+    return WHIT_OK;
+}
+
 /* The parameters of the picture; its camera's text is the session's own. */
 static whit_renderer_params task_params(const struct engine_task *task)
 {
@@ -170,6 +192,8 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         result = read_boxes(task, frame);
     if (result == WHIT_OK)
         whit_renderer_get_stats(session->renderer, &frame->stats);
+    if (result == WHIT_OK)
+        result = count_visits(task, frame);
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
         frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
     frame->draw_ms = whit_clock_ms() - start_ms;

@@ -174,6 +174,7 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         const char *verb;
         enum view_event_kind kind;
     } bare[] = {{"still", EVENT_STILL},
+                {"picture", EVENT_PICTURE},
                 {"minimise", EVENT_MINIMISE},
                 {"restore", EVENT_RESTORE},
                 {"close", EVENT_CLOSE}};

@@ -33,6 +33,7 @@ enum view_event_kind {
     /* of replays alone */
     EVENT_WAIT,
     EVENT_STILL,
+    EVENT_PICTURE,
     EVENT_STATE,
     EVENT_SHOT,
     EVENT_MINIMISE,

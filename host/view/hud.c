@@ -46,12 +46,10 @@ static void draw_figures(const struct view *view)
     ui_text("%9s  render %.2f ms", fps, ms);
     ui_text_beside(COLOR_TEXT, " present %.2f ms", chain.present_ms);
     ui_text("%.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
-    if (frame->settings.paint != VIEW_PAINT_COLOR && s->costs[WHIT_RAY_PRIMARY].rays > 0) {
-        const whit_cost *c = &s->costs[WHIT_RAY_PRIMARY];
-        ui_same_line(0);
-        ui_text("  %.1f visits a camera ray",
-                (double)(c->pairs + c->leaves + c->instances) / (double)c->rays);
-    }
+    if (frame->visits >= 0.0)
+        ui_text_beside(COLOR_TEXT, " %.1f visits a camera ray", frame->visits);
+    else
+        ui_text_beside(COLOR_TEXT, " every triangle is tested");
 }
 
 static void draw_names(const struct view *view)

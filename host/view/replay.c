@@ -15,6 +15,8 @@ struct replay {
     struct view_event *events;
     uint32_t count, at;
     double wait_until_ms; /* 0: not waiting */
+    bool awaits;          /* a picture other than `seen` */
+    uint64_t seen;        /* number of a picture */
 };
 
 whit_result replay_open(struct view *view)
@@ -90,6 +92,16 @@ static bool minimise(struct view *view, bool wanted, double now_ms)
     return true;
 }
 
+/* Until a picture was shown that was not there when this event came. */
+static bool is_next_shown(struct view *view)
+{
+    struct replay *replay = view->replay;
+    if (!replay->awaits)
+        replay->seen = view->measure.number;
+    replay->awaits = view->measure.number == replay->seen;
+    return !replay->awaits;
+}
+
 /* False where the event has to wait. */
 static bool replay_event(struct view *view, const struct view_event *event, double now_ms)
 {
@@ -104,6 +116,8 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
         return true;
     case EVENT_STILL:
         return is_still(view);
+    case EVENT_PICTURE:
+        return is_next_shown(view);
     case EVENT_STATE:
         state_print(view, event->path, stdout);
         return true;

@@ -38,7 +38,9 @@ static void put_hash(json_t *object, const char *name, const void *data, size_t 
 
 static json_t *frame_json(const struct engine_frame *frame)
 {
+    char words[4096];
     json_t *object = json_object();
+    settings_words(&frame->settings, " ", words, sizeof words);
     size_t pixels = (size_t)frame->width * frame->height;
     put_count(object, "number", frame->number);
     put_count(object, "width", frame->width);
@@ -46,9 +48,12 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_count(object, "divisor", frame->divisor);
     put_count(object, "samples", frame->samples);
     put_bool(object, "whole", frame->whole);
+    put_text(object, "drawn_words", words);
     put_text(object, "view", settings_paint_name(frame->settings.paint));
     put_text(object, "builder", frame->accel.builder);
     put_number(object, "render_ms", frame->stats.render_ms);
+    put_number(object, "visits", frame->visits);
+    put_count(object, "visits_rays", frame->visits_rays);
     put_hash(object, "ids", frame->ids ? whit_image_words(frame->ids) : NULL, pixels * 8);
     put_hash(object, "pixels", frame->rgba, pixels * 4);
     return object;
@@ -241,6 +246,7 @@ void state_print(struct view *view, const char *name, FILE *to)
     put_count(root, "window_width", chain.width);
     put_count(root, "window_height", chain.height);
     put_bool(root, "direct", chain.direct);
+    put_number(root, "ui_scale", (double)ui_scale(view->ui));
     put_text(root, "hud", huds[view->hud]);
     put_bool(root, "help", view->help);
     put_bool(root, "playing", view->clock.playing);

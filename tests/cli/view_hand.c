@@ -1,8 +1,9 @@
 /* A hand and a window manager for the viewer's tests, on a display of their own: minimises and
-   restores windows when they ask for it, and does what it reads, one line each, to the one window
-   that there is:
+   restores windows when they ask for it, makes them as large as the screen, and does what it reads,
+   one line each, to the one window that there is:
        key NAME | move X Y | button N down|up | close | wait MS
-   Events are sent to the window as an X server would send them. Ends with its window. */
+   Events are sent to the window as an X server would send them. Ends with its window.
+   `view_hand DPI` first says to all programs how fine the screen is, as desktops do. */
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -11,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
@@ -24,11 +26,70 @@ static void sleep_ms(long ms)
     nanosleep(&time, NULL);
 }
 
+static Atom atom(const char *name)
+{
+    return XInternAtom(display, name, False);
+}
+
+static void set_property(Window of, const char *name, Atom type, int bits, const void *data,
+                         int count)
+{
+    XChangeProperty(display, of, atom(name), type, bits, PropModeReplace, data, count);
+}
+
 static void set_state(Window of, long state)
 {
-    Atom atom = XInternAtom(display, "WM_STATE", False);
-    long data[2] = {state, None};
-    XChangeProperty(display, of, atom, atom, 32, PropModeReplace, (unsigned char *)data, 2);
+    const long data[2] = {state, None};
+    set_property(of, "WM_STATE", atom("WM_STATE"), 32, data, 2);
+}
+
+/* What it can do, by the Extended Window Manager Hints. */
+static void say_abilities(void)
+{
+    Window root = DefaultRootWindow(display);
+    Window own = XCreateSimpleWindow(display, root, 0, 0, 1, 1, 0, 0, 0);
+    const Atom able[] = {atom("_NET_WM_STATE"), atom("_NET_WM_STATE_FULLSCREEN")};
+    set_property(root, "_NET_SUPPORTING_WM_CHECK", XA_WINDOW, 32, &own, 1);
+    set_property(own, "_NET_SUPPORTING_WM_CHECK", XA_WINDOW, 32, &own, 1);
+    set_property(root, "_NET_SUPPORTED", XA_ATOM, 32, able, 2);
+}
+
+static void say_dpi(const char *dpi)
+{
+    char text[64];
+    int length = snprintf(text, sizeof text, "Xft.dpi:\t%.20s\n", dpi);
+    set_property(DefaultRootWindow(display), "RESOURCE_MANAGER", XA_STRING, 8, text, length);
+}
+
+/* GLFW aborts where a manager that is gone still seems to be there. */
+static void leave(void)
+{
+    static const char *const said[] = {"_NET_SUPPORTING_WM_CHECK", "_NET_SUPPORTED",
+                                       "RESOURCE_MANAGER"};
+    for (size_t i = 0; i < sizeof said / sizeof *said; ++i)
+        XDeleteProperty(display, DefaultRootWindow(display), atom(said[i]));
+    XSync(display, False);
+    exit(0);
+}
+
+/* Full screen, or what it was before. */
+static void fill_screen(Window of, bool full)
+{
+    static XWindowAttributes before;
+    static bool is_full;
+    const Atom state = atom("_NET_WM_STATE_FULLSCREEN");
+    if (full == is_full)
+        return;
+    is_full = full;
+    if (full)
+        XGetWindowAttributes(display, of, &before);
+    int screen = DefaultScreen(display);
+    XMoveResizeWindow(display, of, full ? 0 : before.x, full ? 0 : before.y,
+                      (unsigned)(full ? DisplayWidth(display, screen) : before.width),
+                      (unsigned)(full ? DisplayHeight(display, screen) : before.height));
+    set_property(of, "_NET_WM_STATE", XA_ATOM, 32, &state, full ? 1 : 0);
+    printf("%s\n", full ? "full" : "window");
+    fflush(stdout);
 }
 
 static void manage(const XEvent *event)
@@ -48,11 +109,15 @@ static void manage(const XEvent *event)
                                   .stack_mode = r->detail};
         XConfigureWindow(display, r->window, (unsigned)r->value_mask, &changes);
     } else if (event->type == ClientMessage &&
-               event->xclient.message_type == XInternAtom(display, "WM_CHANGE_STATE", False)) {
+               event->xclient.message_type == atom("WM_CHANGE_STATE")) {
         XUnmapWindow(display, event->xclient.window);
         set_state(event->xclient.window, IconicState);
+    } else if (event->type == ClientMessage &&
+               event->xclient.message_type == atom("_NET_WM_STATE") &&
+               event->xclient.data.l[1] == (long)atom("_NET_WM_STATE_FULLSCREEN")) {
+        fill_screen(event->xclient.window, event->xclient.data.l[0] == 1); /* 1: add, 0: remove */
     } else if (event->type == DestroyNotify && event->xdestroywindow.window == window) {
-        exit(0);
+        leave();
     }
     XFlush(display);
 }
@@ -114,9 +179,9 @@ static void close_window(void)
     XClientMessageEvent event = {.type = ClientMessage,
                                  .display = display,
                                  .window = window,
-                                 .message_type = XInternAtom(display, "WM_PROTOCOLS", False),
+                                 .message_type = atom("WM_PROTOCOLS"),
                                  .format = 32};
-    event.data.l[0] = (long)XInternAtom(display, "WM_DELETE_WINDOW", False);
+    event.data.l[0] = (long)atom("WM_DELETE_WINDOW");
     XSendEvent(display, window, False, NoEventMask, (XEvent *)&event);
 }
 
@@ -161,7 +226,7 @@ static bool read_line(char *line, size_t bytes)
     return length > 0;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     char line[128];
     display = XOpenDisplay(NULL);
@@ -170,6 +235,9 @@ int main(void)
     XSetErrorHandler(ignore);
     XSelectInput(display, DefaultRootWindow(display),
                  SubstructureRedirectMask | SubstructureNotifyMask);
+    say_abilities();
+    if (argc > 1)
+        say_dpi(argv[1]);
     XSync(display, False);
     puts("ready"); /* windows may come */
     fflush(stdout);

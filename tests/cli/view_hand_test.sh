@@ -6,9 +6,9 @@
 HAND=$3
 mkfifo "$OUT/orders"
 
-# hand: starts it, ready for a window; orders go to file descriptor 4.
+# hand [DPI]: starts it, ready for a window; orders go to file descriptor 4.
 hand() {
-    "$HAND" <"$OUT/orders" >"$OUT/hand" &
+    "$HAND" "$@" <"$OUT/orders" >"$OUT/hand" &
     hand=$!
     exec 4>"$OUT/orders"
     turns=0
@@ -19,6 +19,11 @@ hand() {
 }
 rest() {
     exec 4>&-
+    turns=0
+    while kill -0 $hand 2>/dev/null && [ $turns -lt 60 ]; do # it tidies up
+        sleep 0.05
+        turns=$((turns + 1))
+    done
     kill $hand 2>/dev/null
     wait $hand 2>/dev/null
 }
@@ -50,6 +55,61 @@ is back window_width 96
 is back frame.whole true
 is back change.other_ids 0
 same frame.ids start back
+
+# Full screen by the window manager, and minimised from there.
+hand
+play "full screen" "$CUBE" --size 96x64 <<END
+still
+state start
+press F11
+still
+state full
+minimise
+still
+state minimised
+restore
+still
+state again
+press F11
+still
+state back
+END
+rest
+check "it was the window manager that did it" grep -q "^full$" "$OUT/hand"
+check "and undid it" grep -q "^window$" "$OUT/hand"
+is full window_width 1280
+is full frame.height 1024
+is full frame.whole true
+is full "keys.full screen" on
+is minimised window_width 0
+is again window_width 1280
+is back window_width 96
+is back "keys.full screen" off
+same frame.ids start back
+
+# How large text is by the X resource that desktops set, and by the option.
+for dpi in 96 144 192; do
+    hand $dpi
+    play "a screen of $dpi dots an inch" "$CUBE" --size 640x480 <<END
+still
+state shown
+END
+    rest
+    is shown ui_scale "$(awk -v d=$dpi 'BEGIN { printf "%.1f", d / 96 }')"
+    value shown panels.figures >"$OUT/figures.$dpi"
+done
+wide() {
+    awk '{ print $3 - $1 }' "$OUT/figures.$1"
+}
+check "figures are larger on a finer screen ($(wide 96), $(wide 192) pixels)" \
+    awk -v a="$(wide 96)" -v b="$(wide 192)" 'BEGIN { exit !(b > 1.6 * a && b < 2.4 * a) }'
+hand 192
+play "the option has the last word" "$CUBE" --size 96x64 --ui-scale 1 <<END
+still
+state shown
+END
+rest
+is shown ui_scale 1.0
 
 # What somebody does is recorded; the replay ends where he did.
 cat >"$OUT/hands" <<END

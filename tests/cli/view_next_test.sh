@@ -1,0 +1,137 @@
+#!/bin/sh
+# What the user does is in the very next picture; what the figures say of a view.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+SMALL="--size 96x64 --fps-goal 1" # whole pictures also while something moves
+
+# next NAME BEFORE: the picture of the state is the one after that of BEFORE, and shows all that was
+# asked for.
+next() {
+    check "at $1: the next picture ($(value "$2" frame.number), $(value "$1" frame.number))" \
+        test "$(value "$1" frame.number)" -eq $(($(value "$2" frame.number) + 1))
+    is "$1" frame.drawn_words "$(value "$1" words)"
+}
+
+# ---- Keys ----
+
+KEYS="T M K O Minus Equal A B V T ] 2 Home Period"
+{
+    n=0
+    for key in $KEYS; do
+        printf 'still\nstate before%d.\npress %s\npicture\nstate after%d.\n' $n "$key" $n
+        n=$((n + 1))
+    done
+    printf 'still\nstate before%d.\n' $n
+} >"$OUT/keys"
+# shellcheck disable=SC2086
+play "keys" "$SCENES/spin.json" $SMALL <"$OUT/keys"
+n=0
+for key in $KEYS; do
+    differs words before$n. after$n.
+    next after$n. before$n.
+    case $key in
+    2 | Home | Period) # the same kernel: a whole picture at once
+        differs frame.ids before$n. after$n.
+        same frame.ids after$n. before$((n + 1)).
+        ;;
+    esac
+    n=$((n + 1))
+done
+
+# ---- A drag ----
+
+# drag EVENT: with it after each move.
+drag() {
+    printf 'still\nstate m0\nmove 30 30\nbutton left down\n'
+    for n in 1 2 3 4 5 6; do
+        printf 'move %d %d\n%s\nstate m%d\n' $((30 + 4 * n)) $((30 + n)) "$1" $n
+    done
+    printf 'button left up\n'
+}
+drag picture >"$OUT/drag"
+# shellcheck disable=SC2086
+play "a drag" "$SCENES/34k.json" $SMALL <"$OUT/drag"
+for n in 1 2 3 4 5 6; do
+    next m$n m$((n - 1))
+    differs words m$((n - 1)) m$n
+    value m$n frame.ids >"$OUT/moving.$n"
+    value m$n words >"$OUT/words.$n"
+done
+drag still >"$OUT/drag"
+# shellcheck disable=SC2086
+play "the same drag, still each time" "$SCENES/34k.json" $SMALL <"$OUT/drag"
+for n in 1 2 3 4 5 6; do
+    is m$n words "$(cat "$OUT/words.$n")"
+    is m$n frame.ids "$(cat "$OUT/moving.$n")"
+done
+
+# While one picture is on its way: the one after it.
+# shellcheck disable=SC2086
+play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
+still
+state before
+move 30 30
+button left down
+move 40 32
+wait 2
+move 50 36
+picture
+picture
+state after
+button left up
+END
+is after frame.drawn_words "$(value after words)"
+check "two pictures later at most" test "$(value after frame.number)" -le $(($(value before frame.number) + 2))
+
+# ---- Visits of a ray ----
+
+# Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
+for scene in 34k swarm; do
+    # shellcheck disable=SC2086
+    play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
+size 64 48
+still
+state distance
+press V
+still
+state counted
+press Shift+T
+still
+state basic
+press V
+press V
+press V
+press V
+press V
+still
+state twin
+press G
+press T
+still
+state no_trees
+END
+    for name in distance counted basic twin; do
+        is $name frame.visits_rays 3072
+    done
+    is counted frame.view depth
+    is twin frame.view color
+    same frame.visits distance counted
+    same frame.visits basic twin
+    differs frame.visits distance twin
+    check "$scene: some are visited ($(value distance frame.visits))" \
+        awk -v v="$(value distance frame.visits)" 'BEGIN { exit !(v > 2 && v < 200) }'
+done
+# Of a larger picture a part of them.
+play "visits of some" "$SCENES/34k.json" --size 320x240 <<END
+still
+state twin
+press V
+still
+state counted
+END
+is counted frame.visits_rays 76800
+check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
+check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
+    awk -v a="$(value twin frame.visits)" -v b="$(value counted frame.visits)" \
+    'BEGIN { exit !(a > 0.95 * b && a < 1.05 * b) }'
+finish
