@@ -42,6 +42,8 @@ enum picture_id {
     PICTURE_LIGHT_SAMPLES,
     PICTURE_FRESNEL,
     PICTURE_EFFECTS,
+    PICTURE_BUDGET,
+    PICTURE_MAX_ERROR,
     PICTURE_VIEW,
     PICTURE_VIEW_RAYS,
     PICTURE_VIEW_SCALE,
@@ -77,6 +79,13 @@ enum picture_id {
             "changes it. Names and prices: `whit scene --effects`\n"                               \
             "(auto)"                                                                               \
     }
+#define PICTURE_OPTION_CHOICE                                                                      \
+    {PICTURE_BUDGET, "budget-ms", "T",                                                             \
+     "choose the best of these settings that take at most T ms, by\n"                              \
+     "`whit cost`, which measures the scene for 20 s the first time"},                             \
+    {                                                                                              \
+        PICTURE_MAX_ERROR, "max-error", "E", "the cheapest ones with an RMSE of at most E"         \
+    }
 #define PICTURE_OPTION_VIEW                                                                        \
     {PICTURE_VIEW, "view", "color|depth|visits|boxes|tris|stack",                                  \
      "what traversals cost instead of colours: a heat map\n"                                       \
@@ -89,6 +98,8 @@ enum picture_id {
     }
 /* False when `id` is none of them. */
 bool picture_option(struct cli_reader *reader, int id, struct render_request *request);
+/* Whether budget_ms and max_error go with the rest of it; else misuse, and false. */
+bool picture_check_choice(struct cli_reader *reader, const struct render_request *request);
 struct render_request picture_request_default(void);
 /* Without what only some commands have. */
 whit_renderer_params picture_request_params(const struct render_request *request,

@@ -86,6 +86,7 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
 {
     static const char *const fresnels[] = {"exact", "schlick", NULL};
     uint32_t choice;
+    request->has_shading |= id >= PICTURE_AA && id <= PICTURE_EFFECTS;
     switch (id) {
     case PICTURE_SIZE:
         cli_size(reader, &request->picture.width, &request->picture.height);
@@ -119,6 +120,12 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
         if (effects_check(reader, reader->value))
             request->effects = reader->value;
         return true;
+    case PICTURE_BUDGET:
+        cli_number(reader, 1e-3, 1e9, &request->budget_ms);
+        return true;
+    case PICTURE_MAX_ERROR:
+        cli_number(reader, 1e-9, 1e6, &request->max_error);
+        return true;
     case PICTURE_VIEW:
         view_read(reader, &request->view);
         return true;
@@ -131,4 +138,17 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
     default:
         return false;
     }
+}
+
+bool picture_check_choice(struct cli_reader *reader, const struct render_request *request)
+{
+    bool budget = request->budget_ms > 0.0, error = request->max_error > 0.0;
+    const char *name = budget ? "--budget-ms" : "--max-error";
+    if (budget && error)
+        return cli_misuse(reader, "--budget-ms and --max-error: one of them");
+    if ((budget || error) && request->has_shading)
+        return cli_misuse(reader, "%s chooses --aa, --depth and the like by itself", name);
+    if ((budget || error) && (request->view.given || request->frames.given))
+        return cli_misuse(reader, "%s is for one picture of colours", name);
+    return true;
 }

@@ -10,8 +10,6 @@ enum render_id {
     ID_TILE,
     ID_FRAMES,
     ID_COUNTERS,
-    ID_BUDGET,
-    ID_MAX_ERROR,
 };
 
 enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
@@ -25,10 +23,7 @@ static const struct cli_option options[] = {
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png"},
     PICTURE_OPTION_SHADING,
-    {ID_BUDGET, "budget-ms", "T",
-     "choose the best of these settings that take at most T ms, by\n"
-     "`whit cost`, which measures the scene for 20 s the first time"},
-    {ID_MAX_ERROR, "max-error", "E", "the cheapest ones with an RMSE of at most E"},
+    PICTURE_OPTION_CHOICE,
     {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     PICTURE_OPTION_VIEW,
     {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
@@ -42,7 +37,6 @@ static const struct cli_option options[] = {
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
 {
-    request->has_shading |= id >= PICTURE_AA && id <= PICTURE_EFFECTS;
     if (job_option(job, reader, id) || picture_option(reader, id, request))
         return;
     switch (id) {
@@ -58,12 +52,6 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
     case ID_FRAMES:
         frames_read(reader, &request->frames);
         break;
-    case ID_BUDGET:
-        cli_number(reader, 1e-3, 1e9, &request->budget_ms);
-        break;
-    case ID_MAX_ERROR:
-        cli_number(reader, 1e-9, 1e6, &request->max_error);
-        break;
     case ID_COUNTERS:
         request->counters = true;
         break;
@@ -78,19 +66,6 @@ static bool can_write(const struct render_request *request, const char *name)
     bool can = cli_can_write(first ? first : name);
     free(first);
     return can;
-}
-
-static bool check_choice(struct cli_reader *reader, const struct render_request *request)
-{
-    bool budget = request->budget_ms > 0.0, error = request->max_error > 0.0;
-    const char *name = budget ? "--budget-ms" : "--max-error";
-    if (budget && error)
-        return cli_misuse(reader, "--budget-ms and --max-error: one of them");
-    if ((budget || error) && request->has_shading)
-        return cli_misuse(reader, "%s chooses --aa, --depth and the like by itself", name);
-    if ((budget || error) && (request->view.given || request->frames.given))
-        return cli_misuse(reader, "%s is for one picture of colours", name);
-    return true;
 }
 
 static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
@@ -351,7 +326,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &job, &request);
     if (!job_options_done(&job, &reader) || !frames_check(&reader, &job, &request) ||
-        !view_check(&reader, &request.view) || !check_choice(&reader, &request) ||
+        !view_check(&reader, &request.view) || !picture_check_choice(&reader, &request) ||
         !check_outputs(&reader, &request))
         return reader.status;
     if (request.counters && job.stats == JOB_STATS_NONE)

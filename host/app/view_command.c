@@ -41,6 +41,7 @@ static const struct cli_option options[] = {
     {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)"},
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
+    PICTURE_OPTION_CHOICE,
     PICTURE_OPTION_VIEW,
     JOB_OPTION_DEVICE,
     JOB_OPTION_BUILD,
@@ -149,7 +150,9 @@ static bool read_state(struct view_request *request, const char *path, struct st
                          said_bytes))
         return false;
     reader.positional = "";
-    return job_options_done(&request->job, &reader) && view_check(&reader, &request->picture.view);
+    return job_options_done(&request->job, &reader) &&
+           view_check(&reader, &request->picture.view) &&
+           picture_check_choice(&reader, &request->picture);
 }
 
 /* ---- Settings ---- */
@@ -364,6 +367,7 @@ static int work(struct job *job, const struct render_request *request, struct vi
         return EXIT_USAGE;
     }
     fill_settings(job, request, &view->settings);
+    view->wish = (struct view_wish){request->budget_ms, request->max_error};
     list_beside(&scenes, job->scene_path);
     view->scenes = (const char *const *)scenes.paths;
     view->scene_count = scenes.count;
@@ -383,7 +387,8 @@ static int work(struct job *job, const struct render_request *request, struct vi
 static int run_with(struct view_request *request, struct cli_reader *reader)
 {
     struct job *job = &request->job;
-    if (!job_options_done(job, reader) || !view_check(reader, &request->picture.view))
+    if (!job_options_done(job, reader) || !view_check(reader, &request->picture.view) ||
+        !picture_check_choice(reader, &request->picture))
         return reader->status;
     if (job->scene_path && !job->scene_path[0])
         job->scene_path = NULL;

@@ -135,6 +135,7 @@ static void draw_hud(const struct view *view)
         draw_quality(view);
         if (view->hud == HUD_FULL)
             draw_more(view);
+        wish_draw(view);
         if (!(is_low(view) && busy))
             draw_change(view);
     }

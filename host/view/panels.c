@@ -156,6 +156,8 @@ static void draw_settings(struct view *view)
         if (ui_slider("fps goal", &fps, FPS_LEAST, FPS_MOST, true))
             set_fps_goal(view, fps);
         draw_hud_choice(view);
+        if (view->wish.stage != WISH_NONE && ui_button("choose again"))
+            wish_again(view);
         draw_files(view);
         if (ui_button("close##settings"))
             view->panels.settings = false;

@@ -10,21 +10,60 @@ enum { TABLE_DRAWS = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
                       COLOR_ERROR = 0xFF6070FFu;
 
+void prices_leave(struct view *view, struct prices *prices)
+{
+    uint32_t at = 0;
+    if (!prices)
+        return;
+    prices_cancel(prices);
+    while (at < LEAVING_MOST - 1 && view->leaving[at])
+        ++at;
+    prices_stop(view->leaving[at]); /* where there are many at once, the last one is waited for */
+    view->leaving[at] = prices;
+}
+
+void prices_part(struct view *view)
+{
+    for (uint32_t i = 0; i < LEAVING_MOST; ++i) {
+        if (view->leaving[i] && prices_are_still(view->leaving[i])) {
+            prices_stop(view->leaving[i]);
+            view->leaving[i] = NULL;
+        }
+    }
+}
+
 void price_switch(struct view *view)
 {
     view->prices_open = !view->prices_open;
     if (!view->prices_open) {
-        prices_stop(view->prices);
+        prices_leave(view, view->prices);
         view->prices = NULL;
     } else if (!view->scene) {
         view->prices_open = false;
     } else {
         view->prices_drawn = 0;
-        view->prices = prices_start(&view->frame.settings, view->scene, PRICES_SECONDS, window_wake,
-                                    view->window);
+        view->prices = prices_start(&(struct prices_params){.settings = &view->frame.settings,
+                                                            .scene = view->scene,
+                                                            .seconds = PRICES_SECONDS,
+                                                            .wake = window_wake,
+                                                            .wake_user = view->window});
         if (!view->prices)
             view_say(view, "out of memory");
     }
+}
+
+void settings_to_knobs(const struct view_settings *settings, struct knob_target *target)
+{
+    *target = (struct knob_target){.accel = settings->trees, .picture = settings->picture};
+    snprintf(target->effects, sizeof target->effects, "%s", settings->effects);
+    target->picture.effects = settings->effects[0] ? target->effects : NULL;
+}
+
+void settings_from_knobs(const struct knob_target *target, struct view_settings *settings)
+{
+    settings->picture = target->picture;
+    settings->picture.camera = settings->picture.effects = settings->picture.load_path = NULL;
+    snprintf(settings->effects, sizeof settings->effects, "%s", target->effects);
 }
 
 /* What the setting says, on top of what the window has. Trees have keys of their own. */
@@ -32,13 +71,10 @@ static void use(struct view *view, const struct cost_row *row)
 {
     uint32_t count;
     const struct knob *knob = &knob_table(&count)[row->knob_index];
-    struct view_settings *s = &view->settings;
-    struct knob_target target = {.accel = s->trees, .picture = s->picture};
-    snprintf(target.effects, sizeof target.effects, "%s", s->effects);
+    struct knob_target target;
+    settings_to_knobs(&view->settings, &target);
     knob_apply(knob, row->setting_index, &target);
-    s->picture = target.picture;
-    s->picture.camera = s->picture.effects = s->picture.load_path = NULL;
-    snprintf(s->effects, sizeof s->effects, "%s", target.effects);
+    settings_from_knobs(&target, &view->settings);
     view_changed(view);
 }
 

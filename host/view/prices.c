@@ -15,6 +15,7 @@ struct prices {
     struct view_settings settings;
     struct scene_ref *scene;
     double seconds;
+    uint64_t knobs;
     volatile bool cancel;
     void (*wake)(void *user);
     void *wake_user;
@@ -56,6 +57,7 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
         .accel = accel,
         .accel_params = prices->settings.trees,
         .picture = settings_picture(&prices->settings),
+        .knobs = prices->knobs,
         .seconds = prices->seconds,
         .samples_most = REFERENCE_SAMPLES,
         .progress = tell,
@@ -96,24 +98,29 @@ static void run(void *context)
     prices->wake(prices->wake_user);
 }
 
-struct prices *prices_start(const struct view_settings *settings, struct scene_ref *scene,
-                            double seconds, void (*wake)(void *user), void *wake_user)
+struct prices *prices_start(const struct prices_params *params)
 {
     struct prices *prices = calloc(1, sizeof *prices);
     if (!prices)
         return NULL;
-    prices->settings = *settings;
+    prices->settings = *params->settings;
     prices->settings.paint = VIEW_PAINT_COLOR; /* costs are not what pictures cost */
-    prices->scene = scene_ref_take(scene);
-    prices->seconds = seconds;
-    prices->wake = wake;
-    prices->wake_user = wake_user;
+    prices->scene = scene_ref_take(params->scene);
+    prices->seconds = params->seconds;
+    prices->knobs = params->knobs;
+    prices->wake = params->wake;
+    prices->wake_user = params->wake_user;
     pthread_mutex_init(&prices->lock, NULL);
     prices->thread = thread_start(run, prices);
     if (prices->thread)
         return prices;
     prices_stop(prices);
     return NULL;
+}
+
+void prices_cancel(struct prices *prices)
+{
+    prices->cancel = true;
 }
 
 void prices_stop(struct prices *prices)

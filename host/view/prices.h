@@ -8,12 +8,20 @@
 
 struct prices;
 
-/* Measures for about `seconds`. `wake`: from the thread, when there is more to see. NULL where
-   memory or threads run out. */
-struct prices *prices_start(const struct view_settings *settings, struct scene_ref *scene,
-                            double seconds, void (*wake)(void *user), void *wake_user);
+struct prices_params {
+    const struct view_settings *settings;
+    struct scene_ref *scene;
+    double seconds;           /* that it may take, roughly */
+    uint64_t knobs;           /* bits of knob_table; 0: all */
+    void (*wake)(void *user); /* from the thread, when there is more to see */
+    void *wake_user;
+};
+/* NULL where memory or threads run out. */
+struct prices *prices_start(const struct prices_params *params);
 /* Stops it, waits, frees; NULL is fine. */
 void prices_stop(struct prices *prices);
+/* Stops it without waiting: prices_stop does not wait any more once it is still. */
+void prices_cancel(struct prices *prices);
 
 enum { PRICES_TEXT = 160 };
 struct prices_state {

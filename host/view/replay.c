@@ -72,8 +72,8 @@ static bool is_still(const struct view *view)
         strcmp(status.error, view->status.error) != 0)
         return false; /* the window does not know as yet */
     return !view_is_moving(view, clock_ms()) && engine_is_still(view->engine) &&
-           compare_is_still(view) && prices_are_still(view->prices) && !view->dirty &&
-           !view->shot[0] && (view->frame.number > 0 || view->status.error[0]);
+           compare_is_still(view) && prices_are_still(view->prices) && wish_is_still(view) &&
+           !view->dirty && !view->shot[0] && (view->frame.number > 0 || view->status.error[0]);
 }
 
 /* The window manager does it, where there is one: false until it has. */

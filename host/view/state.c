@@ -229,6 +229,18 @@ static json_t *price_list_json(const struct view *view)
     return object;
 }
 
+static json_t *wish_json(const struct view *view)
+{
+    const struct wish *wish = &view->wish;
+    json_t *object = json_object();
+    put_text(object, "stage", wish_stage_name(wish->stage));
+    put_text(object, "text", wish->text);
+    put_number(object, "predicted_ms", wish->predicted_ms);
+    put_number(object, "predicted_error", wish->predicted_error);
+    put_number(object, "took_ms", wish->took_ms);
+    return object;
+}
+
 void state_print(struct view *view, const char *name, FILE *to)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
@@ -264,6 +276,7 @@ void state_print(struct view *view, const char *name, FILE *to)
     json_object_set_new(root, "cut_panels", panels_json(false));
     json_object_set_new(root, "prices", prices_json(view));
     json_object_set_new(root, "price_list", price_list_json(view));
+    json_object_set_new(root, "wish", wish_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_object_set_new(root, "measure", measure_json(&view->measure));
     json_dumpf(root, to, JSON_COMPACT);

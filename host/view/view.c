@@ -413,6 +413,8 @@ static whit_result step(struct view *view)
     pick_take(view);
     if (view->prices && prices_have_news(view->prices))
         view->dirty = true;
+    prices_part(view);
+    wish_step(view);
     panels_step(view);
     ask(view, now_ms); /* a switch that failed was taken back */
     if (view->params->frames > 0 && view->picture_set)
@@ -482,6 +484,9 @@ static void close_all(struct view *view, uint32_t *validation)
     replay_close(view);
     watch_destroy(view->watch);
     prices_stop(view->prices);
+    for (uint32_t i = 0; i < LEAVING_MOST; ++i)
+        prices_stop(view->leaving[i]);
+    wish_finish(view);
     *validation = engine_destroy(view->engine);
     compare_finish(&view->compare);
     engine_frame_finish(&view->frame);
@@ -509,6 +514,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     view->clock.speed = 1.0;
     view->moved_ms = -1e9;
     measure_begin(view);
+    wish_begin(view);
     view->dirty = true;
     for (uint32_t i = 0; i < params->scene_count; ++i) {
         if (strcmp(params->scenes[i], params->settings.scene) == 0)

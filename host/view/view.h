@@ -19,9 +19,16 @@ struct view_state {
     double fps_goal; /* 0: 30 */
 };
 
+/* What settings are to be chosen for; all 0: nothing, they stay as they are. */
+struct view_wish {
+    double budget_ms; /* the best ones that take at most this, by the clock */
+    double max_error; /* the cheapest ones with at most this RMSE */
+};
+
 struct view_params {
     struct view_settings settings; /* to begin with; settings.picture's size is the window's */
     bool fullscreen, no_vsync, blit;
+    struct view_wish wish;
     double budget_fps;  /* while something moves; 0: 30 */
     double fps;         /* frames of the animation in a second, for single steps */
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */

@@ -9,9 +9,10 @@
 #include "view/ui.h"
 #include "view/view.h"
 #include "view/window.h"
+#include "view/wish.h"
 
 enum view_hud { HUD_OFF, HUD_SMALL, HUD_FULL, HUD_COUNT };
-enum { TOAST_BYTES = 256, KEYS_MOST = 320 };
+enum { TOAST_BYTES = 256, KEYS_MOST = 320, LEAVING_MOST = 4 };
 
 /* What keys that are held, and the mouse, are at. */
 struct view_input {
@@ -80,7 +81,9 @@ struct view {
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
 
-    struct prices *prices; /* NULL: none are asked for */
+    struct prices *prices;                /* NULL: none are asked for */
+    struct prices *leaving[LEAVING_MOST]; /* stopped, and not at their end as yet */
+    struct wish wish;
     bool prices_open;
     int prices_drawn; /* draws of its table */
 
@@ -142,6 +145,12 @@ void pick_draw(struct view *view);
 /* price_panel.c: the prices of this view, asked for or no more. */
 void price_switch(struct view *view);
 void price_draw(struct view *view);
+/* Stops it; it goes once it is at its end, which nobody waits for. NULL is fine. */
+void prices_leave(struct view *view, struct prices *prices);
+void prices_part(struct view *view); /* from those that are */
+/* Between what the window shows and what knobs are put into. */
+void settings_to_knobs(const struct view_settings *settings, struct knob_target *target);
+void settings_from_knobs(const struct knob_target *target, struct view_settings *settings);
 
 /* overlay.c: lines in the scene, between ui_begin and ui_end. Cameras that are not perspective have
    none. */

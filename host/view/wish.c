@@ -1,0 +1,246 @@
+#include "view/wish.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "view/view_private.h"
+
+static const double MEASURE_SECONDS = 20.0;
+/* Of the time or the error: what is predicted is a median of some other minute. */
+static const double ROOM = 0.9;
+/* Of what was predicted: where it takes less, something better may fit. */
+static const double TOO_LITTLE = 0.6;
+enum { TRIES_MOST = 3 };
+static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu;
+
+const char *wish_stage_name(enum wish_stage stage)
+{
+    static const char *const names[] = {"none",   "waits",     "measures", "tries",
+                                        "chosen", "no choice", "failed"};
+    return names[stage];
+}
+
+/* ---- Settings ---- */
+
+/* All that may be chosen: what changes colours, as `whit render` chooses. */
+static uint64_t shading_knobs(void)
+{
+    uint32_t count;
+    uint64_t bits = 0;
+    const struct knob *table = knob_table(&count);
+    for (uint32_t i = 0; i < count; ++i)
+        bits |= (uint64_t)(table[i].change == KNOB_SHADING) << i;
+    return bits;
+}
+
+/* The usual ones in place of what was chosen before. */
+static void set_usual(struct view_settings *settings)
+{
+    whit_renderer_params *p = &settings->picture;
+    p->samples = p->depth = p->light_samples = 0;
+    p->adaptive = p->bailout = 0.0;
+    p->no_bounces = p->schlick = p->opaque_shadows = p->no_shadows = false;
+    settings->effects[0] = '\0';
+}
+
+static void set_choice(const struct cost_choice *choice, struct view_settings *settings)
+{
+    struct knob_target target;
+    set_usual(settings);
+    settings_to_knobs(settings, &target);
+    cost_choice_apply(choice, &target);
+    settings_from_knobs(&target, settings);
+}
+
+bool wish_is_left(const struct view *view)
+{
+    struct view_settings same = view->settings;
+    const struct view_settings *chosen = &view->wish.settings;
+    same.picture = chosen->picture;
+    settings_set_camera(&same, &view->settings);
+    same.picture.traversal = view->settings.picture.traversal;
+    same.picture.numerics = view->settings.picture.numerics;
+    memcpy(same.effects, chosen->effects, sizeof same.effects);
+    return !settings_same(&same, &view->settings);
+}
+
+/* ---- Choosing ---- */
+
+static struct cost_goal goal_of(const struct view *view)
+{
+    const struct view_wish *asked = &view->params->wish;
+    bool within = asked->budget_ms > 0.0;
+    double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
+    return (struct cost_goal){
+        .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = ROOM * limit};
+}
+
+static void choose(struct view *view, const struct cost_report *report)
+{
+    struct wish *wish = &view->wish;
+    const struct cost_goal goal = goal_of(view);
+    const struct cost_choice choice = cost_choose(report, &goal);
+    view->dirty = true;
+    if (!choice.found) {
+        wish->stage = WISH_NO_CHOICE;
+        snprintf(wish->text, sizeof wish->text,
+                 goal.kind == COST_WITHIN ? "no setting takes so little here"
+                                          : "no setting is as right as that here");
+        return;
+    }
+    cost_choice_text(&choice, wish->text, sizeof wish->text);
+    if (!wish->text[0])
+        snprintf(wish->text, sizeof wish->text, "what is usual");
+    wish->predicted_ms = choice.ms * wish->slower;
+    wish->predicted_error = choice.error;
+    set_choice(&choice, &view->settings);
+    wish->settings = view->settings;
+    wish->took_ms = 0.0;
+    wish->stage = WISH_TRIES;
+    ++wish->tries;
+}
+
+static void measure(struct view *view)
+{
+    struct wish *wish = &view->wish;
+    struct view_settings usual = view->frame.settings;
+    set_usual(&usual);
+    wish->prices = prices_start(&(struct prices_params){.settings = &usual,
+                                                        .scene = view->scene,
+                                                        .seconds = MEASURE_SECONDS,
+                                                        .knobs = shading_knobs(),
+                                                        .wake = window_wake,
+                                                        .wake_user = view->window});
+    wish->stage = wish->prices ? WISH_MEASURES : WISH_FAILED;
+    snprintf(wish->text, sizeof wish->text, wish->prices ? "" : "out of memory");
+    wish->scene = view->scene;
+    wish->slower = 1.0;
+    wish->tries = 0;
+    view->dirty = true;
+}
+
+static void take_figures(struct view *view)
+{
+    struct wish *wish = &view->wish;
+    struct prices_state state;
+    view->dirty |= prices_have_news(wish->prices);
+    prices_get_state(wish->prices, &state);
+    if (!state.finished)
+        return;
+    if (state.report && state.report->complete) {
+        choose(view, state.report);
+    } else {
+        wish->stage = WISH_FAILED;
+        snprintf(wish->text, sizeof wish->text, "%s", state.what);
+    }
+}
+
+/* What the choice takes now: where that is too long, or far less than it might be, once more with
+   that in mind. */
+static void try_choice(struct view *view)
+{
+    struct wish *wish = &view->wish;
+    const struct engine_frame *frame = &view->frame;
+    double budget_ms = view->params->wish.budget_ms, took_ms = frame->stats.render_ms;
+    struct prices_state state;
+    if (!frame->whole || !settings_same(&frame->settings, &view->settings))
+        return;
+    wish->took_ms = took_ms;
+    wish->stage = WISH_CHOSEN;
+    view->dirty = true;
+    bool fits = took_ms <= budget_ms && took_ms >= TOO_LITTLE * wish->predicted_ms;
+    if (budget_ms <= 0.0 || fits || wish->tries == TRIES_MOST || wish_is_left(view))
+        return;
+    wish->slower *= took_ms / wish->predicted_ms;
+    prices_get_state(wish->prices, &state);
+    choose(view, state.report);
+    if (wish->stage == WISH_NO_CHOICE || settings_same(&frame->settings, &view->settings)) {
+        wish->took_ms = took_ms; /* nothing is nearer */
+        wish->stage = WISH_CHOSEN;
+    }
+}
+
+void wish_again(struct view *view)
+{
+    prices_leave(view, view->wish.prices);
+    view->wish.prices = NULL;
+    view->wish.stage = WISH_WAITS;
+    view->dirty = true;
+}
+
+void wish_begin(struct view *view)
+{
+    const struct view_wish *asked = &view->params->wish;
+    bool any = asked->budget_ms > 0.0 || asked->max_error > 0.0;
+    view->wish.stage = any ? WISH_WAITS : WISH_NONE;
+}
+
+void wish_step(struct view *view)
+{
+    struct wish *wish = &view->wish;
+    if (wish->stage == WISH_NONE || !view->scene)
+        return;
+    if (wish->stage != WISH_WAITS && wish->scene != view->scene)
+        wish_again(view);
+    if (wish->stage == WISH_WAITS && view->frame.whole && !view->status.drawing &&
+        view->measure.number == view->frame.number)
+        measure(view);
+    else if (wish->stage == WISH_MEASURES)
+        take_figures(view);
+    else if (wish->stage == WISH_TRIES)
+        try_choice(view);
+}
+
+bool wish_is_still(const struct view *view)
+{
+    enum wish_stage stage = view->wish.stage;
+    bool failed = view->status.error[0] != '\0';
+    return failed || (stage != WISH_WAITS && stage != WISH_MEASURES && stage != WISH_TRIES);
+}
+
+void wish_finish(struct view *view)
+{
+    prices_stop(view->wish.prices);
+    view->wish.prices = NULL;
+}
+
+/* ---- Figures ---- */
+
+static void draw_chosen(const struct view *view)
+{
+    const struct wish *wish = &view->wish;
+    double budget_ms = view->params->wish.budget_ms;
+    ui_text_color(COLOR_GOOD, "%s", wish->text);
+    ui_text("predicted %.4g ms, RMSE %.3g", wish->predicted_ms, wish->predicted_error);
+    if (wish->took_ms > 0.0)
+        ui_text_color(budget_ms > 0.0 && wish->took_ms > budget_ms ? COLOR_WARNING : COLOR_GOOD,
+                      "it took %.4g ms", wish->took_ms);
+    if (wish_is_left(view))
+        ui_text_dim("changed since");
+    else if (!settings_same_camera(&wish->settings, &view->settings))
+        ui_text_dim("measured for another view");
+}
+
+void wish_draw(const struct view *view)
+{
+    const struct wish *wish = &view->wish;
+    const struct view_wish *asked = &view->params->wish;
+    struct prices_state state;
+    if (wish->stage == WISH_NONE)
+        return;
+    ui_separator();
+    if (asked->budget_ms > 0.0)
+        ui_text("the best within %.4g ms:", asked->budget_ms);
+    else
+        ui_text("the cheapest with an RMSE of at most %.3g:", asked->max_error);
+    if (wish->stage == WISH_WAITS) {
+        ui_text_dim("measured once the picture is whole");
+    } else if (wish->stage == WISH_MEASURES) {
+        prices_get_state(wish->prices, &state);
+        ui_text_dim("measuring %.40s, %.0f s", state.what, state.seconds_left);
+    } else if (wish->stage == WISH_NO_CHOICE || wish->stage == WISH_FAILED) {
+        ui_text_color(COLOR_WARNING, "%s", wish->text);
+    } else {
+        draw_chosen(view);
+    }
+}

@@ -1,0 +1,72 @@
+#!/bin/sh
+# --budget-ms and --max-error in the window: chosen beside the picture, which stays the user's.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+tiny="$SCENES/balls.json --size 48x36"
+
+# wished WHAT TEXT OPTION...: plays the replay on standard input, and looks at what was chosen.
+wished() {
+    text=$1
+    shift
+    # shellcheck disable=SC2086
+    play "$*" $tiny "$@" <<END
+picture
+state first
+press T
+wait 100
+still
+shot $OUT/wish.png
+state chosen
+press 1
+still
+state elsewhere
+press Equal
+still
+state left
+END
+    is first wish.predicted_ms 0.0
+    is chosen wish.stage "$text"
+    is chosen "keys.traversal order" sign
+    is chosen frame.whole true
+    is chosen frame.drawn_words "$(value chosen words)"
+    is elsewhere wish.stage "$text"
+}
+
+# chose NAME: the options that are told are those of the window.
+chose() {
+    text=$(value "$1" wish.text)
+    [ "$text" = "what is usual" ] && text=
+    check "what is told is what is set ($text)" \
+        test "$(value "$1" words | sed 's/ --traversal sign//')" = "--size 48x36${text:+ $text}"
+}
+
+wished chosen --max-error 0.9
+chose chosen
+check "one sample or less will do" awk -v e="$(value chosen wish.predicted_error)" 'BEGIN { exit !(e > 0 && e <= 0.81) }'
+check "its picture was timed" awk -v t="$(value chosen wish.took_ms)" 'BEGIN { exit !(t > 0) }'
+renders chosen
+
+wished chosen --budget-ms 1e6
+chose chosen
+case $(value chosen words) in *--aa*) more=yes ;; *) more=no ;; esac
+check "time enough gives more samples ($(value chosen words))" test $more = yes
+differs words chosen left
+
+wished "no choice" --budget-ms 0.001
+is chosen wish.text "no setting takes so little here"
+is chosen words "--size 48x36 --traversal sign"
+
+# Another scene is measured anew; what is dropped meanwhile ends what goes on.
+play "another scene" "$CUBE" --size 48x36 --max-error 0.9 <<END
+picture
+wait 500
+drop $SCENES/balls.json
+still
+state other
+END
+is other wish.stage chosen
+is other scene "$SCENES/balls.json"
+
+refuse 2 "chosen and given" "chooses --aa" view "$CUBE" --budget-ms 10 --aa 4 --frames 1
+refuse 2 "two wishes" "one of them" view "$CUBE" --budget-ms 10 --max-error 1 --frames 1
+finish
