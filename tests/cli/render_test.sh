@@ -21,13 +21,23 @@ for tile in 16 32 512; do
     expect 0 "--tile $tile" render "$CUBE" -o b.png --size 96x64 --tile $tile --quiet
     check "tiles of $tile give the same picture" cmp a.png b.png
 done
-for option in "--effects all" "--load-path storage" "--load-path texel" "--build median" \
+for option in "--effects all" "--build median" \
     "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
     "--stats json"; do
     # shellcheck disable=SC2086
     expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
     check "$option gives the same picture" cmp a.png b.png
 done
+# Both ways to read trees, with each access checked by the validation layers.
+validation=${WHIT_VALIDATION:-}
+WHIT_VALIDATION=1
+export WHIT_VALIDATION
+for path in storage texel; do
+    expect 0 "--load-path $path" render "$CUBE" -o b.png --size 96x64 --load-path $path --quiet
+    check "--load-path $path gives the same picture" cmp a.png b.png
+done
+WHIT_VALIDATION=$validation
+[ -n "$validation" ] || unset WHIT_VALIDATION
 expect 0 "other bounces" render "$CUBE" -o b.png --size 96x64 --no-shadows --quiet
 check "another option is another file" sh -c '! cmp -s a.png b.png'
 

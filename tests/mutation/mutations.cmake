@@ -60,7 +60,8 @@ change(host/device/pipeline.c [[if (!info->specialized) {]] [[if (false) {]])
 mutation(fallback_without_constants device_fallback RED kernels_go_to_the_driver_whole)
 change(host/device/pipeline.c [[params->spec_count > 0 && !kernel->specialized]] [[false]])
 
-mutation(scan_misses_highlights render_default_scenes RED default_scenes_are_the_same)
+mutation(scan_misses_highlights scene_cube RED "--effects all gives the same picture"
+  TARGET picture_check)
 change(host/scene/effects.c [[(m->model == SCENE_MODEL_PHONG && any(m->specular))]] [[false]])
 
 mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_program)
