@@ -277,7 +277,7 @@ int cli_print_json(json_t *value)
 
 /* ---- Progress ---- */
 
-enum { PROGRESS_WIDTH = 30, PROGRESS_QUIET_MS = 300, PROGRESS_EVERY_MS = 80 };
+enum { PROGRESS_WIDTH = 30, PROGRESS_WHAT = 24, PROGRESS_QUIET_MS = 300, PROGRESS_EVERY_MS = 80 };
 
 void cli_progress_init(struct cli_progress *progress, bool quiet)
 {
@@ -290,32 +290,55 @@ void cli_progress_init(struct cli_progress *progress, bool quiet)
     };
 }
 
-void cli_progress_update(void *user, double done)
+static bool is_time_to_draw(struct cli_progress *progress)
 {
-    struct cli_progress *progress = user;
     double now_ms = whit_clock_ms();
-    double spent_ms = now_ms - progress->start_ms;
-    if (!progress->shown || spent_ms < PROGRESS_QUIET_MS ||
+    if (!progress->shown || now_ms - progress->start_ms < PROGRESS_QUIET_MS ||
         now_ms - progress->last_ms < PROGRESS_EVERY_MS)
-        return;
+        return false;
     progress->last_ms = now_ms;
     progress->drawn = true;
     progress_drawn = 1;
-    done = done < 0.0 ? 0.0 : done > 1.0 ? 1.0 : done;
+    return true;
+}
+
+static void draw_bar(const struct cli_progress *progress, double done)
+{
     char bar[PROGRESS_WIDTH + 1] = {0};
     for (int i = 0; i < PROGRESS_WIDTH; ++i)
         bar[i] = (double)i < done * PROGRESS_WIDTH ? '#' : '.';
     fprintf(stderr, "\r%s[%s]%s %3d %%", progress->color ? "\033[36m" : "", bar,
             progress->color ? "\033[0m" : "", (int)(done * 100.0));
+}
+
+void cli_progress_update(void *user, double done)
+{
+    struct cli_progress *progress = user;
+    double spent_ms = whit_clock_ms() - progress->start_ms;
+    if (!is_time_to_draw(progress))
+        return;
+    done = done < 0.0 ? 0.0 : done > 1.0 ? 1.0 : done;
+    draw_bar(progress, done);
     if (done > 0.01)
         fprintf(stderr, "  %.1f s left  ", spent_ms * 1e-3 * (1.0 - done) / done);
+    fflush(stderr);
+}
+
+void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
+                       const char *what)
+{
+    progress->last_ms = 0.0; /* each is said once */
+    if (!is_time_to_draw(progress))
+        return;
+    draw_bar(progress, done);
+    fprintf(stderr, "  %.0f s left  %-*.*s", seconds_left, PROGRESS_WHAT, PROGRESS_WHAT, what);
     fflush(stderr);
 }
 
 void cli_progress_finish(struct cli_progress *progress)
 {
     if (progress->drawn)
-        fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + 30, "");
+        fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + PROGRESS_WHAT + 24, "");
     progress->drawn = progress->shown = false;
     progress_drawn = 0;
 }

@@ -134,6 +134,9 @@ struct cli_progress {
 };
 void cli_progress_init(struct cli_progress *progress, bool quiet);
 void cli_progress_update(void *progress, double done); /* whit_renderer_params.progress */
+/* With what is being done, and the seconds that are left by the caller's own reckoning. */
+void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
+                       const char *what);
 void cli_progress_finish(struct cli_progress *progress);
 
 #endif

@@ -109,9 +109,16 @@ whit_renderer_params picture_request_params(const struct render_request *request
 WHIT_CHECK whit_result render_prepare(struct job *job, struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
 
+/* A renderer of what `request` says (render_command.c). */
+WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,
+                                     struct frames_progress *progress, whit_renderer **renderer);
+
 /* Settings for budget_ms or max_error, by figures of `whit cost`, which are measured when none are
-   kept; says which (cost_choice.c). The device is open. WHIT_ERROR_FAILED: none does it. */
-WHIT_CHECK whit_result render_choose(struct job *job, struct render_request *request);
+   kept; says which, and makes their renderer (cost_choice.c). What is within budget_ms is tried
+   before, for the device may be slower at this moment. The device is open.
+   WHIT_ERROR_FAILED: none does it. The renderer is the caller's, also after a failure. */
+WHIT_CHECK whit_result render_choose(struct job *job, struct render_request *request,
+                                     struct frames_progress *progress, whit_renderer **renderer);
 
 /* Saves what `request` names of the picture just rendered (render_command.c). */
 whit_result render_save(const struct job *job, const struct render_request *request,

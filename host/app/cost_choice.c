@@ -1,15 +1,18 @@
 /* --budget-ms and --max-error: settings by what `whit cost` measures of this scene, size and
    device, once; figures are kept in the user's cache folder. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "app/cost.h"
 
-enum { KEPT_VERSION = 1, SAMPLES = 16 };
-/* Of the time: what is predicted is a median of some other minute. */
-static const double ROOM = 0.9;
+enum { KEPT_VERSION = 2, SAMPLES = 16, TRIALS = 5, TRIES = 3 };
+/* Of the time or the error, and below which part of it something better is looked for. */
+static const double ROOM = 0.9, TOO_LITTLE = 0.6;
+/* What takes less tells more of who else had the processor. */
+static const double TRIAL_MS_LEAST = 20.0;
 
 /* Of the figures; false: there is no such folder. */
 static bool kept_path(const struct job *job, const struct render_request *request, char *path,
@@ -92,7 +95,8 @@ static whit_result find_figures(struct job *job, const struct render_request *re
     return result;
 }
 
-static void take(const struct cost_choice *choice, struct job *job, struct render_request *request)
+static void take(const struct cost_choice *choice, const struct job *job,
+                 struct render_request *request)
 {
     struct knob_target target = {.picture = picture_request_params(request, job)};
     cost_choice_apply(choice, &target);
@@ -110,31 +114,92 @@ static void take(const struct cost_choice *choice, struct job *job, struct rende
     }
 }
 
-static whit_result choose(const struct cost_report *report, struct job *job,
-                          struct render_request *request)
+/* `slower`: than the figures say, at this moment. */
+static struct cost_choice choose(const struct cost_report *report, const struct job *job,
+                                 const struct render_request *request, double slower)
 {
     bool within = request->budget_ms > 0.0;
-    char options[COST_NAME * 4];
     const struct cost_goal goal = {
         .kind = within ? COST_WITHIN : COST_UNDER,
         .metric = COST_RMSE,
-        .limit = within ? ROOM * request->budget_ms : ROOM * request->max_error,
+        .limit = within ? ROOM * request->budget_ms / slower : ROOM * request->max_error,
     };
-    const struct cost_choice choice = cost_choose(report, &goal);
-    if (!choice.found) {
-        cli_error(within ? "no setting takes at most %.6g ms here"
-                         : "no setting has an error of at most %.6g here",
-                  within ? request->budget_ms : request->max_error);
-        return WHIT_ERROR_FAILED;
-    }
-    cost_choice_text(&choice, options, sizeof options);
-    cli_note("chosen: %s; predicted: %.1f ms, RMSE %.3g", options[0] ? options : "what is usual",
-             choice.ms, choice.error);
-    take(&choice, job, request);
-    return WHIT_OK;
+    struct cost_choice choice = cost_choose(report, &goal);
+    if (!choice.found && within)
+        cli_error("no setting takes at most %.6g ms here", request->budget_ms);
+    else if (!choice.found)
+        cli_error("no setting has an error of at most %.6g here", request->max_error);
+    if (within && choice.found && slower > 1.5 && !job->quiet)
+        cli_note("at this moment the device takes %.1f times as long as when it was measured",
+                 slower);
+    return choice;
 }
 
-whit_result render_choose(struct job *job, struct render_request *request)
+static void say_choice(const struct cost_choice *choice, double ms)
+{
+    char options[COST_NAME * 4];
+    cost_choice_text(choice, options, sizeof options);
+    cli_note("chosen: %s; predicted: %.1f ms, RMSE %.3g", options[0] ? options : "what is usual",
+             ms, choice->error);
+}
+
+/* The choice at this moment, in small where that takes long enough: what the full picture takes,
+   the most of TRIALS. From a small picture to the full one it is as far as for the usual settings.
+ */
+static whit_result try_now(const struct cost_report *report, const struct job *job,
+                           const struct render_request *request, double expected_ms,
+                           whit_renderer *renderer, double *full_ms)
+{
+    const whit_renderer_params full = picture_request_params(request, job);
+    whit_renderer_params tried = full;
+    struct cost_times times;
+    double larger = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
+    if (expected_ms / larger >= TRIAL_MS_LEAST)
+        cost_small_size(report, &tried.width, &tried.height);
+    else
+        larger = 1.0;
+    whit_result result = cost_time(renderer, &tried, TRIALS, &times);
+    if (result == WHIT_OK)
+        result = whit_renderer_set_view(renderer, &full);
+    *full_ms = times.ms[COST_WALL].high * larger;
+    return result;
+}
+
+/* Chooses until the choice keeps the time when it is tried, and does not leave much of it. */
+static whit_result choose_within(const struct cost_report *report, struct job *job,
+                                 struct render_request *request, struct frames_progress *progress,
+                                 whit_renderer **renderer)
+{
+    const struct render_request before = *request;
+    double slower = 1.0, ms = 0.0;
+    whit_result result = WHIT_OK;
+    for (int i = 0; i < TRIES; ++i) {
+        const struct cost_choice choice = choose(report, job, &before, slower);
+        if (!choice.found)
+            return WHIT_ERROR_FAILED;
+        *request = before;
+        take(&choice, job, request);
+        whit_renderer_destroy(*renderer);
+        *renderer = NULL;
+        result = render_create(job, request, progress, renderer);
+        if (result == WHIT_OK)
+            result = try_now(report, job, request, choice.ms, *renderer, &ms);
+        if (result != WHIT_OK)
+            return result;
+        bool fits = ms <= ROOM * request->budget_ms;
+        slower = ms / choice.ms;
+        if ((fits && (i > 0 || ms >= TOO_LITTLE * choice.ms)) || i == TRIES - 1) {
+            say_choice(&choice, ms);
+            break;
+        }
+    }
+    if (ms > request->budget_ms)
+        cli_note("it is likely to take more than %.6g ms", request->budget_ms);
+    return result;
+}
+
+whit_result render_choose(struct job *job, struct render_request *request,
+                          struct frames_progress *progress, whit_renderer **renderer)
 {
     struct cost_report *report = calloc(1, sizeof *report);
     if (!report) {
@@ -142,8 +207,17 @@ whit_result render_choose(struct job *job, struct render_request *request)
         return WHIT_ERROR_MEMORY;
     }
     whit_result result = find_figures(job, request, report);
-    if (result == WHIT_OK)
-        result = choose(report, job, request);
+    if (result == WHIT_OK && request->budget_ms > 0.0) {
+        result = choose_within(report, job, request, progress, renderer);
+    } else if (result == WHIT_OK) {
+        const struct cost_choice choice = choose(report, job, request, 1.0);
+        result = choice.found ? WHIT_OK : WHIT_ERROR_FAILED;
+        if (choice.found) {
+            say_choice(&choice, choice.ms);
+            take(&choice, job, request);
+            result = render_create(job, request, progress, renderer);
+        }
+    }
     free(report);
     return result;
 }

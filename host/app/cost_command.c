@@ -190,9 +190,7 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
 
 void cost_on_progress(void *user, double done, double seconds_left, const char *what)
 {
-    (void)seconds_left;
-    (void)what;
-    cli_progress_update(user, done);
+    cli_progress_tell(user, done, seconds_left, what);
 }
 
 static whit_result find_out(struct cost *cost)

@@ -15,15 +15,25 @@ static const struct cost_row *find(const struct cost_report *report, const struc
     return NULL;
 }
 
+/* Of the usual picture, which is no ratio. */
+static struct sample_median full_time(const struct cost_report *report, const struct cost_row *row)
+{
+    return (struct sample_median){.median = row->ms[report->clock],
+                                  .low = row->ms_low,
+                                  .high = row->ms_high,
+                                  .coverage = 0.95};
+}
+
 static const char *verdict_of(const struct cost_report *a, const struct cost_row *x,
                               const struct cost_report *b, const struct cost_row *y)
 {
     bool is_usual = x == &a->rows[0];
     const struct sample_median *before = &x->price.ratio[a->clock],
                                *after = &y->price.ratio[b->clock];
+    const struct sample_median usual[2] = {full_time(a, x), full_time(b, y)};
     if (is_usual) {
-        before = &x->price.usual_ms[a->clock];
-        after = &y->price.usual_ms[b->clock];
+        before = &usual[0];
+        after = &usual[1];
     }
     int verdict = sample_compare_apart(after, before);
     return verdict > 0 ? "dearer in B" : verdict < 0 ? "cheaper in B" : "not distinguishable";

@@ -145,6 +145,7 @@ static void put_head(json_t *out, const struct cost_report *report, const char *
     document_count(out, "judged_width", report->judged_width);
     document_count(out, "judged_height", report->judged_height);
     document_number(out, "usual_ms_most", report->usual_ms_most);
+    document_number(out, "small_ms", report->small_ms);
 }
 
 static json_t *reference_document(const struct cost_report *report)
@@ -312,6 +313,7 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
     report->judged_width = (uint32_t)whole(root, "judged_width");
     report->judged_height = (uint32_t)whole(root, "judged_height");
     report->usual_ms_most = number(root, "usual_ms_most", 0.0);
+    report->small_ms = number(root, "small_ms", 0.0);
     report->reference_samples = (uint32_t)whole(json_object_get(root, "reference"), "samples");
     for (uint32_t c = 0; c < COST_CLOCKS; ++c)
         if (strcmp(clock, cost_clock_name((enum cost_clock)c)) == 0)

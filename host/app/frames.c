@@ -1,6 +1,7 @@
 #include "app/frames.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,9 +97,21 @@ bool frames_check(struct cli_reader *reader, const struct job *job,
 
 /* ---- Progress ---- */
 
+/* Not before a quarter is done: first parts may be the dear ones. */
+static void watch_budget(struct frames_progress *progress, double done)
+{
+    double will_ms = (whit_clock_ms() - progress->bar.start_ms) / fmax(done, 0.25);
+    if (progress->said || progress->budget_ms <= 0.0 || will_ms <= progress->budget_ms)
+        return;
+    progress->said = true;
+    cli_note("it will take about %.0f ms, not %.6g: the device is slower now than just before",
+             will_ms, progress->budget_ms);
+}
+
 void frames_progress_update(void *user, double done)
 {
     struct frames_progress *progress = user;
+    watch_budget(progress, done);
     cli_progress_update(&progress->bar, ((double)progress->done + done) / (double)progress->count);
 }
 

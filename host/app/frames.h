@@ -43,6 +43,8 @@ char *frames_path(const char *pattern, uint32_t frame);
 struct frames_progress {
     struct cli_progress bar;
     uint32_t done, count; /* pictures */
+    double budget_ms;     /* of a picture; 0: none. One that will take more is said, once */
+    bool said;
 };
 void frames_progress_update(void *progress, double done);
 

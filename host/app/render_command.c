@@ -165,8 +165,8 @@ static whit_result check_camera(const struct job *job, const char *wanted)
     return refuse_camera(job, wanted, scene.camera_count);
 }
 
-static whit_result create_renderer(struct job *job, const struct render_request *request,
-                                   struct frames_progress *progress, whit_renderer **renderer)
+whit_result render_create(const struct job *job, const struct render_request *request,
+                          struct frames_progress *progress, whit_renderer **renderer)
 {
     whit_renderer_params params = picture_request_params(request, job);
     params.tile_size = request->tile_size;
@@ -236,10 +236,10 @@ whit_result render_prepare(struct job *job, struct render_request *request,
     }
     if (result == WHIT_OK)
         result = job_open_device(job);
-    if (result == WHIT_OK && (request->budget_ms > 0.0 || request->max_error > 0.0))
-        result = render_choose(job, request);
+    bool chooses = request->budget_ms > 0.0 || request->max_error > 0.0;
     if (result == WHIT_OK)
-        result = create_renderer(job, request, progress, renderer);
+        result = chooses ? render_choose(job, request, progress, renderer)
+                         : render_create(job, request, progress, renderer);
     if (result == WHIT_OK)
         whit_scene_drop_pictures(job->scene);
     return result;
@@ -296,6 +296,7 @@ static int work(struct job *job, struct render_request *request)
     cli_progress_init(&progress.bar, job->quiet);
     whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
+    progress.budget_ms = request->budget_ms;
     if (result == WHIT_OK)
         result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)
                                : render_one(job, request, renderer, &progress, &sequence);

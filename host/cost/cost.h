@@ -21,7 +21,6 @@ struct cost_price {
     struct sample_median setting_ms[COST_CLOCKS];
     struct sample_median ratio[COST_CLOCKS];      /* setting / usual, of each pair */
     struct sample_median difference[COST_CLOCKS]; /* setting - usual */
-    double usual_most_ms;                         /* 90 % took at most this, by the wall clock */
     int verdict; /* by the report's clock: 1 dearer, -1 cheaper, 0 not distinguishable */
 };
 /* Renders both `rounds` times in turns (once before the clocks count). `first`, `second`: what they
@@ -30,6 +29,13 @@ struct cost_price {
 WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                                   whit_renderer *setting, const whit_renderer_params *second,
                                   enum cost_clock clock, uint32_t rounds, struct cost_price *out);
+/* One renderer, `rounds` times after one that warms up, set to draw `view`. */
+struct cost_times {
+    struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
+    double wall_most_ms;                  /* 90 % took at most this, by the wall clock */
+};
+WHIT_CHECK whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
+                                 uint32_t rounds, struct cost_times *out);
 /* The clock that counts: the device's where it has one, the CPU's where that is the device. */
 enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
 
@@ -102,6 +108,7 @@ struct cost_report {
     uint32_t absent_count;
     struct cost_absent absent[COST_ABSENT_MOST];
     double usual_ms_most; /* 90 % of pictures took at most this, at full size, by the wall clock */
+    double small_ms;      /* of the usual picture of cost_small_size, by the clock */
     uint32_t answer_count;
     struct cost_answer answers[COST_GOALS_MOST];
     whit_image *reference; /* of the most samples, or NULL */
@@ -131,6 +138,8 @@ struct cost_request {
    there is nothing. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
+/* Of a picture that tells how fast the device is at this moment. */
+void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height);
 /* Of a text (FNV-1a), for names of files in a cache. */
 uint64_t cost_hash(const char *text);
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PROBE_SHRINK = 4 };
-/* Of the time, for references and for the usual settings. */
-static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.06;
+enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
+/* Of the time, for references with what is judged by them, and for the usual settings. */
+static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
 
 whit_result measure_still_wanted(const struct measure *measure)
 {
@@ -15,13 +15,22 @@ whit_result measure_still_wanted(const struct measure *measure)
     return cancel && *cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
+/* What is left to be done by the time that it was given, or by what the last rows took. */
+static double seconds_left(const struct measure *measure, double spent_s)
+{
+    const struct cost_report *report = measure->report;
+    double rows = measure->row < report->row_count ? report->row_count - measure->row : 0;
+    return fmax(measure->request->seconds - spent_s, rows * measure->row_s);
+}
+
 void measure_say(const struct measure *measure, const char *what)
 {
     const struct cost_request *request = measure->request;
     double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
+    double left_s = seconds_left(measure, spent_s);
     if (request->progress)
-        request->progress(request->progress_user, fmin(spent_s / request->seconds, 0.99),
-                          fmax(request->seconds - spent_s, 0.0), what);
+        request->progress(request->progress_user,
+                          fmin(spent_s / fmax(spent_s + left_s, 1e-3), 0.99), left_s, what);
 }
 
 /* ---- What is measured with ---- */
@@ -40,27 +49,37 @@ static void describe(const struct cost_request *request, struct cost_report *rep
     snprintf(report->kind, sizeof report->kind, "%s", device.kind);
 }
 
+void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height)
+{
+    *width = report->width / SMALL_SHRINK;
+    *height = report->height / SMALL_SHRINK;
+    *width = *width > SMALL_SIDE ? *width : SMALL_SIDE;
+    *height = *height > SMALL_SIDE ? *height : SMALL_SIDE;
+}
+
 /* The usual renderer, and what a pixel of it takes. */
 static whit_result open_renderer(struct measure *measure)
 {
     struct cost_report *report = measure->report;
-    uint32_t width = report->width / PROBE_SHRINK, height = report->height / PROBE_SHRINK;
     whit_stats stats;
-    width = width > 16 ? width : 16;
-    height = height > 16 ? height : 16;
+    uint32_t width, height;
+    cost_small_size(report, &width, &height);
     const whit_renderer_params params = measure_sized(&measure->usual, width, height);
     measure_say(measure, "the usual settings");
     whit_result result = whit_renderer_create(measure->request->device, measure->request->accel,
                                               &params, &measure->renderer);
-    for (int i = 0; result == WHIT_OK && i < 3; ++i) {
-        double start_ms = whit_clock_ms();
-        result = whit_renderer_render(measure->renderer);
-        measure->usual_pixel_ms = (whit_clock_ms() - start_ms) / ((double)width * height);
-    }
+    if (result == WHIT_OK)
+        result = whit_renderer_render(measure->renderer); /* tells which clocks there are */
     if (result != WHIT_OK)
         return result;
     whit_renderer_get_stats(measure->renderer, &stats);
     report->clock = cost_clock_of(measure->request->device, measure->renderer);
+    struct cost_times times;
+    result = cost_time(measure->renderer, &params, PROBES, &times);
+    if (result != WHIT_OK)
+        return result;
+    report->small_ms = times.ms[report->clock].median;
+    measure->usual_pixel_ms = times.ms[COST_WALL].median / ((double)width * height);
     snprintf(report->load_path, sizeof report->load_path, "%s", stats.load_path);
     return WHIT_OK;
 }
@@ -166,12 +185,20 @@ static whit_result measure_setting(struct measure *measure, uint32_t index)
     const struct knob *knob = &knob_table(&count)[row->knob_index];
     char what[COST_NAME];
     snprintf(what, sizeof what, "%s %s", row->knob, row->setting);
+    measure->row = index;
     measure_say(measure, what);
     knob_target_copy(&target, &measure->usual);
     knob_apply(knob, row->setting_index, &target);
-    double left_s = measure->request->seconds - (whit_clock_ms() - measure->start_ms) * 1e-3;
+    double begun_ms = whit_clock_ms();
+    double left_s = measure->request->seconds - (begun_ms - measure->start_ms) * 1e-3;
     double share_s = fmax(left_s, 0.0) / (report->row_count - index);
-    return measure_row(measure, &target, knob->level, share_s, row);
+    whit_result result = measure_row(measure, &target, knob->level, share_s, row);
+    /* Rows of many samples say nothing of those after them. */
+    double row_s = (whit_clock_ms() - begun_ms) * 1e-3;
+    measure->row_s = strcmp(row->knob, "aa") == 0 ? 0.0
+                     : measure->row_s == 0.0      ? row_s
+                                                  : 0.75 * measure->row_s + 0.25 * row_s;
+    return result;
 }
 
 static whit_result measure_rows(struct measure *measure)

@@ -21,6 +21,8 @@ struct measure {
     whit_judge *judges[COST_SETS];       /* or NULL */
     whit_hit *hits;                      /* room for those of a set */
     double usual_pixel_ms;               /* of the usual picture, by the wall clock */
+    uint32_t row;                        /* that is being measured */
+    double row_s;                        /* that one took of late; 0: not known */
 };
 
 whit_result measure_still_wanted(const struct measure *measure);

@@ -46,19 +46,10 @@ static struct sample_median median_of(const double *values, uint32_t count)
     return sample_median_of(copy, count);
 }
 
-static double most_of(const struct pricing *pricing, uint32_t rounds)
-{
-    double values[COST_ROUNDS_MOST];
-    memcpy(values, pricing->ms[COST_WALL][0], rounds * sizeof *values);
-    sample_sort(values, rounds);
-    return sample_quantile(values, rounds, 0.9);
-}
-
 static void conclude(const struct pricing *pricing, enum cost_clock clock, uint32_t rounds,
                      struct cost_price *out)
 {
     double values[COST_ROUNDS_MOST];
-    out->usual_most_ms = most_of(pricing, rounds);
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
         const double *usual = pricing->ms[c][0], *setting = pricing->ms[c][1];
         if (c == COST_DEVICE && !pricing->has_device)
@@ -97,4 +88,25 @@ whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
         out->height = second->height;
     }
     return result;
+}
+
+whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view, uint32_t rounds,
+                      struct cost_times *out)
+{
+    struct pricing pricing = {.renderers = {renderer}, .has_device = true};
+    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    *out = (struct cost_times){0};
+    whit_result result = whit_renderer_set_view(renderer, view);
+    if (result == WHIT_OK)
+        result = run_once(&pricing, 0, 0); /* warms up */
+    if (result == WHIT_OK)
+        result = sample_in_turns(1, rounds, run_once, &pricing);
+    if (result != WHIT_OK)
+        return result;
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c)
+        if (c != COST_DEVICE || pricing.has_device)
+            out->ms[c] = median_of(pricing.ms[c][0], rounds);
+    sample_sort(pricing.ms[COST_WALL][0], rounds);
+    out->wall_most_ms = sample_quantile(pricing.ms[COST_WALL][0], rounds, 0.9);
+    return WHIT_OK;
 }

@@ -118,15 +118,25 @@ static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index
     return result;
 }
 
-static bool fits(const struct cost_report *report, double pixel_ms, uint32_t shrink, double seconds)
+/* How many usual pictures rows of more than one sample take to judge, roughly: up to the most, and
+   adaptive ones. */
+static double pictures_to_judge(const struct cost_report *report)
 {
-    double width = report->width / shrink, height = report->height / shrink;
-    double all_ms = pixel_ms * width * height * (report->reference_samples + 1);
-    return all_ms <= seconds * 1e3 || width / 2.0 < SIDE_LEAST || height / 2.0 < SIDE_LEAST;
+    return (4.0 / 3.0 + 1.0) * report->reference_samples;
 }
 
-/* By how much the picture is smaller than the request's, so that references take `seconds`; where
-   that would be much, fewer samples instead. */
+static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink, double seconds)
+{
+    const struct cost_report *report = measure->report;
+    double width = report->width / shrink, height = report->height / shrink;
+    double all_ms = pixel_ms * (report->reference_samples + 1) +
+                    measure->usual_pixel_ms * pictures_to_judge(report);
+    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < SIDE_LEAST ||
+           height / 2.0 < SIDE_LEAST;
+}
+
+/* By how much the picture is smaller than the request's, so that references and what is judged by
+   them take `seconds`; where that would be much, fewer samples instead. */
 static whit_result choose_shrink(struct measure *measure, double seconds, uint32_t *shrink)
 {
     struct cost_report *report = measure->report;
@@ -140,10 +150,10 @@ static whit_result choose_shrink(struct measure *measure, double seconds, uint32
     whit_result result = render(measure, &probe, &image, &ms);
     whit_image_destroy(image);
     double pixel_ms = ms / ((double)probe.width * probe.height);
-    if (measure->request->samples_most == 0 && !fits(report, pixel_ms, SHRINK_GOOD, seconds))
+    if (measure->request->samples_most == 0 && !fits(measure, pixel_ms, SHRINK_GOOD, seconds))
         report->reference_samples = SAMPLES_FEW;
     *shrink = 1;
-    while (*shrink < SHRINK_MOST && !fits(report, pixel_ms, *shrink, seconds))
+    while (*shrink < SHRINK_MOST && !fits(measure, pixel_ms, *shrink, seconds))
         *shrink *= 2;
     return result;
 }

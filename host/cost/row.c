@@ -6,7 +6,7 @@
 
 #include "cost/measure.h"
 
-enum { SHRINK_MOST = 16, BUILDS = 3 };
+enum { SHRINK_MOST = 16, BUILDS = 3, WARM_SIDE = 16, FULL_LEAST = 6 };
 /* Below it what a dispatch costs by itself would count. */
 static const double FRAME_MS_LEAST = 10.0;
 
@@ -120,7 +120,7 @@ static void scale_times(const struct cost_report *report, struct cost_row *row)
 }
 
 static whit_result price(struct measure *measure, const struct knob_target *target,
-                         whit_renderer *renderer, double seconds, double ratio,
+                         whit_renderer *renderer, double seconds, double ratio, bool scale,
                          struct cost_row *row)
 {
     uint32_t width, height, rounds;
@@ -129,7 +129,7 @@ static whit_result price(struct measure *measure, const struct knob_target *targ
     const whit_renderer_params second = measure_sized(target, width, height);
     whit_result result = cost_price(measure->renderer, &first, renderer, &second,
                                     measure->report->clock, rounds, &row->price);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK && scale)
         scale_times(measure->report, row);
     return result;
 }
@@ -158,13 +158,24 @@ static whit_result build(struct measure *measure, const struct knob_target *targ
     return result;
 }
 
-/* Renders the judged picture: some drivers finish a kernel when it first runs, so twice. */
-static whit_result draw_judged(const struct measure *measure, whit_renderer *renderer, double *ms)
+/* Renders the judged picture, at first a small one: some drivers finish a kernel when it first
+   runs. */
+static whit_result draw_judged(struct measure *measure, whit_renderer *renderer,
+                               const whit_renderer_params *judged, bool ran, double *ms)
 {
-    whit_result result = whit_renderer_render(renderer);
-    double start_ms = whit_clock_ms();
+    whit_renderer_params small = *judged;
+    small.width = small.height = WARM_SIDE;
+    whit_result result = WHIT_OK;
+    if (!ran) {
+        result = whit_renderer_set_view(renderer, &small);
+        if (result == WHIT_OK)
+            result = whit_renderer_render(renderer);
+        if (result == WHIT_OK)
+            result = measure_still_wanted(measure);
+    }
     if (result == WHIT_OK)
-        result = measure_still_wanted(measure);
+        result = whit_renderer_set_view(renderer, judged);
+    double start_ms = whit_clock_ms();
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
     *ms = whit_clock_ms() - start_ms;
@@ -177,17 +188,18 @@ static bool is_refusal(whit_result result)
            result == WHIT_ERROR_DEVICE || result == WHIT_ERROR_INPUT;
 }
 
-/* Set to the judged picture. Views share one renderer: making another would compile its kernel once
-   more. The caller's to give back. */
+/* Views share one renderer: making another would compile its kernel once more. The caller's to give
+   back. *ran: its kernel has run before. */
 static whit_result take_renderer(struct measure *measure, const whit_renderer_params *params,
-                                 enum knob_level level, whit_accel *accel, whit_renderer **out)
+                                 enum knob_level level, whit_accel *accel, whit_renderer **out,
+                                 bool *ran)
 {
-    if (level == KNOB_VIEW && measure->beside) {
-        *out = measure->beside;
-        measure->beside = NULL;
-        return whit_renderer_set_view(*out, params);
-    }
-    return whit_renderer_create(measure->request->device, accel, params, out);
+    *ran = level == KNOB_VIEW && measure->beside;
+    if (!*ran)
+        return whit_renderer_create(measure->request->device, accel, params, out);
+    *out = measure->beside;
+    measure->beside = NULL;
+    return WHIT_OK;
 }
 
 static void give_renderer(struct measure *measure, enum knob_level level, whit_renderer *renderer)
@@ -207,9 +219,10 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
         measure_sized(target, report->judged_width, report->judged_height);
     whit_renderer *renderer = NULL;
     double ms = 0.0;
-    whit_result result = take_renderer(measure, &params, level, accel, &renderer);
+    bool ran;
+    whit_result result = take_renderer(measure, &params, level, accel, &renderer, &ran);
     if (result == WHIT_OK)
-        result = draw_judged(measure, renderer, &ms);
+        result = draw_judged(measure, renderer, &params, ran, &ms);
     if (result == WHIT_OK)
         result = judge(measure, renderer, row);
     if (result == WHIT_OK && row->change != KNOB_SHADING)
@@ -217,7 +230,7 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
     if (result == WHIT_OK)
         result = price(measure, target, renderer, (end_ms - whit_clock_ms()) * 1e-3,
-                       fmin(fmax(ms / usual_ms, 0.1), 100.0), row);
+                       fmin(fmax(ms / usual_ms, 0.1), 100.0), true, row);
     give_renderer(measure, level, renderer);
     return result;
 }
@@ -251,32 +264,32 @@ whit_result measure_row(struct measure *measure, const struct knob_target *targe
 
 /* ---- The usual settings ---- */
 
-/* Of the full picture. The row's price is the picture beside itself: its ratio says how well this
-   machine measures. */
-static whit_result price_usual(struct measure *measure, double seconds, struct cost_row *row)
+/* Times of the full picture, within `seconds` or FULL_LEAST times. */
+static whit_result time_full(struct measure *measure, double seconds)
 {
     struct cost_report *report = measure->report;
+    struct cost_row *row = &report->rows[0];
     const whit_renderer_params full = measure_sized(&measure->usual, report->width, report->height);
-    double pair_ms = 2.0 * measure->usual_pixel_ms * full.width * full.height;
-    double fit = seconds * 1e3 / pair_ms;
-    uint32_t rounds = fit < COST_ROUNDS_LEAST  ? COST_ROUNDS_LEAST
+    double full_ms = measure->usual_pixel_ms * full.width * full.height;
+    double fit = seconds * 1e3 / full_ms - 1.0;
+    uint32_t rounds = fit < FULL_LEAST         ? FULL_LEAST
                       : fit > COST_ROUNDS_MOST ? COST_ROUNDS_MOST
                                                : (uint32_t)fit;
-    whit_result result = cost_price(measure->renderer, &full, measure->renderer, &full,
-                                    report->clock, rounds, &row->price);
-    for (uint32_t c = 0; result == WHIT_OK && c < COST_CLOCKS; ++c) {
-        bool known = row->price.usual_ms[c].count > 0;
-        row->ms[c] = known ? row->price.usual_ms[c].median : -1.0;
-    }
-    report->usual_ms_most = row->price.usual_most_ms;
-    row->ms_low = row->price.usual_ms[report->clock].low;
-    row->ms_high = row->price.usual_ms[report->clock].high;
+    struct cost_times times;
+    whit_result result = cost_time(measure->renderer, &full, rounds, &times);
+    for (uint32_t c = 0; result == WHIT_OK && c < COST_CLOCKS; ++c)
+        row->ms[c] = times.ms[c].count > 0 ? times.ms[c].median : -1.0;
+    report->usual_ms_most = times.wall_most_ms;
+    row->ms_low = times.ms[report->clock].low;
+    row->ms_high = times.ms[report->clock].high;
     return result;
 }
 
+/* The row's price is the picture beside itself: its ratio says how well this machine measures. */
 whit_result measure_usual(struct measure *measure, double seconds, struct cost_row *row)
 {
     const struct cost_report *report = measure->report;
+    double end_ms = whit_clock_ms() + seconds * 1e3;
     const whit_renderer_params judged =
         measure_sized(&measure->usual, report->judged_width, report->judged_height);
     whit_accel *again = NULL; /* its trees, as those of other rows are timed */
@@ -284,15 +297,18 @@ whit_result measure_usual(struct measure *measure, double seconds, struct cost_r
     whit_result result = build(measure, &measure->usual, &again, &row->build_ms);
     whit_accel_destroy(again);
     if (result == WHIT_OK)
-        result = whit_renderer_set_view(measure->renderer, &judged);
-    if (result == WHIT_OK)
-        result = draw_judged(measure, measure->renderer, &ms);
+        result = draw_judged(measure, measure->renderer, &judged, true, &ms);
     if (result == WHIT_OK)
         result = judge(measure, measure->renderer, row);
     if (result == WHIT_OK)
         result = measure_hits(measure, measure->renderer, measure->usual.picture.numerics, row);
     if (result == WHIT_OK)
-        result = price_usual(measure, seconds, row);
+        result = time_full(measure, 0.7 * (end_ms - whit_clock_ms()) * 1e-3);
+    if (result == WHIT_OK)
+        result = measure_still_wanted(measure);
+    if (result == WHIT_OK)
+        result = price(measure, &measure->usual, measure->renderer,
+                       (end_ms - whit_clock_ms()) * 1e-3, 1.0, false, row);
     row->measured = result == WHIT_OK;
     return result;
 }
