@@ -8,7 +8,7 @@
 
 #include "app/cost.h"
 
-enum { KEPT_VERSION = 2, SAMPLES = 16, TRIALS = 5, TRIES = 3 };
+enum { KEPT_VERSION = 2, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
 /* Of the time or the error, and below which part of it something better is looked for. */
 static const double ROOM = 0.9, TOO_LITTLE = 0.6;
 /* What takes less tells more of who else had the processor. */

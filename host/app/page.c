@@ -177,7 +177,10 @@ void page_begin(struct page *page, const char *title)
     append_markup(page, "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" "
                         "lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
                         "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
-                        "<meta name=\"generator\" content=\"whit " WHIT_VERSION "\"/>\n<title>");
+                        "<meta name=\"generator\" content=\"whit " WHIT_VERSION "\"/>\n"
+                        /* A browser that is told so fetches nothing and runs nothing. */
+                        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
+                        "'none'; style-src 'unsafe-inline'; img-src data:\"/>\n<title>");
     page_text(page, title);
     append_markup(page, "</title>\n<style>\n");
     append_markup(page, style);

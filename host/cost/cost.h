@@ -29,6 +29,10 @@ struct cost_price {
 WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                                   whit_renderer *setting, const whit_renderer_params *second,
                                   enum cost_clock clock, uint32_t rounds, struct cost_price *out);
+/* The same for a reference in double: the device's clock is the wall's for it. */
+WHIT_CHECK whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
+                                         whit_reference *reference, enum cost_clock clock,
+                                         uint32_t rounds, struct cost_price *out);
 /* One renderer, `rounds` times after one that warms up, set to draw `view`. */
 struct cost_times {
     struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */

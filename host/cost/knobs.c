@@ -87,6 +87,13 @@ static void apply_load_path(const struct knob_setting *setting, struct knob_targ
     target->picture.load_path = setting->name;
 }
 
+/* The reference takes the usual settings as they are. */
+static void apply_arithmetic(const struct knob_setting *setting, struct knob_target *target)
+{
+    (void)setting;
+    (void)target;
+}
+
 /* ---- The table ---- */
 
 static const struct knob table[] = {
@@ -185,6 +192,13 @@ static const struct knob table[] = {
                   {"fast", WHIT_NUMERICS_FAST, NULL},
                   {"exact", WHIT_NUMERICS_EXACT, NULL}},
      .apply = apply_numerics},
+    {.name = "arithmetic",
+     .option = "",
+     .about = "floats of the device, or double on the CPU",
+     .change = KNOB_HITS,
+     .level = KNOB_DOUBLE,
+     .settings = {{"float", 0, NULL}, {"double", 1, NULL}},
+     .apply = apply_arithmetic},
     {.name = "instances",
      .option = "--instances %s",
      .about = "off: one tree over all triangles, placed and rounded",

@@ -18,6 +18,7 @@ enum knob_level {
     KNOB_VIEW,   /* whit_renderer_set_view */
     KNOB_KERNEL, /* a renderer */
     KNOB_TREE,   /* trees, and a renderer over them */
+    KNOB_DOUBLE, /* nothing of a device: the reference draws */
 };
 
 enum { KNOB_EFFECTS_MOST = 256 };
@@ -37,7 +38,7 @@ struct knob_setting {
 enum { KNOB_SETTINGS_MOST = 8 };
 struct knob {
     const char *name;
-    const char *option; /* of `whit render` for one of its settings: "--aa %s" */
+    const char *option; /* of `whit render` for one of its settings: "--aa %s"; "": none */
     const char *about;  /* what it is, in a few words */
     enum knob_change change;
     enum knob_level level;

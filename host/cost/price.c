@@ -21,19 +21,33 @@ enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *re
 
 struct pricing {
     whit_renderer *renderers[2];
+    whit_reference *reference; /* in place of the second, or NULL */
     double ms[COST_CLOCKS][2][COST_ROUNDS_MOST];
     bool has_device;
 };
+
+static whit_result draw(const struct pricing *pricing, uint32_t way)
+{
+    whit_image *image = NULL;
+    if (way == 0 || !pricing->reference)
+        return whit_renderer_render(pricing->renderers[way]);
+    whit_result result = whit_reference_render(pricing->reference, &image, NULL);
+    whit_image_destroy(image);
+    return result;
+}
 
 static whit_result run_once(void *user, uint32_t way, uint32_t round)
 {
     struct pricing *pricing = user;
     whit_stats stats;
     double cpu_ms = whit_clock_cpu_ms(), wall_ms = whit_clock_ms();
-    whit_result result = whit_renderer_render(pricing->renderers[way]);
+    whit_result result = draw(pricing, way);
     pricing->ms[COST_WALL][way][round] = whit_clock_ms() - wall_ms;
     pricing->ms[COST_CPU][way][round] = whit_clock_cpu_ms() - cpu_ms;
-    whit_renderer_get_stats(pricing->renderers[way], &stats);
+    if (way == 1 && pricing->reference)
+        stats.render_device_ms = pricing->ms[COST_WALL][way][round];
+    else
+        whit_renderer_get_stats(pricing->renderers[way], &stats);
     pricing->ms[COST_DEVICE][way][round] = stats.render_device_ms;
     pricing->has_device = pricing->has_device && stats.render_device_ms >= 0.0;
     return result;
@@ -65,6 +79,20 @@ static void conclude(const struct pricing *pricing, enum cost_clock clock, uint3
     }
 }
 
+/* After each has warmed up. */
+static whit_result price(struct pricing *pricing, enum cost_clock clock, uint32_t rounds,
+                         struct cost_price *out)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t way = 0; result == WHIT_OK && way < 2; ++way)
+        result = run_once(pricing, way, 0);
+    if (result == WHIT_OK)
+        result = sample_in_turns(2, rounds, run_once, pricing);
+    if (result == WHIT_OK)
+        conclude(pricing, clock, rounds, out);
+    return result;
+}
+
 whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                        whit_renderer *setting, const whit_renderer_params *second,
                        enum cost_clock clock, uint32_t rounds, struct cost_price *out)
@@ -77,17 +105,24 @@ whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
         result = whit_renderer_set_view(usual, first);
     if (result == WHIT_OK && second)
         result = whit_renderer_set_view(setting, second);
-    for (uint32_t way = 0; result == WHIT_OK && way < 2; ++way)
-        result = run_once(&pricing, way, 0); /* warms up */
     if (result == WHIT_OK)
-        result = sample_in_turns(2, rounds, run_once, &pricing);
-    if (result == WHIT_OK)
-        conclude(&pricing, clock, rounds, out);
+        result = price(&pricing, clock, rounds, out);
     if (second) {
         out->width = second->width;
         out->height = second->height;
     }
     return result;
+}
+
+whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
+                              whit_reference *reference, enum cost_clock clock, uint32_t rounds,
+                              struct cost_price *out)
+{
+    struct pricing pricing = {.renderers = {usual}, .reference = reference, .has_device = true};
+    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    *out = (struct cost_price){.rounds = rounds, .width = first->width, .height = first->height};
+    whit_result result = whit_renderer_set_view(usual, first);
+    return result == WHIT_OK ? price(&pricing, clock, rounds, out) : result;
 }
 
 whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view, uint32_t rounds,

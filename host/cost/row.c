@@ -50,34 +50,48 @@ static bool changes_samples(const struct cost_row *row)
     return strcmp(row->knob, "aa") == 0;
 }
 
-/* The renderer has drawn the judged picture. */
-static whit_result judge(struct measure *measure, whit_renderer *renderer, struct cost_row *row)
+/* The images become the usual picture, where there is none yet; else they stay the caller's. */
+static whit_result judge_images(struct measure *measure, whit_image *color, whit_image *ids,
+                                struct cost_row *row)
 {
-    whit_image *color = NULL, *ids = NULL, *map = NULL;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
-    if (result == WHIT_OK)
-        result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
-    if (result == WHIT_OK && !measure->usual_color) {
+    whit_image *map = NULL;
+    if (!measure->usual_color) {
         measure->usual_color = color;
         measure->usual_ids = ids;
     }
-    if (result == WHIT_OK)
-        result = compare_with_usual(measure, color, ids, row);
+    whit_result result = compare_with_usual(measure, color, ids, row);
     if (result == WHIT_OK)
         result = compare(measure, measure->references[1], color, true, &row->error, &map);
     if (result == WHIT_OK && !changes_samples(row))
         result = compare(measure, measure->references[0], color, true, &row->alone, NULL);
     row->non_finite = row->error.nonfinite_b;
-    if (measure->request->keep_pictures && result == WHIT_OK) {
+    if (measure->request->keep_pictures && result == WHIT_OK)
         row->flip = map;
-        map = NULL;
-        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &row->picture);
-    }
+    else
+        whit_image_destroy(map);
+    return result;
+}
+
+static void drop(const struct measure *measure, whit_image *color, whit_image *ids)
+{
     if (color != measure->usual_color)
         whit_image_destroy(color);
     if (ids != measure->usual_ids)
         whit_image_destroy(ids);
-    whit_image_destroy(map);
+}
+
+/* The renderer has drawn the judged picture. */
+static whit_result judge(struct measure *measure, whit_renderer *renderer, struct cost_row *row)
+{
+    whit_image *color = NULL, *ids = NULL;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
+    if (result == WHIT_OK)
+        result = judge_images(measure, color, ids, row);
+    if (result == WHIT_OK && measure->request->keep_pictures)
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &row->picture);
+    drop(measure, color, ids);
     return result;
 }
 
@@ -235,6 +249,54 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
     return result;
 }
 
+/* ---- In double ---- */
+
+/* Its price, at the size that fits. */
+static whit_result price_double(struct measure *measure, const struct knob_target *target,
+                                double seconds, double ratio, struct cost_row *row)
+{
+    uint32_t width, height, rounds;
+    whit_reference *reference = NULL;
+    plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
+    const whit_renderer_params sized = measure_sized(target, width, height);
+    whit_result result = whit_reference_create(measure->request->accel, &sized, 0, &reference);
+    if (result == WHIT_OK)
+        result = cost_price_double(measure->renderer, &sized, reference, measure->report->clock,
+                                   rounds, &row->price);
+    whit_reference_destroy(reference);
+    if (result == WHIT_OK)
+        scale_times(measure->report, row);
+    return result;
+}
+
+/* The usual settings, drawn by the reference: what differs from the usual row is what floats do. */
+static whit_result find_out_double(struct measure *measure, const struct knob_target *target,
+                                   double end_ms, struct cost_row *row)
+{
+    const whit_renderer_params params =
+        measure_sized(target, measure->report->judged_width, measure->report->judged_height);
+    whit_reference *reference = NULL;
+    whit_image *color = NULL, *ids = NULL;
+    double start_ms = whit_clock_ms();
+    whit_result result = whit_reference_create(measure->request->accel, &params, 0, &reference);
+    if (result == WHIT_OK)
+        result = whit_reference_render(reference, &color, &ids);
+    double ms = whit_clock_ms() - start_ms;
+    whit_reference_destroy(reference);
+    if (result == WHIT_OK)
+        result = judge_images(measure, color, ids, row);
+    if (result == WHIT_OK && measure->request->keep_pictures) {
+        row->picture = color;
+        color = NULL;
+    }
+    drop(measure, color, ids);
+    double usual_ms = measure->usual_pixel_ms * params.width * params.height;
+    if (result == WHIT_OK)
+        result =
+            price_double(measure, target, (end_ms - whit_clock_ms()) * 1e-3, ms / usual_ms, row);
+    return result;
+}
+
 whit_result measure_row(struct measure *measure, const struct knob_target *target,
                         enum knob_level level, double seconds, struct cost_row *row)
 {
@@ -246,7 +308,9 @@ whit_result measure_row(struct measure *measure, const struct knob_target *targe
         result = build(measure, target, &accel, &row->build_ms);
     if (measure->request->hush)
         measure->request->hush(true);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK && level == KNOB_DOUBLE)
+        result = find_out_double(measure, target, end_ms, row);
+    else if (result == WHIT_OK)
         result =
             find_out(measure, target, level, accel ? accel : measure->request->accel, end_ms, row);
     if (measure->request->hush)

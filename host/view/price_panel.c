@@ -85,7 +85,7 @@ static void draw_row(struct view *view, const struct cost_report *report,
     const struct knob *knobs = knob_table(&count);
     const whit_difference *error = &row->error;
     char label[COST_NAME + 16];
-    bool usable = row->knob_index < count && knobs[row->knob_index].level != KNOB_TREE;
+    bool usable = row->knob_index < count && knobs[row->knob_index].level < KNOB_TREE;
     ui_table_next();
     ui_text_dim("%s", row->knob);
     ui_table_next();

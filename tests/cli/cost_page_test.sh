@@ -1,0 +1,52 @@
+#!/bin/sh
+# The page of `whit cost` in a browser without a window: no message on its console, no request. Skipped
+# where there is no Chromium.
+. "$(dirname "$0")/common.sh"
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
+if [ -z "$browser" ] || ! command -v python3 >/dev/null; then
+    echo "SKIPPED: no Chromium, or no Python"
+    exit 77
+fi
+XDG_CACHE_HOME=$OUT/cache
+export XDG_CACHE_HOME
+mkdir "$OUT/cache"
+
+# look PAGE: leaves $OUT/console, $OUT/requests. The browser's own wishes lead nowhere and do not count.
+look() {
+    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --no-first-run \
+        --disable-background-networking --host-resolver-rules='MAP * ~NOTFOUND' \
+        --user-data-dir="$OUT/browser" --enable-logging=stderr --log-net-log="$OUT/net.json" \
+        --window-size=1100,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
+        echo "FAILED  the browser: $(tail -n 1 "$OUT/log")"
+    grep CONSOLE "$OUT/log" >"$OUT/console"
+    python3 - "$OUT/net.json" >"$OUT/requests" <<'PYTHON'
+import json, sys
+log = json.load(open(sys.argv[1]))
+kinds = {number: name for name, number in log["constants"]["logSourceType"].items()}
+for event in log["events"]:
+    values = event.get("params", {})
+    if kinds[event["source"]["type"]] != "URL_REQUEST" or "url" not in values:
+        continue
+    if values.get("initiator", "not an origin") != "not an origin":
+        print(values["url"])
+PYTHON
+}
+
+page=$OUT/cost.html
+expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --samples 4 --knobs aa,shadows \
+    --quiet --html "$page"
+look "$page"
+check "it is drawn" test -s "$OUT/page.png"
+check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
+check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
+
+# Both are seen where there is something to see: what the page forbids, and what it would fetch.
+bad='<body><img src="http://127.0.0.1:9/x.png"/>'
+sed "s|<body>|$bad|" "$page" >"$OUT/forbidden.html"
+look "$OUT/forbidden.html"
+check "a picture from elsewhere is forbidden" grep -q "Content Security Policy" "$OUT/console"
+check "and not asked for" test "$(wc -l <"$OUT/requests")" -eq 0
+sed "s|<body>|$bad|; s|http-equiv|name|" "$page" >"$OUT/asking.html"
+look "$OUT/asking.html"
+check "such requests are seen" grep -q "127.0.0.1:9" "$OUT/requests"
+finish
