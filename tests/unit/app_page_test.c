@@ -309,8 +309,10 @@ static void nothing_comes_from_elsewhere(void **state)
     (void)state;
     struct page page = {0};
     put_everything(&page);
-    assert_int_equal(count_of(page.text, "http"),
+    assert_int_equal(count_of(page.text, "http:"),
                      count_of(page.text, "xmlns=\"http://www.w3.org/"));
+    assert_int_equal(count_of(page.text, "https:"), 0);
+    assert_int_equal(count_of(page.text, "default-src 'none'"), 1);
     assert_int_equal(count_of(page.text, "src="),
                      count_of(page.text, "src=\"data:image/png;base64,"));
     assert_int_equal(count_of(page.text, "src="), 3);
