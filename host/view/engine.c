@@ -366,6 +366,8 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     session->cancel = false;
     engine->busy = true;
     engine->drawing = session;
+    engine->drawing_since_ms = whit_clock_ms();
+    atomic_store(&session->part, 0.0f);
     engine->brief = task->brief;
     pthread_mutex_unlock(&engine->lock);
     whit_result result = engine_draw(task, &frame);
@@ -571,6 +573,10 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         .device_lost = engine->device_lost,
         .change = engine->change,
     };
+    if (engine->drawing) {
+        status->drawing_ms = whit_clock_ms() - engine->drawing_since_ms;
+        status->part = atomic_load(&engine->drawing->part);
+    }
     memcpy(status->error, engine->error, sizeof status->error);
     pthread_mutex_unlock(&engine->lock);
 }

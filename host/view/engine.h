@@ -77,6 +77,8 @@ struct engine_status {
     enum session_stage stage;   /* of the session in the making; SESSION_DONE: none is */
     double stage_ms;            /* since it was asked for */
     bool drawing;               /* a better picture than the last one is on its way */
+    double drawing_ms;          /* that the drawing thread is at one; 0: it is at none */
+    float part;                 /* of it, 0..1 */
     char error[ENGINE_MESSAGE]; /* the last failure, until something succeeds; "": none */
     bool device_lost;
     struct engine_change change; /* the last one */

@@ -73,6 +73,7 @@ struct engine {
     struct engine_job *job;                         /* NULL: none */
     struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing is */
+    double drawing_since_ms; /* when it began */
     bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */
     uint32_t validation; /* messages, of sessions that are gone */
     bool busy;           /* something is being drawn */

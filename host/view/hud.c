@@ -228,16 +228,27 @@ static void draw_help(struct view *view)
     ui_panel_end();
 }
 
+/* Of what takes long: a session in the making, or a picture. */
 static void draw_work(const struct view *view)
 {
     const struct engine_status *status = &view->status;
-    if (status->stage == SESSION_DONE)
+    bool making = status->stage != SESSION_DONE;
+    bool stops = view->frame.number > 0 && !settings_same_kernel(&view->fallback, &view->settings);
+    if (!making && status->drawing_ms < SLOW_MS)
         return;
     if (ui_panel_begin("work", 0.5f, 1.0f, UI_PANEL_PLAIN)) {
         char text[96];
-        snprintf(text, sizeof text, "%s %.1f s", session_stage_name(status->stage),
-                 status->stage_ms * 1e-3);
-        ui_progress((float)((double)status->stage + 0.5) / (float)SESSION_DONE, text);
+        if (making)
+            snprintf(text, sizeof text, "%s %.1f s", session_stage_name(status->stage),
+                     status->stage_ms * 1e-3);
+        else
+            snprintf(text, sizeof text, "drawing %.0f %%, %.1f s", (double)status->part * 1e2,
+                     status->drawing_ms * 1e-3);
+        ui_progress(making ? (float)((double)status->stage + 0.5) / (float)SESSION_DONE
+                           : status->part,
+                    text);
+        if (stops && status->stage_ms > SLOW_MS)
+            ui_text_dim("Escape: as it was");
     }
     ui_panel_end();
 }

@@ -420,6 +420,10 @@ static void escape(struct view *view)
         view->panels.settings = view->panels.effects = false;
         return;
     }
+    if (view_go_back(view)) {
+        view_say(view, "stopped: as it was");
+        return;
+    }
     view->quit = now_ms - view->escape_ms < ESCAPE_MS;
     view->escape_ms = now_ms;
     if (!view->quit)

@@ -71,6 +71,12 @@ static whit_result build(struct session *session)
     return result;
 }
 
+static void note_part(void *user, double done)
+{
+    struct session *session = user;
+    atomic_store(&session->part, (float)done);
+}
+
 /* A small picture: drivers compile when a kernel is run for the first time. */
 static whit_result warm_up(struct session *session)
 {
@@ -79,6 +85,8 @@ static whit_result warm_up(struct session *session)
     params.height = WARM_HEIGHT;
     params.samples = 1;
     params.cancel = &session->cancel;
+    params.progress = note_part;
+    params.progress_user = session;
     double start_ms = whit_clock_ms();
     whit_result result =
         whit_renderer_create(session->device, session->accel, &params, &session->renderer);

@@ -264,6 +264,8 @@ void state_print(struct view *view, const char *name, FILE *to)
     put_bool(root, "playing", view->clock.playing);
     put_text(root, "toast", view->toast);
     put_text(root, "error", view->status.error);
+    put_text(root, "work", session_stage_name(view->status.stage));
+    put_number(root, "part", (double)view->status.part);
     put_count(root, "shown", view->shown);
     json_object_set_new(root, "keys", keys_json(view));
     json_object_set_new(root, "frame", frame_json(&view->frame));

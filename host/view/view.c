@@ -226,22 +226,25 @@ static void take_frame(struct view *view)
     view->compare.stale = true;
 }
 
+bool view_go_back(struct view *view)
+{
+    struct view_settings back = view->fallback;
+    if (view->frame.number == 0 || !settings_same_scene(&view->settings, &view->fallback))
+        return false;
+    settings_set_camera(&back, &view->settings);
+    if (settings_same_kernel(&back, &view->settings))
+        return false;
+    view->settings = back;
+    view->dirty = true;
+    return true;
+}
+
 /* A switch that cannot be made goes back to what the picture shows; a scene that cannot be read
    stays asked for, so that mending the file is enough. */
 static void take_failure(struct view *view)
 {
-    if (!view->status.error[0] || view->frame.number == 0 ||
-        !settings_same_scene(&view->settings, &view->fallback))
-        return;
-    struct view_settings back = view->fallback;
-    memcpy(back.camera, view->settings.camera, sizeof back.camera);
-    back.picture.time_s = view->settings.picture.time_s;
-    back.picture.width = view->settings.picture.width;
-    back.picture.height = view->settings.picture.height;
-    if (settings_same_kernel(&back, &view->settings))
-        return;
-    view_say(view, "%s", view->status.error);
-    view->settings = back;
+    if (view->status.error[0] && view_go_back(view))
+        view_say(view, "%s", view->status.error);
 }
 
 static void take_status(struct view *view)
@@ -250,7 +253,7 @@ static void take_status(struct view *view)
     engine_get_status(view->engine, &view->status);
     if (old.stage != view->status.stage || strcmp(old.error, view->status.error) != 0 ||
         old.change.number != view->status.change.number || old.drawing != view->status.drawing ||
-        view->status.stage != SESSION_DONE)
+        view->status.stage != SESSION_DONE || view->status.drawing_ms > SLOW_MS)
         view->dirty = true;
     if (view->status.error[0] && !view->status.drawing)
         take_failure(view);
@@ -349,7 +352,7 @@ static double wait_seconds(const struct view *view, double now_ms, bool goes_on)
         wait = fmin(wait, (MOVING_MS - (now_ms - view->moved_ms)) * 1e-3);
     if (view->toast[0])
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
-    if (view->status.stage != SESSION_DONE)
+    if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
     if (view->watch)
         wait = fmin(wait, WATCH_S);

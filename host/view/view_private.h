@@ -28,6 +28,9 @@ struct view_clock { /* of the animation */
     double speed, last_ms;
 };
 
+/* A picture that takes longer shows how far it is. */
+#define SLOW_MS 700.0
+
 /* Pictures of the last moments, for the HUD. */
 struct view_rate {
     double shown_ms[32]; /* one after the other, without a rest between */
@@ -123,6 +126,9 @@ void view_changed(struct view *view);
 void view_moved(struct view *view);
 /* Whether quick pictures are wanted, as more will follow. */
 bool view_is_moving(const struct view *view, double now_ms);
+/* To what the picture shows, where another kernel or other trees were asked for and are not there
+   as yet; false where they were not. */
+bool view_go_back(struct view *view);
 /* Another scene, as the file dropped on the window. Keeps all but camera and time. */
 void view_open(struct view *view, const char *path);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */

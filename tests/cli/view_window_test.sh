@@ -255,6 +255,62 @@ is off hud off
 is small hud small
 same frame.ids start small
 
+# ---- What takes long ----
+
+# Another kernel in the making is stopped by Escape, or by taking the switch back.
+# shellcheck disable=SC2086
+play "a switch that is stopped" "$SCENES/34k.json" $SMALL <<END
+still
+state start
+press G
+wait 60
+state working
+press Escape
+still
+state stopped
+press G
+wait 60
+press G
+still
+state back
+press Escape
+state once
+END
+is working "keys.trees" off
+check "at working: something is being made ($(value working work))" test -n "$(value working work)"
+is stopped toast "stopped: as it was"
+for at in stopped back; do
+    is $at "keys.trees" on
+    same words start $at
+    same frame.number start $at
+    same frame.pixels start $at
+done
+is once toast "Escape once more quits"
+
+# A slow picture says how far it is, and can be left.
+play "a slow picture" "$SCENES/8k.json" --size 320x240 <<END
+still
+state start
+press G
+picture
+wait 1500
+state slow
+wait 1500
+state later
+wait 2000
+state latest
+press G
+still
+state back
+END
+is slow "keys.trees" off
+is slow frame.whole false
+parts="$(value slow part) $(value later part) $(value latest part)"
+check "it says which part is done ($parts)" \
+    awk -v p="$parts" 'BEGIN { split(p, a); for (i in a) if (a[i] > 0 && a[i] < 1) exit 0; exit 1 }'
+check "at slow: it is shown" test "$(value slow panels.work)" != "(no panels.work)"
+same frame.ids start back
+
 # ---- Ways to end ----
 
 # shellcheck disable=SC2086
