@@ -64,7 +64,7 @@ mutation(scan_misses_highlights scene_cube RED "--effects all gives the same pic
   TARGET picture_check)
 change(host/scene/effects.c [[(m->model == SCENE_MODEL_PHONG && any(m->specular))]] [[false]])
 
-mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_program)
+mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_changed)
 change(host/api/renderer_api.c [[? &out->effects_added : &out->effects_removed]]
   [[? &out->effects_added : &out->effects_added]])
 
