@@ -40,11 +40,10 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     bool all_above = s.ea > edge_error && s.eb > edge_error && s.ec > edge_error;
     float det = (s.ea + s.eb) + s.ec;
     float az = ray->shear.z * ta.z, bz = ray->shear.z * tb.z, cz = ray->shear.z * tc.z;
-    float scaled_t = (s.ea * az + s.eb * bz) + s.ec * cz;
     float inv_det = 1.0f / det;
-    out->t = scaled_t * inv_det;
     out->u = s.eb * inv_det;
     out->v = s.ec * inv_det;
+    out->t = ((s.ea * inv_det) * az + out->u * bz) + out->v * cz;
     float z_lo = smaller(az, smaller(bz, cz)), z_hi = larger(az, larger(bz, cz));
     float z_error = 40.0f * UNIT * larger(fabsf(z_lo), fabsf(z_hi)) + TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);

@@ -133,11 +133,10 @@ static inline bool intersect_triangle(const struct ray_setup *ray, struct vec3 a
     bool above = s.ea > 0.0f || s.eb > 0.0f || s.ec > 0.0f;
     float det = (s.ea + s.eb) + s.ec;
     float az = ray->shear.z * ta.z, bz = ray->shear.z * tb.z, cz = ray->shear.z * tc.z;
-    float scaled_t = (s.ea * az + s.eb * bz) + s.ec * cz;
     float inv_det = 1.0f / det;
-    float at = scaled_t * inv_det;
     *u = s.eb * inv_det;
     *v = s.ec * inv_det;
+    float at = ((s.ea * inv_det) * az + *u * bz) + *v * cz;
     *t = at > t_near ? at : t_near;
     return !(below && above) && det != 0.0f && at >= t_min && t_near <= t_far;
 }

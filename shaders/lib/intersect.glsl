@@ -125,11 +125,12 @@ Weights weigh_triangle(RaySetup ray, float az, float bz, float cz, vec3 edges)
 {
     precise vec3 z = ray.shear.z * vec3(az, bz, cz);
     precise float det = (edges.x + edges.y) + edges.z;
-    precise float scaled_t = (edges.x * z.x + edges.y * z.y) + edges.z * z.z;
     precise float inv_det = 1.0 / det;
-    precise float at = scaled_t * inv_det;
+    // Weights first: edge functions are areas, and areas times lengths leave the floats from 2^42 on.
+    precise float weight_a = edges.x * inv_det;
     precise float weight_b = edges.y * inv_det;
     precise float weight_c = edges.z * inv_det;
+    precise float at = (weight_a * z.x + weight_b * z.y) + weight_c * z.z;
     return Weights(det, inv_det, at, weight_b, weight_c, z);
 }
 

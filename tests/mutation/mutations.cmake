@@ -112,6 +112,14 @@ change(host/accel/intersect.h [[s.eb = s.ax * s.cy - s.ay * s.cx;]]
 change(host/accel/intersect.h [[s.ec = s.bx * s.ay - s.by * s.ax;]]
   [[s.ec = fmaf(s.bx, s.ay, -(s.by * s.ax));]])
 
+mutation(t_of_areas_times_lengths hard_triangle RED size_does_not_matter)
+change(host/accel/intersect.h [[((s.ea * inv_det) * az + *u * bz) + *v * cz;]]
+  [[((s.ea * az + s.eb * bz) + s.ec * cz) * inv_det;]])
+
+mutation(t_of_areas_times_lengths_in_kernels render_scale RED pictures_do_not_depend_on_the_unit)
+change(shaders/lib/intersect.glsl [[(weight_a * z.x + weight_b * z.y) + weight_c * z.z;]]
+  [[((edges.x * z.x + edges.y * z.y) + edges.z * z.z) * inv_det;]])
+
 mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
 change(host/accel/intersect.h [[SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)]] [[SLAB_FAR_SCALE 1.0f]])
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])

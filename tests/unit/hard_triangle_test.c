@@ -272,11 +272,13 @@ static void ends_of_intervals_count(void **state)
     soup_finish(&soup);
 }
 
-/* T7: at 2^-30 and 2^30 of the size (1e-18 in area and 1e18), bit for bit what is at 1. */
+/* T7: from 1e-15 (rays at edges: 1e-11, where products are smaller) to 1e18 in size, bit for bit
+   what is at 1, whether directions are as long as scenes are large, or of the length of 1 as those
+   of cameras. */
 static void size_does_not_matter(void **state)
 {
     (void)state;
-    enum { RAYS = 20000 };
+    enum { RAYS = 40000 };
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t differ = 0, met = 0;
         random_state = 7;
@@ -284,16 +286,19 @@ static void size_does_not_matter(void **state)
             struct vec3 v[3], scaled[3];
             struct gpu_ray ray, far;
             struct gpu_hit hit = {0}, other = {0};
-            kinds[r % 2 ? 0 : 2].make(v, &ray);
-            float scale = ldexpf(1.0f, (int)(random_bits() % 61) - 30);
+            bool at_edge = r % 2 == 0, unit = r % 4 < 2;
+            int least = at_edge ? -36 : -50;
+            kinds[at_edge ? 2 : 0].make(v, &ray);
+            float scale = ldexpf(1.0f, (int)(random_bits() % (uint32_t)(61 - least)) + least);
             far = ray;
             for (int k = 0; k < 3; ++k) {
                 scaled[k] = vec3_scale(v[k], scale);
                 far.origin[k] *= scale;
-                far.dir[k] *= scale;
+                far.dir[k] *= unit ? 1.0f : scale;
             }
             bool here = level_meets(&levels[l], &ray, v, &hit);
             bool there = level_meets(&levels[l], &far, scaled, &other);
+            hit.t *= unit ? scale : 1.0f;
             met += here;
             differ += here != there ||
                       (here && (hit.t != other.t || hit.u != other.u || hit.v != other.v));
