@@ -334,6 +334,18 @@ static void matrices_without_inverse_are_refused(void **state)
                             "test: instance 1 ``: its matrix has no inverse in range at 0 s");
         assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
     }
+    /* Of rank 2, 1 and 0: no entry tells. The first by rounding alone is not: 0.1 + 0.4 is 0.5, but
+       0.3 + 0.6 is not 0.9. */
+    const double flat[4][9] = {{1, 2, 3, 4, 5, 6, 5, 7, 9},
+                               {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.5, 0.7, 0.9},
+                               {1, 2, 3, 2, 4, 6, -1, -2, -3},
+                               {0, 0, 0, 0, 0, 0, 0, 0, 0}};
+    for (int k = 0; k < 4; ++k) {
+        for (int i = 0; i < 9; ++i)
+            pose.instances[1].m[i / 3 * 4 + i % 3] = flat[k][i];
+        assert_int_equal(accel_pose(accel, &pose), WHIT_ERROR_INPUT);
+    }
+    pose.instances[1] = affine_identity();
     pose.instances[1].m[0] = -1.0;
     assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
     scene_pose_finish(&pose);
