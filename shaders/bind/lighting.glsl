@@ -167,7 +167,7 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media
     if (SPEC_LIGHTS == 0u)
         return sum;
     Lit lit;
-    lit.receiver = Receiver(smooth_lift(hit, s), surrounding_absorption(media), hit.instance,
+    lit.receiver = Receiver(smooth_lift(s), surrounding_absorption(media), hit.instance,
                             hit.primitive);
     lit.view = view;
     lit.cos_view = max(dot(view, s.ns), 0.0);

@@ -14,6 +14,8 @@ struct Surface {
     vec3 color;              // of the vertices
     float color_alpha;
     uint shade_index; // index among the triangles of all meshes
+    uint instance;
+    bool on_sphere;
     uint material;
     float u, v; // of the triangle's second and third vertex; of a sphere: texture coordinates
 };
@@ -152,10 +154,12 @@ Surface fetch_surface(Hit hit)
     Surface s;
     uint row = hit.triangle * TRIANGLE_ROWS;
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
+    s.instance = hit.instance;
+    s.on_sphere = is_on_sphere(hit);
     s.material = fetch_material_index(s.shade_index);
     if (SPEC_SPHERES != SPHERES_ONLY)
         fetch_on_triangle(hit, s);
-    if (SPEC_SPHERES == SPHERES_ONLY || is_on_sphere(hit))
+    if (SPEC_SPHERES == SPHERES_ONLY || is_on_sphere(hit)) // constant where there are none
         fetch_on_sphere(hit, s);
     vec3 ng = s.ng, ns = s.ns;
     if (SPEC_INSTANCED != 0u) {

@@ -9,12 +9,12 @@
 // normals are averaged at its corners is none: there the surface would be far outside.
 const float SMOOTH_COSINE = 0.70710678;
 
-vec3 vertex_normal(Hit hit, uint shade_index, uint corner)
+vec3 vertex_normal(Surface s, uint corner)
 {
-    uint row = frame.triangle_row + shade_index * TRIANGLE_SHADE_ROWS + corner;
+    uint row = frame.triangle_row + s.shade_index * TRIANGLE_SHADE_ROWS + corner;
     vec3 n = row_vec3(fetch_shading_row(row));
     if (SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
-        n = place_normal(fetch_instance_frame(hit.instance), n);
+        n = place_normal(fetch_instance_frame(s.instance), n);
     return normalize_or(n, vec3(0.0));
 }
 
@@ -30,21 +30,19 @@ vec3 lift_to_plane(vec3 from, vec3 n, vec3 ng, float slack, inout bool smooth_me
 
 // From the hit point to the smooth surface, outwards only: to the mean of its projections on the
 // tangent planes at the vertices (Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II,
-// chapter 4). Zero on flat meshes, on hollow sides and on spheres. `s` faces the ray.
-vec3 smooth_lift(Hit hit, Surface s)
+// chapter 4). Zero on flat meshes, on hollow sides and on spheres. `s` faces the ray; where media
+// touch it may be another surface than the one that was hit first.
+vec3 smooth_lift(Surface s)
 {
     if (SPEC_TERMINATOR == 0u || SPEC_SMOOTH_NORMALS == 0u || SPEC_SPHERES == SPHERES_ONLY)
         return vec3(0.0);
     vec3 from0 = s.e1 * s.u + s.e2 * s.v;
     vec3 size = max(abs(s.e1), abs(s.e2));
     float slack = max(size.x, max(size.y, size.z)) * (1.0 / 65536.0);
-    bool smooth_mesh = !is_on_sphere(hit);
-    vec3 lift0 = lift_to_plane(from0, vertex_normal(hit, s.shade_index, 0u), s.ng, slack,
-                               smooth_mesh);
-    vec3 lift1 = lift_to_plane(from0 - s.e1, vertex_normal(hit, s.shade_index, 1u), s.ng, slack,
-                               smooth_mesh);
-    vec3 lift2 = lift_to_plane(from0 - s.e2, vertex_normal(hit, s.shade_index, 2u), s.ng, slack,
-                               smooth_mesh);
+    bool smooth_mesh = SPEC_SPHERES == SPHERES_NONE || !s.on_sphere;
+    vec3 lift0 = lift_to_plane(from0, vertex_normal(s, 0u), s.ng, slack, smooth_mesh);
+    vec3 lift1 = lift_to_plane(from0 - s.e1, vertex_normal(s, 1u), s.ng, slack, smooth_mesh);
+    vec3 lift2 = lift_to_plane(from0 - s.e2, vertex_normal(s, 2u), s.ng, slack, smooth_mesh);
     vec3 lift = lift0 * (1.0 - s.u - s.v) + lift1 * s.u + lift2 * s.v;
     return smooth_mesh ? lift : vec3(0.0);
 }

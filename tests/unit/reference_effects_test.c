@@ -247,10 +247,45 @@ static void every_effect_agrees_with_the_device(void **state)
     fixture_close(&f);
 }
 
+/* Two smooth bodies of one shape that touch all over, the inner one of higher priority and turned,
+   so that what is hit first is another instance than what is seen; before a true sphere that
+   touches a mesh. Lit from the side, so that shadow rays leave along the surfaces. */
+static struct scene *touching_smooth_bodies(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 1.5, 5}, (double[]){0, 0, 0});
+    struct scene_material outer = glass(1.33f, 1), inner = glass(1.5f, 2);
+    set_rgb(inner.diffuse, 0.8f, 0.6f, 0.4f);
+    add_object(scene, ball(1), outer, -1.1, 0, 0);
+    add_object(scene, ball(1), inner, -1.1, 0, 0);
+    scene->nodes[scene->node_count - 1].rotation[1] = sqrt(0.5); /* by 90 degrees, about y */
+    scene->nodes[scene->node_count - 1].rotation[3] = sqrt(0.5);
+    add_object(scene, true_ball(1), outer, 1.1, 0, 0);
+    add_object(scene, ball(1), inner, 1.1, 0, 0);
+    scene->contact = 0.12f; /* the mesh of the ball is up to that far inside the sphere */
+    add_sun(scene, -0.2, -1, 0.3, 1.0f);
+    return scene;
+}
+
+static void touching_smooth_bodies_agree(void **state)
+{
+    (void)state;
+    struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
+                                      .whole_stops = true};
+    struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
+    struct image device = render(&f), reference = draw_reference(f.accel, &params);
+    struct difference d = compare(&device, &reference);
+    print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
+    assert_true(d.over * 500 <= SIDE * SIDE);
+    image_finish(&device);
+    image_finish(&reference);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_effect_agrees_with_the_device),
+        cmocka_unit_test(touching_smooth_bodies_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
