@@ -125,12 +125,26 @@ static void builder_name(const struct bvh_params *params, char *out, size_t out_
              params->optimize ? "+opt" : "");
 }
 
+/* In the trees: of each mesh once, of one tree over all instances as often as it has instances. */
+static uint32_t count_spheres(const struct accel *accel)
+{
+    const struct scene *scene = accel->scene;
+    if (accel->flat)
+        return (uint32_t)scene->sphere_total;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        count += scene->meshes[i].sphere_count;
+    return count;
+}
+
 void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
 {
     const struct accel *accel = handle->accel;
+    uint32_t spheres = count_spheres(accel);
     *info = (whit_accel_info){
         .node_count = accel->node_count,
-        .triangle_count = accel->triangle_count,
+        .triangle_count = accel->triangle_count - spheres,
+        .sphere_count = spheres,
         .reference_count = accel->record_count,
         .depth = accel->mesh_depth,
         .instance_depth = accel->instance_depth,

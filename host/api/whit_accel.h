@@ -40,9 +40,8 @@ WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_acc
 void whit_accel_destroy(whit_accel *accel);
 
 typedef struct whit_accel_info {
-    uint32_t node_count, leaf_count, triangle_count, depth, instance_depth;
-    uint32_t
-        reference_count; /* triangles in leaves: more than triangle_count where some are split */
+    uint32_t node_count, leaf_count, triangle_count, sphere_count, depth, instance_depth;
+    uint32_t reference_count; /* in leaves: more than both where triangles are split */
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
     char builder[48]; /* of the mesh trees, also of saved ones: "binned:7", "spatial+opt" */

@@ -132,6 +132,7 @@ static json_t *tree_document(const whit_accel_info *info)
     document_count(tree, "nodes", info->node_count);
     document_count(tree, "leaves", info->leaf_count);
     document_count(tree, "triangles", info->triangle_count);
+    document_count(tree, "spheres", info->sphere_count);
     document_count(tree, "depth", info->depth);
     document_count(tree, "instance_depth", info->instance_depth);
     document_number(tree, "sah_cost", info->sah_cost);

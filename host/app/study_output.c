@@ -1,3 +1,4 @@
+#include <inttypes.h>
 #include <string.h>
 
 #include "app/commands.h"
@@ -6,12 +7,20 @@
 
 /* ---- Text ---- */
 
+static void print_primitives(uint64_t triangles, uint64_t spheres)
+{
+    printf("%" PRIu64 " triangles", triangles);
+    if (spheres)
+        printf(" and %" PRIu64 " sphere%s", spheres, spheres == 1 ? "" : "s");
+}
+
 static void print_heading(const struct study *study)
 {
     whit_scene_info scene;
     whit_scene_get_info(study->job.scene, &scene);
-    printf("scene      %s: %llu triangles in %u instance%s of %u mesh%s\n", study->job.scene_path,
-           (unsigned long long)scene.triangle_count, scene.instance_count,
+    printf("scene      %s: ", study->job.scene_path);
+    print_primitives(scene.triangle_count, scene.sphere_count);
+    printf(" in %u instance%s of %u mesh%s\n", scene.instance_count,
            scene.instance_count == 1 ? "" : "s", scene.mesh_count,
            scene.mesh_count == 1 ? "" : "es");
     if (study->traced) {
@@ -101,9 +110,11 @@ static void print_details(const struct study *study, const struct study_row *row
         printf("  %-9s%.2f ms (%.2f to %.2f) by %u thread%s\n", row->path ? "read" : "build",
                row->build_ms[i].median, row->build_ms[i].least, row->build_ms[i].most,
                study->threads[i], study->threads[i] == 1 ? "" : "s");
-    printf("  %-9s%u nodes, %u leaves, %u triangles in %u references (%.3f a triangle), %.1f MiB\n",
-           "trees", info->node_count, info->leaf_count, info->triangle_count, info->reference_count,
-           info->triangle_count ? (double)info->reference_count / info->triangle_count : 0.0,
+    uint32_t primitives = info->triangle_count + info->sphere_count;
+    printf("  %-9s%u nodes, %u leaves, ", "trees", info->node_count, info->leaf_count);
+    print_primitives(info->triangle_count, info->sphere_count);
+    printf(" in %u references (%.3f each), %.1f MiB\n", info->reference_count,
+           primitives ? (double)info->reference_count / primitives : 0.0,
            (double)info->bytes / 1048576.0);
     printf("  %-9s%u, and %u over instances\n", "depth", info->depth, info->instance_depth);
     print_bins("at depth", report->leaves_at_depth, WHIT_DEPTH_BINS);
@@ -205,6 +216,7 @@ static json_t *row_document(const struct study *study, const struct study_row *r
     document_count(object, "nodes", info->node_count);
     document_count(object, "leaves", info->leaf_count);
     document_count(object, "triangles", info->triangle_count);
+    document_count(object, "spheres", info->sphere_count);
     document_count(object, "references", info->reference_count);
     document_count(object, "bytes", info->bytes);
     document_count(object, "depth", info->depth);
@@ -235,6 +247,7 @@ static json_t *scene_document(const struct study *study)
     document_count(scene, "instances", info.instance_count);
     document_count(scene, "meshes", info.mesh_count);
     document_count(scene, "triangles", info.triangle_count);
+    document_count(scene, "spheres", info.sphere_count);
     return scene;
 }
 

@@ -48,6 +48,15 @@ for builder in spatial:1e-06,0.25+opt spatial:0.5 binned:7; do
 done
 check "without rays there are no rates" sh -c '! grep -q Mray stdout'
 
+MIXED=$OUT/mixed.json
+printf '{ "objects": [ { "shape": "box" }, { "shape": "ball" } ] }\n' >"$MIXED"
+for instances in "" "--instances off"; do
+    # shellcheck disable=SC2086
+    expect 0 "spheres $instances" bvh "$MIXED" --no-trace --runs 1 --build sweep $instances
+    check "spheres are no triangles $instances" has "^scene .*: 12 triangles and 1 sphere in 2 instances"
+    check "nor in trees $instances" has ", 12 triangles and 1 sphere in 13 references (1.000 each)"
+done
+
 expect 0 "leaves of one triangle" bvh "$CUBE" --no-trace --build sweep --leaf 1
 check "twelve of them" has "^  of size  1: 12$"
 
