@@ -4,24 +4,17 @@
 
 #include "app/commands.h"
 #include "app/document.h"
+#include "cost/words.h"
+
+static void put_part(void *user, const char *part)
+{
+    fputs(part, user);
+}
 
 void recipe_put_word(FILE *to, const char *word)
 {
-    static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                               "_-./,:=+@%";
     fputc(' ', to);
-    if (word[0] && strspn(word, safe) == strlen(word)) {
-        fputs(word, to);
-        return;
-    }
-    fputc('\'', to);
-    for (const char *c = word; *c; ++c) {
-        if (*c == '\'')
-            fputs("'\\''", to);
-        else
-            fputc(*c, to);
-    }
-    fputc('\'', to);
+    words_quote(word, put_part, to);
 }
 
 /* The shortest decimal that reads back as `value`. */

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cost/words.h"
+
 /* What a renderer cannot change once it is made: another one is needed. */
 static bool same_trees(const whit_accel_params *a, const whit_accel_params *b)
 {
@@ -118,26 +120,14 @@ static void put(struct words *words, const char *text)
     }
 }
 
-static bool is_plain(const char *text)
+static void put_part(void *user, const char *part)
 {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "-_./:,+=@%";
-    return text[0] && text[strspn(text, plain)] == '\0';
+    put(user, part);
 }
 
-/* In single quotes where a shell would take it apart. */
 static void put_quoted(struct words *words, const char *text)
 {
-    if (is_plain(text)) {
-        put(words, text);
-        return;
-    }
-    put(words, "'");
-    for (; *text; ++text) {
-        const char one[2] = {*text, 0};
-        put(words, *text == '\'' ? "'\\''" : one);
-    }
-    put(words, "'");
+    words_quote(text, put_part, words);
 }
 
 WHIT_PRINTF(3, 4)

@@ -1,0 +1,9 @@
+/* Words of a command line that another run is to take. */
+#ifndef COST_WORDS_H
+#define COST_WORDS_H
+
+/* Gives `put` the parts of `word`, in their order: the word as it is, or in single quotes where a
+   POSIX shell would take it apart. A part is valid during the call only. */
+void words_quote(const char *word, void (*put)(void *user, const char *part), void *user);
+
+#endif
