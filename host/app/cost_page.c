@@ -109,6 +109,9 @@ static void put_convergence(struct page *page, const struct cost_report *report,
             &table->settings[is_usual ? table->usual : row->setting_index];
         if (strspn(setting->name, "0123456789") != strlen(setting->name))
             continue;
+        /* The same samples as the reference's say nothing of how error falls. */
+        if (!alone && setting->value >= report->reference_samples)
+            continue;
         add_point(points, report, row, setting->value, alone ? row->alone.rmse : row->error.rmse,
                   false);
     }
@@ -214,7 +217,9 @@ whit_result cost_save_page(const struct cost *cost)
     page_heading(&page, "Price and error");
     put_pareto(&page, report, COST_RMSE);
     put_pareto(&page, report, COST_FLIP);
-    put_convergence(&page, report, "aa", "Error by samples of a pixel", "samples", true, false);
+    put_convergence(&page, report, "aa",
+                    "Error by samples of a pixel, fewer than the reference has", "samples", true,
+                    false);
     put_convergence(&page, report, "depth",
                     "Error by bounces, beside the reference with the same single sample",
                     "most bounces", false, true);

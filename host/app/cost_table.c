@@ -140,10 +140,11 @@ void cost_say_method(const struct cost_report *report, cost_say *say, void *user
            "Errors: of a %u x %u picture, linear RGB, against the reference in double with %u "
            "samples a pixel, %u bounces and a bail-out of 1/65536; `alone`: RMSE against the "
            "reference with "
-           "the same single sample, which leaves out what samples do. `best`: nothing is both "
+           "the same single sample, which leaves out what samples do. %u samples are those of the "
+           "reference: their rows say nothing of what more would change. `best`: nothing is both "
            "cheaper and more right.",
            report->judged_width, report->judged_height, report->reference_samples,
-           report->reference_depth);
+           report->reference_depth, report->reference_samples);
     say_spread(report, say, user);
     if (!report->complete)
         say_it(say, user, "This report is not complete: it was stopped.");

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* In units of the drawing, which scales with the page. */
-static const double WIDTH = 720.0, HEIGHT = 400.0, LEFT = 72.0, RIGHT = 16.0, TOP = 14.0,
+static const double WIDTH = 720.0, HEIGHT = 400.0, LEFT = 84.0, RIGHT = 16.0, TOP = 14.0,
                     BOTTOM = 56.0, LANE = 34.0;
 
 /* ---- Ticks ---- */

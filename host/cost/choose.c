@@ -117,13 +117,39 @@ static double from_sum(double sum, enum cost_metric metric)
     return metric == COST_RMSE ? sqrt(sum) : sum;
 }
 
+static double samples_of(const struct search *search, const struct cost_row *row)
+{
+    double value = search->table[search->aa].settings[row->setting_index].value;
+    return value < 1.0 ? search->report->reference_samples
+                       : value; /* adaptive ones: up to as many */
+}
+
+/* As many samples as the reference has are the same ones: what they get wrong is not in its
+   figures. Four times as many halve the error at the least, where they are no rarer than by
+   chance; so half of that of a quarter. */
+static double sampled_error(const struct search *search, const struct cost_row *row)
+{
+    const struct cost_report *report = search->report;
+    double error = cost_error_of(&row->error, search->goal->metric);
+    if (samples_of(search, row) < report->reference_samples)
+        return error;
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        const struct cost_row *other = &report->rows[i];
+        if (i > 0 && (other->knob_index != search->aa || !other->measured))
+            continue;
+        if (4.0 * (i > 0 ? samples_of(search, other) : 1.0) == report->reference_samples)
+            error = fmax(error, 0.5 * cost_error_of(&other->error, search->goal->metric));
+    }
+    return error;
+}
+
 static struct effect effect_of(const struct search *search, const struct cost_row *row)
 {
     const struct cost_row *usual = &search->report->rows[0];
     enum cost_metric metric = search->goal->metric;
     struct effect out = {.known = is_ranked(row)};
     out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
-    out.error = row->knob_index == search->aa ? to_sum(cost_error_of(&row->error, metric), metric)
+    out.error = row->knob_index == search->aa ? to_sum(sampled_error(search, row), metric)
                                               : to_sum(own_error(row, metric), metric) -
                                                     to_sum(own_error(usual, metric), metric);
     return out;

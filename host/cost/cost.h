@@ -153,7 +153,8 @@ double cost_error_of(const whit_difference *difference, enum cost_metric metric)
 
 /* By the report's figures: ratios multiply, squared errors and FLIP add up. Numerics and instances
    stay as they are, for what they get wrong is not told by one picture; of knobs that change
-   nothing the fastest setting is taken. The cheapest with an error of at most `limit`; the one with
+   nothing the fastest setting is taken; as many samples as the reference has count with half the
+   error of a quarter of them. The cheapest with an error of at most `limit`; the one with
    the least error of those that 9 of 10 times take at most `limit` ms by the wall clock; errors
    that differ by 2 % count as equal. */
 struct cost_choice {

@@ -66,7 +66,11 @@ for row in report["rows"]:
 PYTHON
     # shellcheck disable=SC2086
     expect 0 "what may change nothing" cost "$CUBE" $small --spend 1 --samples 4 \
-        --knobs traversal,build,numerics --csv "$OUT/files/same.csv"
+        --knobs traversal,build,numerics,arithmetic --csv "$OUT/files/same.csv"
+    double=$(value "$OUT/files/same.csv" arithmetic double alone_rmse)
+    float=$(value "$OUT/files/same.csv" usual "" alone_rmse)
+    check "double is exact where nothing is cut, float nearly ($double, $float)" \
+        holds "$double < 1e-9 < $float < 1e-6"
     for row in "traversal sign" "traversal basic" "build median" "build sweep" "build spatial" \
         "build binned+opt"; do
         # shellcheck disable=SC2086
