@@ -283,6 +283,39 @@ static void odd_lights_give_finite_pictures(void **state)
     }
 }
 
+/* S4 of the catalogue of hard cases: a lamp just above the floor lights it by the formula, one in
+   it or just behind it not at all. */
+static void lamps_next_to_a_surface_are_on_one_side(void **state)
+{
+    (void)state;
+    enum { ACROSS = 33 };
+    const double heights[] = {1e-6, 1e-3, 0.0, -1e-6};
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
+        const struct render_params params = {.width = ACROSS, .height = ACROSS};
+        struct scene *scene = floor_scene();
+        struct fixture f;
+        double worst = 0.0;
+        add_lamp(scene, 0, heights[i], 0, 1.0f);
+        struct image image = picture_of(scene, &params, &f);
+        for (uint32_t k = 0; k < ACROSS * ACROSS; ++k) {
+            double p[3], value = (double)image.pixels[4 * k];
+            floor_point(k % ACROSS, k / ACROSS, ACROSS, p);
+            double square = p[0] * p[0] + p[2] * p[2] + heights[i] * heights[i];
+            double expected = fmax(heights[i], 0.0) / (square * sqrt(square));
+            if (k == ACROSS * ACROSS / 2) /* below it: where exactly is a matter of roundings */
+                assert_true(isfinite(value) && (heights[i] > 0.0 || value == 0.0));
+            else if (heights[i] <= 0.0)
+                assert_true(value == 0.0);
+            else
+                worst = fmax(worst, fabs(value / expected - 1.0));
+        }
+        print_message("  at %g: off by %.2g at most\n", heights[i], worst);
+        assert_true(worst <= 2e-4);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
 /* A room with a lamp, a glass pane, a mirror and a smooth ball. */
 static struct scene *room_scene(void)
 {
@@ -351,6 +384,7 @@ int main(void)
         cmocka_unit_test(spots_fall_off_between_their_cones),
         cmocka_unit_test(ranges_end_lights),
         cmocka_unit_test(odd_lights_give_finite_pictures),
+        cmocka_unit_test(lamps_next_to_a_surface_are_on_one_side),
         cmocka_unit_test(all_effects_change_nothing),
         cmocka_unit_test(trees_change_nothing),
     };
