@@ -161,7 +161,8 @@ static whit_result try_now(const struct cost_report *report, const struct job *j
     whit_result result = cost_time(renderer, &tried, TRIALS, &times);
     if (result == WHIT_OK)
         result = whit_renderer_set_view(renderer, &full);
-    *full_ms = times.ms[COST_WALL].high * larger;
+    /* As far beyond the most as half of what is between the trials. */
+    *full_ms = larger * (1.5 * times.ms[COST_WALL].high - 0.5 * times.ms[COST_WALL].low);
     return result;
 }
 

@@ -20,7 +20,9 @@ enum cost_id {
     ID_COMPARE,
 };
 
-enum { RAYS_QUICK = 2000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16, GRACE_MS = 4000 };
+enum { RAYS_QUICK = 2000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16 };
+/* Drivers cannot be stopped while they compile a kernel, and some take that long. */
+enum { GRACE_MS = 20000 };
 
 static const struct cli_option options[] = {
     PICTURE_OPTION_PLACE,
