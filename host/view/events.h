@@ -34,6 +34,7 @@ enum view_event_kind {
     EVENT_WAIT,
     EVENT_STILL,
     EVENT_PICTURE,
+    EVENT_PRICED,
     EVENT_STATE,
     EVENT_SHOT,
     EVENT_MINIMISE,

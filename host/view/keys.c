@@ -158,7 +158,8 @@ static void say_difference(const struct view *view, char *text, size_t bytes)
 static void switch_settings(struct view *view)
 {
     view->panels.settings = !view->panels.settings;
-    view->panels.effects = false;
+    if (view->panels.effects)
+        panels_switch_effects(view);
 }
 
 static void say_settings(const struct view *view, char *text, size_t bytes)
@@ -168,7 +169,7 @@ static void say_settings(const struct view *view, char *text, size_t bytes)
 
 static void switch_effects(struct view *view)
 {
-    view->panels.effects = !view->panels.effects;
+    panels_switch_effects(view);
     view->panels.settings = false;
 }
 
@@ -417,7 +418,9 @@ static void escape(struct view *view)
     double now_ms = clock_ms();
     if (view->help || view->picked || view->panels.settings || view->panels.effects) {
         view->help = view->picked = false;
-        view->panels.settings = view->panels.effects = false;
+        view->panels.settings = false;
+        if (view->panels.effects)
+            panels_switch_effects(view);
         return;
     }
     if (view_go_back(view)) {

@@ -5,14 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { EFFECTS_MOST = 64, VIEW_FREE_NAME = 32, STATES_MOST = 32 };
+#include "view/prices.h"
 
-/* What switching an effect cost, or saved. */
-struct effect_price {
-    bool known, added;
-    double before_ms, after_ms;
-    uint64_t other_colors, pixels;
-};
+enum { VIEW_FREE_NAME = 32, STATES_MOST = 32 };
 
 struct panels {
     bool settings, effects;
@@ -20,7 +15,8 @@ struct panels {
     uint64_t change;   /* the last one that was looked at */
     int pending;       /* 1 + the effect that was switched; 0: none, -1: several */
     const void *scene; /* that the prices are of */
-    struct effect_price prices[EFFECTS_MOST];
+    struct effect_price prices[EFFECTS_MOST]; /* of switches that were made */
+    struct prices *measured;                  /* of all, while their panel is open; or NULL */
     char states[STATES_MOST][VIEW_FREE_NAME]; /* files of settings, the newest first */
     uint32_t state_count;
     bool states_known;
@@ -29,6 +25,8 @@ struct panels {
 struct view;
 
 void panels_draw(struct view *view); /* between ui_begin and ui_end */
+/* Opens or closes the panel of effects: while it is open their prices are measured beside. */
+void panels_switch_effects(struct view *view);
 /* Notes the price of a switch once it is known. */
 void panels_step(struct view *view);
 /* Ctrl+S: the settings as options, one a line, in whit-0001.view and on. */

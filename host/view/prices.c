@@ -16,6 +16,7 @@ struct prices {
     struct scene_ref *scene;
     double seconds;
     uint64_t knobs;
+    bool of_effects;
     volatile bool cancel;
     void (*wake)(void *user);
     void *wake_user;
@@ -24,6 +25,7 @@ struct prices {
     double done, seconds_left;
     char what[PRICES_TEXT];
     struct cost_report *report;
+    struct effect_price effects[EFFECTS_MOST];
 };
 
 static void tell(void *user, double done, double seconds_left, const char *what)
@@ -69,6 +71,36 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
     return cost_measure(&request, report);
 }
 
+static void note_effect(void *user, uint32_t effect, const struct effect_price *price)
+{
+    struct prices *prices = user;
+    pthread_mutex_lock(&prices->lock);
+    prices->effects[effect] = *price;
+    pthread_mutex_unlock(&prices->lock);
+}
+
+static void tell_effect(void *user, double done, const char *what)
+{
+    tell(user, done, 0.0, what);
+}
+
+static whit_result measure_effects(struct prices *prices, const whit_log *log, whit_device *device,
+                                   whit_accel *accel)
+{
+    const struct effect_work work = {
+        .settings = &prices->settings,
+        .scene = prices->scene->scene,
+        .device = device,
+        .accel = accel,
+        .cancel = &prices->cancel,
+        .log = log,
+        .found = note_effect,
+        .say = tell_effect,
+        .user = prices,
+    };
+    return effect_prices_measure(&work);
+}
+
 static void run(void *context)
 {
     struct prices *prices = context;
@@ -86,7 +118,8 @@ static void run(void *context)
     if (result == WHIT_OK)
         result = whit_device_create(&params, &log, &device);
     if (result == WHIT_OK)
-        result = measure(prices, &log, device, accel, &report);
+        result = prices->of_effects ? measure_effects(prices, &log, device, accel)
+                                    : measure(prices, &log, device, accel, &report);
     whit_device_destroy(device);
     whit_accel_destroy(accel);
     pthread_mutex_lock(&prices->lock);
@@ -108,6 +141,7 @@ struct prices *prices_start(const struct prices_params *params)
     prices->scene = scene_ref_take(params->scene);
     prices->seconds = params->seconds;
     prices->knobs = params->knobs;
+    prices->of_effects = params->effects;
     prices->wake = params->wake;
     prices->wake_user = params->wake_user;
     pthread_mutex_init(&prices->lock, NULL);
@@ -150,6 +184,13 @@ bool prices_are_still(struct prices *prices)
     if (prices)
         prices_get_state(prices, &state);
     return state.finished;
+}
+
+void prices_get_effect(struct prices *prices, uint32_t effect, struct effect_price *price)
+{
+    pthread_mutex_lock(&prices->lock);
+    *price = prices->effects[effect];
+    pthread_mutex_unlock(&prices->lock);
 }
 
 void prices_get_state(struct prices *prices, struct prices_state *state)

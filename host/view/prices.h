@@ -4,6 +4,7 @@
 #define VIEW_PRICES_H
 
 #include "cost/cost.h"
+#include "view/effect_prices.h"
 #include "view/session.h"
 
 struct prices;
@@ -13,6 +14,7 @@ struct prices_params {
     struct scene_ref *scene;
     double seconds;           /* that it may take, roughly */
     uint64_t knobs;           /* bits of knob_table; 0: all */
+    bool effects;             /* those of effects, in place of knobs; `seconds` says nothing */
     void (*wake)(void *user); /* from the thread, when there is more to see */
     void *wake_user;
 };
@@ -34,6 +36,8 @@ struct prices_state {
 /* Whether there is more to see than at the last call. */
 bool prices_have_news(struct prices *prices);
 bool prices_are_still(struct prices *prices); /* finished; NULL is fine */
+/* Of an effect, as far as they are measured. */
+void prices_get_effect(struct prices *prices, uint32_t effect, struct effect_price *price);
 void prices_get_state(struct prices *prices, struct prices_state *state);
 
 #endif

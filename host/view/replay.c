@@ -118,6 +118,8 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
         return is_still(view);
     case EVENT_PICTURE:
         return is_next_shown(view);
+    case EVENT_PRICED:
+        return prices_are_still(view->panels.measured);
     case EVENT_STATE:
         state_print(view, event->path, stdout);
         return true;

@@ -136,13 +136,18 @@ static json_t *panels_json(bool all)
     return object;
 }
 
-static json_t *prices_json(const struct view *view)
+/* Pixels that switches change: of those that were made, or of all that were measured beside. */
+static json_t *prices_json(const struct view *view, bool measured)
 {
     json_t *object = json_object();
     for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i) {
-        const struct effect_price *price = &view->panels.prices[i];
-        if (price->known)
-            put_count(object, whit_effect_name(i), price->other_colors);
+        struct effect_price price = {0};
+        if (!measured)
+            price = view->panels.prices[i];
+        else if (view->panels.measured)
+            prices_get_effect(view->panels.measured, i, &price);
+        if (price.known)
+            put_count(object, whit_effect_name(i), price.other_colors);
     }
     return object;
 }
@@ -276,7 +281,8 @@ void state_print(struct view *view, const char *name, FILE *to)
     json_object_set_new(root, "items", items_json());
     json_object_set_new(root, "panels", panels_json(true));
     json_object_set_new(root, "cut_panels", panels_json(false));
-    json_object_set_new(root, "prices", prices_json(view));
+    json_object_set_new(root, "prices", prices_json(view, false));
+    json_object_set_new(root, "effect_prices", prices_json(view, true));
     json_object_set_new(root, "price_list", price_list_json(view));
     json_object_set_new(root, "wish", wish_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));

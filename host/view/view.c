@@ -414,8 +414,8 @@ static whit_result step(struct view *view)
     whit_result result = compare_step(view);
     take_status(view);
     pick_take(view);
-    if (view->prices && prices_have_news(view->prices))
-        view->dirty = true;
+    view->dirty |= view->prices && prices_have_news(view->prices);
+    view->dirty |= view->panels.measured && prices_have_news(view->panels.measured);
     prices_part(view);
     wish_step(view);
     panels_step(view);
@@ -487,6 +487,7 @@ static void close_all(struct view *view, uint32_t *validation)
     replay_close(view);
     watch_destroy(view->watch);
     prices_stop(view->prices);
+    prices_stop(view->panels.measured);
     for (uint32_t i = 0; i < LEAVING_MOST; ++i)
         prices_stop(view->leaving[i]);
     wish_finish(view);

@@ -28,4 +28,36 @@ is priced price_list.broken 0
 same frame.pixels before priced
 differs frame.pixels priced moved
 is stopped price_list.open false
+
+# Effects are priced without being switched, by what their switch changes.
+play "effects" "$CUBE" --size 128x96 --ui-scale 0.25 <<END
+still
+state before
+press X
+priced
+state priced
+shot $OUT/effects.png
+press X
+state closed
+END
+check "none are priced before ($(value before effect_prices.shadows))" \
+    test "$(value before effect_prices.shadows)" != "$(value priced effect_prices.shadows)"
+same frame.number before priced
+same words before priced
+for effect in highlights point-lights; do
+    check "$effect has a price, and changes $(value priced effect_prices.$effect) pixels" \
+        awk -v n="$(value priced effect_prices.$effect)" 'BEGIN { exit !(n + 0 > 0) }'
+done
+beside=$(value priced effect_prices.highlights)
+place=$(value priced items.highlights)
+play "the same, switched" "$CUBE" --size 128x96 --ui-scale 0.25 <<END
+still
+press X
+still
+click $place
+still
+state switched
+END
+is switched prices.highlights "$beside"
+is switched words "--size 128x96 --effects -highlights"
 finish
