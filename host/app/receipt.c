@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/commands.h"
+#include "cost/cost.h"
 
 /* Rounds follow from the time of a frame: all frames of all effects take about this long, but never
    fewer rounds than give a median and quartiles. */
@@ -33,20 +34,12 @@ static whit_result time_frame(whit_renderer *renderer, double *ms)
 
 static whit_result compare_pictures(whit_renderer *a, whit_renderer *b, struct receipt_row *row)
 {
-    const whit_compare_params params = {.no_flip = true};
     whit_difference found;
-    whit_image *x = NULL, *y = NULL;
-    whit_result result = whit_renderer_image(a, WHIT_AOV_COLOR, &x);
-    if (result == WHIT_OK)
-        result = whit_renderer_image(b, WHIT_AOV_COLOR, &y);
-    if (result == WHIT_OK)
-        result = whit_image_compare(x, y, &params, &cli_log, &found, NULL);
+    whit_result result = cost_colors(a, b, &cli_log, &found);
     if (result == WHIT_OK) {
         row->pixels = found.differing_pixels;
         row->largest = found.largest;
     }
-    whit_image_destroy(x);
-    whit_image_destroy(y);
     return result;
 }
 

@@ -40,6 +40,9 @@ struct cost_times {
 };
 WHIT_CHECK whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
                                  uint32_t rounds, struct cost_times *out);
+/* The colours of two renderers' pictures, without FLIP. */
+WHIT_CHECK whit_result cost_colors(whit_renderer *a, whit_renderer *b, const whit_log *log,
+                                   whit_difference *out);
 /* The clock that counts: the device's where it has one, the CPU's where that is the device. */
 enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
 

@@ -145,3 +145,18 @@ whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
     out->wall_most_ms = sample_quantile(pricing.ms[COST_WALL][0], rounds, 0.9);
     return WHIT_OK;
 }
+
+whit_result cost_colors(whit_renderer *a, whit_renderer *b, const whit_log *log,
+                        whit_difference *out)
+{
+    const whit_compare_params params = {.no_flip = true};
+    whit_image *x = NULL, *y = NULL;
+    whit_result result = whit_renderer_image(a, WHIT_AOV_COLOR, &x);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(b, WHIT_AOV_COLOR, &y);
+    if (result == WHIT_OK)
+        result = whit_image_compare(x, y, &params, log, out, NULL);
+    whit_image_destroy(x);
+    whit_image_destroy(y);
+    return result;
+}

@@ -59,32 +59,13 @@ static whit_renderer_params small_picture(const struct effect_work *work)
     return params;
 }
 
-static whit_result compare_colors(const struct effect_work *work, whit_renderer *a,
-                                  whit_renderer *b, struct effect_price *price)
-{
-    const whit_compare_params params = {.no_flip = true};
-    whit_difference found;
-    whit_image *x = NULL, *y = NULL;
-    whit_result result = whit_renderer_image(a, WHIT_AOV_COLOR, &x);
-    if (result == WHIT_OK)
-        result = whit_renderer_image(b, WHIT_AOV_COLOR, &y);
-    if (result == WHIT_OK)
-        result = whit_image_compare(x, y, &params, work->log, &found, NULL);
-    if (result == WHIT_OK) {
-        price->other_colors = found.differing_pixels;
-        price->pixels = found.pixel_count;
-    }
-    whit_image_destroy(x);
-    whit_image_destroy(y);
-    return result;
-}
-
 static whit_result price_effect(const struct effect_work *work, whit_renderer *usual,
                                 uint32_t index, struct effect_price *price)
 {
     whit_effect_info info;
     char effects[VIEW_TEXT];
     struct cost_price cost;
+    whit_difference difference;
     whit_renderer *other = NULL;
     whit_renderer_params params = small_picture(work);
     enum cost_clock clock = cost_clock_of(work->device, usual);
@@ -96,8 +77,10 @@ static whit_result price_effect(const struct effect_work *work, whit_renderer *u
     if (result == WHIT_OK)
         result = cost_price(usual, NULL, other, NULL, clock, ROUNDS, &cost);
     if (result == WHIT_OK)
-        result = compare_colors(work, usual, other, price);
+        result = cost_colors(usual, other, work->log, &difference);
     if (result == WHIT_OK) {
+        price->other_colors = difference.differing_pixels;
+        price->pixels = difference.pixel_count;
         price->known = true;
         price->before_ms = cost.usual_ms[clock].median;
         price->after_ms = cost.setting_ms[clock].median;
