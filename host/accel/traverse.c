@@ -7,6 +7,7 @@
 #include "accel/exact.h"
 #include "accel/intersect.h"
 #include "accel/moller.h"
+#include "accel/pairs.h"
 #include "accel/sphere.h"
 
 #define REF_DONE          0xffffffffu
@@ -174,14 +175,24 @@ static bool accept_meeting(struct walk *walk, const struct meeting *m, uint32_t 
 
 static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
 
+/* Where a triangle is met, exactly; of one that is met anyway (`hit`) for the key alone. */
+static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
+                         struct exact_meeting *out)
+{
+    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
+                v2 = vec3_load(triangle->v2);
+    bool key_known;
+    bool known = pair_meet(ray->origin, ray->dir, v0, v1, v2, out, &key_known);
+    if (!(hit ? key_known : known))
+        exact_meet(ray->origin, ray->dir, v0, v1, v2, out);
+}
+
 /* The key of the hit so far, where only its bounds are known. */
 static void settle_hit(struct walk *walk)
 {
-    const struct gpu_triangle *triangle = &walk->accel->triangles[walk->triangle];
     struct ray_setup ray = ray_at(walk, walk->hit->instance);
     struct exact_meeting m;
-    exact_meet(ray.origin, ray.dir, vec3_load(triangle->v0), vec3_load(triangle->v1),
-               vec3_load(triangle->v2), &m);
+    meet_exactly(&ray, &walk->accel->triangles[walk->triangle], true, &m);
     walk->lo = m.key;
     walk->hi = m.key;
     walk->hit->t = m.key;
@@ -235,7 +246,7 @@ static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, 
         (!walk->next || bounds.lo > walk->hit_before))
         return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance);
     struct exact_meeting exact;
-    exact_meet(ray->origin, ray->dir, v0, v1, v2, &exact);
+    meet_exactly(ray, triangle, false, &exact);
     m.t = exact.key;
     if (!bounds.inside)
         m = (struct meeting){true, exact.key, exact.u, exact.v};

@@ -384,6 +384,7 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .device_bytes = inner.device_bytes,
         .dispatches = inner.dispatches,
         .tiles = inner.tiles,
+        .waits = inner.waits,
         .tile_size = inner.tile_size,
         .load_path = inner.texel_loads ? "texel" : "storage",
     };

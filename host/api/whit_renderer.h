@@ -156,7 +156,8 @@ typedef struct whit_stats {
     uint32_t kernel_instructions;  /* SPIR-V, of its functions; see whit_renderer_get_kernel */
     bool general;                  /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;
-    const char *load_path;           /* "storage" or "texel" */
+    uint32_t waits;        /* exact numerics: steps of pixels' rays that took more than floats */
+    const char *load_path; /* "storage" or "texel" */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
 } whit_stats;
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);

@@ -151,6 +151,7 @@ static void add_stats(const whit_stats *from, whit_stats *to)
     to->rays_refracted += from->rays_refracted;
     to->dispatches += from->dispatches;
     to->tiles += from->tiles;
+    to->waits += from->waits;
     to->tile_size = from->tile_size;
     to->device_bytes = from->device_bytes;
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)

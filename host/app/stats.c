@@ -192,6 +192,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_count(work, "dispatches", figures->render->dispatches);
     document_count(work, "tiles", figures->render->tiles);
     document_count(work, "tile_size", figures->render->tile_size);
+    document_count(work, "waits", figures->render->waits);
     document_text(work, "load_path", figures->render->load_path);
     document_put(root, "work", work);
     json_t *memory = document_object();
@@ -320,6 +321,8 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
            figures->render->load_path);
+    if (figures->render->waits > 0)
+        printf("  %u steps of pixels' rays took more than floats\n", figures->render->waits);
     printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",
            (double)whit_peak_memory_bytes() / 1048576.0,
            (double)figures->render->device_bytes / 1048576.0);

@@ -12,15 +12,15 @@ struct beside_job {
     struct device *device;
     struct variant_job variant;
     struct thread *thread;
-    struct pipeline *pipeline; /* of the thread until it is done; NULL when it failed */
+    struct pass pass; /* pipelines alone; of the thread until it is done; empty when it failed */
     atomic_bool done;
 };
 
 static void compile_job(void *context)
 {
     struct beside_job *job = context;
-    if (pipeline_create(job->device, &job->variant.params, &job->pipeline) != WHIT_OK)
-        job->pipeline = NULL;
+    if (variant_job_run(job->device, &job->variant, &job->pass) != WHIT_OK)
+        pass_finish(&job->pass);
     atomic_store(&job->done, true);
 }
 
@@ -29,7 +29,7 @@ static void job_destroy(struct beside_job *job)
     if (!job)
         return;
     thread_join(job->thread);
-    pipeline_destroy(job->pipeline);
+    pass_finish(&job->pass);
     free(job);
 }
 
@@ -53,7 +53,7 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
     struct variant_job variant;
     struct pass pass = {0};
     variant_job_init(renderer, spec, &variant);
-    whit_result result = pipeline_create(renderer->device, &variant.params, &pass.pipeline);
+    whit_result result = variant_job_run(renderer->device, &variant, &pass);
     if (result == WHIT_OK)
         result = variant_bind_whitted(renderer, &pass);
     if (result != WHIT_OK) {
@@ -69,10 +69,10 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
 static whit_result take_over(struct renderer *renderer)
 {
     struct beside_job *job = renderer->beside.job;
-    struct pass pass = {.pipeline = job->pipeline};
-    if (!job->pipeline)
+    struct pass pass = job->pass;
+    if (!pass.pipeline)
         return WHIT_OK;
-    job->pipeline = NULL;
+    job->pass = (struct pass){0};
     whit_result result = variant_bind_whitted(renderer, &pass);
     if (result != WHIT_OK) {
         pass_finish(&pass);

@@ -56,7 +56,8 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     /* What nothing is bound to has no bytes, and is not created. */
     bool adaptive = renderer->params.adaptive > 0.0;
     bool lists = renderer->has_secondary || adaptive || renderer->accel->no_trees;
-    uint64_t list_bytes = lists ? 16 + (uint64_t)p->chunk_slots * 4 : 0;
+    uint64_t waiting_bytes = sizeof(struct gpu_work) + (uint64_t)p->chunk_slots * 4;
+    uint64_t list_bytes = lists ? waiting_bytes : 0;
     uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
@@ -74,6 +75,8 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
         {&p->work[1], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
         {&p->work_head, lists ? 16 : 0, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
         {&p->listed, adaptive ? list_bytes : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
+        {&p->waiting, variant_waits(renderer) ? waiting_bytes : 0, BUFFER_STORAGE | BUFFER_INDIRECT,
+         "waiting pixels"},
         {&p->ray_stacks, stacked * sizeof(struct gpu_stacked_ray), BUFFER_STORAGE, "ray stacks"},
         {&p->ray_media,
          renderer->effects.called[SCENE_EFFECT_MEDIA] ? stacked * sizeof(struct gpu_media) : 0,
@@ -100,7 +103,7 @@ void pixels_finish(struct pixel_buffers *p)
 {
     struct buffer *all[] = {p->pixels,  p->ids,       p->counts,    p->status,
                             p->work[0], p->work[1],   p->work_head, p->ray_stacks,
-                            p->costs,   p->ray_media, p->listed};
+                            p->costs,   p->ray_media, p->listed,    p->waiting};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *p = (struct pixel_buffers){0};

@@ -4,6 +4,7 @@
 #include "render/render.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +63,18 @@ whit_result status_check(struct renderer *renderer)
     return WHIT_ERROR_STATUS;
 }
 
+/* Behind the bits, in the same buffer. */
+whit_result waits_clear(struct renderer *renderer)
+{
+    const uint32_t none = 0;
+    return buffer_write(renderer->pixel_buffers.status, sizeof none, &none, sizeof none);
+}
+
+whit_result waits_read(struct renderer *renderer, uint32_t *count)
+{
+    return buffer_read(renderer->pixel_buffers.status, sizeof *count, count, sizeof *count);
+}
+
 /* How much of the picture is done, 0..1. */
 static double picture_share(const struct progress *progress)
 {
@@ -112,6 +125,35 @@ void render_clear_work(struct renderer *renderer, uint32_t list)
                       sizeof(struct gpu_work));
 }
 
+void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
+{
+    if (!waiting)
+        return;
+    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, groups_x), 4, 0);
+    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, groups_y), 8, 1);
+    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, count), 4, 0);
+}
+
+void render_take_waiting(struct renderer *renderer, const struct pass *pass, int set,
+                         struct buffer *waiting, const void *push, uint32_t push_bytes)
+{
+    commands_barrier(renderer->commands);
+    commands_bind(renderer->commands, pass->looks, pass->looks_sets[set]);
+    commands_push(renderer->commands, push, push_bytes);
+    commands_dispatch_indirect(renderer->commands, waiting, 0);
+    ++renderer->stats.dispatches;
+}
+
+/* The pixels that wait for `chunk`'s dispatch. */
+static void take_waiting_pixels(struct renderer *renderer, const struct gpu_chunk *chunk, int set)
+{
+    struct gpu_chunk waiting = *chunk;
+    waiting.waiting = 1;
+    if (renderer->whitted.looks)
+        render_take_waiting(renderer, &renderer->whitted, set, renderer->pixel_buffers.waiting,
+                            &waiting, sizeof waiting);
+}
+
 void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk)
 {
     const struct pixel_buffers *p = &renderer->pixel_buffers;
@@ -144,6 +186,7 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
         return result;
     commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
     render_clear_work(renderer, 1);
+    render_clear_waiting(renderer, renderer->pixel_buffers.waiting);
     render_take_list(renderer, chunk);
     commands_barrier(commands);
     commands_span_begin(commands, "sample");
@@ -151,6 +194,7 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
     commands_push(commands, chunk, sizeof *chunk);
     commands_dispatch(commands, render_groups(chunk), 1, 1);
     ++renderer->stats.dispatches;
+    take_waiting_pixels(renderer, chunk, 0);
     return WHIT_OK;
 }
 
@@ -166,11 +210,13 @@ static void record_passes(struct renderer *renderer, const struct gpu_chunk *chu
         uint32_t in = (i + 1) % 2;
         commands_barrier(commands);
         render_clear_work(renderer, 1 - in);
+        render_clear_waiting(renderer, renderer->pixel_buffers.waiting);
         commands_barrier(commands);
         commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[in]);
         commands_push(commands, &stacked, sizeof stacked);
         commands_dispatch_indirect(commands, renderer->pixel_buffers.work[in], 0);
         ++renderer->stats.dispatches;
+        take_waiting_pixels(renderer, &stacked, (int)in);
     }
 }
 
@@ -397,7 +443,11 @@ whit_result renderer_render(struct renderer *renderer)
         .share = 1.0,
     };
     if (result == WHIT_OK)
+        result = waits_clear(renderer);
+    if (result == WHIT_OK)
         result = render_picture(renderer, &progress);
+    if (result == WHIT_OK)
+        result = waits_read(renderer, &renderer->stats.waits);
     renderer->stats.render_ms = clock_ms() - progress.start_ms;
     renderer->rendered = result == WHIT_OK;
     return result;

@@ -58,6 +58,8 @@ struct render_stats {
     bool general;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
+    uint32_t waits; /* NUMERICS_EXACT: pixels of dispatches, each a ray with its shadow rays, that
+                       floats left open */
     bool texel_loads;
     struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
 };

@@ -25,8 +25,9 @@ struct pixel_buffers {
     struct buffer *ray_stacks;          /* NULL: surfaces leave no rays */
     struct buffer *ray_media;           /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
     struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
-    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
-    struct buffer *listed; /* work list of camera rays; NULL when not adaptive */
+    struct buffer *costs;   /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
+    struct buffer *listed;  /* work list of camera rays; NULL when not adaptive */
+    struct buffer *waiting; /* work list of pixels whose rays wait; NULL where none does */
     struct buffer *status;
     uint32_t band_y;      /* first row that they hold now */
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
@@ -35,17 +36,21 @@ struct pixel_buffers {
     uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
 };
 
-/* Pipelines of one kernel with the buffers they work on. */
+/* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
+   waiting list, else NULL. */
 struct pass {
-    struct pipeline *pipeline;
-    struct binding_set *sets[2]; /* [1]: with the two work lists exchanged */
+    struct pipeline *pipeline, *looks;
+    /* What they work on. [1]: with the two work lists exchanged. */
+    struct binding_set *sets[2], *looks_sets[2];
 };
 
 struct trace_state {
     struct buffer *rays, *hits, *costs;
+    struct buffer *waiting; /* work list; NULL where no ray waits */
     struct pass closest, any;
     uint32_t capacity; /* rays */
     double device_ms;
+    uint32_t waits; /* rays of the last batch that floats left open */
 };
 
 /* A run of dispatches without trees: runs from `first_run` up to an empty one. */
@@ -222,16 +227,22 @@ struct gpu_spec variant_general_spec(const struct renderer *renderer);
 /* Every effect that the renderer's buffers allow and its params do not remove. */
 struct gpu_spec variant_beside_spec(const struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
-/* What pipeline_create() is told of the Whitted kernel with trees; stands alone, and is not to be
-   copied or moved. */
+/* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
+   they are counted or probed, which is to tell of every ray at once. */
+bool variant_waits(const struct renderer *renderer);
+/* What is needed to make the pipelines of the Whitted kernel with trees; stands alone, and is not
+   to be copied or moved. */
 struct variant_job {
     struct gpu_spec spec;
     enum binding_kind kinds[BIND_WHITTED_COUNT];
     struct pipeline_params params;
 };
+/* pass->pipeline and, where rays wait, pass->looks. */
+WHIT_CHECK whit_result variant_job_run(struct device *device, const struct variant_job *job,
+                                       struct pass *pass);
 void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
                       struct variant_job *job);
-/* Makes the binding sets of pass->pipeline. */
+/* Makes the binding sets of the pass. */
 WHIT_CHECK whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 /* CAMERA_* that kernels are made for. */
@@ -297,6 +308,12 @@ WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 void render_clear_work(struct renderer *renderer, uint32_t list);
+/* Empties a waiting list, if there is one. Barriers are the caller's. */
+void render_clear_waiting(struct renderer *renderer, struct buffer *waiting);
+/* Goes on, behind a barrier, with what the dispatch before has left on the list. `push`: for it,
+   with `waiting` set. */
+void render_take_waiting(struct renderer *renderer, const struct pass *pass, int set,
+                         struct buffer *waiting, const void *push, uint32_t push_bytes);
 /* For a listed chunk, before its camera rays: the list into work list 0. */
 void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk);
 /* Workgroups of the camera rays of a chunk. */
@@ -305,6 +322,10 @@ uint32_t render_groups(const struct gpu_chunk *chunk);
 bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
                        uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct renderer *renderer);
+
+/* render.c: what kernels have listed as waiting since `waits_clear`. */
+WHIT_CHECK whit_result waits_clear(struct renderer *renderer);
+WHIT_CHECK whit_result waits_read(struct renderer *renderer, uint32_t *count);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct renderer *renderer);

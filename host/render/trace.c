@@ -18,6 +18,7 @@ void trace_finish(struct trace_state *trace)
     buffer_destroy(trace->rays);
     buffer_destroy(trace->hits);
     buffer_destroy(trace->costs);
+    buffer_destroy(trace->waiting);
     *trace = (struct trace_state){0};
 }
 
@@ -46,6 +47,10 @@ static whit_result prepare(struct renderer *renderer, bool any)
         result =
             buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
                           BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
+    if (result == WHIT_OK && variant_waits(renderer) && !trace->waiting)
+        result =
+            buffer_create(renderer->device, sizeof(struct gpu_work) + (uint64_t)trace->capacity * 4,
+                          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->waiting);
     struct pass *pass = any ? &trace->any : &trace->closest;
     if (result == WHIT_OK && !pass->pipeline)
         result = variant_create_trace(renderer, any, pass);
@@ -60,12 +65,17 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     if (result != WHIT_OK)
         return result;
     commands_fill(renderer->commands, renderer->pixel_buffers.status, 0, 4, 0);
+    render_clear_waiting(renderer, renderer->trace.waiting);
     commands_barrier(renderer->commands);
     commands_bind(renderer->commands, pass->pipeline, pass->sets[0]);
     commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
     commands_dispatch(renderer->commands,
                       (batch->ray_count + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE, 1, 1);
+    struct gpu_batch waiting = *batch;
+    waiting.waiting = 1;
+    if (pass->looks)
+        render_take_waiting(renderer, pass, 0, renderer->trace.waiting, &waiting, sizeof waiting);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);
@@ -109,6 +119,8 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     }
     renderer->trace.device_ms = 0.0;
     whit_result result = prepare(renderer, any);
+    if (result == WHIT_OK)
+        result = waits_clear(renderer);
     uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BRUTE : TRACE_FIRST;
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
         result = cancelled(renderer);
@@ -127,6 +139,8 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
             piece *= 4;
         done += size;
     }
+    if (result == WHIT_OK)
+        result = waits_read(renderer, &renderer->trace.waits);
     return result;
 }
 

@@ -15,6 +15,12 @@ uint32_t variant_camera(const struct renderer *renderer)
                                                         : CAMERA_PERSPECTIVE;
 }
 
+bool variant_waits(const struct renderer *renderer)
+{
+    return renderer->params.numerics == NUMERICS_EXACT && !renderer->params.count &&
+           !renderer->probe.active && !renderer->accel->no_trees;
+}
+
 static bool only_spheres(const struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->mesh_count; ++i) {
@@ -51,6 +57,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_PROBE = renderer->probe.active;
+    spec.SPEC_LOOKS = !variant_waits(renderer);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
@@ -112,7 +119,9 @@ struct gpu_spec variant_beside_spec(const struct renderer *renderer)
             all.effects_removed |= UINT64_C(1) << held[i];
     }
     effects_choose(&all, &effects);
-    return make_spec(renderer, &effects, renderer->has_secondary);
+    struct gpu_spec spec = make_spec(renderer, &effects, renderer->has_secondary);
+    spec.SPEC_LOOKS = 1; /* one kernel is sooner made than two */
+    return spec;
 }
 
 /* What a kernel is bound to, while it is put together. */
@@ -146,6 +155,7 @@ static struct bindings bind_trees(const struct renderer *renderer)
     bind_loads(&bindings, BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, texels, scene->triangles);
     bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
     bind(&bindings, BIND_STATUS, BINDING_STORAGE, renderer->pixel_buffers.status);
+    bind(&bindings, BIND_WAITING, BINDING_STORAGE, NULL);
     return bindings;
 }
 
@@ -180,6 +190,7 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     bool texels = scene->texel_loads;
     bind_loads(&bindings, BIND_SHADING, BIND_SHADING_TEXELS, texels, scene->shading);
     bind_loads(&bindings, BIND_TEXELS, BIND_TEXEL_TEXELS, texels, scene->texels);
+    bind(&bindings, BIND_WAITING, BINDING_STORAGE, pixels->waiting);
     bind(&bindings, BIND_FRAME, BINDING_STORAGE, scene->frame);
     bind(&bindings, BIND_ENVIRONMENT, BINDING_STORAGE, scene->environment);
     bind(&bindings, BIND_PIXELS, BINDING_STORAGE, pixels->pixels);
@@ -208,6 +219,37 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *sp
     job->params.bindings = job->kinds;
 }
 
+/* Both pipelines of the pass, of which `params` tells the first. */
+static whit_result create_pipelines(struct device *device, const struct pipeline_params *params,
+                                    struct pass *pass)
+{
+    struct gpu_spec spec;
+    memcpy(&spec, params->spec, sizeof spec);
+    whit_result result = pipeline_create(device, params, &pass->pipeline);
+    if (result != WHIT_OK || spec.SPEC_LOOKS)
+        return result;
+    struct pipeline_params looks = *params;
+    spec.SPEC_LOOKS = 1;
+    looks.spec = (const uint32_t *)&spec;
+    return pipeline_create(device, &looks, &pass->looks);
+}
+
+/* Set `i` of both pipelines. */
+static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count,
+                               int i)
+{
+    whit_result result =
+        binding_set_create(pass->pipeline, bindings->buffers, count, &pass->sets[i]);
+    if (result == WHIT_OK && pass->looks)
+        result = binding_set_create(pass->looks, bindings->buffers, count, &pass->looks_sets[i]);
+    return result;
+}
+
+whit_result variant_job_run(struct device *device, const struct variant_job *job, struct pass *pass)
+{
+    return create_pipelines(device, &job->params, pass);
+}
+
 whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
 {
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
@@ -219,8 +261,7 @@ whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
             bindings.buffers[BIND_WORK_IN] = pixels->work[i];
             bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
         }
-        result = binding_set_create(pass->pipeline, bindings.buffers, BIND_WHITTED_COUNT,
-                                    &pass->sets[i]);
+        result = create_sets(pass, &bindings, BIND_WHITTED_COUNT, i);
     }
     return result;
 }
@@ -233,7 +274,7 @@ static whit_result create_whitted(struct renderer *renderer, uint32_t brute, str
     spec.SPEC_BRUTE = brute;
     spec.SPEC_PROBE &= brute == BRUTE_OFF || brute == BRUTE_SHADE;
     variant_job_init(renderer, &spec, &job);
-    whit_result result = pipeline_create(renderer->device, &job.params, &pass->pipeline);
+    whit_result result = variant_job_run(renderer->device, &job, pass);
     return result == WHIT_OK ? variant_bind_whitted(renderer, pass) : result;
 }
 
@@ -251,6 +292,7 @@ whit_result variant_create_whitted(struct renderer *renderer)
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
 {
     struct bindings bindings = bind_trees(renderer);
+    bind(&bindings, BIND_WAITING, BINDING_STORAGE, renderer->trace.waiting);
     bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
@@ -265,11 +307,8 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     const struct pipeline_params params =
         pass_params(KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
                     any ? "trace any" : "trace closest");
-    whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
-    if (result == WHIT_OK)
-        result =
-            binding_set_create(pass->pipeline, bindings.buffers, BIND_TRACE_COUNT, &pass->sets[0]);
-    return result;
+    whit_result result = create_pipelines(renderer->device, &params, pass);
+    return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT, 0) : result;
 }
 
 static uint32_t count_bits(uint64_t bits)
@@ -310,15 +349,18 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
 
 void pass_unbind(struct pass *pass)
 {
-    binding_set_destroy(pass->sets[0]);
-    binding_set_destroy(pass->sets[1]);
-    pass->sets[0] = pass->sets[1] = NULL;
+    for (int i = 0; i < 2; ++i) {
+        binding_set_destroy(pass->sets[i]);
+        binding_set_destroy(pass->looks_sets[i]);
+        pass->sets[i] = pass->looks_sets[i] = NULL;
+    }
 }
 
 void pass_finish(struct pass *pass)
 {
     pass_unbind(pass);
     pipeline_destroy(pass->pipeline);
+    pipeline_destroy(pass->looks);
     *pass = (struct pass){0};
 }
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/platform.h"
 #include "base/threads.h"
 
 enum { REFERENCE_SAMPLES = 16 };
@@ -123,7 +122,6 @@ static void run(void *context)
                                     : measure(prices, &log, device, accel, &report);
     whit_device_destroy(device);
     whit_accel_destroy(accel);
-    platform_trim_heaps();
     pthread_mutex_lock(&prices->lock);
     prices->report = report;
     prices->finished = prices->news = true;

@@ -10,33 +10,34 @@
 #define BIND_INSTANCES        4
 #define BIND_INSTANCE_TEXELS  5
 #define BIND_STATUS           6
+#define BIND_WAITING          7
 
 /* The ray batch kernel. */
-#define BIND_RAYS        7
-#define BIND_HITS        8
-#define BIND_TRACE_COSTS 9
-#define BIND_TRACE_RUNS  10
-#define BIND_TRACE_COUNT 11 /* bindings of that kernel */
+#define BIND_RAYS        8
+#define BIND_HITS        9
+#define BIND_TRACE_COSTS 10
+#define BIND_TRACE_RUNS  11
+#define BIND_TRACE_COUNT 12 /* bindings of that kernel */
 
 /* The Whitted kernel. */
-#define BIND_SHADING        7
-#define BIND_SHADING_TEXELS 8
-#define BIND_TEXELS         9
-#define BIND_TEXEL_TEXELS   10
-#define BIND_FRAME          11
-#define BIND_ENVIRONMENT    12
-#define BIND_PIXELS         13
-#define BIND_IDS            14
-#define BIND_COUNTS         15
-#define BIND_RAY_STACKS     16
-#define BIND_WORK_IN        17
-#define BIND_WORK_OUT       18
-#define BIND_COSTS          19
-#define BIND_RUNS           20
-#define BIND_FOUND          21
-#define BIND_PASSED         22
-#define BIND_RAY_MEDIA      23
-#define BIND_PROBE          24
-#define BIND_WHITTED_COUNT  25
+#define BIND_SHADING        8
+#define BIND_SHADING_TEXELS 9
+#define BIND_TEXELS         10
+#define BIND_TEXEL_TEXELS   11
+#define BIND_FRAME          12
+#define BIND_ENVIRONMENT    13
+#define BIND_PIXELS         14
+#define BIND_IDS            15
+#define BIND_COUNTS         16
+#define BIND_RAY_STACKS     17
+#define BIND_WORK_IN        18
+#define BIND_WORK_OUT       19
+#define BIND_COSTS          20
+#define BIND_RUNS           21
+#define BIND_FOUND          22
+#define BIND_PASSED         23
+#define BIND_RAY_MEDIA      24
+#define BIND_PROBE          25
+#define BIND_WHITTED_COUNT  26
 
 #endif

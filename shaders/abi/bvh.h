@@ -152,7 +152,18 @@ struct gpu_batch {
     gpu_uint root;
     gpu_uint first_run; /* without trees: of the range */
     gpu_uint begin;     /* 1: it is the first range */
+    gpu_uint waiting;   /* 1: of the rays on the waiting list */
 };
+
+/* Head of a work list, followed by the items: pixels (slots within the chunk), or rays of a batch.
+   The first three words are the arguments of an indirect dispatch. */
+struct gpu_work {
+    gpu_uint groups_x;
+    gpu_uint groups_y;
+    gpu_uint groups_z;
+    gpu_uint count;
+};
+GPU_ASSERT_SIZE(gpu_work, 16)
 
 #define HIT_NONE 0xffffffffu
 
@@ -163,5 +174,7 @@ struct gpu_batch {
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MOST media */
+/* Of one ray, never in the word: without SPEC_LOOKS floats leave it open, and nothing else counts. */
+#define STATUS_RAY_WAITS 64u
 
 #endif

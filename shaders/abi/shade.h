@@ -198,19 +198,9 @@ struct gpu_chunk {
     gpu_vec2 lens_xy;   /* CAMERA_LENS: a point of the lens, in units of right and up times the
                            distance of the focus */
     gpu_uint listed;    /* camera rays of so many pixels, in the work list; 0: of all */
-    gpu_uint pad;
+    gpu_uint waiting;   /* 1: the pixels on the waiting list */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 64)
-
-/* Head of a work list, followed by the pixels (slots within the chunk). The first three words are
-   the arguments of an indirect dispatch. */
-struct gpu_work {
-    gpu_uint groups_x;
-    gpu_uint groups_y;
-    gpu_uint groups_z;
-    gpu_uint count;
-};
-GPU_ASSERT_SIZE(gpu_work, 16)
 
 /* Without trees, of a slot: its ray's hit so far. */
 struct gpu_found {

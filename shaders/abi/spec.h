@@ -82,7 +82,8 @@
     X(35, SPEC_EMISSION, 1)                                                                        \
     X(36, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
     X(37, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
-    X(38, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */
+    X(38, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
+    X(39, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -117,6 +117,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
             Hit known = hit; // what is seen there keeps the t it has
             if (SPEC_NUMERICS == NUMERICS_EXACT)
                 finish_hit(ray.origin, ray.dir, known);
+            status |= known.status;
             hit_before = known.t;
             hit = traverse(TRAVERSE_NEXT, ray.origin, ray.dir, 0.0, reach, frame.root,
                            hit.instance, hit.primitive);

@@ -4,6 +4,7 @@
 #define BIND_PRIMITIVE_GLSL
 
 #include "../lib/exact.glsl"
+#include "../lib/pairs.glsl"
 #include "../lib/intersect.glsl"
 #include "../lib/moller.glsl"
 #include "../lib/sphere.glsl"
@@ -72,8 +73,10 @@ Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip
     p.index = p.r0.w;
     p.flags = p.r1.w;
     p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
-    p.own = mode != TRAVERSE_NEXT && p.index == skip_primitive && p.instance == skip_instance;
     p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
+    p.own = p.index == skip_primitive && p.instance == skip_instance;
+    if (mode == TRAVERSE_NEXT) // a triangle is not met behind itself
+        p.own = p.own && !p.is_sphere;
     return p;
 }
 

@@ -5,12 +5,21 @@
 
 #include "primitive.glsl"
 
-// Where a record's triangle is met, exactly.
-ExactMeeting meet_record(vec3 origin, vec3 dir, uint record)
+// Where a record's triangle is met, exactly; of one that is met anyway (`hit`) for the key alone.
+ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
-    return exact_meet(origin, dir, row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS)),
-                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u)),
-                      row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u)));
+    vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
+    vec3 v1 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u));
+    vec3 v2 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u));
+    ExactMeeting m;
+    bool key_known, finished;
+    bool known = pair_meet(origin, dir, v0, v1, v2, m, key_known);
+    if (!(hit ? key_known : known)) {
+        m = exact_meet(origin, dir, v0, v1, v2, finished);
+        if (!finished)
+            status |= STATUS_UNFINISHED_TRAVERSAL;
+    }
+    return m;
 }
 
 // Replaces the bounds of a meeting by what is exact.
@@ -53,7 +62,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
     vec3 from = ray.origin, along = ray.dir;
     bool own = true, again;
     do {
-        ExactMeeting exact = meet_record(from, along, record);
+        ExactMeeting exact = meet_record(from, along, record, !own, hit.status);
         again = false;
         if (own) {
             if (!p.is_sphere)
@@ -78,15 +87,20 @@ void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
     bool loose = hit.lo < hit.hi;
     if (!loose)
         hit.t = hit.lo;
-    if (loose) {
-        take_to_instance(hit.instance, origin, dir);
+    take_to_instance(loose ? hit.instance : 0u, origin, dir);
+    if (loose && SPEC_LOOKS == 0u) {
         uint row = hit.triangle * TRIANGLE_ROWS;
-        loose = !round_t(origin, dir, row_vec3(fetch_triangle_row(row)),
-                         row_vec3(fetch_triangle_row(row + 1u)),
-                         row_vec3(fetch_triangle_row(row + 2u)), hit.t);
+        ExactMeeting m;
+        bool known;
+        pair_meet(origin, dir, row_vec3(fetch_triangle_row(row)),
+                  row_vec3(fetch_triangle_row(row + 1u)), row_vec3(fetch_triangle_row(row + 2u)),
+                  m, known);
+        hit.t = m.key;
+        if (!known)
+            hit.status |= STATUS_RAY_WAITS;
     }
-    if (loose)
-        hit.t = meet_record(origin, dir, hit.triangle).key;
+    if (loose && SPEC_LOOKS != 0u)
+        hit.t = meet_record(origin, dir, hit.triangle, true, hit.status).key;
     hit.lo = hit.t;
     hit.hi = hit.t;
 }

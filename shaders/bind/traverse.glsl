@@ -6,6 +6,7 @@
 #define BIND_TRAVERSE_GLSL
 
 #include "settle.glsl"
+#include "waiting.glsl"
 
 // Defined by the kernel: whether a cut-out primitive is solid at a point. `u` and `v` of a sphere are
 // its texture coordinates (sphere_uv), here and below.
@@ -276,12 +277,30 @@ void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit h
     hit.instance = instance;
 }
 
+// NUMERICS_EXACT: whether floats leave open if something that may be nearer is met, or which of two hits
+// comes first.
+bool is_unsure(const uint mode, Meeting m, Hit hit)
+{
+    return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);
+}
+
+bool has_integers()
+{
+    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u;
+}
+
 // Whether some record may have to be looked at before it counts: see look_at_record.
 bool has_looks(const uint mode)
 {
-    return SPEC_NUMERICS == NUMERICS_EXACT || SPEC_CUTOUTS != 0u ||
+    return has_integers() || SPEC_CUTOUTS != 0u ||
            (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
            (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
+}
+
+// Whether a ray is done with that has just `accepted` a hit, or not.
+bool is_over(const uint mode, bool accepted, Hit hit)
+{
+    return (accepted && !finds_closest(mode)) || must_wait(hit.status);
 }
 
 // Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal
@@ -304,13 +323,14 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         waits = accepted && marked;
         if (SPEC_SPHERES != SPHERES_NONE && goes_through(mode))
             waits = waits || (p.is_sphere && chord.met);
-        if (SPEC_NUMERICS == NUMERICS_EXACT) {
-            bool unsure = !m.sure || m.hi >= hit.lo;
-            if (mode == TRAVERSE_NEXT)
-                unsure = unsure || m.lo <= hit_before;
-            waits = waits || (accepted && unsure);
-        }
+        if (has_integers())
+            waits = waits || (accepted && is_unsure(mode, m, hit));
         accepted = accepted && !waits;
+    }
+    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u && accepted &&
+        is_unsure(mode, m, hit)) {
+        hit.status |= STATUS_RAY_WAITS;
+        return true;
     }
     if (accepted)
         keep_hit(m, record, p.index, p.instance, hit);
@@ -325,11 +345,18 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
     bool at_exit = starts_at_exit(p, chord, t_min);
-    bool accepted, again;
+    bool accepted = false, again;
     do {
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
-        if (SPEC_NUMERICS == NUMERICS_EXACT)
+        if (has_integers())
             settle(ray, origin, dir, t_min, record, p, m, hit);
+        bool waits = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u &&
+                     is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
+                                skip_primitive, hit) && is_unsure(mode, m, hit);
+        if (waits)
+            hit.status |= STATUS_RAY_WAITS;
+        if (waits)
+            break;
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
             p.is_sphere)
@@ -342,7 +369,7 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
         again = p.is_sphere && goes_through(mode) && refused && !at_exit;
         at_exit = true;
     } while (again);
-    return !finds_closest(mode) && accepted;
+    return is_over(mode, accepted, hit);
 }
 
 // The ref behind a leaf's record that was tested.
@@ -446,7 +473,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
             }
             walk_mesh(mode, local, t_min, instance, skip_instance, skip_primitive, mesh_ref,
                       mesh_stack, hit, waits);
-            bool done = !finds_closest(mode) && hit.primitive != HIT_NONE;
+            bool done = is_over(mode, hit.primitive != HIT_NONE, hit);
             if (!waits)
                 ref = done ? REF_DONE : pop_ref(true, ref, stack);
             inside = false;

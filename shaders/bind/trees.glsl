@@ -19,7 +19,11 @@ layout(set = 0, binding = BIND_INSTANCES, std430) readonly buffer InstanceBuffer
     uvec4 instance_rows[];
 };
 layout(set = 0, binding = BIND_INSTANCE_TEXELS) uniform usamplerBuffer instance_texels;
-layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer { uint status_word; };
+layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
+{
+    uint status_word;
+    uint status_waits; // items listed by list_waiting() so far
+};
 
 uvec4 fetch_node_row(uint row)
 {

@@ -98,9 +98,16 @@ Hit trace(const uint mode, uint index)
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
-    if (index >= batch.ray_count)
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && batch.waiting != 0u;
+    if (index >= (waited ? waiting.count : batch.ray_count))
         return;
+    if (waited)
+        index = waiting_items[index];
     Hit hit = SPEC_ANY_HIT != 0u ? trace(TRAVERSE_ANY, index) : trace(TRAVERSE_CLOSEST, index);
+    if (must_wait(hit.status)) {
+        list_waiting(index);
+        return;
+    }
     report_status(hit.status);
     bool resumed = SPEC_BRUTE != BRUTE_OFF && batch.begin == 0u;
     if (SPEC_COUNT != 0u)

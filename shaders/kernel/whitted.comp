@@ -13,6 +13,8 @@ layout(local_size_x_id = 0) in;
 // Whether a child of this weight is traced; what is cut is counted, with the pixel's average weight.
 bool traced(vec3 weight, bool deep, inout gpu_counts count, inout uint status)
 {
+    if (must_wait(status))
+        return false;
     float largest = largest_of(weight);
     if (any(isnan(weight))) // which is not traced, and so not seen in the sum
         status |= STATUS_NON_FINITE;
@@ -174,11 +176,15 @@ void main()
     bool stacked = SPEC_SECONDARY != 0u && chunk.stacked != 0u;
     uint slot = own_slot();
     bool listed = SPEC_LISTED != 0u && chunk.listed != 0u;
-    if (slot >= (stacked  ? work_in.count
-                 : listed ? chunk.listed
-                          : chunk.block_count * BLOCK_PIXELS))
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
+    if (slot >= (waited    ? waiting.count
+                 : stacked ? work_in.count
+                 : listed  ? chunk.listed
+                           : chunk.block_count * BLOCK_PIXELS))
         return;
-    if (stacked || listed)
+    if (waited)
+        slot = waiting_items[slot];
+    else if (stacked || listed)
         slot = slots_in[slot];
     uvec2 at = slot_pixel(slot);
     if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
@@ -221,6 +227,10 @@ void main()
         radiance = shade_hit(slot, ray, hit, count, status);
     if (SPEC_PROBE != 0u)
         probe_end(radiance);
+    if (must_wait(status)) { // nothing is written yet but above the top of its ray stack
+        list_waiting(slot);
+        return;
+    }
 
     vec4 sum = vec4(radiance * chunk.sample_weight, 1.0);
     if (stacked || chunk.sample_index != 0u)

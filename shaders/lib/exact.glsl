@@ -259,14 +259,16 @@ uint leading_zeros(ivec2 range, int k, int top)
     return uint(clamp(15 - findMSB(digit_at(range, k, top)), 0, 15));
 }
 
-// Sign of N - factor D 2^shift, where factor < 2^26 and both terms nearly agree.
-int compare_product(ivec2 range, uint factor, int shift)
+// Sign of N - factor D 2^shift, where factor < 2^26 and both terms nearly agree. Not `finished`: the driver
+// has ended the loop, and maybe others before it.
+int compare_product(ivec2 range, uint factor, int shift, out bool finished)
 {
     uint bits = uint(shift) & 15u;
     int moved = shift >> 4, borrow = 0, more = 0;
     uint low = factor << bits, f2 = factor >> 16 >> (16u - bits);
     uint f0 = low & 0xffffu, f1 = low >> 16, carry = 0u, d1 = 0u, d2 = 0u;
-    for (int i = range.x; i <= range.y + 3; i++) {
+    int i;
+    for (i = range.x; i <= range.y + 3; i++) {
         uint d0 = digit_at(range, WIDE_D, i);
         uint p0 = f0 * d0, p1 = f1 * d1, p2 = f2 * d2;
         uint sum = (p0 & 0xffffu) + (p1 & 0xffffu) + (p2 & 0xffffu) + carry;
@@ -279,11 +281,12 @@ int compare_product(ivec2 range, uint factor, int shift)
         d2 = d1;
         d1 = d0;
     }
+    finished = i > range.y + 3;
     return borrow != 0 ? -1 : more != 0 ? 1 : 0;
 }
 
 // N / D, both positive, to nearest, ties to even.
-float round_quotient(ivec2 range, int top_d, int top_n)
+float round_quotient(ivec2 range, int top_d, int top_n, out bool finished)
 {
     uint zeros_n = leading_zeros(range, WIDE_N, top_n);
     uint zeros_d = leading_zeros(range, WIDE_D, top_d);
@@ -302,7 +305,7 @@ float round_quotient(ivec2 range, int top_d, int top_n)
     if (biased < 1)
         drop += 1 - biased;
     uint mantissa = drop < 32 ? quotient >> uint(min(drop, 31)) : 0u;
-    int side = compare_product(range, 2u * mantissa + 1u, scale - 27 + drop - 1);
+    int side = compare_product(range, 2u * mantissa + 1u, scale - 27 + drop - 1, finished);
     bool up = side > 0 || (side == 0 && (mantissa & 1u) != 0u);
     uint bits = biased < 1 ? mantissa : uint(min(biased, 255)) << 23 | (mantissa & 0x7fffffu);
     bits += up ? 1u : 0u;
@@ -316,7 +319,8 @@ struct ExactMeeting {
     bvec3 on_edge; // which edge functions are 0
 };
 
-ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
+// Not `finished`: the driver has ended a loop (lavapipe: after 65,535 turns a subgroup).
+ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bool finished)
 {
     decode_point(POINT_DIR, dir);
     decode_point(POINT_ORIGIN, origin);
@@ -340,117 +344,11 @@ ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
     m.v = v;
     m.front = d < 0;
     m.on_edge = equal(edges, ivec3(0));
-    m.key = n == 0 ? 0.0 : round_quotient(range, top.x, top.y);
+    float quotient = round_quotient(range, top.x, top.y, finished);
+    m.key = n == 0 ? 0.0 : quotient;
     bool mixed = any(lessThan(edges, ivec3(0))) && any(greaterThan(edges, ivec3(0)));
     m.met = !mixed && d != 0 && (n == 0 || n == d) && m.key < uintBitsToFloat(0x7f800000u);
     return m;
-}
-
-// ---- t in pairs of floats ----
-//
-// Nearly always enough to round it as the integers would, for a small part of their price. A pair is
-// its sum, the second float being a rounding error of the first (Dekker 1971, "A floating-point
-// technique for extending the available precision"). Products of pairs are off by 2^-43 of themselves,
-// sums by 2^-46 of their terms.
-
-vec2 pair_sum(float a, float b) // exact (Knuth's two-sum)
-{
-    precise float s = a + b;
-    precise float from_b = s - a;
-    precise float error = (a - (s - from_b)) + (b - from_b);
-    return vec2(s, error);
-}
-
-vec2 pair_split(float a)
-{
-    precise float c = 4097.0 * a;
-    precise float high = c - (c - a);
-    precise float low = a - high;
-    return vec2(high, low);
-}
-
-vec2 pair_product(float a, float b) // exact, but for underflow
-{
-    vec2 as = pair_split(a), bs = pair_split(b);
-    precise float p = a * b;
-    precise float error = ((as.x * bs.x - p) + as.x * bs.y + as.y * bs.x) + as.y * bs.y;
-    return vec2(p, error);
-}
-
-vec2 pair_times(vec2 a, vec2 b)
-{
-    vec2 p = pair_product(a.x, b.x);
-    precise float low = p.y + (a.x * b.y + a.y * b.x);
-    return pair_sum(p.x, low);
-}
-
-vec2 pair_plus(vec2 a, vec2 b)
-{
-    vec2 s = pair_sum(a.x, b.x);
-    precise float low = s.y + (a.y + b.y);
-    return pair_sum(s.x, low);
-}
-
-struct PairVector {
-    vec2 x, y, z;
-};
-
-PairVector pair_difference(vec3 a, vec3 b) // exact
-{
-    return PairVector(pair_sum(a.x, -b.x), pair_sum(a.y, -b.y), pair_sum(a.z, -b.z));
-}
-
-vec3 magnitudes(PairVector v)
-{
-    return abs(vec3(v.x.x, v.y.x, v.z.x));
-}
-
-PairVector pair_cross(PairVector a, PairVector b)
-{
-    PairVector n;
-    n.x = pair_plus(pair_times(a.y, b.z), -pair_times(a.z, b.y));
-    n.y = pair_plus(pair_times(a.z, b.x), -pair_times(a.x, b.z));
-    n.z = pair_plus(pair_times(a.x, b.y), -pair_times(a.y, b.x));
-    return n;
-}
-
-vec2 pair_dot(PairVector a, PairVector b)
-{
-    return pair_plus(pair_plus(pair_times(a.x, b.x), pair_times(a.y, b.y)),
-                     pair_times(a.z, b.z));
-}
-
-// t = (v0 - origin).n / dir.n of a triangle that is met, rounded to nearest; false: not sure.
-bool round_t(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out float key)
-{
-    PairVector from = pair_difference(v0, origin);
-    PairVector e1 = pair_difference(v1, v0), e2 = pair_difference(v2, v0);
-    PairVector along = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
-    PairVector n = pair_cross(e1, e2);
-    vec2 top = pair_dot(from, n), bottom = pair_dot(along, n);
-    precise float first = top.x / bottom.x;
-    vec2 back = pair_product(first, bottom.x);
-    precise float rest = ((top.x - back.x) - back.y) + (top.y - first * bottom.y);
-    precise float second = rest / bottom.x;
-    vec2 t = pair_sum(first, second);
-    // The error of both terms, by the sizes of what they are sums of.
-    vec3 m1 = magnitudes(e1), m2 = magnitudes(e2);
-    precise vec3 mn = m1.yzx * m2.zxy + m1.zxy * m2.yzx;
-    precise float top_size = dot(magnitudes(from), mn);
-    precise float bottom_size = dot(abs(dir), mn);
-    const float relative = 1.0 / 274877906944.0, absolute = 1.0e-25; // 2^-38; underflows
-    precise float top_error = top_size * relative + absolute;
-    precise float bottom_error = bottom_size * relative + absolute;
-    precise float error = top_error / abs(bottom.x) +
-                          abs(t.x) * (bottom_error / abs(bottom.x) + relative);
-    float largest = larger(larger(largest_magnitude(dir), largest_magnitude(magnitudes(from))),
-                           larger(largest_magnitude(m1), largest_magnitude(m2)));
-    uint bits = floatBitsToUint(t.x);
-    float next = uintBitsToFloat(t.y > 0.0 ? bits + 1u : bits - 1u); // t.x > 0
-    precise float to_middle = 0.5 * abs(next - t.x);
-    precise float off = abs(t.y) + error;
-    key = t.x;
-    return largest < 1073741824.0 && t.x > 1.0e-15 && abs(bottom.x) > 1.0e-20 && off < to_middle;
 }
 
 #endif

@@ -233,7 +233,22 @@ change(host/accel/exact.c [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 
 change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
 
 mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
-change(shaders/lib/exact.glsl [[vec2 t = pair_sum(first, second);]] [[vec2 t = pair_sum(first, 0.0);]])
+change(shaders/lib/pairs.glsl [[vec2 both = pair_sum(first, second);]]
+  [[vec2 both = pair_sum(first, 0.0);]])
+
+mutation(pairs_without_bound hard_pairs RED what_is_sure_is_so)
+change(host/accel/pairs.c [[size * RELATIVE + ABSOLUTE]] [[size * RELATIVE / 128.0f + ABSOLUTE]])
+change(shaders/lib/pairs.glsl [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
+  [[size * PAIR_RELATIVE / 128.0 + PAIR_ABSOLUTE]])
+
+mutation(waiting_rays_forgotten render_numerics RED one_mesh)
+change(shaders/kernel/trace.comp [[list_waiting(index);]] [[;]])
+
+mutation(waiting_pixels_forgotten render_waiting RED pictures_are_those_of_looks_in_place)
+change(shaders/kernel/whitted.comp [[list_waiting(slot);]] [[;]])
+
+mutation(waiting_rays_leave_children render_waiting RED pictures_are_those_of_looks_in_place)
+change(shaders/kernel/whitted.comp [[if (must_wait(status)) { //]] [[if (false) { //]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
 change(host/accel/traverse.c [[if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)]]

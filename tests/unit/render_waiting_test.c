@@ -1,0 +1,115 @@
+/* Rays that floats leave open at `exact` wait for a dispatch of their own: what they find there is
+   what a kernel finds that looks in place, which is what counting takes. */
+#include "ray_fixture.h"
+
+#include "render/renderer.h"
+#include "render_scenes.h"
+
+enum { SIDE = 96 };
+
+static struct render_params exact_params(bool count)
+{
+    return (struct render_params){.width = SIDE,
+                                  .height = SIDE,
+                                  .depth = 4,
+                                  .samples = 1,
+                                  .camera = glass_camera,
+                                  .numerics = NUMERICS_EXACT,
+                                  .count = count};
+}
+
+static void renew(struct fixture *f, const struct render_params *params)
+{
+    renderer_destroy(f->renderer);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
+                     WHIT_OK);
+}
+
+/* ---- Batches ---- */
+
+static void check_batches(struct scene *scene)
+{
+    const struct render_params counted = exact_params(true), waiting = exact_params(false);
+    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
+    assert_true(rays && hits);
+    struct fixture f = fixture_open(scene, NULL, &counted);
+    aim_rays(&f, rays, 11);
+    for (int any = 0; any < 2; ++any)
+        assert_int_equal(renderer_trace(f.renderer, rays, RAYS, any, hits + any * RAYS, NULL),
+                         WHIT_OK);
+    assert_int_equal(f.renderer->trace.waits, 0);
+    renew(&f, &waiting);
+    for (int any = 0; any < 2; ++any) {
+        struct gpu_hit *own = hits + (2 + any) * RAYS;
+        assert_int_equal(renderer_trace(f.renderer, rays, RAYS, any, own, NULL), WHIT_OK);
+        uint32_t differ = 0, waits = f.renderer->trace.waits;
+        for (uint32_t i = 0; i < RAYS; ++i)
+            differ += memcmp(&own[i], &hits[any * RAYS + (int)i], sizeof *own) != 0;
+        print_message("  %s hits: %u of %u rays waited, %u differ\n", any ? "any" : "closest",
+                      waits, RAYS, differ);
+        assert_true(waits > RAYS / 20 && waits < RAYS);
+        assert_int_equal(differ, 0);
+    }
+    fixture_close(&f);
+    free(rays);
+    free(hits);
+}
+
+static void batches_are_those_of_looks_in_place(void **state)
+{
+    (void)state;
+    check_batches(ring_scene());
+}
+
+/* ---- Pictures ---- */
+
+static void check_picture(const char *name, struct scene *scene, const char *camera,
+                          uint32_t waits_least)
+{
+    struct render_params counted = exact_params(true), waiting = exact_params(false);
+    counted.camera = waiting.camera = camera;
+    struct fixture f = fixture_open(scene, NULL, &counted);
+    struct image color[2] = {{0}}, ids[2] = {{0}};
+    uint32_t waits[2], differ = 0, others = 0;
+    for (int i = 0; i < 2; ++i) {
+        if (i == 1)
+            renew(&f, &waiting);
+        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+        assert_int_equal(renderer_read_color(f.renderer, &color[i]), WHIT_OK);
+        assert_int_equal(renderer_read_ids(f.renderer, &ids[i]), WHIT_OK);
+        waits[i] = f.renderer->stats.waits;
+    }
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; ++i) {
+        differ += memcmp(color[0].pixels + 4 * i, color[1].pixels + 4 * i, 16) != 0;
+        others += memcmp(ids[0].words + 2 * i, ids[1].words + 2 * i, 8) != 0;
+    }
+    print_message("  %s: %u waited; of %u pixels %u differ, %u by their ids\n", name, waits[1],
+                  SIDE * SIDE, differ, others);
+    assert_int_equal(waits[0], 0);
+    assert_true(waits[1] >= waits_least);
+    assert_int_equal(differ + others, 0);
+    for (int i = 0; i < 2; ++i) {
+        image_finish(&color[i]);
+        image_finish(&ids[i]);
+    }
+    fixture_close(&f);
+}
+
+/* Looked at from straight above a corner of its grid: whole rows and columns of pixels are seen
+   along edges. */
+static void pictures_are_those_of_looks_in_place(void **state)
+{
+    (void)state;
+    check_picture("terrain", terrain_scene(), "0,1000,0,0,0,0,0,0,-1,1", 100);
+    check_picture("glass", glass_scene(), glass_camera, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(batches_are_those_of_looks_in_place),
+        cmocka_unit_test(pictures_are_those_of_looks_in_place),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
