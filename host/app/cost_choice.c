@@ -9,8 +9,6 @@
 #include "app/cost.h"
 
 enum { KEPT_VERSION = 2, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
-/* Of the time or the error, and below which part of it something better is looked for. */
-static const double ROOM = 0.9, TOO_LITTLE = 0.6;
 /* What takes less tells more of who else had the processor. */
 static const double TRIAL_MS_LEAST = 20.0;
 
@@ -122,7 +120,7 @@ static struct cost_choice choose(const struct cost_report *report, const struct 
     const struct cost_goal goal = {
         .kind = within ? COST_WITHIN : COST_UNDER,
         .metric = COST_RMSE,
-        .limit = within ? ROOM * request->budget_ms / slower : ROOM * request->max_error,
+        .limit = within ? COST_ROOM * request->budget_ms / slower : COST_ROOM * request->max_error,
     };
     struct cost_choice choice = cost_choose(report, &goal);
     if (!choice.found && within)
@@ -187,9 +185,9 @@ static whit_result choose_within(const struct cost_report *report, struct job *j
             result = try_now(report, job, request, choice.ms, *renderer, &ms);
         if (result != WHIT_OK)
             return result;
-        bool fits = ms <= ROOM * request->budget_ms;
+        bool fits = ms <= COST_ROOM * request->budget_ms;
         slower = ms / choice.ms;
-        if ((fits && (i > 0 || ms >= TOO_LITTLE * choice.ms)) || i == TRIES - 1) {
+        if ((fits && (i > 0 || ms >= COST_TOO_LITTLE * choice.ms)) || i == TRIES - 1) {
             say_choice(&choice, ms);
             break;
         }

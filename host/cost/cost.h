@@ -152,6 +152,12 @@ uint64_t cost_hash(const char *text);
 
 /* ---- Answers (choose.c) ---- */
 
+/* Of a time or an error that is asked for, as much may be taken by prediction, which is of some
+   other minute; and what takes less than the second part of what was predicted leaves room for
+   better. */
+#define COST_ROOM       0.9
+#define COST_TOO_LITTLE 0.6
+
 double cost_error_of(const whit_difference *difference, enum cost_metric metric);
 
 /* By the report's figures: ratios multiply, squared errors and FLIP add up. Numerics and instances

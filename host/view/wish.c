@@ -6,10 +6,6 @@
 #include "view/view_private.h"
 
 static const double MEASURE_SECONDS = 20.0;
-/* Of the time or the error: what is predicted is a median of some other minute. */
-static const double ROOM = 0.9;
-/* Of what was predicted: where it takes less, something better may fit. */
-static const double TOO_LITTLE = 0.6;
 enum { TRIES_MOST = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu;
 
@@ -72,7 +68,7 @@ static struct cost_goal goal_of(const struct view *view)
     bool within = asked->budget_ms > 0.0;
     double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
     return (struct cost_goal){
-        .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = ROOM * limit};
+        .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * limit};
 }
 
 static void choose(struct view *view, const struct cost_report *report)
@@ -148,7 +144,7 @@ static void try_choice(struct view *view)
     wish->took_ms = took_ms;
     wish->stage = WISH_CHOSEN;
     view->dirty = true;
-    bool fits = took_ms <= budget_ms && took_ms >= TOO_LITTLE * wish->predicted_ms;
+    bool fits = took_ms <= budget_ms && took_ms >= COST_TOO_LITTLE * wish->predicted_ms;
     if (budget_ms <= 0.0 || fits || wish->tries == TRIES_MOST || wish_is_left(view))
         return;
     wish->slower *= took_ms / wish->predicted_ms;
