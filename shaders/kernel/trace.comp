@@ -104,7 +104,7 @@ void main()
     if (waited)
         index = waiting_items[index];
     Hit hit = SPEC_ANY_HIT != 0u ? trace(TRAVERSE_ANY, index) : trace(TRAVERSE_CLOSEST, index);
-    if (must_wait(hit.status)) {
+    if (SPEC_LOOKS == 0u && must_wait(hit.status)) {
         list_waiting(index);
         return;
     }

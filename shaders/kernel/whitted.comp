@@ -227,7 +227,8 @@ void main()
         radiance = shade_hit(slot, ray, hit, count, status);
     if (SPEC_PROBE != 0u)
         probe_end(radiance);
-    if (must_wait(status)) { // nothing is written yet but above the top of its ray stack
+    // Nothing is written yet but above the top of its ray stack.
+    if (SPEC_LOOKS == 0u && must_wait(status)) {
         list_waiting(slot);
         return;
     }

@@ -248,7 +248,7 @@ mutation(waiting_pixels_forgotten render_waiting RED pictures_are_those_of_looks
 change(shaders/kernel/whitted.comp [[list_waiting(slot);]] [[;]])
 
 mutation(waiting_rays_leave_children render_waiting RED pictures_are_those_of_looks_in_place)
-change(shaders/kernel/whitted.comp [[if (must_wait(status)) { //]] [[if (false) { //]])
+change(shaders/kernel/whitted.comp [[if (SPEC_LOOKS == 0u && must_wait(status)) {]] [[if (false) {]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
 change(host/accel/traverse.c [[if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)]]
