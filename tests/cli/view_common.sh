@@ -28,6 +28,15 @@ play() {
 # value NAME FIELD: of the state NAME. A FIELD of an object is `frame.ids`.
 value() {
     awk -v name="\"at\":\"$1\"," -v path="$2" '
+        function object_of(text,    depth, i, c) {
+            for (i = 1; i <= length(text); ++i) {
+                c = substr(text, i, 1)
+                depth += (c == "{") - (c == "}")
+                if (depth == 0)
+                    return substr(text, 1, i)
+            }
+            return text
+        }
         index($0, name) {
             count = split(path, part, ".")
             text = $0
@@ -35,6 +44,8 @@ value() {
                 at = index(text, "\"" part[i] "\":")
                 if (!at) { print "(no " path ")"; exit }
                 text = substr(text, at + length(part[i]) + 3)
+                if (substr(text, 1, 1) == "{")
+                    text = object_of(text)
             }
             if (substr(text, 1, 1) == "\"") {
                 text = substr(text, 2)

@@ -216,8 +216,7 @@ is on words "--size 640x480"
 is off change.what "effects auto -> -shadows"
 check "the price says how many pixels changed" \
     test "$(value off prices.shadows)" = "$(value off change.other_colors)"
-check "it is known of what was switched alone" test "$(value off prices)" = "$(value off prices.shadows)" \
-    -o "$(value off prices.highlights)" = "(no prices.highlights)"
+is off prices.highlights "(no prices.highlights)" # of what was switched alone
 same frame.pixels start on
 
 # ---- Settings by mouse: what their keys do ----
