@@ -241,7 +241,7 @@ change(host/accel/pairs.c [[size * RELATIVE + ABSOLUTE]] [[size * RELATIVE / 128
 change(shaders/lib/pairs.glsl [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
   [[size * PAIR_RELATIVE / 128.0 + PAIR_ABSOLUTE]])
 
-mutation(waiting_rays_forgotten render_numerics RED one_mesh)
+mutation(waiting_rays_forgotten render_waiting RED batches_are_those_of_looks_in_place)
 change(shaders/kernel/trace.comp [[list_waiting(index);]] [[;]])
 
 mutation(waiting_pixels_forgotten render_waiting RED pictures_are_those_of_looks_in_place)
