@@ -444,3 +444,8 @@ void swapchain_get_handles(const struct swapchain *swapchain, struct swapchain_h
         .image_count = swapchain->image_count < 2 ? 2 : swapchain->image_count,
     };
 }
+
+whit_result swapchain_failed(struct swapchain *swapchain, int vk, const char *of_what)
+{
+    return device_check(swapchain->device, (VkResult)vk, of_what, __FILE__, __LINE__);
+}

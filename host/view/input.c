@@ -187,12 +187,12 @@ void input_event(struct view *view, const struct view_event *event)
 static bool play(struct view *view, double now_ms)
 {
     struct view_clock *clock = &view->clock;
-    double end_s = view->scene ? view->scene->info.time_end_s : 0.0;
     double *time_s = &view->settings.picture.time_s;
     double passed_s = fmin((now_ms - clock->last_ms) * 1e-3, STEP_MOST_S);
     clock->last_ms = now_ms;
-    if (!clock->playing || !(end_s > 0.0))
+    if (!view_plays(view))
         return false;
+    double end_s = view->scene->info.time_end_s;
     *time_s += passed_s * clock->speed;
     if (*time_s > end_s || *time_s < 0.0) {
         clock->playing = !clock->once;

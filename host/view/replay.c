@@ -60,7 +60,7 @@ static bool is_still(const struct view *view)
 {
     uint32_t width, height;
     struct swapchain_info chain;
-    if (view->clock.playing)
+    if (view_plays(view))
         return true;
     window_pixels(view->window, &width, &height);
     swapchain_get_info(view->swapchain, &chain);
@@ -124,7 +124,7 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
         state_print(view, event->path, stdout);
         return true;
     case EVENT_SHOT:
-        memcpy(view->shot, event->path, sizeof view->shot);
+        snprintf(view->shot, sizeof view->shot, "%s", event->path);
         view->dirty = true;
         return true;
     case EVENT_MINIMISE:

@@ -3,6 +3,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -19,9 +20,76 @@ struct ui {
     VkDevice device;
     float scale;
     bool backend, pressed[3], down[3];
+    whit_result result; // of drawing: the first that failed
 };
 
 static float line_scale = 1.0f;
+
+// ---- Memory ----
+
+// Dear ImGui does not look at what it gets. Where memory runs out it gets of what was set aside,
+// which lasts to the end of the frame; without that the next frame does not begin.
+enum { SET_ASIDE_BYTES = 8 << 20 };
+static void *aside;
+
+static bool set_aside()
+{
+    if (!aside)
+        aside = std::malloc(SET_ASIDE_BYTES);
+    return aside != nullptr;
+}
+
+// Before each block: all are known, so that what the backend leaves after a failure goes too.
+struct alignas(16) link {
+    link *before, *after;
+};
+static link blocks = {&blocks, &blocks};
+
+static void *take(size_t bytes, void *)
+{
+    link *block = static_cast<link *>(std::malloc(sizeof *block + bytes));
+    if (!block) {
+        std::free(aside);
+        aside = nullptr;
+        block = static_cast<link *>(std::malloc(sizeof *block + bytes));
+    }
+    if (!block) {
+        std::fputs("whit: error: out of memory for the figures of the window\n", stderr);
+        std::_Exit(2);
+    }
+    *block = link{&blocks, blocks.after};
+    blocks.after->before = block;
+    blocks.after = block;
+    return block + 1;
+}
+
+static void give(void *memory, void *)
+{
+    if (!memory)
+        return;
+    link *block = static_cast<link *>(memory) - 1;
+    block->before->after = block->after;
+    block->after->before = block->before;
+    std::free(block);
+}
+
+// ---- Failures of the backend ----
+
+// It goes on after a call that failed, with what that call did not make: this stops it there.
+struct failed_call {
+    VkResult result;
+};
+
+static void check_call(VkResult result)
+{
+    if (result < 0)
+        throw failed_call{result};
+}
+
+static whit_result say_failure(const struct ui *ui, const failed_call &failure)
+{
+    return swapchain_failed(ui->swapchain, failure.result, "the window's figures");
+}
 
 // ---- Where panels are ----
 
@@ -150,8 +218,12 @@ static void note_item(const char *label)
 
 static void make_fonts(void *user, void *commands)
 {
-    *static_cast<bool *>(user) =
+    struct ui *ui = static_cast<struct ui *>(user);
+    try {
         ImGui_ImplVulkan_CreateFontsTexture(static_cast<VkCommandBuffer>(commands));
+    } catch (const failed_call &failure) {
+        ui->result = say_failure(ui, failure);
+    }
 }
 
 static void set_style(float scale)
@@ -177,7 +249,7 @@ static void set_keys()
         ImGui::GetIO().KeyMap[keys[i]] = i;
 }
 
-static bool start_backend(struct ui *ui)
+static void start_backend(struct ui *ui)
 {
     struct swapchain_handles handles;
     swapchain_get_handles(ui->swapchain, &handles);
@@ -189,8 +261,7 @@ static bool start_backend(struct ui *ui)
     pool.maxSets = 8;
     pool.poolSizeCount = 1;
     pool.pPoolSizes = &size;
-    if (vkCreateDescriptorPool(ui->device, &pool, nullptr, &ui->descriptors) != VK_SUCCESS)
-        return false;
+    check_call(vkCreateDescriptorPool(ui->device, &pool, nullptr, &ui->descriptors));
     ImGui_ImplVulkan_InitInfo info = {};
     info.Instance = static_cast<VkInstance>(handles.instance);
     info.PhysicalDevice = static_cast<VkPhysicalDevice>(handles.physical);
@@ -201,12 +272,24 @@ static bool start_backend(struct ui *ui)
     info.DescriptorPool = ui->descriptors;
     info.MinImageCount = 2;
     info.ImageCount = handles.image_count;
-    ui->backend = ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass);
-    bool fonts = false;
-    if (!ui->backend || swapchain_submit(ui->swapchain, make_fonts, &fonts) != WHIT_OK)
-        return false;
-    ImGui_ImplVulkan_DestroyFontUploadObjects();
-    return fonts;
+    info.CheckVkResultFn = check_call;
+    ui->backend = true; // also where it gets half way: it knows what it has
+    ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass);
+}
+
+static whit_result start(struct ui *ui)
+{
+    try {
+        start_backend(ui);
+    } catch (const failed_call &failure) {
+        return say_failure(ui, failure);
+    }
+    whit_result result = swapchain_submit(ui->swapchain, make_fonts, ui);
+    if (result == WHIT_OK)
+        result = ui->result;
+    if (result == WHIT_OK)
+        ImGui_ImplVulkan_DestroyFontUploadObjects();
+    return result;
 }
 
 extern "C" {
@@ -214,9 +297,13 @@ extern "C" {
 whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out)
 {
     *out = nullptr;
-    struct ui *ui = new (std::nothrow) struct ui();
-    if (!ui)
-        return WHIT_ERROR_MEMORY;
+    struct ui *ui = set_aside() ? new (std::nothrow) struct ui() : nullptr;
+    if (!ui) {
+        std::free(aside);
+        aside = nullptr;
+        return swapchain_failed(swapchain, VK_ERROR_OUT_OF_HOST_MEMORY, "the window's figures");
+    }
+    ImGui::SetAllocatorFunctions(take, give);
     ui->swapchain = swapchain;
     ui->scale = scale > 0.0f ? scale : 1.0f;
     line_scale = ui->scale;
@@ -225,9 +312,11 @@ whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out)
     ImGui::GetIO().BackendPlatformName = "whit";
     set_style(ui->scale);
     set_keys();
-    if (!start_backend(ui)) {
+    whit_result result = start(ui);
+    if (result != WHIT_OK) {
+        ui->result = WHIT_OK;
         ui_destroy(ui);
-        return WHIT_ERROR_DEVICE;
+        return result;
     }
     *out = ui;
     return WHIT_OK;
@@ -239,11 +328,16 @@ void ui_destroy(struct ui *ui)
         return;
     if (ui->device)
         (void)vkDeviceWaitIdle(ui->device); // a lost device has nothing left to wait for
-    if (ui->backend)
+    // After a failure in a frame it has handles to what it destroyed: then it is left as it is.
+    if (ui->backend && ui->result == WHIT_OK)
         ImGui_ImplVulkan_Shutdown();
     if (ui->device)
         vkDestroyDescriptorPool(ui->device, ui->descriptors, nullptr);
     ImGui::DestroyContext();
+    while (blocks.after != &blocks)
+        give(blocks.after + 1, nullptr);
+    std::free(aside);
+    aside = nullptr;
     delete ui;
 }
 
@@ -286,8 +380,10 @@ bool ui_has_keys(const struct ui *)
     return ImGui::GetIO().WantTextInput;
 }
 
-void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
+bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
 {
+    if (!set_aside())
+        return false;
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)width, (float)height);
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
@@ -302,6 +398,7 @@ void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     item_count = 0;
     ImGui_ImplVulkan_NewFrame();
     ImGui::NewFrame();
+    return true;
 }
 
 void ui_end(struct ui *)
@@ -331,9 +428,20 @@ bool ui_item(uint32_t index, const char **label, float *x, float *y)
     return true;
 }
 
-void ui_draw(void *, void *commands)
+void ui_draw(void *user, void *commands)
 {
-    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), static_cast<VkCommandBuffer>(commands));
+    struct ui *ui = static_cast<struct ui *>(user);
+    try {
+        ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(),
+                                        static_cast<VkCommandBuffer>(commands));
+    } catch (const failed_call &failure) {
+        ui->result = say_failure(ui, failure);
+    }
+}
+
+whit_result ui_result(const struct ui *ui)
+{
+    return ui->result;
 }
 
 static void place(float x, float y, ImGuiCond when)

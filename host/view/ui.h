@@ -15,7 +15,7 @@ extern "C" {
 struct swapchain;
 struct ui;
 
-/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. */
+/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. Errors are logged. */
 WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out);
 void ui_destroy(struct ui *ui); /* before the swapchain; NULL is fine */
 
@@ -43,8 +43,8 @@ void ui_character(struct ui *ui, uint32_t code_point);
 bool ui_has_mouse(const struct ui *ui);
 bool ui_has_keys(const struct ui *ui);
 
-/* Everything below is drawn between these two. */
-void ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
+/* Everything below is drawn between these two. False: there is no memory for it, and no frame. */
+WHIT_CHECK bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
 void ui_end(struct ui *ui);
 /* Whether panels found their sizes only now, and the next frame has them where they belong; or a
    button went up already that this frame has down. */
@@ -58,6 +58,8 @@ bool ui_item(uint32_t index, const char **label, float *x, float *y);
 bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut);
 /* A swapchain_draw: what was drawn since the last ui_begin. */
 void ui_draw(void *ui, void *commands);
+/* What came of it, logged; after a failure there is only ui_destroy. */
+WHIT_CHECK whit_result ui_result(const struct ui *ui);
 
 /* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
    inside, and beside those that were begun before it: further down where y is 0, up where it is 1.

@@ -176,6 +176,7 @@ void view_open(struct view *view, const char *path)
         ++view->settings.reload;
     view->settings.camera[0] = '\0';
     view->settings.picture.time_s = 0.0;
+    view->clock.playing = false;
     view->camera_known = false;
     view->hint = false;
     recall_camera(view);
@@ -315,7 +316,10 @@ static whit_result draw_window(struct view *view)
         if (result != WHIT_OK || info.width == 0)
             return result;
     }
-    ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3);
+    if (!ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3)) {
+        log_error(&view->log, "out of memory for the figures of the window");
+        return WHIT_ERROR_MEMORY;
+    }
     if (!view->picture_set)
         ui_rectangle(0, 0, (float)info.width, (float)info.height, 0xFF181410u, true);
     hud_draw(view);
@@ -327,6 +331,8 @@ static whit_result draw_window(struct view *view)
     view->drawn_ms = now_ms;
     whit_result result = keep ? swapchain_show_and_keep(view->swapchain, ui_draw, view->ui, &shown)
                               : swapchain_show(view->swapchain, ui_draw, view->ui, &shown);
+    if (result == WHIT_OK)
+        result = ui_result(view->ui);
     if (result == WHIT_OK && !shown)
         view->dirty = true;
     if (result == WHIT_OK && shown && view->picture_set) {
@@ -338,9 +344,14 @@ static whit_result draw_window(struct view *view)
 
 /* ---- The loop ---- */
 
+bool view_plays(const struct view *view)
+{
+    return view->clock.playing && view->scene && view->scene->info.time_end_s > 0.0;
+}
+
 bool view_is_moving(const struct view *view, double now_ms)
 {
-    return now_ms - view->moved_ms < MOVING_MS || view->clock.playing;
+    return now_ms - view->moved_ms < MOVING_MS || view_plays(view);
 }
 
 static double wait_seconds(const struct view *view, double now_ms, bool goes_on)

@@ -129,7 +129,9 @@ bool view_is_moving(const struct view *view, double now_ms);
 /* To what the picture shows, where another kernel or other trees were asked for and are not there
    as yet; false where they were not. */
 bool view_go_back(struct view *view);
-/* Another scene, as the file dropped on the window. Keeps all but camera and time. */
+/* The animation goes on by itself, and there is one. */
+bool view_plays(const struct view *view);
+/* Another scene, as the file dropped on the window. Keeps all but camera and time, which stands. */
 void view_open(struct view *view, const char *path);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */
 void view_use_camera(struct view *view, int index);

@@ -33,7 +33,7 @@ enum { RANGES_MOST = 16, BLOCKS_MOST = 1 << 18 };
 static struct fault_shared *shared;
 static struct range ranges[RANGES_MOST]; /* first the program */
 static uint32_t range_count;
-static bool lost; /* the device */
+static void *_Atomic lost; /* what the handles of a lost device have in common; NULL: none is */
 
 /* ---- Who calls ---- */
 
@@ -328,52 +328,55 @@ int rename(const char *from, const char *to)
 
 /* ---- Vulkan ---- */
 
-/* Nothing works on a device once it is lost, but waiting ends. */
-static bool vulkan_fails(uintptr_t caller, const char *what)
+/* Nothing works on a device once it is lost, but waiting ends; other devices go on. `of`: a handle
+   of the device, its queue or its commands, NULL where there is no device as yet: the loader keeps
+   what leads to the driver in the first word of each, which is the same for all of one device. */
+static bool vulkan_fails(uintptr_t caller, const char *what, const void *of)
 {
     bool now = fails(FAULT_VULKAN, caller, what);
+    void *device = of ? *(void *const *)of : NULL;
     if (now && shared->code == VK_ERROR_DEVICE_LOST)
-        lost = true;
-    return now || (lost && is_own(caller));
+        atomic_store(&lost, device);
+    return now || (device && device == atomic_load(&lost) && is_own(caller));
 }
 
-#define VULKAN(name, parameters, arguments)                                                        \
+#define VULKAN(name, of, parameters, arguments)                                                    \
     VKAPI_ATTR VkResult VKAPI_CALL name parameters                                                 \
     {                                                                                              \
         NEXT(PFN_##name, #name);                                                                   \
-        return vulkan_fails(CALLER, #name) ? (VkResult)shared->code : next arguments;              \
+        return vulkan_fails(CALLER, #name, of) ? (VkResult)shared->code : next arguments;          \
     }
 
 /* What was submitted is not to be destroyed while it runs: these wait, and then fail. */
-#define VULKAN_WAIT(name, parameters, arguments)                                                   \
+#define VULKAN_WAIT(name, of, parameters, arguments)                                               \
     VKAPI_ATTR VkResult VKAPI_CALL name parameters                                                 \
     {                                                                                              \
         NEXT(PFN_##name, #name);                                                                   \
         VkResult result = next arguments;                                                          \
-        return vulkan_fails(CALLER, #name) ? (VkResult)shared->code : result;                      \
+        return vulkan_fails(CALLER, #name, of) ? (VkResult)shared->code : result;                  \
     }
 
-VULKAN(vkEnumerateInstanceVersion, (uint32_t * version), (version))
-VULKAN(vkEnumerateInstanceExtensionProperties,
+VULKAN(vkEnumerateInstanceVersion, NULL, (uint32_t * version), (version))
+VULKAN(vkEnumerateInstanceExtensionProperties, NULL,
        (const char *layer, uint32_t *count, VkExtensionProperties *list), (layer, count, list))
-VULKAN(vkEnumerateInstanceLayerProperties, (uint32_t * count, VkLayerProperties *list),
+VULKAN(vkEnumerateInstanceLayerProperties, NULL, (uint32_t * count, VkLayerProperties *list),
        (count, list))
-VULKAN(vkEnumerateDeviceExtensionProperties,
+VULKAN(vkEnumerateDeviceExtensionProperties, NULL,
        (VkPhysicalDevice device, const char *layer, uint32_t *count, VkExtensionProperties *list),
        (device, layer, count, list))
-VULKAN(vkEnumeratePhysicalDevices, (VkInstance instance, uint32_t *count, VkPhysicalDevice *list),
-       (instance, count, list))
-VULKAN(vkCreateInstance,
+VULKAN(vkEnumeratePhysicalDevices, NULL,
+       (VkInstance instance, uint32_t *count, VkPhysicalDevice *list), (instance, count, list))
+VULKAN(vkCreateInstance, NULL,
        (const VkInstanceCreateInfo *info, const VkAllocationCallbacks *memory, VkInstance *out),
        (info, memory, out))
-VULKAN(vkCreateDevice,
+VULKAN(vkCreateDevice, NULL,
        (VkPhysicalDevice device, const VkDeviceCreateInfo *info,
         const VkAllocationCallbacks *memory, VkDevice *out),
        (device, info, memory, out))
 
 /* All that make something from a description of it. */
 #define VULKAN_CREATE(thing)                                                                       \
-    VULKAN(vkCreate##thing,                                                                        \
+    VULKAN(vkCreate##thing, device,                                                                \
            (VkDevice device, const Vk##thing##CreateInfo *info,                                    \
             const VkAllocationCallbacks *memory, Vk##thing *out),                                  \
            (device, info, memory, out))
@@ -387,44 +390,85 @@ VULKAN_CREATE(PipelineCache)
 VULKAN_CREATE(PipelineLayout)
 VULKAN_CREATE(QueryPool)
 VULKAN_CREATE(ShaderModule)
-VULKAN(vkCreateComputePipelines,
+VULKAN_CREATE(Framebuffer)
+VULKAN_CREATE(Image)
+VULKAN_CREATE(ImageView)
+VULKAN_CREATE(RenderPass)
+VULKAN_CREATE(Sampler)
+VULKAN_CREATE(Semaphore)
+VULKAN(vkCreateComputePipelines, device,
        (VkDevice device, VkPipelineCache cache, uint32_t count,
         const VkComputePipelineCreateInfo *infos, const VkAllocationCallbacks *memory,
         VkPipeline *out),
        (device, cache, count, infos, memory, out))
-VULKAN(vkAllocateMemory,
+VULKAN(vkAllocateMemory, device,
        (VkDevice device, const VkMemoryAllocateInfo *info, const VkAllocationCallbacks *memory,
         VkDeviceMemory *out),
        (device, info, memory, out))
-VULKAN(vkAllocateCommandBuffers,
+VULKAN(vkAllocateCommandBuffers, device,
        (VkDevice device, const VkCommandBufferAllocateInfo *info, VkCommandBuffer *out),
        (device, info, out))
-VULKAN(vkAllocateDescriptorSets,
+VULKAN(vkAllocateDescriptorSets, device,
        (VkDevice device, const VkDescriptorSetAllocateInfo *info, VkDescriptorSet *out),
        (device, info, out))
-VULKAN(vkBindBufferMemory,
+VULKAN(vkBindBufferMemory, device,
        (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
        (device, buffer, memory, offset))
-VULKAN(vkMapMemory,
+VULKAN(vkMapMemory, device,
        (VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize bytes,
         VkMemoryMapFlags flags, void **out),
        (device, memory, offset, bytes, flags, out))
-VULKAN(vkResetCommandPool, (VkDevice device, VkCommandPool pool, VkCommandPoolResetFlags flags),
-       (device, pool, flags))
-VULKAN(vkBeginCommandBuffer, (VkCommandBuffer commands, const VkCommandBufferBeginInfo *info),
-       (commands, info))
-VULKAN(vkEndCommandBuffer, (VkCommandBuffer commands), (commands))
-VULKAN(vkResetFences, (VkDevice device, uint32_t count, const VkFence *fences),
+VULKAN(vkResetCommandPool, device,
+       (VkDevice device, VkCommandPool pool, VkCommandPoolResetFlags flags), (device, pool, flags))
+VULKAN(vkBeginCommandBuffer, commands,
+       (VkCommandBuffer commands, const VkCommandBufferBeginInfo *info), (commands, info))
+VULKAN(vkEndCommandBuffer, commands, (VkCommandBuffer commands), (commands))
+VULKAN(vkResetFences, device, (VkDevice device, uint32_t count, const VkFence *fences),
        (device, count, fences))
-VULKAN(vkQueueSubmit, (VkQueue queue, uint32_t count, const VkSubmitInfo *infos, VkFence fence),
+VULKAN(vkQueueSubmit, queue,
+       (VkQueue queue, uint32_t count, const VkSubmitInfo *infos, VkFence fence),
        (queue, count, infos, fence))
-VULKAN_WAIT(vkWaitForFences,
+VULKAN_WAIT(vkWaitForFences, device,
             (VkDevice device, uint32_t count, const VkFence *fences, VkBool32 all, uint64_t ns),
             (device, count, fences, all, ns))
-VULKAN_WAIT(vkDeviceWaitIdle, (VkDevice device), (device))
-VULKAN(vkGetQueryPoolResults,
+VULKAN_WAIT(vkDeviceWaitIdle, device, (VkDevice device), (device))
+VULKAN(vkGetQueryPoolResults, device,
        (VkDevice device, VkQueryPool pool, uint32_t first, uint32_t count, size_t bytes, void *data,
         VkDeviceSize stride, VkQueryResultFlags flags),
        (device, pool, first, count, bytes, data, stride, flags))
-VULKAN(vkGetPipelineCacheData, (VkDevice device, VkPipelineCache cache, size_t *bytes, void *data),
+VULKAN(vkGetPipelineCacheData, device,
+       (VkDevice device, VkPipelineCache cache, size_t *bytes, void *data),
        (device, cache, bytes, data))
+
+/* ---- Windows ---- */
+
+VULKAN(vkGetPhysicalDeviceSurfaceFormatsKHR, NULL,
+       (VkPhysicalDevice device, VkSurfaceKHR surface, uint32_t *count, VkSurfaceFormatKHR *list),
+       (device, surface, count, list))
+VULKAN(vkGetPhysicalDeviceSurfaceCapabilitiesKHR, NULL,
+       (VkPhysicalDevice device, VkSurfaceKHR surface, VkSurfaceCapabilitiesKHR *out),
+       (device, surface, out))
+VULKAN(vkCreateSwapchainKHR, device,
+       (VkDevice device, const VkSwapchainCreateInfoKHR *info, const VkAllocationCallbacks *memory,
+        VkSwapchainKHR *out),
+       (device, info, memory, out))
+VULKAN(vkGetSwapchainImagesKHR, device,
+       (VkDevice device, VkSwapchainKHR swapchain, uint32_t *count, VkImage *list),
+       (device, swapchain, count, list))
+VULKAN(vkAcquireNextImageKHR, device,
+       (VkDevice device, VkSwapchainKHR swapchain, uint64_t ns, VkSemaphore semaphore,
+        VkFence fence, uint32_t *index),
+       (device, swapchain, ns, semaphore, fence, index))
+VULKAN_WAIT(vkQueuePresentKHR, queue, (VkQueue queue, const VkPresentInfoKHR *info), (queue, info))
+VULKAN_WAIT(vkQueueWaitIdle, queue, (VkQueue queue), (queue))
+VULKAN(vkCreateGraphicsPipelines, device,
+       (VkDevice device, VkPipelineCache cache, uint32_t count,
+        const VkGraphicsPipelineCreateInfo *infos, const VkAllocationCallbacks *memory,
+        VkPipeline *out),
+       (device, cache, count, infos, memory, out))
+VULKAN(vkBindImageMemory, device,
+       (VkDevice device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset),
+       (device, image, memory, offset))
+VULKAN(vkFlushMappedMemoryRanges, device,
+       (VkDevice device, uint32_t count, const VkMappedMemoryRange *list),
+       (device, count, list))

@@ -5,7 +5,8 @@
    - it exits, with the code that is expected, and with one line of error that says why;
    - each output is the old one, or the whole new one; no other file is there;
    - all that the program itself allocated was given back;
-   - where it went well nevertheless, the outputs are those of a run without a fault.
+   - where it went well nevertheless, the outputs are those of a run without a fault; the viewer
+     shows the pictures of such a run, or says why not (--stdout pictures).
    How many runs there were, how many failed as they should and how many went well is printed. */
 #define _GNU_SOURCE
 #include <dirent.h>
@@ -37,6 +38,7 @@ struct sweep {
     struct content whole[OUTPUTS_MOST]; /* of the run without a fault */
     uint32_t output_count;
     bool same_stdout; /* what is printed is an output too */
+    bool pictures;    /* it prints states of the viewer: see judge_states */
     bool may_leak;
     struct content printed;
     int expect;
@@ -188,6 +190,48 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
     return NULL;
 }
 
+/* The text of the first `"name":"text"` of a line; NULL: it has none. */
+static const char *field(const char *line, const char *name, size_t *length)
+{
+    char key[32];
+    snprintf(key, sizeof key, "\"%s\":\"", name);
+    const char *end = line + strcspn(line, "\n"), *at = strstr(line, key);
+    if (!at || at >= end)
+        return NULL;
+    at += strlen(key);
+    *length = strcspn(at, "\"\n");
+    return at;
+}
+
+static bool same_field(const char *a, const char *b, const char *name)
+{
+    size_t a_length = 0, b_length = 0;
+    const char *a_text = field(a, name, &a_length), *b_text = field(b, name, &b_length);
+    return a_text && b_text && a_length == b_length && memcmp(a_text, b_text, a_length) == 0;
+}
+
+/* Something is said in the window that is not said without a fault. */
+static bool is_said(const char *whole, const char *now, const char *name)
+{
+    size_t length = 0;
+    return field(now, name, &length) && length > 0 && !same_field(whole, now, name);
+}
+
+/* Each state has the picture that it has without a fault, or the window says why not. */
+static const char *judge_states(const char *whole, const char *now)
+{
+    for (; whole && now && whole[0]; whole = strchr(whole, '\n'), now = strchr(now, '\n')) {
+        whole += whole[0] == '\n';
+        now += now[0] == '\n';
+        bool shown = same_field(whole, now, "ids") && same_field(whole, now, "pixels");
+        if (whole[0] && !now[0])
+            return "a state is missing";
+        if (whole[0] && !shown && !is_said(whole, now, "error") && !is_said(whole, now, "toast"))
+            return "it shows something else and does not say why";
+    }
+    return NULL;
+}
+
 static const char *judge_outputs(const struct sweep *sweep, bool fine)
 {
     static char text[512];
@@ -203,6 +247,10 @@ static const char *judge_outputs(const struct sweep *sweep, bool fine)
     struct content printed = read_whole("../stdout");
     if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
         snprintf(text, sizeof text, "it printed something else");
+    const char *states =
+        fine && sweep->pictures ? judge_states(sweep->printed.data, printed.data) : NULL;
+    if (states)
+        snprintf(text, sizeof text, "%s: %.400s", states, printed.data);
     free(printed.data);
     return text[0] ? text : NULL;
 }
@@ -326,9 +374,10 @@ static void read_options(struct sweep *sweep, int argc, char **argv)
             sweep->shown = (uint32_t)atoi(value);
         else if (strcmp(name, "--leaks") == 0)
             sweep->may_leak = strcmp(value, "ignore") == 0;
-        else if (strcmp(name, "--stdout") == 0)
+        else if (strcmp(name, "--stdout") == 0) {
             sweep->same_stdout = strcmp(value, "same") == 0;
-        else
+            sweep->pictures = strcmp(value, "pictures") == 0;
+        } else
             break;
     }
     if (i + 1 >= argc || strcmp(argv[i], "--") != 0) {

@@ -67,7 +67,7 @@ static whit_result set_picture(struct shop *shop)
 
 static whit_result show_text(struct shop *shop, bool *shown)
 {
-    ui_begin(shop->ui, WIDTH, HEIGHT, 0.01);
+    assert_true(ui_begin(shop->ui, WIDTH, HEIGHT, 0.01));
     ui_text_at(1, 1, 0xFFFFFFFFu, "text");
     ui_end(shop->ui);
     return swapchain_show(shop->swapchain, ui_draw, shop->ui, shown);
