@@ -314,6 +314,17 @@ void platform_share_heaps(void)
 {
 #ifdef __GLIBC__ /* else up to 8 a core, each as large as its threads ever were */
     (void)mallopt(M_ARENA_MAX, 2);
+    /* Pictures and trees come from the system and go back to it, whatever was freed before: else
+       each that does not fit into a gap makes another one. */
+    (void)mallopt(M_MMAP_THRESHOLD, 128 << 10);
+    (void)mallopt(M_TRIM_THRESHOLD, 4 << 20);
+#endif
+}
+
+void platform_trim_heaps(void)
+{
+#ifdef __GLIBC__
+    (void)malloc_trim(0);
 #endif
 }
 

@@ -57,6 +57,9 @@ void platform_release_forks(void);
 /* From here on threads share a few heaps, so that what one gave back is there for the next: for
    programs that go on long, and start many threads. Before any thread. */
 void platform_share_heaps(void);
+/* Gives the system back what is free between blocks that are not: milliseconds, in which threads
+   that allocate may wait. */
+void platform_trim_heaps(void);
 
 bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/platform.h"
 #include "view/engine_private.h"
 
 enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MOST = 2 };
@@ -59,6 +60,7 @@ static void drop_session(struct engine *engine, struct session *session)
     free(session);
     pthread_mutex_lock(&engine->lock);
     engine->validation += messages;
+    engine->littered = true;
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -134,7 +136,8 @@ static void forget_if(struct engine *engine, const struct session *session)
 
 static bool is_shown(const struct engine *engine, const struct session *session)
 {
-    return engine->lanes[0].session == session || engine->lanes[1].session == session;
+    const struct engine_lane *other = &engine->lanes[1];
+    return engine->lanes[0].session == session || (other->wanted && other->session == session);
 }
 
 static uint32_t sessions_most(const struct engine *engine, const struct session *newest)
@@ -210,6 +213,7 @@ static void reap_job(struct engine *engine)
     wake_window(engine);
     if (job->result == WHIT_OK)
         job->session = NULL; /* kept */
+    engine->littered = true; /* compilers leave more than they take */
     pthread_mutex_unlock(&engine->lock);
     job_destroy(job);
     pthread_mutex_lock(&engine->lock);
@@ -347,6 +351,8 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
     frame->number = ++lane->frames;
     engine_frame_finish(&lane->frame);
     lane->frame = *frame;
+    if (!lane->wanted) /* any more: nobody would take it */
+        engine_frame_finish(&lane->frame);
     engine->error[0] = '\0';
     engine->lost = 0;
 }
@@ -432,6 +438,16 @@ static void probe_one(struct engine *engine)
     wake_window(engine);
 }
 
+/* Drivers make kernels of millions of small blocks: the gaps that these leave fit nothing else, and
+   add up from session to session. */
+static void tidy_up(struct engine *engine)
+{
+    engine->littered = false;
+    pthread_mutex_unlock(&engine->lock);
+    platform_trim_heaps();
+    pthread_mutex_lock(&engine->lock);
+}
+
 static void run_engine(void *context)
 {
     struct engine *engine = context;
@@ -450,7 +466,9 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
-        if (!drew && !engine->quit && !(engine->job && engine->job->done))
+        if (!drew && !engine->quit && engine->littered)
+            tidy_up(engine);
+        else if (!drew && !engine->quit && !(engine->job && engine->job->done))
             pthread_cond_wait(&engine->work, &engine->lock);
     }
     pthread_mutex_unlock(&engine->lock);
@@ -555,10 +573,13 @@ void engine_ask(struct engine *engine, const struct view_settings *settings, boo
 void engine_ask_other(struct engine *engine, const struct view_settings *settings)
 {
     pthread_mutex_lock(&engine->lock);
-    if (settings)
-        ask(engine, &engine->lanes[1], settings, engine->lanes[0].moving);
-    else
-        engine->lanes[1].wanted = false;
+    struct engine_lane *other = &engine->lanes[1];
+    if (settings) {
+        ask(engine, other, settings, engine->lanes[0].moving);
+    } else {
+        other->wanted = false;
+        engine_frame_finish(&other->frame);
+    }
     pthread_mutex_unlock(&engine->lock);
 }
 

@@ -77,6 +77,7 @@ struct engine {
     bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */
     uint32_t validation; /* messages, of sessions that are gone */
     bool busy;           /* something is being drawn */
+    bool littered;       /* a session was made or dropped: its memory lies about in the heaps */
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];

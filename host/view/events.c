@@ -142,7 +142,8 @@ static bool parse_pair(const char *rest, enum view_event_kind kind, struct view_
 static bool parse_path(const char *rest, enum view_event_kind kind, struct view_event *event)
 {
     event->kind = kind;
-    return snprintf(event->path, sizeof event->path, "%s", rest) > 0 && rest[0];
+    event->path = rest;
+    return rest[0] && strlen(rest) < EVENT_PATH;
 }
 
 static bool parse_press(const char *rest, struct view_event events[EVENTS_A_LINE], int *count)
@@ -185,7 +186,7 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     }
     if (strcmp(verb, "state") == 0) {
         (void)parse_path(rest, EVENT_STATE, event); /* may be empty */
-        return strlen(rest) < sizeof event->path;
+        return strlen(rest) < EVENT_PATH;
     }
     if (strcmp(verb, "press") == 0)
         return parse_press(rest, events, count);
@@ -302,6 +303,23 @@ static whit_result read_lines(const struct log *log, const char *path, char *tex
     return WHIT_OK;
 }
 
+/* The events and what they point to, as one block in place of list->events. */
+static bool join(struct list *list, const char *text, size_t bytes)
+{
+    size_t list_bytes = list->count * sizeof *list->events;
+    struct view_event *events = realloc(list->events, list_bytes + bytes + 1);
+    if (!events)
+        return false;
+    char *copy = (char *)events + list_bytes;
+    memcpy(copy, text, bytes + 1);
+    for (uint32_t i = 0; i < list->count; ++i) {
+        if (events[i].path)
+            events[i].path = copy + (events[i].path - text);
+    }
+    list->events = events;
+    return true;
+}
+
 whit_result events_load(const struct log *log, const char *path, struct view_event **events,
                         uint32_t *count)
 {
@@ -313,6 +331,10 @@ whit_result events_load(const struct log *log, const char *path, struct view_eve
     whit_result result = file_read(log, path, REPLAY_BYTES_MOST, &text, &bytes);
     if (result == WHIT_OK)
         result = read_lines(log, path, (char *)text, &list);
+    if (result == WHIT_OK && !join(&list, (const char *)text, bytes)) {
+        log_error(log, "%s: out of memory", path);
+        result = WHIT_ERROR_MEMORY;
+    }
     free(text);
     if (result != WHIT_OK) {
         free(list.events);

@@ -74,21 +74,22 @@ struct view_event {
     uint32_t code; /* EVENT_CHAR: Unicode */
     double x, y;   /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
     uint32_t width, height;
-    char path[EVENT_PATH]; /* of files; EVENT_STATE: its name */
+    const char *path; /* of files, shorter than EVENT_PATH; EVENT_STATE: its name; borrowed from
+                         where the event came from */
 };
 
 /* "T", "Left", "F12", "Comma"; "?" for what has no name. */
 const char *event_key_name(int key);
 
 /* One line, without the end; false, logged with file and line, for nonsense. Empty lines and
-   comments are EVENT_NONE. `press` and `click` give several events. */
+   comments are EVENT_NONE. `press` and `click` give several events. Paths point into `text`. */
 enum { EVENTS_A_LINE = 4 };
 bool events_from_line(const struct log *log, const char *file, uint32_t line, const char *text,
                       struct view_event events[EVENTS_A_LINE], int *count);
 /* What events_from_line reads back; nothing for events that have no line. */
 void event_to_line(const struct view_event *event, FILE *to);
 
-/* All events of a file; *events is one block, free() it. */
+/* All events of a file; *events is one block with all that they point to, free() it. */
 WHIT_CHECK whit_result events_load(const struct log *log, const char *path,
                                    struct view_event **events, uint32_t *count);
 

@@ -52,10 +52,22 @@ static void look_at(struct view *view, const whit_probe_ray *ray)
     view_moved(view);
 }
 
+/* Of a panel that was closed: it holds its scene, which may be a large one that was left. */
+static void let_go(struct view *view)
+{
+    struct engine_probe nothing = {.number = view->probe.number};
+    if (view->picked)
+        return;
+    engine_probe_finish(&view->probe);
+    view->probe = nothing;
+}
+
 void pick_take(struct view *view)
 {
-    if (!engine_take_probe(view->engine, &view->probe))
+    if (!engine_take_probe(view->engine, &view->probe)) {
+        let_go(view);
         return;
+    }
     view->dirty = true;
     if (view->focus && view->probe.report && view->probe.report->ray_count > 0)
         look_at(view, &view->probe.report->rays[0]);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/platform.h"
 #include "base/threads.h"
 
 enum { REFERENCE_SAMPLES = 16 };
@@ -122,6 +123,7 @@ static void run(void *context)
                                     : measure(prices, &log, device, accel, &report);
     whit_device_destroy(device);
     whit_accel_destroy(accel);
+    platform_trim_heaps();
     pthread_mutex_lock(&prices->lock);
     prices->report = report;
     prices->finished = prices->news = true;

@@ -18,6 +18,7 @@ struct window {
     int x, y, width, height; /* before full screen */
     struct view_event events[EVENTS_HELD];
     uint32_t first, count;
+    char dropped[EVENT_PATH]; /* the last file */
     char error[256];
 };
 
@@ -154,10 +155,10 @@ static void on_pixels(GLFWwindow *glfw, int width, int height)
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths)
 {
-    struct view_event event = {.kind = EVENT_DROP};
-    if (count > 0 && strlen(paths[0]) < sizeof event.path) {
-        memcpy(event.path, paths[0], strlen(paths[0]) + 1);
-        push(glfwGetWindowUserPointer(glfw), &event);
+    struct window *window = glfwGetWindowUserPointer(glfw);
+    if (count > 0 && strlen(paths[0]) < sizeof window->dropped) {
+        memcpy(window->dropped, paths[0], strlen(paths[0]) + 1);
+        push(window, &(struct view_event){.kind = EVENT_DROP, .path = window->dropped});
     }
 }
 

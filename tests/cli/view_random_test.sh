@@ -15,8 +15,11 @@ events() {
             state = (state * 16807) % 2147483647
             return int(state / 2147483647 * n)
         }
-        # What was looked at before is forgotten: what is left is the viewer itself.
+        # The same at each mark, so that only what the viewer did not give back can differ: the
+        # settings it began with, no panels, B gone (after D there is one in any case), and only
+        # one scene in the sessions that are kept.
         function mark() {
+            print "press Escape\npress D\npress C\ndrop start.view"
             print "drop", scenes "/cube.json\nsize 240 160"
             for (i = 0; i < 5; ++i) print "press R\nstill"
             print "wait 500\nstate mark\nwait 2500"
@@ -63,6 +66,7 @@ rss() {
     sed -n 's/^VmRSS:[^0-9]*\([0-9]*\) kB/\1/p' "/proc/$1/status" 2>/dev/null
 }
 
+echo "--size 240x160" >start.view
 events "$SECONDS_LONG" "$SEED" >replay
 echo "$(wc -l <replay) events, seed $SEED"
 "$WHIT" view "$CUBE" --size 240x160 --quiet --replay replay >states 2>"$OUT/stderr" &
