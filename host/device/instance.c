@@ -17,7 +17,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
                                                  void *user)
 {
     struct device *device = user;
-    if (!(types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT))
+    if (!(types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) || device->abandoned)
         return VK_FALSE;
     char text[1900];
     snprintf(text, sizeof text, "validation: %s", data->pMessage ? data->pMessage : "");

@@ -447,5 +447,6 @@ void swapchain_get_handles(const struct swapchain *swapchain, struct swapchain_h
 
 whit_result swapchain_failed(struct swapchain *swapchain, int vk, const char *of_what)
 {
+    swapchain->device->abandoned = true;
     return device_check(swapchain->device, (VkResult)vk, of_what, __FILE__, __LINE__);
 }

@@ -72,7 +72,8 @@ void swapchain_get_handles(const struct swapchain *swapchain, struct swapchain_h
 /* Records with `record`, submits and waits: for uploads of such libraries. */
 WHIT_CHECK whit_result swapchain_submit(struct swapchain *swapchain,
                                         void (*record)(void *user, void *commands), void *user);
-/* A call of such a library gave `vk`, a VkResult below 0: logged once, and what it means here. */
+/* A call of such a library gave `vk`, a VkResult below 0: logged once, and what it means here. What
+   the library made may stay until the device goes: the validation layers are not heard on that. */
 WHIT_CHECK whit_result swapchain_failed(struct swapchain *swapchain, int vk, const char *of_what);
 
 #endif

@@ -33,6 +33,7 @@ struct device {
     bool validation, staged;
     bool validation_of_shaders; /* GPU-assisted checks too */
     bool lost;                  /* every later call fails at once */
+    bool abandoned;             /* a library broke off: what it left behind is not complained of */
     atomic_uint validation_messages;
 
     VkInstance instance;

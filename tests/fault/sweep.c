@@ -44,7 +44,7 @@ struct sweep {
     int expect;
     uint32_t every, shown;
     char **command;
-    uint32_t runs, failed, fine, defects;
+    uint32_t runs, failed, fine, said, defects; /* said: fine, but a picture is missing */
 };
 
 static void stop(const char *what)
@@ -218,8 +218,9 @@ static bool is_said(const char *whole, const char *now, const char *name)
 }
 
 /* Each state has the picture that it has without a fault, or the window says why not. */
-static const char *judge_states(const char *whole, const char *now)
+static const char *judge_states(const char *whole, const char *now, bool *said)
 {
+    *said = false;
     for (; whole && now && whole[0]; whole = strchr(whole, '\n'), now = strchr(now, '\n')) {
         whole += whole[0] == '\n';
         now += now[0] == '\n';
@@ -228,11 +229,12 @@ static const char *judge_states(const char *whole, const char *now)
             return "a state is missing";
         if (whole[0] && !shown && !is_said(whole, now, "error") && !is_said(whole, now, "toast"))
             return "it shows something else and does not say why";
+        *said |= whole[0] && !shown;
     }
     return NULL;
 }
 
-static const char *judge_outputs(const struct sweep *sweep, bool fine)
+static const char *judge_outputs(struct sweep *sweep, bool fine)
 {
     static char text[512];
     struct content old = {(char *)(uintptr_t)old_text, sizeof old_text - 1};
@@ -247,10 +249,12 @@ static const char *judge_outputs(const struct sweep *sweep, bool fine)
     struct content printed = read_whole("../stdout");
     if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
         snprintf(text, sizeof text, "it printed something else");
+    bool said = false;
     const char *states =
-        fine && sweep->pictures ? judge_states(sweep->printed.data, printed.data) : NULL;
+        fine && sweep->pictures ? judge_states(sweep->printed.data, printed.data, &said) : NULL;
     if (states)
         snprintf(text, sizeof text, "%s: %.400s", states, printed.data);
+    sweep->said += said;
     free(printed.data);
     return text[0] ? text : NULL;
 }
@@ -405,7 +409,10 @@ int main(int argc, char **argv)
         check_run(&sweep, at);
     remove_folder(&sweep, folder);
     printf("%u of %u runs wrong; %u calls, one in %u made to fail: %u ended in an error, %u went "
-           "well\n",
+           "well",
            sweep.defects, sweep.runs, calls, sweep.every, sweep.failed, sweep.fine);
-    return sweep.defects > 0 || sweep.failed == 0;
+    if (sweep.pictures)
+        printf(", %u of these without a picture, as their windows said", sweep.said);
+    printf("\n");
+    return sweep.defects > 0 || sweep.failed + sweep.said == 0;
 }
