@@ -470,5 +470,4 @@ VULKAN(vkBindImageMemory, device,
        (VkDevice device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset),
        (device, image, memory, offset))
 VULKAN(vkFlushMappedMemoryRanges, device,
-       (VkDevice device, uint32_t count, const VkMappedMemoryRange *list),
-       (device, count, list))
+       (VkDevice device, uint32_t count, const VkMappedMemoryRange *list), (device, count, list))
