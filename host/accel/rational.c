@@ -4,6 +4,7 @@
 #include <gmp.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #include "accel/accel_inside.h"
@@ -14,6 +15,13 @@
 
 enum { VERTICES = 3, AXES = 3 };
 
+/* P t^2 - 2 S t + Q, with t in units of 2^power, and its discriminant over 4. */
+struct quadratic {
+    mpz_t p, s, q, disc;
+    mpz_t at, shifted, slope, value, root; /* to work with */
+    int power;
+};
+
 struct rational {
     const struct accel *accel;
     double instance_growth, instance_scale; /* see instance_spread */
@@ -21,6 +29,7 @@ struct rational {
     /* Of rational_meet. */
     mpz_t dir[AXES], vertex[VERTICES][AXES]; /* vertices relative to the origin */
     mpz_t cross[AXES], edge[VERTICES], volume, det, rest;
+    struct quadratic sphere; /* of rational_meet_sphere, besides `dir`, `vertex` and `rest` */
 };
 
 /* ---- In integers ---- */
@@ -31,6 +40,8 @@ static void init_numbers(struct rational *r)
         mpz_inits(r->dir[k], r->cross[k], r->edge[k], r->vertex[0][k], r->vertex[1][k],
                   r->vertex[2][k], NULL);
     mpz_inits(r->volume, r->det, r->rest, NULL);
+    struct quadratic *f = &r->sphere;
+    mpz_inits(f->p, f->s, f->q, f->disc, f->at, f->shifted, f->slope, f->value, f->root, NULL);
 }
 
 static void clear_numbers(struct rational *r)
@@ -39,6 +50,8 @@ static void clear_numbers(struct rational *r)
         mpz_clears(r->dir[k], r->cross[k], r->edge[k], r->vertex[0][k], r->vertex[1][k],
                    r->vertex[2][k], NULL);
     mpz_clears(r->volume, r->det, r->rest, NULL);
+    struct quadratic *f = &r->sphere;
+    mpz_clears(f->p, f->s, f->q, f->disc, f->at, f->shifted, f->slope, f->value, f->root, NULL);
 }
 
 /* The power of two that the lowest set bit of a float stands for; 0 has none. */
@@ -148,6 +161,133 @@ bool rational_meet(struct rational *r, struct vec3 origin, struct vec3 dir, cons
     if (edges)
         *edges = on_edges;
     return isfinite(*key);
+}
+
+/* ---- Spheres, in integers ---- */
+
+/* Sign of the near or far root less `at`, which is a double: of the quadratic there, and of half of
+   its slope, which tells the side of the vertex that `at` is on. */
+static int compare_root(struct quadratic *f, bool far, double at)
+{
+    int exponent;
+    double fraction = frexp(at, &exponent);
+    int shift = exponent - DBL_MANT_DIG - f->power;
+    mpz_set_d(f->at, ldexp(fraction, DBL_MANT_DIG));
+    mp_bitcnt_t down = shift < 0 ? (mp_bitcnt_t)-shift : 0;
+    if (shift > 0)
+        mpz_mul_2exp(f->at, f->at, (mp_bitcnt_t)shift);
+    /* slope = P a - S', value = a (P a - 2 S') + Q', with a = at 2^down, S' and Q' shifted alike.
+     */
+    mpz_mul_2exp(f->shifted, f->s, down);
+    mpz_mul(f->slope, f->p, f->at);
+    mpz_sub(f->slope, f->slope, f->shifted);
+    mpz_sub(f->value, f->slope, f->shifted);
+    mpz_mul(f->value, f->value, f->at);
+    mpz_mul_2exp(f->shifted, f->q, 2 * down);
+    mpz_add(f->value, f->value, f->shifted);
+    int slope = mpz_sgn(f->slope), value = mpz_sgn(f->value);
+    if (far)
+        return slope >= 0 ? -value : 1;
+    return slope <= 0 ? value : -1;
+}
+
+/* Floats that are not negative are in the order of their bits; after the largest comes what would
+   go on there, so that its middle with the largest is where keys become infinite. */
+#define INFINITE_BITS 0x7f800000u
+
+static double float_of_bits(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return bits == INFINITE_BITS ? 0x1p128 : (double)value;
+}
+
+/* Whether the root rounds to a float above this one: it is beyond the middle of this one and the
+   next, or at it where the next one is even. A double holds the middle. */
+static bool is_above(struct quadratic *f, bool far, uint32_t bits)
+{
+    double middle = 0.5 * (float_of_bits(bits) + float_of_bits(bits + 1));
+    int side = compare_root(f, far, middle);
+    return side > 0 || (side == 0 && bits % 2 == 1);
+}
+
+/* Some 60 bits of the root, which is not negative: those of the square root, and either a sum of
+   two numbers with the same sign or Q over that sum. */
+static float estimate_root(struct quadratic *f, bool far, mpz_t rest)
+{
+    enum { BITS = 64 };
+    bool ahead = mpz_sgn(f->s) >= 0;
+    mpz_mul_2exp(f->root, f->disc, 2 * BITS);
+    mpz_sqrt(f->root, f->root);
+    mpz_mul_2exp(f->shifted, f->s, BITS);
+    if (ahead)
+        mpz_add(f->root, f->root, f->shifted);
+    else
+        mpz_sub(f->root, f->shifted, f->root);
+    bool is_sum = far == ahead;
+    mpz_mul_2exp(f->value, is_sum ? f->p : f->q, BITS);
+    return is_sum ? round_quotient(f->root, f->value, rest, f->power)
+                  : round_quotient(f->value, f->root, rest, f->power);
+}
+
+/* The key of a root that is not negative. What decides is on which side of the middles of floats
+   the root is, and the signs of integers say so: bits of the estimate only make that short. */
+static float round_root(struct quadratic *f, bool far, mpz_t rest)
+{
+    float key = estimate_root(f, far, rest);
+    uint32_t bits;
+    memcpy(&bits, &key, sizeof bits);
+    while (bits < INFINITE_BITS && is_above(f, far, bits))
+        ++bits;
+    while (bits > 0 && !is_above(f, far, bits - 1))
+        --bits;
+    memcpy(&key, &bits, sizeof key);
+    return key;
+}
+
+static void set_quadratic(struct rational *r, struct vec3 origin, struct vec3 dir,
+                          struct vec3 center, float radius)
+{
+    struct quadratic *f = &r->sphere;
+    mpz_t *m = r->vertex[0];
+    int dir_unit = lowest_of(dir, FLT_MAX_EXP);
+    int unit = lowest_of(center, lowest_of(origin, FLT_MAX_EXP));
+    int radius_unit = lowest_power(radius, unit);
+    unit = radius_unit < unit ? radius_unit : unit;
+    set_scaled(r->dir, dir, dir_unit);
+    set_scaled(r->cross, origin, unit);
+    set_scaled(m, center, unit);
+    for (int k = 0; k < AXES; ++k)
+        mpz_sub(m[k], m[k], r->cross[k]);
+    set_dot(f->p, r->dir, r->dir);
+    set_dot(f->s, m, r->dir);
+    set_dot(f->q, m, m);
+    mpz_set_d(f->value, ldexp((double)radius, -unit));
+    mpz_submul(f->q, f->value, f->value);
+    mpz_mul(f->disc, f->s, f->s);
+    mpz_submul(f->disc, f->p, f->q);
+    f->power = unit - dir_unit;
+}
+
+bool rational_meet_sphere(struct rational *r, struct vec3 origin, struct vec3 dir,
+                          struct vec3 center, float radius, struct rational_chord *out)
+{
+    struct quadratic *f = &r->sphere;
+    set_quadratic(r, origin, dir, center, radius);
+    if (mpz_sgn(f->disc) < 0)
+        return false;
+    /* The roots' sum is 2 S / P, their product Q / P. */
+    int sum = mpz_sgn(f->s), product = mpz_sgn(f->q);
+    *out = (struct rational_chord){.near_there = sum >= 0 && product >= 0,
+                                   .far_there = sum >= 0 || product <= 0,
+                                   .inward = sum > 0};
+    if (out->near_there)
+        out->near_key = round_root(f, false, r->rest);
+    if (out->far_there)
+        out->far_key = round_root(f, true, r->rest);
+    out->near_there &= isfinite(out->near_key) != 0;
+    out->far_there &= isfinite(out->far_key) != 0;
+    return out->near_there || out->far_there;
 }
 
 /* ---- In double, where that is enough ----

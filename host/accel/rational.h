@@ -1,6 +1,6 @@
-/* What exact arithmetic says of a ray and triangles, for the floats as they are given: the answers
-   that the level `exact` is held against. Integers of any size (GMP) decide; with a filter in
-   double before them where many rays are traced.
+/* What exact arithmetic says of a ray and of triangles and spheres, for the floats as they are
+   given: the answers that the level `exact` is held against. Integers of any size (GMP) decide;
+   with a filter in double before them where many rays are traced.
 
    The triangle, with its vertices a, b, c relative to the origin, is met when
 
@@ -13,8 +13,16 @@
    that overflows there is no hit. A key counts from t_min to t_max, both included. Hits are in the
    order of (key, instance, primitive).
 
-   In an instance the ray is what accel_local_ray makes of it, roundings and all. Spheres are not
-   decided. */
+   Of a sphere with centre c and radius r, with m = c - origin, the line of the ray meets
+
+       P t^2 - 2 S t + Q = 0,   P = d.d,  S = m.d,  Q = m.m - r^2
+
+   where that has roots: in a near end and a far one, which are the same where the line touches. An
+   end before the origin (t < 0) is not there; nor is one whose key would be infinite. Keys are
+   those of triangles: t, now a root, rounded to float.
+
+   In an instance the ray is what accel_local_ray makes of it, roundings and all. rational_trace
+   does not decide spheres yet. */
 #ifndef ACCEL_RATIONAL_H
 #define ACCEL_RATIONAL_H
 
@@ -37,7 +45,8 @@ struct rational_query {
 };
 
 /* Numbers to work with, for one thread at a time. `accel` is borrowed and may be NULL for
-   rational_meet alone; after accel_pose a new one is needed. NULL: no memory. */
+   rational_meet and rational_meet_sphere alone; after accel_pose a new one is needed. NULL: no
+   memory. */
 struct rational *rational_create(const struct accel *accel);
 void rational_destroy(struct rational *rational);
 
@@ -45,6 +54,18 @@ void rational_destroy(struct rational *rational);
    t_min and t_max. All numbers finite. `edges` may be NULL. */
 bool rational_meet(struct rational *rational, struct vec3 origin, struct vec3 dir,
                    const struct vec3 v[3], float *key, uint32_t *edges);
+
+/* Where the line of a ray meets a sphere. */
+struct rational_chord {
+    bool near_there, far_there;
+    float near_key, far_key; /* of an end that is there */
+    bool inward;             /* S > 0: a ray that starts on the sphere goes into it */
+};
+
+/* Whether an end is there, regardless of t_min and t_max; *out is only set if the line meets the
+   sphere. All numbers finite, `dir` not 0. */
+bool rational_meet_sphere(struct rational *rational, struct vec3 origin, struct vec3 dir,
+                          struct vec3 center, float radius, struct rational_chord *out);
 
 /* `query` may be NULL. */
 void rational_trace(struct rational *rational, const struct gpu_ray *ray,

@@ -3,6 +3,7 @@
 #include "accel_fixture.h"
 
 #include "accel/rational.h"
+#include "coordinate_fixture.h"
 #include "fraction_fixture.h"
 #include "sphere_fixture.h"
 
@@ -107,48 +108,6 @@ static void compare_meeting(struct rational *rational, struct vec3 origin, struc
 struct subject {
     struct vec3 origin, dir, v[3];
 };
-
-static float in_cube(void)
-{
-    return 2.0f * random_float() - 1.0f;
-}
-
-static struct vec3 point_of(float (*coordinate)(void))
-{
-    float x = coordinate(), y = coordinate(), z = coordinate();
-    return vec3_make(x, y, z);
-}
-
-/* 10^-8 to 10^8. */
-static float of_any_size(void)
-{
-    return in_cube() * (float)pow(10.0, 16.0 * (double)random_float() - 8.0);
-}
-
-static float of_extreme_size(void)
-{
-    return ldexpf(in_cube(), (int)(random_bits() % 201) - 100);
-}
-
-static float of_grid(void)
-{
-    return (float)((int)(random_bits() % 7) - 3);
-}
-
-static float denormal(void)
-{
-    return ldexpf((float)((int)(random_bits() % 17) - 8), -149);
-}
-
-static float of_any_bits(void)
-{
-    float value;
-    do {
-        uint32_t bits = random_bits();
-        memcpy(&value, &bits, sizeof value);
-    } while (!isfinite(value));
-    return value;
-}
 
 static struct subject scattered(float (*coordinate)(void))
 {
