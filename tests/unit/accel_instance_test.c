@@ -250,29 +250,55 @@ static void an_identity_is_no_transform(void **state)
     scene_destroy(scene);
 }
 
-/* Equal boxes: nothing can be ruled out, and the first instance is the one that is hit. */
-static void instances_in_one_place_are_all_entered(void **state)
+/* What is hit first of all that stand in one place, at every order; and that all were looked at. */
+static void assert_all_are_entered(const struct accel *accel, uint32_t count, uint32_t numerics,
+                                   uint32_t rays)
 {
-    (void)state;
-    enum { COUNT = 10000 };
-    struct affine *matrices = malloc(COUNT * sizeof *matrices);
-    assert_non_null(matrices);
-    for (int i = 0; i < COUNT; ++i)
-        matrices[i] = affine_identity();
-    struct scene *scene = sphere_scene(matrices, COUNT);
-    struct accel *accel = build(scene);
-    uint64_t random = 5;
-    for (int i = 0; i < 20; ++i) {
-        struct gpu_ray ray = aimed_ray(&matrices[0], &random);
+    const struct affine identity = affine_identity();
+    uint64_t random = 5, entered = 0;
+    uint32_t depth = 0;
+    for (uint32_t i = 0; i < rays; ++i) {
+        const struct traverse_params params = {.order = i % 3,
+                                               .numerics = numerics,
+                                               .skip_instance = HIT_NONE,
+                                               .skip_primitive = HIT_NONE};
+        struct gpu_ray ray = aimed_ray(&identity, &random);
         struct gpu_hit hit;
         struct gpu_cost cost = {0};
         uint32_t status = 0;
-        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost,
-                       &status);
+        traverse_ray(accel, &params, &ray, &hit, &cost, &status);
         assert_int_equal(status, 0);
+        assert_int_not_equal(hit.primitive, HIT_NONE);
         assert_int_equal(hit.instance, 0);
-        assert_int_equal(cost.instances, COUNT);
+        assert_int_equal(cost.instances, count);
+        entered += cost.instances;
+        depth = cost.depth > depth ? cost.depth : depth;
     }
+    print_message("  %s: %llu of %llu instances in one place entered by %u rays, depth %u\n",
+                  numerics == NUMERICS_EXACT ? "exact" : "watertight", (unsigned long long)entered,
+                  (unsigned long long)count * rays, rays, depth);
+}
+
+/* Equal boxes: nothing can be ruled out, and the first instance is the one that is hit. With the
+   label long there are a million of them. */
+static void instances_in_one_place_are_all_entered(void **state)
+{
+    (void)state;
+    const char *many = getenv("WHIT_TEST_INSTANCES");
+    const uint32_t count = many ? (uint32_t)atoi(many) : 10000;
+    assert_true(count >= 10000);
+    struct affine *matrices = malloc(count * sizeof *matrices);
+    assert_non_null(matrices);
+    for (uint32_t i = 0; i < count; ++i)
+        matrices[i] = affine_identity();
+    struct scene *scene = sphere_scene(matrices, count);
+    struct accel *accel = build(scene);
+    /* Halved each time, and the tree of the mesh below. */
+    assert_int_equal(accel->instance_node_count, 2 * count);
+    assert_true(accel->instance_depth <= 1 + (uint32_t)ceil(log2(count)));
+    const uint32_t rays = count > 100000 ? 6 : 21;
+    assert_all_are_entered(accel, count, NUMERICS_WATERTIGHT, rays);
+    assert_all_are_entered(accel, count, NUMERICS_EXACT, rays);
     accel_destroy(accel);
     scene_destroy(scene);
     free(matrices);

@@ -23,14 +23,22 @@ static const struct level levels[] = {
 
 enum { LEVELS = sizeof levels / sizeof *levels };
 
-/* Where a ray enters and leaves a box, as a tree's walk asks. */
+/* Tests with the label long set it: how many times the usual number of rays. */
+static inline uint32_t test_times(void)
+{
+    const char *times = getenv("WHIT_TEST_TIMES");
+    return times && atoi(times) > 0 ? (uint32_t)atoi(times) : 1;
+}
+
+/* Where a ray enters and leaves a box, as a tree's walk asks (step_pair in traverse.c). */
 static inline bool level_enters(const struct level *level, const struct ray_setup *ray,
                                 const float lo[3], const float hi[3], float t_min, float t_max,
                                 float *t_near, float *t_far)
 {
-    (void)level;
     slab_interval(ray, vec3_sub(vec3_load(lo), ray->origin), vec3_sub(vec3_load(hi), ray->origin),
                   t_min, t_near, t_far);
+    if (level->exact)
+        *t_near *= 1.0f - 0x1p-19f;
     return *t_near <= *t_far && *t_near <= t_max;
 }
 
