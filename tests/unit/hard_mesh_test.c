@@ -134,6 +134,59 @@ static void no_ray_leaves_closed_meshes(void **state)
     }
 }
 
+/* A vertex of the plane, or a point of an edge, that is not at its border. */
+static struct vec3 inner_target(const struct soup *soup)
+{
+    for (;;) {
+        struct vec3 p = target_of(soup);
+        float far = 0.0f;
+        for (int k = 0; k < 3; k += 2) {
+            float middle =
+                0.5f * (soup_vertex(soup, 0, 0)[k] + soup_vertex(soup, soup->count - 1, 1)[k]);
+            far = fmaxf(far, fabsf((&p.x)[k] - middle));
+        }
+        if (far < 1.7f)
+            return p;
+    }
+}
+
+/* W2: Embree's plane, across its edges and vertices, from both sides. */
+static void no_ray_passes_a_plane(void **state)
+{
+    (void)state;
+    const struct bvh_params params = {0};
+    const float at[3] = {148376, 1234, -223423};
+    struct scene_mesh mesh;
+    assert_int_equal(shape_plane(4.0, 4.0, 16, 1.0, &mesh), WHIT_OK);
+    struct soup soup = soup_of_mesh("plane", &mesh);
+    soup_move(&soup, at);
+    struct scene *scene = soup_scene(&soup);
+    struct accel *accel = soup_accel(scene, &params);
+    struct rational *rational = rational_create(accel);
+    for (int l = 0; l < LEVELS; ++l) {
+        struct hunt hunt = {"W2 plane at 148376 1234 -223423", 0, 0, 0, 0};
+        random_state = 52;
+        for (uint32_t i = 0; i < RAYS * test_times(); ++i) {
+            struct vec3 from = vec3_add(vec3_load(at), random_point(1.5f));
+            struct vec3 to = inner_target(&soup);
+            from.y = at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float());
+            if (i % 4 == 0) /* down along the axis, or in the planes of boxes */
+                from.x = to.x;
+            if (i % 8 == 0)
+                from.z = to.z;
+            struct gpu_ray ray = ray_through(from, to);
+            follow(&levels[l], accel, rational, &ray, &hunt);
+        }
+        tell(&levels[l], &hunt);
+        assert_int_equal(hunt.exact_leaks, 0);
+        assert_true(!levels[l].watertight || hunt.leaks == 0);
+    }
+    rational_destroy(rational);
+    accel_destroy(accel);
+    scene_destroy(scene);
+    soup_finish(&soup);
+}
+
 /* W3: a landscape of integers, rays down along the axis at vertices, edges and diagonals. */
 static void no_ray_falls_through_a_grid(void **state)
 {
@@ -394,6 +447,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_ray_leaves_closed_meshes),
+        cmocka_unit_test(no_ray_passes_a_plane),
         cmocka_unit_test(no_ray_falls_through_a_grid),
         cmocka_unit_test(crossings_are_odd),
         cmocka_unit_test(only_t_junctions_leak),

@@ -1,0 +1,214 @@
+/* R1, R2, R8 and U14 of the catalogue: which tree there is, and in which order it is walked, does
+   not tell; nor whether any hit is asked for or the closest one. At every level, bit for bit beside
+   no tree at all. tests/peers/equal.c does the same for scenes and devices. */
+#include "hard_fixture.h"
+
+static const struct bvh_params trees[] = {
+    {.builder = BVH_BINNED},
+    {.builder = BVH_BINNED, .leaf_limit = 1, .bins = 5},
+    {.builder = BVH_MEDIAN, .leaf_limit = 2},
+    {.builder = BVH_SWEEP},
+    {.builder = BVH_SPATIAL},
+};
+enum { TREES = sizeof trees / sizeof *trees, ORDERS = 3 };
+
+/* ---- Scenes ---- */
+
+static struct soup soup_torus(void)
+{
+    struct scene_mesh mesh;
+    assert_int_equal(shape_torus(1.0, 0.4, 32, 16, &mesh), WHIT_OK);
+    return soup_of_mesh("torus", &mesh);
+}
+
+/* Each triangle of a terrain of integers several times, in any order: ties everywhere. */
+static struct soup soup_layers(uint32_t layers)
+{
+    struct soup terrain = soup_terrain(8);
+    struct soup soup = soup_make("layers", layers * terrain.count);
+    for (uint32_t i = 0; i < 9 * terrain.count; ++i)
+        terrain.positions[i] = rintf(terrain.positions[i]);
+    for (uint32_t i = 0; i < soup.count; ++i) {
+        uint32_t k = i * 7919u % terrain.count;
+        soup_set(&soup, i, soup_vertex(&terrain, k, 0), soup_vertex(&terrain, k, 1),
+                 soup_vertex(&terrain, k, 2));
+    }
+    soup_finish(&terrain);
+    soup_box(&soup);
+    return soup;
+}
+
+enum { SCENES = 10 };
+
+static struct soup make_scene(uint32_t i)
+{
+    random_state = 100 + i;
+    switch (i) {
+    case 0:
+        return soup_sphere(32, 16);
+    case 1:
+        return soup_terrain(20);
+    case 2:
+        return soup_rooms(150);
+    case 3:
+        return soup_hair(400, 0.01f);
+    case 4:
+        return soup_hair(300, 0.5f);
+    case 5:
+        return soup_exponential(200, 1.2);
+    case 6:
+        return soup_garbage(300, 1e6f);
+    case 7:
+        return soup_torus();
+    case 8:
+        return soup_layers(5);
+    default:
+        return soup_make("nothing", 0);
+    }
+}
+
+/* ---- Any tree, any order ---- */
+
+struct counts {
+    uint64_t rays, hits, differ, ends;
+};
+
+/* The same at every order; `ends` counts where any hit and the closest one disagree. */
+static void try_orders(const struct level *level, const struct accel *accel,
+                       const struct gpu_ray *ray, const struct gpu_hit *wanted,
+                       struct counts *counts)
+{
+    for (uint32_t order = 0; order < ORDERS; ++order) {
+        struct gpu_ray cut = *ray;
+        struct gpu_hit hit;
+        bool met = wanted->primitive != HIT_NONE;
+        level_trace(level, accel, order, false, ray, &hit, NULL);
+        counts->differ += memcmp(&hit, wanted, sizeof hit) != 0;
+        level_trace(level, accel, order, true, ray, &hit, NULL);
+        counts->ends += (hit.primitive != HIT_NONE) != met;
+        if (!met)
+            continue;
+        cut.t_max = wanted->t;
+        level_trace(level, accel, order, true, &cut, &hit, NULL);
+        counts->ends += hit.primitive == HIT_NONE;
+        cut.t_max = nextafterf(wanted->t, -INFINITY);
+        level_trace(level, accel, order, true, &cut, &hit, NULL);
+        counts->ends += hit.primitive != HIT_NONE;
+    }
+}
+
+static struct gpu_ray ray_at_scene(const struct soup *soup, const struct bvh_box *box, uint32_t i)
+{
+    if (soup->count == 0)
+        return ray_through(random_point(1.0f), random_point(1.0f));
+    return soup_ray(soup, box, i);
+}
+
+static void compare_trees(const struct level *level, const struct soup *soup,
+                          struct accel *const accels[TREES], uint32_t rays, struct counts *counts)
+{
+    random_state = 17;
+    for (uint32_t i = 0; i < rays; ++i) {
+        struct gpu_ray ray = ray_at_scene(soup, &accels[0]->meshes[0].box, i);
+        const struct traverse_params brute = {.numerics = level->numerics,
+                                              .brute = true,
+                                              .skip_instance = HIT_NONE,
+                                              .skip_primitive = HIT_NONE};
+        struct gpu_hit wanted;
+        uint32_t status = 0;
+        traverse_ray(accels[0], &brute, &ray, &wanted, NULL, &status);
+        assert_int_equal(status, 0);
+        ++counts->rays;
+        counts->hits += wanted.primitive != HIT_NONE;
+        for (uint32_t t = 0; t < TREES; ++t)
+            try_orders(level, accels[t], &ray, &wanted, counts);
+    }
+}
+
+/* R1, R8, U14 */
+static void trees_and_orders_do_not_matter(void **state)
+{
+    (void)state;
+    const uint32_t rays = 600 * test_times();
+    for (uint32_t s = 0; s < SCENES; ++s) {
+        struct soup soup = make_scene(s);
+        struct scene *scene = soup_scene(&soup);
+        struct accel *accels[TREES];
+        for (uint32_t t = 0; t < TREES; ++t)
+            accels[t] = soup_accel(scene, &trees[t]);
+        for (int l = 0; l < LEVELS; ++l) {
+            struct counts counts = {0};
+            compare_trees(&levels[l], &soup, accels, rays, &counts);
+            print_message("%-10s R1 %-11s %llu of %llu hits differ by tree or order; R8 %llu any "
+                          "hits are unlike closest ones; %llu of %llu rays hit\n",
+                          levels[l].name, soup.name, (unsigned long long)counts.differ,
+                          (unsigned long long)counts.rays * TREES * ORDERS,
+                          (unsigned long long)counts.ends, (unsigned long long)counts.hits,
+                          (unsigned long long)counts.rays);
+            assert_int_equal(counts.differ + counts.ends, 0);
+            assert_true(soup.count == 0 ? counts.hits == 0 : counts.hits > rays / 50);
+        }
+        for (uint32_t t = 0; t < TREES; ++t)
+            accel_destroy(accels[t]);
+        scene_destroy(scene);
+        soup_finish(&soup);
+    }
+}
+
+static const float equal[3][3] = {{-1, -1, 0.5f}, {1.25f, -1, 0.25f}, {0, 1.5f, 0.125f}};
+
+/* At a vertex, the middle of an edge or a point inside, from all eight sides, so that `sign` meets
+   the second of every pair first: t is 1. */
+static struct gpu_ray ray_at_equal(uint32_t i)
+{
+    static const float weights[3][2] = {{0, 0}, {0.5f, 0}, {0.25f, 0.25f}};
+    float target[3], from[3];
+    for (int k = 0; k < 3; ++k) {
+        target[k] = equal[0][k] + weights[i % 3][0] * (equal[1][k] - equal[0][k]) +
+                    weights[i % 3][1] * (equal[2][k] - equal[0][k]);
+        from[k] = target[k] + (k == 2 ? 2.0f : 1.0f) * (i / 3 >> k & 1 ? 1.0f : -1.0f);
+    }
+    return ray_through(vec3_load(from), vec3_load(target));
+}
+
+/* R2: of so many triangles in one place the first is hit, inside, at edges and at vertices. */
+static void the_first_of_equal_triangles_is_hit(void **state)
+{
+    (void)state;
+    const uint32_t counts[] = {2, 3, 10, 100, 1000};
+    uint32_t rays[LEVELS] = {0}, others[LEVELS] = {0};
+    for (size_t n = 0; n < sizeof counts / sizeof *counts * TREES; ++n) {
+        struct soup soup = soup_make("equal", counts[n / TREES]);
+        for (uint32_t i = 0; i < soup.count; ++i)
+            soup_set(&soup, i, equal[0], equal[1], equal[2]);
+        soup_box(&soup);
+        struct scene *scene = soup_scene(&soup);
+        struct accel *accel = soup_accel(scene, &trees[n % TREES]);
+        for (int l = 0; l < LEVELS; ++l)
+            for (uint32_t i = 0; i < 24 * ORDERS; ++i) {
+                struct gpu_ray ray = ray_at_equal(i % 24);
+                struct gpu_hit hit;
+                level_trace(&levels[l], accel, i / 24, false, &ray, &hit, NULL);
+                ++rays[l];
+                others[l] += hit.primitive != 0 || fabsf(hit.t - 1.0f) > FLT_EPSILON ||
+                             (levels[l].exact && hit.t != 1.0f);
+            }
+        accel_destroy(accel);
+        scene_destroy(scene);
+        soup_finish(&soup);
+    }
+    for (int l = 0; l < LEVELS; ++l) {
+        print_message("%-10s R2 %u of %u rays at equal triangles hit another than the first\n",
+                      levels[l].name, others[l], rays[l]);
+        assert_int_equal(others[l], 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_and_orders_do_not_matter),
+        cmocka_unit_test(the_first_of_equal_triangles_is_hit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
