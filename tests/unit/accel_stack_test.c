@@ -41,6 +41,18 @@ static struct accel *caterpillar(uint32_t depth)
     return accel;
 }
 
+static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_FAST, NUMERICS_EXACT};
+enum { LEVELS = sizeof levels / sizeof *levels };
+
+static struct traverse_params params_of(uint32_t order, uint32_t level, bool any)
+{
+    return (struct traverse_params){.order = order,
+                                    .numerics = levels[level],
+                                    .any = any,
+                                    .skip_instance = HIT_NONE,
+                                    .skip_primitive = HIT_NONE};
+}
+
 static void deep_trees_are_walked(void **state)
 {
     (void)state;
@@ -48,12 +60,15 @@ static void deep_trees_are_walked(void **state)
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
         struct accel *accel = caterpillar(depth);
-        for (uint32_t way = 0; way < 2 * ORDERS; ++way) {
-            uint32_t order = way / 2, status = 0, nearest = way % 2 ? depth : 0;
+        for (uint32_t way = 0; way < 2 * ORDERS * LEVELS; ++way) {
+            uint32_t order = way / 2 % ORDERS, status = 0, nearest = way % 2 ? depth : 0;
+            uint32_t level = way / (2 * ORDERS);
             struct gpu_ray ray = caterpillar_ray(depth, way % 2);
             struct gpu_hit hit, any;
             struct gpu_cost cost = {0};
-            traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+            const struct traverse_params closest = params_of(order, level, false);
+            const struct traverse_params blocked = params_of(order, level, true);
+            traverse_ray(accel, &closest, &ray, &hit, &cost, &status);
             assert_int_equal(hit.primitive, nearest);
             assert_true(hit.t == 1.0f);
             assert_int_equal(status, 0);
@@ -62,7 +77,7 @@ static void deep_trees_are_walked(void **state)
             assert_int_equal(cost.stack, deep ? depth : 1);
             /* What was pushed is opened once it is popped, even behind the hit. */
             assert_int_equal(cost.depth, deep || depth == 1 ? depth : 2);
-            traverse_float(accel, order, &ray, true, HIT_NONE, HIT_NONE, &any, NULL, &status);
+            traverse_ray(accel, &blocked, &ray, &any, NULL, &status);
             assert_int_not_equal(any.primitive, HIT_NONE);
             assert_int_equal(status, 0);
         }
@@ -74,11 +89,12 @@ static void too_deep_trees_are_reported(void **state)
 {
     (void)state;
     struct accel *accel = caterpillar(STACK_SIZE + 1);
-    for (uint32_t order = 0; order < ORDERS; ++order) {
+    for (uint32_t way = 0; way < ORDERS * LEVELS; ++way) {
         uint32_t status = 0;
         struct gpu_ray ray = caterpillar_ray(STACK_SIZE + 1, true);
         struct gpu_hit hit;
-        traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+        const struct traverse_params params = params_of(way % ORDERS, way / ORDERS, false);
+        traverse_ray(accel, &params, &ray, &hit, NULL, &status);
         assert_int_equal(status, STATUS_NODE_STACK_OVERFLOW);
     }
     accel_destroy(accel);

@@ -1,6 +1,6 @@
-/* R1, R2, R8 and U14 of the catalogue: which tree there is, and in which order it is walked, does
-   not tell; nor whether any hit is asked for or the closest one. At every level, bit for bit beside
-   no tree at all. tests/peers/equal.c does the same for scenes and devices. */
+/* R1, R2, R8, U1, U7 and U14 of the catalogue: which tree there is, and in which order it is
+   walked, does not tell; nor whether any hit is asked for or the closest one. At every level, bit
+   for bit beside no tree at all. tests/peers/equal.c does the same for scenes and devices. */
 #include "hard_fixture.h"
 
 static const struct bvh_params trees[] = {
@@ -204,11 +204,131 @@ static void the_first_of_equal_triangles_is_hit(void **state)
     }
 }
 
+/* U1: leaves hold as many as they may, and no more, of so many triangles in one place. */
+static void equal_triangles_are_shared_out(void **state)
+{
+    (void)state;
+    const uint32_t count = test_times() > 1 ? 1000000 : 10000;
+    struct soup soup = soup_make("equal", count);
+    for (uint32_t i = 0; i < count; ++i)
+        soup_set(&soup, i, equal[0], equal[1], equal[2]);
+    soup_box(&soup);
+    struct scene *scene = soup_scene(&soup);
+    for (uint32_t t = 0; t < TREES; ++t) {
+        struct accel *accel = soup_accel(scene, &trees[t]);
+        uint32_t limit = trees[t].leaf_limit ? trees[t].leaf_limit : 4, largest = 0, held = 0;
+        for (uint32_t n = 0; n < accel->meshes[0].node_count; ++n) {
+            uint32_t in_leaf = bvh_count(&accel->nodes[accel->meshes[0].first_node + n]);
+            largest = in_leaf > largest ? in_leaf : largest;
+            held += in_leaf;
+        }
+        print_message("U1 builder %u: %u equal triangles, %u in the largest leaf, depth %u\n",
+                      (uint32_t)trees[t].builder, count, largest, accel->meshes[0].depth);
+        assert_true(largest >= 1 && largest <= limit);
+        assert_int_equal(held, count);
+        assert_true(accel->meshes[0].depth <= 2 + (uint32_t)log2(count));
+        accel_destroy(accel);
+    }
+    scene_destroy(scene);
+    soup_finish(&soup);
+}
+
+/* Any bits, NaN and infinity among them. */
+static struct soup soup_bits(uint32_t count)
+{
+    struct soup soup = soup_make("bits", count);
+    for (uint32_t i = 0; i < 9 * count; ++i) {
+        uint32_t bits = random_bits();
+        if (i % 3) /* every third is of some size that others share */
+            bits = (bits & 0x807fffffu) | (0x7e + bits % 3) << 23;
+        memcpy(&soup.positions[i], &bits, sizeof bits);
+    }
+    return soup;
+}
+
+/* Triangles with vertices that are there and below 1e18. */
+static uint32_t count_usable(const struct scene_mesh *mesh)
+{
+    uint32_t usable = 0;
+    for (uint32_t i = 0; i < mesh->triangle_count; ++i) {
+        bool good = true;
+        for (uint32_t k = 0; k < 9 && good; ++k) {
+            uint32_t vertex = mesh->indices[3 * i + k / 3];
+            good = vertex < mesh->vertex_count &&
+                   fabsf(mesh->positions[3 * (size_t)vertex + k % 3]) <= 1e18f;
+        }
+        usable += good;
+    }
+    return usable;
+}
+
+static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
+{
+    struct scene *scene = scene_create(&silent, "bits");
+    for (uint32_t i = 0; i < meshes; ++i) {
+        struct soup soup = soup_bits(1 + random_bits() % 40);
+        struct scene_mesh mesh = {.vertex_count = 3 * soup.count, .triangle_count = soup.count};
+        mesh.positions = soup.positions;
+        mesh.indices = soup.indices;
+        free(soup.boxes);
+        if (random_bits() % 4 == 0)
+            mesh.indices[random_bits() % (3 * soup.count)] = random_bits();
+        *usable += count_usable(&mesh);
+        struct scene_instance instance = {.mesh = scene_add_mesh(scene, mesh), .node = SCENE_NONE};
+        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+/* U5, U6, U7: a thousand scenes (label long) of twenty meshes of any bits: what cannot be used is
+   dropped, what is left has a valid tree, and rays meet in it what they meet without. */
+static void any_bits_have_trees(void **state)
+{
+    (void)state;
+    const uint32_t scenes = test_times() > 1 ? 1000 : 40;
+    uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
+    random_state = 7;
+    for (uint32_t s = 0; s < scenes; ++s) {
+        struct scene *scene = scene_of_bits(20, &usable);
+        struct accel *accel = soup_accel(scene, &trees[s % TREES]);
+        kept += scene->triangle_total;
+        for (uint32_t m = 0; m < scene->mesh_count; ++m)
+            assert_int_equal(count_usable(&scene->meshes[m]), scene->meshes[m].triangle_count);
+        for (uint32_t i = 0; i < 40; ++i) {
+            struct gpu_ray ray = ray_through(random_point(2.0f), random_point(1.0f));
+            struct traverse_params params = {.numerics = levels[i % LEVELS].numerics,
+                                             .brute = true,
+                                             .skip_instance = HIT_NONE,
+                                             .skip_primitive = HIT_NONE};
+            struct gpu_hit wanted, hit;
+            uint32_t status = 0;
+            traverse_ray(accel, &params, &ray, &wanted, NULL, &status);
+            level_trace(&levels[i % LEVELS], accel, i % ORDERS, false, &ray, &hit, NULL);
+            ++rays;
+            hits += wanted.primitive != HIT_NONE;
+            differ += memcmp(&hit, &wanted, sizeof hit) != 0;
+        }
+        accel_destroy(accel);
+        scene_destroy(scene);
+    }
+    print_message(
+        "U7 %u scenes of any bits, %llu of %llu triangles kept: %llu of %llu rays differ by tree, "
+        "%llu hit\n",
+        scenes, (unsigned long long)kept, (unsigned long long)usable, (unsigned long long)differ,
+        (unsigned long long)rays, (unsigned long long)hits);
+    assert_true(kept <= usable && usable - kept < usable / 1000); /* some have no area */
+    assert_true(kept > scenes * 20 && hits > rays / 100);
+    assert_int_equal(differ, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_and_orders_do_not_matter),
         cmocka_unit_test(the_first_of_equal_triangles_is_hit),
+        cmocka_unit_test(equal_triangles_are_shared_out),
+        cmocka_unit_test(any_bits_have_trees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

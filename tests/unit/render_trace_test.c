@@ -168,18 +168,128 @@ static void instances_equal_twin(void **state)
     fixture_close(&f);
 }
 
-static void degenerate_rays_miss(void **state)
+static struct fixture open_at(struct scene *scene, uint32_t numerics)
+{
+    const struct render_params params = {
+        .width = 16, .height = 16, .depth = 4, .numerics = numerics};
+    return fixture_open(scene, NULL, &params);
+}
+
+static const char *const level_names[] = {
+    [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_EXACT] = "exact"};
+
+/* Of the device's hits, those unlike the twin's, bit for bit. */
+static uint32_t count_unlike_twin(const struct fixture *f, uint32_t numerics, bool any,
+                                  const struct gpu_ray *rays, uint32_t count, struct gpu_hit *hits)
+{
+    const struct traverse_params twin = {
+        .numerics = numerics, .any = any, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    uint32_t unlike = 0, status = 0;
+    assert_int_equal(renderer_trace(f->renderer, rays, count, any, hits, NULL), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_hit hit;
+        traverse_ray(f->accel, &twin, &rays[i], &hit, NULL, &status);
+        unlike += any ? (hit.primitive != HIT_NONE) != (hits[i].primitive != HIT_NONE)
+                      : memcmp(&hit, &hits[i], sizeof hit) != 0;
+    }
+    assert_int_equal(status, 0);
+    return unlike;
+}
+
+/* A ring with vertices of integers; edges and vertices are at multiples of a half. */
+static struct scene *integer_ring(void)
+{
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_torus(1.0, 0.45, 40, 20, &mesh), WHIT_OK);
+    for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+        mesh.positions[i] = rintf(18.0f * mesh.positions[i]);
+    struct scene *scene = fixture_scene(mesh);
+    fixture_place(scene, NULL);
+    return scene;
+}
+
+/* Along an axis at multiples of a half: from far away; every fifth from a vertex. */
+static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint32_t *state)
+{
+    const struct scene_mesh *mesh = &scene->meshes[0];
+    struct gpu_ray ray = {.t_max = INFINITY};
+    uint32_t axis = i % 3, vertex = fixture_random(state) % mesh->vertex_count;
+    float up = fixture_random(state) & 1 ? 1.0f : -1.0f;
+    for (uint32_t k = 0; k < 3; ++k) {
+        ray.origin[k] =
+            i % 5 ? rintf(54.0f * fixture_signed(state)) * 0.5f : mesh->positions[3 * vertex + k];
+        ray.dir[k] = fixture_random(state) & 1 ? 0.0f : -0.0f;
+    }
+    ray.dir[axis] = up;
+    if (i % 5)
+        ray.origin[axis] = -1000.0f * up;
+    return ray;
+}
+
+/* W3, T6 and B8 of docs/hard-cases.md on the device: intervals that end, or begin and end, at a hit
+   keep it; those that end one float before it are empty. */
+static void check_ends(const struct fixture *f, uint32_t numerics, struct gpu_ray *rays,
+                       uint32_t count)
+{
+    struct gpu_hit *first = array_alloc(count, sizeof *first);
+    struct gpu_hit *hits = array_alloc(count, sizeof *hits);
+    assert_true(first && hits);
+    uint32_t met = 0, lost = 0, early = 0, at_start = 0;
+    uint32_t unlike = count_unlike_twin(f, numerics, false, rays, count, first);
+    for (uint32_t i = 0; i < count; ++i) {
+        met += first[i].primitive != HIT_NONE;
+        at_start += first[i].t == 0.0f;
+        rays[i].t_max = first[i].t;
+    }
+    unlike += count_unlike_twin(f, numerics, false, rays, count, hits);
+    for (uint32_t i = 0; i < count; ++i)
+        lost += memcmp(&hits[i], &first[i], sizeof *hits) != 0;
+    unlike += count_unlike_twin(f, numerics, true, rays, count, hits);
+    for (uint32_t i = 0; i < count; ++i) {
+        lost += (hits[i].primitive != HIT_NONE) != (first[i].primitive != HIT_NONE);
+        rays[i].t_max = nextafterf(first[i].t, -INFINITY);
+    }
+    unlike += count_unlike_twin(f, numerics, true, rays, count, hits);
+    for (uint32_t i = 0; i < count; ++i)
+        early += hits[i].primitive != HIT_NONE;
+    print_message(
+        "  %s: %u rays along axes of integers, %u hit, %u at their start; unlike twin %u, "
+        "lost at the end %u, met before it %u\n",
+        level_names[numerics], count, met, at_start, unlike, lost, early);
+    assert_int_equal(unlike + lost + early, 0);
+    assert_true(met > count / 4 && at_start > count / 10);
+    free(first);
+    free(hits);
+}
+
+static void integers_equal_twin(void **state)
 {
     (void)state;
+    const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
+    for (int l = 0; l < 2; ++l) {
+        struct fixture f = open_at(integer_ring(), levels[l]);
+        struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+        uint32_t random = 3;
+        assert_non_null(rays);
+        for (uint32_t i = 0; i < RAYS; ++i)
+            rays[i] = ray_along_axis(f.scene, i, &random);
+        check_ends(&f, levels[l], rays, RAYS);
+        free(rays);
+        fixture_close(&f);
+    }
+}
+
+static void check_degenerate_rays(uint32_t numerics)
+{
     struct scene_mesh mesh = {0};
     assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
     struct scene *scene = fixture_scene(mesh);
     fixture_place(scene, NULL);
-    struct fixture f = fixture_open(scene, NULL, NULL);
+    struct fixture f = open_at(scene, numerics);
     const float bad[] = {NAN, INFINITY, -INFINITY};
     struct gpu_ray rays[16];
-    struct gpu_hit hits[16], twin;
-    uint32_t count = 0, status = 0;
+    struct gpu_hit hits[16];
+    uint32_t count = 0;
     for (int i = 0; i < 3; ++i) {
         rays[count++] = (struct gpu_ray){{bad[i], 0, 0}, 0, {0, 0, 1}, INFINITY};
         rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, bad[i], 1}, INFINITY};
@@ -188,15 +298,22 @@ static void degenerate_rays_miss(void **state)
     rays[count++] = (struct gpu_ray){{0, 0, 0}, NAN, {0, 0, 1}, INFINITY};
     rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 1}, NAN};
     rays[count++] = (struct gpu_ray){{0, 0, 0}, 5, {0, 0, 1}, 2};
-    assert_int_equal(renderer_trace(f.renderer, rays, count, false, hits, NULL), WHIT_OK);
-    for (uint32_t i = 0; i < count; ++i) {
-        traverse_float(f.accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL,
-                       &status);
-        assert_memory_equal(&twin, &hits[i], sizeof twin);
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 1}, 0};
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, 0, {0, 0, 1}, -1};
+    rays[count++] = (struct gpu_ray){{0, 0, 0}, INFINITY, {0, 0, 1}, INFINITY};
+    assert_int_equal(count_unlike_twin(&f, numerics, false, rays, count, hits), 0);
+    for (uint32_t i = 0; i < count; ++i)
         if (i != 8) /* a t_max that is not a number bounds nothing */
             assert_int_equal(hits[i].primitive, HIT_NONE);
-    }
+    print_message("  %s: 0 hits of %u degenerate rays\n", level_names[numerics], count - 1);
     fixture_close(&f);
+}
+
+static void degenerate_rays_miss(void **state)
+{
+    (void)state;
+    check_degenerate_rays(NUMERICS_WATERTIGHT);
+    check_degenerate_rays(NUMERICS_EXACT);
 }
 
 static void empty_scene_misses(void **state)
@@ -257,15 +374,11 @@ static void cut_traversals_are_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sphere_equals_twin),
-        cmocka_unit_test(box_equals_twin),
-        cmocka_unit_test(terrain_equals_twin),
-        cmocka_unit_test(far_sphere_equals_twin),
-        cmocka_unit_test(soup_equals_twin),
-        cmocka_unit_test(instances_equal_twin),
-        cmocka_unit_test(degenerate_rays_miss),
-        cmocka_unit_test(empty_scene_misses),
-        cmocka_unit_test(cut_traversals_are_reported),
+        cmocka_unit_test(sphere_equals_twin),  cmocka_unit_test(box_equals_twin),
+        cmocka_unit_test(terrain_equals_twin), cmocka_unit_test(far_sphere_equals_twin),
+        cmocka_unit_test(soup_equals_twin),    cmocka_unit_test(instances_equal_twin),
+        cmocka_unit_test(integers_equal_twin), cmocka_unit_test(degenerate_rays_miss),
+        cmocka_unit_test(empty_scene_misses),  cmocka_unit_test(cut_traversals_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
