@@ -364,6 +364,14 @@ static void lose_device(struct engine *engine, struct session *session)
     forget_if(engine, session);
 }
 
+/* With the lock. Where memory ran out often nobody said a word. */
+static void say_failure(struct engine *engine, whit_result result)
+{
+    if (!engine->error[0])
+        snprintf(engine->error, sizeof engine->error, "%s",
+                 result == WHIT_ERROR_MEMORY ? "out of memory" : whit_result_name(result));
+}
+
 static void draw_one(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     struct engine_frame frame;
@@ -388,8 +396,11 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
         engine_frame_finish(&frame);
         if (result == WHIT_ERROR_DEVICE)
             lose_device(engine, session);
-        if (result != WHIT_ERROR_CANCELLED && (result != WHIT_ERROR_DEVICE || engine->device_lost))
+        if (result != WHIT_ERROR_CANCELLED &&
+            (result != WHIT_ERROR_DEVICE || engine->device_lost)) {
             lane->failed = lane->asked == asked;
+            say_failure(engine, result);
+        }
     }
     wake_window(engine);
 }
@@ -435,6 +446,8 @@ static void probe_one(struct engine *engine)
         engine->probe_wanted = true; /* of the next picture */
     else if (result == WHIT_ERROR_DEVICE)
         lose_device(engine, session);
+    else if (result != WHIT_OK)
+        say_failure(engine, result);
     wake_window(engine);
 }
 

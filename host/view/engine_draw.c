@@ -57,19 +57,20 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
 }
 
 /* Heat maps stand above a legend, and in the middle where that is wider. */
-static void cut_out(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
+static whit_result cut_out(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
 {
     whit_image_info info;
     whit_image_get_info(heat, &info);
     uint8_t *all = malloc((size_t)info.width * info.height * 4);
     if (!all)
-        return;
+        return WHIT_ERROR_MEMORY;
     whit_image_display_bytes(heat, all);
     size_t left = (info.width - width) / 2;
     for (uint32_t y = 0; y < height; ++y)
         memcpy(rgba + (size_t)y * width * 4, all + ((size_t)y * info.width + left) * 4,
                (size_t)width * 4);
     free(all);
+    return WHIT_OK;
 }
 
 static whit_result paint_costs(const struct engine_task *task, struct engine_frame *frame)
@@ -86,7 +87,7 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     const whit_heat_params params = {.scale = frame->scale};
     result = whit_image_heat(frame->color, &params, &heat);
     if (result == WHIT_OK)
-        cut_out(heat, frame->width, frame->height, frame->rgba);
+        result = cut_out(heat, frame->width, frame->height, frame->rgba);
     whit_image_destroy(heat);
     return result;
 }

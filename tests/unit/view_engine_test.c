@@ -1,4 +1,8 @@
-/* What draws beside the window: devices that are lost, and pictures of one who moves on. */
+/* What draws beside the window: devices that are lost, memory that runs out, and pictures of one
+   who moves on. */
+#include <pthread.h>
+#include <stdatomic.h>
+
 #include "base/clock.h"
 #include "device_fixture.h"
 #include "view/engine.h"
@@ -82,6 +86,86 @@ static void a_lost_device_is_made_again_or_given_up(void **state)
     assert_true(mended >= gave_up);
 }
 
+/* ---- Memory ---- */
+
+static pthread_t window_thread;
+static atomic_uint fail_at, asked_for; /* the block that is not given; 0: all are */
+
+void *__real_malloc(size_t bytes);
+void *__wrap_malloc(size_t bytes);
+void *__wrap_malloc(size_t bytes)
+{
+    unsigned at = atomic_load(&fail_at);
+    if (at > 0 && !pthread_equal(pthread_self(), window_thread) &&
+        atomic_fetch_add(&asked_for, 1) + 1 == at)
+        return NULL;
+    return __real_malloc(bytes);
+}
+
+static void draw(struct engine *engine, const struct view_settings *settings,
+                 struct engine_frame *frame)
+{
+    engine_frame_finish(frame);
+    engine_ask(engine, settings, false);
+    take_all(engine, frame);
+}
+
+/* Without its n-th block a picture is as it should be, or the window says why it is not. Whether
+   there was an n-th block. */
+static bool draws_without(unsigned n, struct engine *engine, const struct view_settings *settings,
+                          const struct engine_frame *right, bool *said)
+{
+    struct engine_frame frame = {0};
+    struct engine_status status;
+    struct view_settings other = *settings; /* another one each time: the last one is kept */
+    snprintf(other.camera, sizeof other.camera, "%g,2,6,0,1,0,0,1,0,40", 0.001 * (double)n);
+    draw(engine, &other, &frame);
+    assert_true(frame.whole);
+    engine_get_status(engine, &status);
+    assert_string_equal(status.error, ""); /* a later picture went well */
+    atomic_store(&asked_for, 0);
+    atomic_store(&fail_at, n);
+    draw(engine, settings, &frame);
+    atomic_store(&fail_at, 0);
+    engine_get_status(engine, &status);
+    *said = status.error[0] != '\0';
+    bool same = frame.number > 0 && frame.whole &&
+                memcmp(frame.rgba, right->rgba, (size_t)WIDTH * HEIGHT * 4) == 0;
+    if (!*said && !same)
+        print_message("block %u is missing, the picture is %s, and nothing is said\n", n,
+                      frame.number ? "another one" : "missing too");
+    assert_true(*said || same);
+    engine_frame_finish(&frame);
+    return atomic_load(&asked_for) >= n;
+}
+
+static void memory_that_runs_out_is_said(void **state)
+{
+    (void)state;
+    static const enum view_paint paints[] = {VIEW_PAINT_COLOR, VIEW_PAINT_VISITS};
+    window_thread = pthread_self();
+    for (int i = 0; i < 2; ++i) {
+        struct engine *engine;
+        struct engine_frame right = {0};
+        struct view_settings settings = settings_of("cube.json");
+        uint32_t said_count = 0, blocks = 0;
+        bool said = false;
+        settings.paint = paints[i];
+        assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+        draw(engine, &settings, &right);
+        assert_true(right.whole);
+        while (draws_without(blocks + 1, engine, &settings, &right, &said) && ++blocks < 1000)
+            said_count += said;
+        print_message("view %d: %u blocks, %u of them missed and said so\n", (int)paints[i], blocks,
+                      said_count);
+        assert_true(said_count >= 2 && blocks < 1000);
+        engine_frame_finish(&right);
+        assert_int_equal(engine_destroy(engine), 0);
+    }
+}
+
+/* ---- One who moves on ---- */
+
 /* Somebody who turns the camera faster than pictures come gets pictures all the same. */
 static void no_look_is_cut_short(void **state)
 {
@@ -149,6 +233,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lost_device_is_made_again_or_given_up),
+        cmocka_unit_test(memory_that_runs_out_is_said),
         cmocka_unit_test(no_look_is_cut_short),
         cmocka_unit_test(a_switch_keeps_the_picture),
     };
