@@ -61,9 +61,9 @@ events() {
         }'
 }
 
-# rss PID: kB.
-rss() {
-    sed -n 's/^VmRSS:[^0-9]*\([0-9]*\) kB/\1/p' "/proc/$1/status" 2>/dev/null
+# resident KIND PID: kB; KIND: VmRSS, all; RssAnon, its own; RssFile, of programs and libraries.
+resident() {
+    sed -n "s/^$1:[^0-9]*\([0-9]*\) kB/\1/p" "/proc/$2/status" 2>/dev/null
 }
 
 echo "--size 240x160" >start.view
@@ -78,12 +78,13 @@ while kill -0 $viewer 2>/dev/null && [ $waited -lt $((10 * SECONDS_LONG + 300)) 
     sleep 1
     waited=$((waited + 1))
     [ "$(grep -c '"at":"mark"' states)" -gt $marks ] || continue
-    now=$(rss $viewer)
+    now=$(resident VmRSS $viewer)
     [ -n "$now" ] || continue
     marks=$((marks + 1))
     last=$now
     [ $marks -gt 1 ] || early=$now
-    echo "after $waited s, mark $marks: $now kB"
+    echo "after $waited s, mark $marks: $now kB," \
+        "$(resident RssAnon $viewer) its own, $(resident RssFile $viewer) of files"
 done
 check "it went on to the end" test $waited -ge $((SECONDS_LONG / 2))
 check "it ends ($waited s)" sh -c "! kill -0 $viewer 2>/dev/null"
