@@ -9,19 +9,9 @@
 #define TINY  7.8886090522101181e-31f /* 2^-100 */
 #define LARGE 1.2676506002282294e+30f
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 static float smaller(float a, float b)
 {
     return a < b ? a : b;
-}
-
-static float largest_of(struct vec3 p)
-{
-    return larger(fabsf(p.x), larger(fabsf(p.y), fabsf(p.z)));
 }
 
 void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, struct vec3 c,
@@ -29,9 +19,11 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
 {
     struct vec3 ta = turn_dominant(ray, a), tb = turn_dominant(ray, b), tc = turn_dominant(ray, c);
     struct sheared s = shear_triangle(ray, ta, tb, tc);
-    float far = larger(largest_of(a), larger(largest_of(b), largest_of(c)));
-    float size = larger(larger(larger(fabsf(s.ax), fabsf(s.ay)), larger(fabsf(s.bx), fabsf(s.by))),
-                        larger(fabsf(s.cx), fabsf(s.cy)));
+    float far = float_larger(vec3_largest_magnitude(a),
+                             float_larger(vec3_largest_magnitude(b), vec3_largest_magnitude(c)));
+    float size = float_larger(float_larger(float_larger(fabsf(s.ax), fabsf(s.ay)),
+                                           float_larger(fabsf(s.bx), fabsf(s.by))),
+                              float_larger(fabsf(s.cx), fabsf(s.cy)));
     float off = 12.0f * UNIT * far + TINY;
     float edge_error = 4.125f * (off * (size + off) + UNIT * (size * size)) + TINY;
     bool below = s.ea < -edge_error || s.eb < -edge_error || s.ec < -edge_error;
@@ -44,8 +36,8 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     out->u = s.eb * inv_det;
     out->v = s.ec * inv_det;
     out->t = ((s.ea * inv_det) * az + out->u * bz) + out->v * cz;
-    float z_lo = smaller(az, smaller(bz, cz)), z_hi = larger(az, larger(bz, cz));
-    float z_error = 40.0f * UNIT * larger(fabsf(z_lo), fabsf(z_hi)) + TINY;
+    float z_lo = smaller(az, smaller(bz, cz)), z_hi = float_larger(az, float_larger(bz, cz));
+    float z_error = 40.0f * UNIT * float_larger(fabsf(z_lo), fabsf(z_hi)) + TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
     out->edge_error = edge_error;

@@ -93,6 +93,16 @@ static inline void slab_interval(const struct ray_setup *ray, struct vec3 lo, st
     *t_far = end * ray->far_scale;
 }
 
+static inline float float_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float vec3_largest_magnitude(struct vec3 p)
+{
+    return float_larger(fabsf(p.x), float_larger(fabsf(p.y), fabsf(p.z)));
+}
+
 static inline struct vec3 vec3_smaller(struct vec3 a, struct vec3 b)
 {
     return vec3_make(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);

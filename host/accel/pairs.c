@@ -15,16 +15,6 @@ struct pair_vector {
     struct pair x, y, z;
 };
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static float largest_of(struct vec3 p)
-{
-    return larger(fabsf(p.x), larger(fabsf(p.y), fabsf(p.z)));
-}
-
 /* Exact (Knuth's two-sum). */
 static struct pair pair_sum(float a, float b)
 {
@@ -77,7 +67,7 @@ static struct vec3 magnitudes(const struct pair_vector *v)
 
 static float largest_magnitude(const struct pair_vector *v)
 {
-    return largest_of(magnitudes(v));
+    return vec3_largest_magnitude(magnitudes(v));
 }
 
 static struct pair_vector cross(const struct pair_vector *a, const struct pair_vector *b)
@@ -170,10 +160,10 @@ bool pair_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 
     struct pair_vector a = difference(v0, origin), b = difference(v1, origin);
     struct pair_vector ab = difference(v1, v0), ac = difference(v2, v0), bc = difference(v2, v1);
     struct pair_vector along = {{dir.x, 0.0f}, {dir.y, 0.0f}, {dir.z, 0.0f}};
-    float way = larger(largest_magnitude(&a), largest_magnitude(&b));
-    float size =
-        larger(larger(largest_magnitude(&ab), largest_magnitude(&ac)), largest_magnitude(&bc));
-    float speed = largest_of(dir);
+    float way = float_larger(largest_magnitude(&a), largest_magnitude(&b));
+    float size = float_larger(float_larger(largest_magnitude(&ab), largest_magnitude(&ac)),
+                              largest_magnitude(&bc));
+    float speed = vec3_largest_magnitude(dir);
     int way_exponent = length_exponent(way), size_exponent = length_exponent(size);
     int speed_exponent = length_exponent(speed);
     scale(&a, power_of_two(-way_exponent));

@@ -5,11 +5,38 @@
 #include "accel/accel_inside.h"
 #include "accel/intersect.h"
 
+/* Turned, as the shader has them. */
+struct foot {
+    struct vec3 c, d, off;
+    float dd, mid, rr, room, half_length;
+};
+
 struct chord {
     bool met, inward;
     float t_near, t_far, t_box;
-    struct vec3 middle, to_exit; /* turned, as the shader has them */
+    struct vec3 middle, to_exit; /* turned */
 };
+
+static inline struct foot drop_perpendicular(const struct ray_setup *ray, struct vec3 center,
+                                             float radius)
+{
+    struct foot foot;
+    struct vec3 c = turn_dominant(ray, vec3_sub(center, ray->origin));
+    struct vec3 d = vec3_make(ray->shear.x, ray->shear.y, 1.0f);
+    float dd = (d.x * d.x + d.y * d.y) + 1.0f;
+    float cd = (c.x * d.x + c.y * d.y) + c.z;
+    float mid = cd / dd;
+    struct vec3 off = vec3_make(c.x - d.x * mid, c.y - d.y * mid, c.z - d.z * mid);
+    foot.rr = radius * radius;
+    foot.room = foot.rr - ((off.x * off.x + off.y * off.y) + off.z * off.z);
+    foot.half_length = sqrtf((foot.room > 0.0f ? foot.room : 0.0f) / dd);
+    foot.c = c;
+    foot.d = d;
+    foot.off = off;
+    foot.dd = dd;
+    foot.mid = mid;
+    return foot;
+}
 
 static inline struct chord intersect_sphere(const struct ray_setup *ray, struct vec3 center,
                                             float radius, float t_min)
@@ -21,28 +48,22 @@ static inline struct chord intersect_sphere(const struct ray_setup *ray, struct 
     slab_interval(ray, vec3_sub(vec3_load(box.lo), ray->origin),
                   vec3_sub(vec3_load(box.hi), ray->origin), t_min, &box_near, &box_far);
 
-    struct vec3 c = turn_dominant(ray, vec3_sub(center, ray->origin));
-    struct vec3 d = vec3_make(ray->shear.x, ray->shear.y, 1.0f);
-    float dd = (d.x * d.x + d.y * d.y) + 1.0f;
-    float cd = (c.x * d.x + c.y * d.y) + c.z;
-    float mid = cd / dd;
-    struct vec3 off = vec3_make(c.x - d.x * mid, c.y - d.y * mid, c.z - d.z * mid);
-    float rr = radius * radius;
-    float room = rr - ((off.x * off.x + off.y * off.y) + off.z * off.z);
-    float half_length = sqrtf((room > 0.0f ? room : 0.0f) / dd);
+    struct foot foot = drop_perpendicular(ray, center, radius);
+    struct vec3 c = foot.c, d = foot.d;
+    float mid = foot.mid, half_length = foot.half_length;
     float farther = mid < 0.0f ? mid - half_length : mid + half_length;
-    float product = ((c.x * c.x + c.y * c.y) + c.z * c.z) - rr;
-    float nearer = product / (dd * farther);
+    float product = ((c.x * c.x + c.y * c.y) + c.z * c.z) - foot.rr;
+    float nearer = product / (foot.dd * farther);
     bool down = ray->shear.z < 0.0f;
     bool ends_nearer = (mid < 0.0f) != down;
     chord.t_near = (ends_nearer ? farther : nearer) * ray->shear.z;
     chord.t_far = (ends_nearer ? nearer : farther) * ray->shear.z;
     chord.t_box = box_near;
-    chord.met = room >= 0.0f && box_near <= box_far;
+    chord.met = foot.room >= 0.0f && box_near <= box_far;
     chord.inward = mid != 0.0f && (mid < 0.0f) == down;
     float forward = down ? -half_length : half_length;
     chord.to_exit = vec3_make(d.x * forward, d.y * forward, d.z * forward);
-    chord.middle = vec3_make(-off.x, -off.y, -off.z);
+    chord.middle = vec3_make(-foot.off.x, -foot.off.y, -foot.off.z);
     return chord;
 }
 

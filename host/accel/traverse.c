@@ -5,10 +5,10 @@
 #include <float.h>
 
 #include "accel/exact.h"
+#include "accel/exact_sphere.h"
 #include "accel/intersect.h"
 #include "accel/moller.h"
 #include "accel/pairs.h"
-#include "accel/sphere.h"
 
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
@@ -26,6 +26,7 @@ struct walk {
     uint32_t skip_instance, skip_primitive;
     struct gpu_hit *hit; /* t is the largest that still counts */
     float lo, hi;        /* NUMERICS_EXACT: bounds of the hit's key */
+    bool at_exit;        /* NUMERICS_EXACT: the hit is the far end of a sphere */
     uint32_t triangle;   /* record of the hit */
     struct gpu_cost cost;
     uint32_t status;
@@ -103,7 +104,7 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
 }
 
 /* Where a ray meets a primitive, if it does. At NUMERICS_EXACT what decides is the key, the exact t
-   rounded to nearest, in lo..hi; it is the t of a finished hit. Of spheres t is the key. */
+   rounded to nearest, in lo..hi; it is the t of a finished hit. */
 struct meeting {
     bool met;
     float t, u, v;
@@ -187,12 +188,26 @@ static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle 
         exact_meet(ray->origin, ray->dir, v0, v1, v2, out);
 }
 
+static void meet_sphere_exactly(const struct ray_setup *ray, const struct gpu_triangle *sphere,
+                                bool only_far, float t_min, struct sphere_meeting *out)
+{
+    exact_meet_sphere(ray->origin, ray->dir, vec3_load(sphere->v0), sphere->v1[0], only_far, t_min,
+                      out);
+}
+
 /* The key of the hit so far, where only its bounds are known. */
 static void settle_hit(struct walk *walk)
 {
     struct ray_setup ray = ray_at(walk, walk->hit->instance);
+    const struct gpu_triangle *record = &walk->accel->triangles[walk->triangle];
     struct exact_meeting m;
-    meet_exactly(&ray, &walk->accel->triangles[walk->triangle], true, &m);
+    struct sphere_meeting on_sphere;
+    if (record->flags & TRIANGLE_SPHERE) {
+        meet_sphere_exactly(&ray, record, walk->at_exit, 0.0f, &on_sphere);
+        m.key = on_sphere.key;
+    } else {
+        meet_exactly(&ray, record, true, &m);
+    }
     walk->lo = m.key;
     walk->hi = m.key;
     walk->hit->t = m.key;
@@ -215,12 +230,13 @@ static bool may_count(const struct walk *walk, float lo, float hi, uint32_t inst
 }
 
 static bool keep_exact(struct walk *walk, const struct meeting *m, float lo, float hi,
-                       uint32_t record, uint32_t instance)
+                       uint32_t record, uint32_t instance, bool at_exit)
 {
     if (!walk->any) {
         walk->lo = lo;
         walk->hi = hi;
     }
+    walk->at_exit = at_exit;
     walk->hit->t = m->t;
     walk->hit->u = m->u;
     walk->hit->v = m->v;
@@ -244,7 +260,7 @@ static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, 
     struct meeting m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u, bounds.v};
     if (bounds.inside && bounds.lo >= walk->t_min && bounds.hi < walk->lo &&
         (!walk->next || bounds.lo > walk->hit_before))
-        return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance);
+        return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance, false);
     struct exact_meeting exact;
     meet_exactly(ray, triangle, false, &exact);
     m.t = exact.key;
@@ -254,24 +270,54 @@ static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, 
         !is_nearer_key(walk, exact.key, instance, triangle->primitive) ||
         (walk->next && !is_behind(walk, exact.key, instance, triangle->primitive)))
         return false;
-    return keep_exact(walk, &m, exact.key, exact.key, record, instance);
+    return keep_exact(walk, &m, exact.key, exact.key, record, instance, false);
 }
 
-static bool accept_sphere_exact(struct walk *walk, const struct meeting *m, uint32_t record,
-                                uint32_t instance)
+/* One end of a chord; *at_exit becomes true where only the far one counts. */
+static bool test_end_exact(struct walk *walk, const struct ray_setup *ray,
+                           const struct sphere_bounds *bounds, const struct chord *chord,
+                           uint32_t record, uint32_t instance, bool own, bool *at_exit)
 {
-    uint32_t primitive = walk->accel->triangles[record].primitive;
-    if (!m->met || !may_count(walk, m->t, m->t, instance, primitive) ||
-        !is_nearer_key(walk, m->t, instance, primitive))
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    bool near_known = *at_exit || bounds->near_lo >= walk->t_min;
+    float lo = *at_exit ? bounds->far_lo : bounds->near_lo;
+    float hi = *at_exit || !near_known ? bounds->far_hi : bounds->near_hi;
+    if (bounds->outside || (own && bounds->inward_known && !chord->inward) ||
+        !may_count(walk, lo, hi, instance, sphere->primitive))
         return false;
-    return keep_exact(walk, m, m->t, m->t, record, instance);
+    struct meeting m = meet_sphere(walk, ray, chord, *at_exit, own);
+    bool rounded = bounds->inside && near_known;
+    if (rounded && lo >= walk->t_min && (!own || bounds->inward_known) && hi < walk->lo &&
+        (!walk->next || lo > walk->hit_before))
+        return keep_exact(walk, &m, lo, hi, record, instance, *at_exit);
+    struct sphere_meeting exact;
+    meet_sphere_exactly(ray, sphere, *at_exit, walk->t_min, &exact);
+    m.t = exact.key;
+    if (!rounded)
+        m = (struct meeting){true, exact.key, exact.u, exact.v};
+    *at_exit = exact.at_exit;
+    if (!exact.met || (own && !exact.inward) ||
+        !is_nearer_key(walk, exact.key, instance, sphere->primitive) ||
+        (walk->next && !is_behind(walk, exact.key, instance, sphere->primitive)))
+        return false;
+    return keep_exact(walk, &m, exact.key, exact.key, record, instance, exact.at_exit);
 }
 
-static bool accept_sphere(struct walk *walk, const struct meeting *m, uint32_t record,
-                          uint32_t instance)
+static bool test_sphere_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                              uint32_t instance, bool own)
 {
-    return walk->numerics == NUMERICS_EXACT ? accept_sphere_exact(walk, m, record, instance)
-                                            : accept_meeting(walk, m, record, instance);
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    struct vec3 center = vec3_load(sphere->v0);
+    struct chord chord = intersect_sphere(ray, center, sphere->v1[0], walk->t_min);
+    struct sphere_bounds bounds;
+    bound_sphere(ray, center, sphere->v1[0], &bounds);
+    bool at_exit = own || bounds.near_hi < walk->t_min;
+    bool accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
+    if (walk->next && !accepted && !at_exit) {
+        at_exit = true;
+        accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
+    }
+    return accepted;
 }
 
 static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
@@ -281,10 +327,10 @@ static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t
     struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
     bool at_exit = own || !(chord.t_near >= walk->t_min);
     struct meeting m = meet_sphere(walk, ray, &chord, at_exit, own);
-    bool accepted = accept_sphere(walk, &m, record, instance);
+    bool accepted = accept_meeting(walk, &m, record, instance);
     if (walk->next && !accepted && !at_exit) {
         m = meet_sphere(walk, ray, &chord, true, own);
-        accepted = accept_sphere(walk, &m, record, instance);
+        accepted = accept_meeting(walk, &m, record, instance);
     }
     return accepted;
 }
@@ -299,7 +345,10 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
     bool own = !walk->next && triangle->primitive == walk->skip_primitive &&
                instance == walk->skip_instance;
     if (triangle->flags & TRIANGLE_SPHERE)
-        return test_sphere(walk, ray, record, instance, own) && walk->any;
+        return (walk->numerics == NUMERICS_EXACT
+                    ? test_sphere_exact(walk, ray, record, instance, own)
+                    : test_sphere(walk, ray, record, instance, own)) &&
+               walk->any;
     if (walk->numerics == NUMERICS_EXACT)
         return !own && test_triangle_exact(walk, ray, record, instance) && walk->any;
     struct meeting m = meet_triangle(walk, ray, triangle);
@@ -483,6 +532,7 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
     walk->cost = (struct gpu_cost){.rays = 1};
     walk->status = 0;
     begin_hit(hit, ray->t_max);
+    walk->at_exit = false;
     walk->lo = hit->t;
     walk->hi = hit->t;
 }

@@ -4,10 +4,10 @@
 #define BIND_PRIMITIVE_GLSL
 
 #include "../lib/exact.glsl"
+#include "../lib/exact_sphere.glsl"
 #include "../lib/pairs.glsl"
 #include "../lib/intersect.glsl"
 #include "../lib/moller.glsl"
-#include "../lib/sphere.glsl"
 #include "trees.glsl"
 
 // What may end a traversal; always a constant, so that each use is compiled for its own.
@@ -29,6 +29,7 @@ struct Hit {
     float t; // largest t that still counts, then that of the hit
     float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
     float u, v;     // of a sphere: square_from_dir of the normal, object space
+    bool at_exit;   // NUMERICS_EXACT: it is the far end of a sphere
     uint triangle;  // record
     uint primitive; // of its mesh, or HIT_NONE
     uint instance;
@@ -44,6 +45,7 @@ Hit make_hit(float t_max)
     hit.hi = hit.t;
     hit.u = 0.0;
     hit.v = 0.0;
+    hit.at_exit = false;
     hit.triangle = 0u;
     hit.primitive = HIT_NONE;
     hit.instance = HIT_NONE;
@@ -136,6 +138,19 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
     return m;
 }
 
+// What floats tell of one end of a chord. Where they do not tell if the near end counts, it may be the
+// far one that does.
+void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool own,
+               inout Meeting m)
+{
+    bool known = at_exit || bounds.near_lo >= t_min;
+    m.lo = at_exit ? bounds.far_lo : bounds.near_lo;
+    m.hi = at_exit || !known ? bounds.far_hi : bounds.near_hi;
+    m.met = !bounds.outside && !(m.hi < t_min) && (!own || inward || !bounds.inward_known);
+    m.rounded = bounds.inside && known;
+    m.sure = m.rounded && m.lo >= t_min && (!own || bounds.inward_known);
+}
+
 // Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
 // end is there to be met, and only on the way inwards. No distance needs to be small for that.
 Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
@@ -150,10 +165,8 @@ Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool o
     m.v = square.y;
     m.front = !at_exit;
     m.owned = true;
-    m.lo = m.t;
-    m.hi = m.t;
-    m.sure = true;
-    m.rounded = true;
+    if (SPEC_NUMERICS == NUMERICS_EXACT)
+        bound_end(chord.bounds, chord.inward, t_min, at_exit, own, m);
     return m;
 }
 
@@ -177,8 +190,8 @@ Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool
         m.owned = p.is_sphere || m.owned;
         m.lo = p.is_sphere ? on_sphere.lo : m.lo;
         m.hi = p.is_sphere ? on_sphere.hi : m.hi;
-        m.sure = p.is_sphere || m.sure;
-        m.rounded = p.is_sphere || m.rounded;
+        m.sure = p.is_sphere ? on_sphere.sure : m.sure;
+        m.rounded = p.is_sphere ? on_sphere.rounded : m.rounded;
     }
     return m;
 }
@@ -188,12 +201,18 @@ Chord chord_of(RaySetup ray, float t_min, Primitive p)
     Chord chord;
     if (SPEC_SPHERES != SPHERES_NONE)
         chord = intersect_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x), t_min);
+    if (SPEC_SPHERES != SPHERES_NONE && SPEC_NUMERICS == NUMERICS_EXACT) {
+        chord.bounds = bound_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x));
+        chord.met = !chord.bounds.outside;
+    }
     return chord;
 }
 
 bool starts_at_exit(Primitive p, Chord chord, float t_min)
 {
-    return SPEC_SPHERES != SPHERES_NONE && (p.own || !(chord.t_near >= t_min));
+    bool before = SPEC_NUMERICS == NUMERICS_EXACT ? chord.bounds.near_hi < t_min
+                                                  : !(chord.t_near >= t_min);
+    return SPEC_SPHERES != SPHERES_NONE && (p.own || before);
 }
 
 #endif

@@ -6,7 +6,7 @@
 #include "primitive.glsl"
 
 // Where a record's triangle is met, exactly; of one that is met anyway (`hit`) for the key alone.
-ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
+ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
     vec3 v1 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u));
@@ -22,8 +22,65 @@ ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, inout uin
     return m;
 }
 
+// Which ends of a sphere are asked for: from t_min on; the far one alone; that where the ray, which
+// starts on it, goes inwards.
+struct Ends {
+    float t_min;
+    bool only_far, own;
+};
+
+ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
+{
+    uvec4 r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
+    uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
+    bool finished;
+    SphereMeeting on_sphere = exact_meet_sphere(origin, dir, row_vec3(r0), uintBitsToFloat(r1.x),
+                                                ends.only_far, ends.t_min, finished);
+    if (!finished)
+        status |= STATUS_UNFINISHED_TRAVERSAL;
+    ExactMeeting m;
+    m.met = on_sphere.met && (!ends.own || on_sphere.inward);
+    m.front = !on_sphere.at_exit;
+    m.key = on_sphere.key;
+    m.u = on_sphere.u;
+    m.v = on_sphere.v;
+    m.on_edge = bvec3(false);
+    return m;
+}
+
+bool is_sphere_record(uint record)
+{
+    return SPEC_SPHERES == SPHERES_ONLY ||
+           (SPEC_SPHERES != SPHERES_NONE &&
+            (fetch_triangle_row(record * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u);
+}
+
+ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends,
+                         inout uint status)
+{
+    ExactMeeting m;
+    bool sphere = is_sphere_record(record);
+    if (SPEC_SPHERES != SPHERES_ONLY && !sphere)
+        m = meet_record_triangle(origin, dir, record, hit, status);
+    if (SPEC_SPHERES != SPHERES_NONE && sphere)
+        m = meet_record_sphere(origin, dir, record, ends, status);
+    return m;
+}
+
 // Replaces the bounds of a meeting by what is exact.
-void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact, inout Meeting m)
+void settle_meeting(float t_min, ExactMeeting exact, inout Meeting m)
+{
+    m.met = m.met && exact.met && exact.key >= t_min;
+    m.front = exact.front;
+    m.t = m.rounded ? m.t : exact.key;
+    m.u = m.rounded ? m.u : exact.u;
+    m.v = m.rounded ? m.v : exact.v;
+    m.lo = exact.key;
+    m.hi = exact.key;
+}
+
+// Of a triangle, what shading and filters want to know besides.
+void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Meeting m)
 {
     precise vec3 a = row_vec3(p.r0) - ray.origin;
     precise vec3 b = row_vec3(p.r1) - ray.origin;
@@ -32,16 +89,9 @@ void settle_triangle(RaySetup ray, float t_min, Primitive p, ExactMeeting exact,
     vec3 edges;
     shear_triangle(ray, turn_dominant(ray.dominant, a), turn_dominant(ray.dominant, b),
                    turn_dominant(ray.dominant, c), sa, sb, sc, edges);
-    m.met = m.met && exact.met && exact.key >= t_min;
     m.owned = owns_its_edges(sa, sb, sc, exact.on_edge, exact.front == (ray.shear.z > 0.0));
-    m.front = exact.front;
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
-    m.t = m.rounded ? m.t : exact.key;
-    m.u = m.rounded ? m.u : exact.u;
-    m.v = m.rounded ? m.v : exact.v;
-    m.lo = exact.key;
-    m.hi = exact.key;
 }
 
 // The ray as the mesh of an instance sees it.
@@ -55,28 +105,34 @@ void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
 }
 
 // NUMERICS_EXACT: the key of a meeting, and of the hit so far where it is needed to tell which of both
-// comes first. `origin`, `dir`: of the ray in world space.
+// comes first. `origin`, `dir`: of the ray in world space. `at_exit`, of a sphere: which end the meeting
+// was, then is.
 void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
-            inout Meeting m, inout Hit hit)
+            inout bool at_exit, inout Meeting m, inout Hit hit)
 {
     vec3 from = ray.origin, along = ray.dir;
-    bool own = true, again;
+    Ends ends = Ends(t_min, at_exit, p.own);
+    bool first = true, again;
     do {
-        ExactMeeting exact = meet_record(from, along, record, !own, hit.status);
+        ExactMeeting exact = meet_record(from, along, record, !first, ends, hit.status);
         again = false;
-        if (own) {
+        if (first) {
+            m.rounded = m.rounded && (!p.is_sphere || exact.front != at_exit);
+            settle_meeting(t_min, exact, m);
+            at_exit = p.is_sphere && !exact.front;
             if (!p.is_sphere)
-                settle_triangle(ray, t_min, p, exact, m);
+                settle_sides(ray, p, exact, m);
             again = m.met && hit.lo < hit.hi && hit.lo <= m.lo && m.lo <= hit.hi;
             from = origin;
             along = dir;
             take_to_instance(again ? hit.instance : 0u, from, along);
             record = hit.triangle;
+            ends = Ends(0.0, hit.at_exit, false);
         } else {
             hit.lo = exact.key;
             hit.hi = exact.key;
         }
-        own = false;
+        first = false;
     } while (again);
 }
 
@@ -96,11 +152,13 @@ void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
                   row_vec3(fetch_triangle_row(row + 1u)), row_vec3(fetch_triangle_row(row + 2u)),
                   m, known);
         hit.t = m.key;
-        if (!known)
+        if (!known || is_sphere_record(hit.triangle))
             hit.status |= STATUS_RAY_WAITS;
     }
-    if (loose && SPEC_LOOKS != 0u)
-        hit.t = meet_record(origin, dir, hit.triangle, true, hit.status).key;
+    if (loose && SPEC_LOOKS != 0u) {
+        Ends ends = Ends(0.0, hit.at_exit, false);
+        hit.t = meet_record(origin, dir, hit.triangle, true, ends, hit.status).key;
+    }
     hit.lo = hit.t;
     hit.hi = hit.t;
 }

@@ -265,8 +265,9 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
     return accepted;
 }
 
-void keep_hit(Meeting m, uint record, uint primitive, uint instance, inout Hit hit)
+void keep_hit(Meeting m, bool at_exit, uint record, uint primitive, uint instance, inout Hit hit)
 {
+    hit.at_exit = at_exit;
     hit.t = m.t;
     hit.lo = m.lo;
     hit.hi = m.hi;
@@ -312,7 +313,8 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         traversal_cost.triangles++;
     Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
-    Meeting m = meet_primitive(ray, t_min, p, chord, starts_at_exit(p, chord, t_min));
+    bool at_exit = starts_at_exit(p, chord, t_min);
+    Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
     bool accepted = is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
                                skip_primitive, hit);
     waits = false;
@@ -333,7 +335,7 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         return true;
     }
     if (accepted)
-        keep_hit(m, record, p.index, p.instance, hit);
+        keep_hit(m, at_exit, record, p.index, p.instance, hit);
     return !finds_closest(mode) && accepted;
 }
 
@@ -349,7 +351,7 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     do {
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
         if (has_integers())
-            settle(ray, origin, dir, t_min, record, p, m, hit);
+            settle(ray, origin, dir, t_min, record, p, at_exit, m, hit);
         bool waits = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u &&
                      is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
                                 skip_primitive, hit) && is_unsure(mode, m, hit);
@@ -365,7 +367,7 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
         accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index, skip_instance,
                                   skip_primitive, hit, refused);
         if (accepted)
-            keep_hit(m, record, p.index, p.instance, hit);
+            keep_hit(m, at_exit, record, p.index, p.instance, hit);
         again = p.is_sphere && goes_through(mode) && refused && !at_exit;
         at_exit = true;
     } while (again);

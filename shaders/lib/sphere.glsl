@@ -6,9 +6,19 @@
 #include "angles.glsl"
 #include "intersect.glsl"
 
+// NUMERICS_EXACT: what floats can tell. Keys are the exact t of the ends of the chord, rounded to
+// nearest.
+struct SphereBounds {
+    bool outside;      // surely missed
+    bool inside;       // surely met, and what the chord says is good
+    bool inward_known; // what the chord says of it is so
+    float near_lo, near_hi, far_lo, far_hi; // of the keys, if it is met
+};
+
 // Where a ray's line goes through a sphere.
 struct Chord {
-    bool met;             // the line meets the sphere, the ray its box
+    SphereBounds bounds;  // NUMERICS_EXACT
+    bool met;             // the line meets the sphere, the ray its box; NUMERICS_EXACT: may meet it
     bool inward;          // from the ray's origin it goes nearer to the centre first
     float t_near, t_far;  // where it enters and leaves, not before t_box
     float t_box;          // where the ray enters the sphere's box, or t_min
@@ -26,22 +36,18 @@ void sphere_box(vec3 center, float radius, out vec3 lo, out vec3 hi)
     hi = above;
 }
 
-// Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection" (Ray
-// Tracing Gems, chapter 7): the discriminant from the perpendicular dropped on the ray, not from a
-// difference of squares of distances; the end of the chord that is farther from the origin from the
-// sum, the nearer one from the product of both. Along the dominant axis, in the units of which the
-// direction is (shear.x, shear.y, 1), no direction is too long or too short to square.
-// The sphere's own box must be met too, and t is not allowed before it, as with triangles.
-Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
-{
-    Chord chord;
-    vec3 lo, hi;
-    sphere_box(center, radius, lo, hi);
-    precise vec3 box_lo = lo - ray.origin;
-    precise vec3 box_hi = hi - ray.origin;
-    float box_near, box_far;
-    slab_interval(ray, box_lo, box_hi, t_min, box_near, box_far);
+// The perpendicular from a sphere's centre on the ray's line, the dominant axis last, in the units of
+// which the direction is (shear.x, shear.y, 1): no direction is too long or too short to square.
+struct Foot {
+    vec3 c, d;         // centre, from the ray's origin; direction
+    float dd, mid;     // d.d; where on the line the foot is, in units of d
+    vec3 off;          // from the foot to the centre
+    float rr, room;    // radius squared; what of it is left beside the foot
+    float half_length; // of the chord, in units of d
+};
 
+Foot drop_perpendicular(RaySetup ray, vec3 center, float radius)
+{
     precise vec3 relative = center - ray.origin;
     vec3 c = turn_dominant(ray.dominant, relative);
     vec3 d = vec3(ray.shear.x, ray.shear.y, 1.0);
@@ -53,9 +59,30 @@ Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
     precise float room = rr - ((off.x * off.x + off.y * off.y) + off.z * off.z);
     precise float part = (room > 0.0 ? room : 0.0) / dd;
     precise float half_length = sqrt(part);
-    precise float farther = mid < 0.0 ? mid - half_length : mid + half_length;
-    precise float product = ((c.x * c.x + c.y * c.y) + c.z * c.z) - rr;
-    precise float nearer = product / (dd * farther);
+    return Foot(c, d, dd, mid, off, rr, room, half_length);
+}
+
+// Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection" (Ray
+// Tracing Gems, chapter 7): the discriminant from the perpendicular dropped on the ray, not from a
+// difference of squares of distances; the end of the chord that is farther from the origin from the
+// sum, the nearer one from the product of both.
+// The sphere's own box must be met too, and t is not allowed before it, as with triangles.
+Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
+{
+    Chord chord;
+    vec3 lo, hi;
+    sphere_box(center, radius, lo, hi);
+    precise vec3 box_lo = lo - ray.origin;
+    precise vec3 box_hi = hi - ray.origin;
+    float box_near, box_far;
+    slab_interval(ray, box_lo, box_hi, t_min, box_near, box_far);
+
+    Foot foot = drop_perpendicular(ray, center, radius);
+    vec3 c = foot.c;
+    float mid = foot.mid;
+    precise float farther = mid < 0.0 ? mid - foot.half_length : mid + foot.half_length;
+    precise float product = ((c.x * c.x + c.y * c.y) + c.z * c.z) - foot.rr;
+    precise float nearer = product / (foot.dd * farther);
     bool down = ray.shear.z < 0.0;
     bool ends_nearer = (mid < 0.0) != down;
     precise float t_near = (ends_nearer ? farther : nearer) * ray.shear.z;
@@ -63,11 +90,11 @@ Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
     chord.t_box = box_near;
     chord.t_near = t_near;
     chord.t_far = t_far;
-    chord.met = room >= 0.0 && box_near <= box_far;
+    chord.met = foot.room >= 0.0 && box_near <= box_far;
     chord.inward = mid != 0.0 && (mid < 0.0) == down;
-    float forward = down ? -half_length : half_length;
-    precise vec3 to_exit = d * forward;
-    chord.middle = -off;
+    float forward = down ? -foot.half_length : foot.half_length;
+    precise vec3 to_exit = foot.d * forward;
+    chord.middle = -foot.off;
     chord.to_exit = to_exit;
     return chord;
 }
