@@ -269,6 +269,4 @@ void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, 
                             : find_key(&w, bounds.near_lo, bounds.near_hi, false);
     out->met = line_met && (out->at_exit ? far_ahead : near_ahead) && out->key >= t_min &&
                out->key < INFINITY;
-    struct vec3 from_center = vec3_sub(vec3_scale(dir, out->key), vec3_sub(center, origin));
-    square_from_dir(from_center, &out->u, &out->v);
 }

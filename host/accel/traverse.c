@@ -9,6 +9,7 @@
 #include "accel/intersect.h"
 #include "accel/moller.h"
 #include "accel/pairs.h"
+#include "accel/pairs_sphere.h"
 
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
@@ -191,8 +192,10 @@ static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle 
 static void meet_sphere_exactly(const struct ray_setup *ray, const struct gpu_triangle *sphere,
                                 bool only_far, float t_min, struct sphere_meeting *out)
 {
-    exact_meet_sphere(ray->origin, ray->dir, vec3_load(sphere->v0), sphere->v1[0], only_far, t_min,
-                      out);
+    struct vec3 center = vec3_load(sphere->v0);
+    float radius = sphere->v1[0];
+    if (!pair_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out))
+        exact_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out);
 }
 
 /* The key of the hit so far, where only its bounds are known. */
@@ -293,8 +296,10 @@ static bool test_end_exact(struct walk *walk, const struct ray_setup *ray,
     struct sphere_meeting exact;
     meet_sphere_exactly(ray, sphere, *at_exit, walk->t_min, &exact);
     m.t = exact.key;
-    if (!rounded)
-        m = (struct meeting){true, exact.key, exact.u, exact.v};
+    if (!rounded || exact.at_exit != *at_exit)
+        square_from_dir(
+            vec3_sub(vec3_scale(ray->dir, exact.key), vec3_sub(vec3_load(sphere->v0), ray->origin)),
+            &m.u, &m.v);
     *at_exit = exact.at_exit;
     if (!exact.met || (own && !exact.inward) ||
         !is_nearer_key(walk, exact.key, instance, sphere->primitive) ||

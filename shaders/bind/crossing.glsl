@@ -119,6 +119,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
                 finish_hit(ray.origin, ray.dir, known);
             status |= known.status;
             hit_before = known.t;
+            hit_before_at_exit = known.at_exit;
             hit = traverse(TRAVERSE_NEXT, ray.origin, ray.dir, 0.0, reach, frame.root,
                            hit.instance, hit.primitive);
             if (SPEC_COUNT != 0u)

@@ -4,8 +4,8 @@
 #define BIND_PRIMITIVE_GLSL
 
 #include "../lib/exact.glsl"
-#include "../lib/exact_sphere.glsl"
 #include "../lib/pairs.glsl"
+#include "../lib/pairs_sphere.glsl"
 #include "../lib/intersect.glsl"
 #include "../lib/moller.glsl"
 #include "trees.glsl"
@@ -15,8 +15,11 @@ const uint TRAVERSE_CLOSEST = 0u;
 const uint TRAVERSE_ANY = 1u;    // any hit will do
 const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
 // The closest hit behind one that is known, in the order of (t, instance, primitive): the ray's own
-// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was.
+// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was; at
+// NUMERICS_EXACT also whether it was the far end of a sphere.
 const uint TRAVERSE_NEXT = 3u;
+float hit_before;
+bool hit_before_at_exit;
 
 bool finds_closest(const uint mode)
 {
@@ -59,6 +62,7 @@ struct Primitive {
     uvec4 r0, r1, r2;
     uint index, flags, instance;
     bool own; // the ray starts on it
+    bool known; // NUMERICS_EXACT: a sphere, and one of its ends is the hit that is known
     bool is_sphere;
 };
 
@@ -77,6 +81,7 @@ Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip
     p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
     p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
     p.own = p.index == skip_primitive && p.instance == skip_instance;
+    p.known = SPEC_NUMERICS == NUMERICS_EXACT && mode == TRAVERSE_NEXT && p.own && p.is_sphere;
     if (mode == TRAVERSE_NEXT) // a triangle is not met behind itself
         p.own = p.own && !p.is_sphere;
     return p;
@@ -180,6 +185,7 @@ Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool
     }
     if (SPEC_SPHERES != SPHERES_NONE) {
         Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
+        on_sphere.met = on_sphere.met && !(p.known && hit_before_at_exit);
         if (SPEC_SPHERES == SPHERES_ONLY)
             m = on_sphere;
         m.met = p.is_sphere ? on_sphere.met : m.met;
@@ -212,7 +218,7 @@ bool starts_at_exit(Primitive p, Chord chord, float t_min)
 {
     bool before = SPEC_NUMERICS == NUMERICS_EXACT ? chord.bounds.near_hi < t_min
                                                   : !(chord.t_near >= t_min);
-    return SPEC_SPHERES != SPHERES_NONE && (p.own || before);
+    return SPEC_SPHERES != SPHERES_NONE && (p.own || p.known || before);
 }
 
 #endif

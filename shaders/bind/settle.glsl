@@ -6,19 +6,22 @@
 #include "primitive.glsl"
 
 // Where a record's triangle is met, exactly; of one that is met anyway (`hit`) for the key alone.
+// Without SPEC_LOOKS there are no integers, and what pairs do not tell waits.
 ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
     vec3 v1 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u));
     vec3 v2 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u));
     ExactMeeting m;
-    bool key_known, finished;
+    bool key_known, finished = true;
     bool known = pair_meet(origin, dir, v0, v1, v2, m, key_known);
-    if (!(hit ? key_known : known)) {
+    known = hit ? key_known : known;
+    if (SPEC_LOOKS == 0u && !known)
+        status |= STATUS_RAY_WAITS;
+    if (SPEC_LOOKS != 0u && !known)
         m = exact_meet(origin, dir, v0, v1, v2, finished);
-        if (!finished)
-            status |= STATUS_UNFINISHED_TRAVERSAL;
-    }
+    if (!finished)
+        status |= STATUS_UNFINISHED_TRAVERSAL;
     return m;
 }
 
@@ -29,37 +32,43 @@ struct Ends {
     bool only_far, own;
 };
 
+// And a sphere, likewise.
 ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
 {
-    uvec4 r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
-    bool finished;
-    SphereMeeting on_sphere = exact_meet_sphere(origin, dir, row_vec3(r0), uintBitsToFloat(r1.x),
-                                                ends.only_far, ends.t_min, finished);
+    vec3 center = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
+    float radius = uintBitsToFloat(r1.x);
+    SphereMeeting on_sphere;
+    bool finished = true;
+    bool known = pair_meet_sphere(origin, dir, center, radius, ends.only_far, ends.t_min,
+                                  on_sphere);
+    if (SPEC_LOOKS == 0u && !known)
+        status |= STATUS_RAY_WAITS;
+    if (SPEC_LOOKS != 0u && !known)
+        on_sphere = exact_meet_sphere(origin, dir, center, radius, ends.only_far, ends.t_min,
+                                      finished);
     if (!finished)
         status |= STATUS_UNFINISHED_TRAVERSAL;
+    precise vec3 to_center = center - origin;
+    precise vec3 from_center = dir * on_sphere.key - to_center;
+    vec2 square = square_from_dir(from_center);
     ExactMeeting m;
     m.met = on_sphere.met && (!ends.own || on_sphere.inward);
     m.front = !on_sphere.at_exit;
     m.key = on_sphere.key;
-    m.u = on_sphere.u;
-    m.v = on_sphere.v;
+    m.u = square.x;
+    m.v = square.y;
     m.on_edge = bvec3(false);
     return m;
-}
-
-bool is_sphere_record(uint record)
-{
-    return SPEC_SPHERES == SPHERES_ONLY ||
-           (SPEC_SPHERES != SPHERES_NONE &&
-            (fetch_triangle_row(record * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u);
 }
 
 ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends,
                          inout uint status)
 {
     ExactMeeting m;
-    bool sphere = is_sphere_record(record);
+    bool sphere = SPEC_SPHERES == SPHERES_ONLY;
+    if (SPEC_SPHERES == SPHERES_SOME)
+        sphere = (fetch_triangle_row(record * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
     if (SPEC_SPHERES != SPHERES_ONLY && !sphere)
         m = meet_record_triangle(origin, dir, record, hit, status);
     if (SPEC_SPHERES != SPHERES_NONE && sphere)
@@ -144,18 +153,7 @@ void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
     if (!loose)
         hit.t = hit.lo;
     take_to_instance(loose ? hit.instance : 0u, origin, dir);
-    if (loose && SPEC_LOOKS == 0u) {
-        uint row = hit.triangle * TRIANGLE_ROWS;
-        ExactMeeting m;
-        bool known;
-        pair_meet(origin, dir, row_vec3(fetch_triangle_row(row)),
-                  row_vec3(fetch_triangle_row(row + 1u)), row_vec3(fetch_triangle_row(row + 2u)),
-                  m, known);
-        hit.t = m.key;
-        if (!known || is_sphere_record(hit.triangle))
-            hit.status |= STATUS_RAY_WAITS;
-    }
-    if (loose && SPEC_LOOKS != 0u) {
+    if (loose) {
         Ends ends = Ends(0.0, hit.at_exit, false);
         hit.t = meet_record(origin, dir, hit.triangle, true, ends, hit.status).key;
     }

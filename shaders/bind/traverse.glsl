@@ -18,8 +18,6 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
                     ivec3 own);
 
-float hit_before;
-
 // Whether a hit comes behind the one that is known; at NUMERICS_EXACT it goes by keys.
 bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint known_primitive)
 {

@@ -234,13 +234,13 @@ uint bits_within(float x)
 struct SphereMeeting {
     bool met;     // at t >= 0; false where the key exceeds the largest float
     bool at_exit; // at the far end
-    bool inward;  // from the ray's origin the centre is ahead
-    float key, u, v;
+    bool inward;  // where it is met: from the ray's origin the centre is ahead
+    float key;
 };
 
-// The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none. u and v
-// are those of the normal, square_from_dir. The key is the least float, within its bounds, that t is
-// not beyond; the first turn of the loop asks that of the float before t_min, to choose the end.
+// The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none. The
+// key is the least float, within its bounds, that t is not beyond; the first turn of the loop asks that
+// of the float before t_min, to choose the end.
 SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far,
                                 float t_min, out bool finished)
 {
@@ -276,11 +276,6 @@ SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius
     m.inward = signs[BALL_S] > 0;
     m.met = line_met && (at_exit ? far_ahead : near_ahead) && m.key >= t_min &&
             m.key < uintBitsToFloat(0x7f800000u);
-    precise vec3 to_center = center - origin;
-    precise vec3 from_center = dir * m.key - to_center;
-    vec2 square = square_from_dir(from_center);
-    m.u = square.x;
-    m.v = square.y;
     return m;
 }
 

@@ -1,0 +1,95 @@
+#include "accel/pairs_sphere.h"
+
+#include "accel/pair_numbers.h"
+
+/* Of f(t) = P t^2 - 2 S t + Q, the roots of which are the ends; all in units in which the direction
+   and the larger of the way to the centre and the radius are 1 to 2 long. */
+struct quadratic {
+    struct bounded_pair p, s, q;
+};
+
+static struct bounded_pair bounded(struct pair value, float size)
+{
+    return (struct bounded_pair){value, size * PAIR_RELATIVE + PAIR_ABSOLUTE};
+}
+
+static struct quadratic find_quadratic(const struct pair_vector *m, const struct pair_vector *d,
+                                       float radius)
+{
+    struct vec3 sm = pair_magnitudes(m), sd = pair_magnitudes(d);
+    struct pair rr = pair_product(radius, radius), mm = pair_dot(m, m);
+    struct pair p = pair_dot(d, d);
+    float ms = (sm.x * sd.x + sm.y * sd.y) + sm.z * sd.z;
+    return (struct quadratic){.p = bounded(p, p.high),
+                              .s = bounded(pair_dot(m, d), ms),
+                              .q = bounded(pair_minus(mm, rr), mm.high + rr.high)};
+}
+
+/* S^2 - P Q. */
+static struct bounded_pair discriminant(const struct quadratic *f)
+{
+    struct pair ss = pair_times(f->s.value, f->s.value), pq = pair_times(f->p.value, f->q.value);
+    float s = fabsf(f->s.value.high), p = f->p.value.high, q = fabsf(f->q.value.high);
+    float of_s = (2.0f * s + f->s.error) * f->s.error;
+    float of_pq = (p + f->p.error) * f->q.error + q * f->p.error;
+    struct bounded_pair d = bounded(pair_minus(ss, pq), ss.high + p * q);
+    d.error = d.error + (of_s + of_pq) * 1.0625f;
+    return d;
+}
+
+/* Of what is beyond its own error. */
+static struct bounded_pair root_of(struct bounded_pair x)
+{
+    float first = sqrtf(x.value.high);
+    struct pair square = pair_product(first, first);
+    float rest = ((x.value.high - square.high) - square.low) + x.value.low;
+    return (struct bounded_pair){pair_sum(first, rest / (2.0f * first)),
+                                 x.error / first + first * (2.0f * PAIR_RELATIVE)};
+}
+
+static struct bounded_pair negated(struct bounded_pair x, bool flip)
+{
+    if (flip)
+        x.value = (struct pair){-x.value.high, -x.value.low};
+    return x;
+}
+
+static int sign_known(struct bounded_pair x)
+{
+    return x.value.high > x.error ? 1 : x.value.high < -x.error ? -1 : 0;
+}
+
+bool pair_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
+                      bool only_far, float t_min, struct sphere_meeting *out)
+{
+    struct pair_vector m = pair_difference(center, origin);
+    struct pair_vector d = {{dir.x, 0.0f}, {dir.y, 0.0f}, {dir.z, 0.0f}};
+    float way = float_larger(pair_largest(&m), radius), speed = vec3_largest_magnitude(dir);
+    int way_exponent = length_exponent(way), speed_exponent = length_exponent(speed);
+    pair_scale(&m, power_of_two(-way_exponent));
+    pair_scale(&d, power_of_two(-speed_exponent));
+    struct quadratic f = find_quadratic(&m, &d, radius * power_of_two(-way_exponent));
+    struct bounded_pair room = discriminant(&f);
+    int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
+    /* |S| + root: no digits cancel out in it. The other end is Q over that. */
+    struct bounded_pair root = root_of(room), sum = negated(f.s, s < 0);
+    sum.value = pair_plus(sum.value, root.value);
+    sum.error = (sum.error + root.error) + sum.value.high * PAIR_RELATIVE;
+    float key[2], to_t = power_of_two(way_exponent - speed_exponent);
+    bool key_known[2];
+    for (int end = 0; end < 2; ++end) {
+        bool over_p = end == 1 && s > 0;
+        key_known[end] =
+            round_ratio(over_p ? sum : negated(f.q, s < 0), over_p ? f.p : sum, &key[end]);
+        key[end] = key[end] * to_t;
+    }
+    bool near_some = s > 0 && q > 0 && key_known[0], near_none = s < 0 || q < 0;
+    bool far_some = (s > 0 || (s < 0 && q < 0)) && key_known[1], far_none = s < 0 && q > 0;
+    out->at_exit = only_far || !(near_some && key[0] >= t_min);
+    out->inward = s > 0;
+    out->key = key[out->at_exit ? 1 : 0];
+    out->met = side > 0 && (out->at_exit ? far_some && out->key >= t_min : near_some);
+    bool end_known =
+        out->at_exit ? (only_far || near_some || near_none) && (far_some || far_none) : near_some;
+    return is_fit(way) && is_fit(speed) && (side < 0 || (side > 0 && end_known));
+}

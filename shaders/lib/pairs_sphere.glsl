@@ -1,0 +1,111 @@
+// What exact_sphere.glsl's integers tell, in pairs of floats: nearly always enough, for a small part of
+// their price. accel/pairs_sphere.c is this file in C.
+#ifndef LIB_PAIRS_SPHERE_GLSL
+#define LIB_PAIRS_SPHERE_GLSL
+
+#include "exact_sphere.glsl"
+#include "pair_numbers.glsl"
+
+// And how far it may be off.
+struct BoundedPair {
+    vec2 value;
+    float error;
+};
+
+BoundedPair bounded_pair(vec2 value, float size)
+{
+    precise float error = size * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    return BoundedPair(value, error);
+}
+
+// Of P t^2 - 2 S t + Q, the roots of which are the ends; all in units in which the direction and the
+// larger of the way to the centre and the radius are 1 to 2 long.
+struct Quadratic {
+    BoundedPair p, s, q;
+};
+
+Quadratic find_quadratic(PairVector m, PairVector d, float radius)
+{
+    vec3 sm = magnitudes(m), sd = magnitudes(d);
+    vec2 rr = pair_product(radius, radius), mm = pair_dot(m, m), p = pair_dot(d, d);
+    precise float ms = (sm.x * sd.x + sm.y * sd.y) + sm.z * sd.z;
+    precise float qs = mm.x + rr.x;
+    return Quadratic(bounded_pair(p, p.x), bounded_pair(pair_dot(m, d), ms),
+                     bounded_pair(pair_plus(mm, -rr), qs));
+}
+
+// S^2 - P Q.
+BoundedPair discriminant(Quadratic f)
+{
+    vec2 ss = pair_times(f.s.value, f.s.value), pq = pair_times(f.p.value, f.q.value);
+    float s = abs(f.s.value.x), p = f.p.value.x, q = abs(f.q.value.x);
+    precise float of_s = (2.0 * s + f.s.error) * f.s.error;
+    precise float of_pq = (p + f.p.error) * f.q.error + q * f.p.error;
+    precise float size = ss.x + p * q;
+    BoundedPair d = bounded_pair(pair_plus(ss, -pq), size);
+    precise float error = d.error + (of_s + of_pq) * 1.0625;
+    d.error = error;
+    return d;
+}
+
+// Of what is beyond its own error. The first float is off by 4.5 units in the last place at most; what
+// it leaves gives the second, and 2^-41 is left of that.
+BoundedPair root_of(BoundedPair x)
+{
+    precise float first = sqrt(x.value.x);
+    vec2 square = pair_product(first, first);
+    precise float rest = ((x.value.x - square.x) - square.y) + x.value.y;
+    precise float second = rest / (2.0 * first);
+    precise float error = x.error / first + first * (2.0 * PAIR_RELATIVE);
+    return BoundedPair(pair_sum(first, second), error);
+}
+
+int sign_known(BoundedPair x)
+{
+    return x.value.x > x.error ? 1 : x.value.x < -x.error ? -1 : 0;
+}
+
+// What exact_meet_sphere() says, if it is sure.
+bool pair_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far, float t_min,
+                      out SphereMeeting meeting)
+{
+    PairVector m = pair_difference(center, origin);
+    PairVector d = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
+    float way = larger(largest_magnitude(magnitudes(m)), radius), speed = largest_magnitude(dir);
+    int way_exponent = length_exponent(way), speed_exponent = length_exponent(speed);
+    m = pair_scaled(m, power_of_two(-way_exponent));
+    d = pair_scaled(d, power_of_two(-speed_exponent));
+    Quadratic f = find_quadratic(m, d, radius * power_of_two(-way_exponent));
+    BoundedPair room = discriminant(f);
+    int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
+    // |S| + root: no digits cancel out in it. The other end is Q over that.
+    BoundedPair root = root_of(room);
+    vec2 sum = pair_plus(s < 0 ? -f.s.value : f.s.value, root.value);
+    vec2 past = s < 0 ? -f.q.value : f.q.value;
+    precise float sum_error = (f.s.error + root.error) + sum.x * PAIR_RELATIVE;
+    float to_t = power_of_two(way_exponent - speed_exponent), near, far;
+    bool near_known, far_known;
+    for (int end = 0; end < 2; end++) {
+        bool over_p = end == 1 && s > 0;
+        float t;
+        bool known = round_ratio(over_p ? sum : past, over_p ? f.p.value : sum,
+                                 over_p ? sum_error : f.q.error, over_p ? f.p.error : sum_error, t);
+        precise float key = t * to_t;
+        near = end == 0 ? key : near;
+        near_known = end == 0 ? known : near_known;
+        far = key;
+        far_known = known;
+    }
+    bool near_some = s > 0 && q > 0 && near_known, near_none = s < 0 || q < 0;
+    bool far_some = (s > 0 || (s < 0 && q < 0)) && far_known, far_none = s < 0 && q > 0;
+    bool at_exit = only_far || !(near_some && near >= t_min);
+    meeting.at_exit = at_exit;
+    meeting.inward = s > 0;
+    meeting.key = at_exit ? far : near;
+    meeting.met = side > 0 && (at_exit ? far_some && far >= t_min : near_some);
+    bool end_known = at_exit ? (only_far || near_some || near_none) && (far_some || far_none)
+                             : near_some;
+    return is_fit(way) && is_fit(speed) && (side < 0 || (side > 0 && end_known));
+}
+
+#endif
