@@ -214,11 +214,14 @@ Chord chord_of(RaySetup ray, float t_min, Primitive p)
     return chord;
 }
 
-bool starts_at_exit(Primitive p, Chord chord, float t_min)
+// Whether the near end is not there to be met.
+bool starts_at_exit(const uint mode, Primitive p, Chord chord, float t_min)
 {
-    bool before = SPEC_NUMERICS == NUMERICS_EXACT ? chord.bounds.near_hi < t_min
-                                                  : !(chord.t_near >= t_min);
-    return SPEC_SPHERES != SPHERES_NONE && (p.own || p.known || before);
+    bool before = !(chord.t_near >= t_min);
+    if (SPEC_NUMERICS == NUMERICS_EXACT)
+        before = chord.bounds.near_hi < t_min ||
+                 (mode == TRAVERSE_NEXT && (p.known || chord.bounds.near_hi < hit_before));
+    return SPEC_SPHERES != SPHERES_NONE && (p.own || before);
 }
 
 #endif

@@ -311,7 +311,7 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
         traversal_cost.triangles++;
     Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
-    bool at_exit = starts_at_exit(p, chord, t_min);
+    bool at_exit = starts_at_exit(mode, p, chord, t_min);
     Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
     bool accepted = is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
                                skip_primitive, hit);
@@ -344,7 +344,7 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
 {
     Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
-    bool at_exit = starts_at_exit(p, chord, t_min);
+    bool at_exit = starts_at_exit(mode, p, chord, t_min);
     bool accepted = false, again;
     do {
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);

@@ -118,15 +118,18 @@ static inline void commands_finish(struct commands *commands)
 }
 
 /* Runs a kernel that has `count` cases in its first buffer and answers each in its second, 64 a
-   group. */
-static inline void kernel_answer(struct device *device, const uint32_t *spirv, size_t spirv_bytes,
-                                 uint32_t count, const void *cases, size_t case_bytes,
-                                 void *answers, size_t answer_bytes)
+   group. `spec`: the first of `spec_count` specialization constants. */
+static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
+                                    uint32_t spec_count, const uint32_t *spirv, size_t spirv_bytes,
+                                    uint32_t count, const void *cases, size_t case_bytes,
+                                    void *answers, size_t answer_bytes)
 {
     struct buffer *in = buffer_make(device, count * case_bytes, BUFFER_STORAGE, "cases");
     struct buffer *out = buffer_make(device, count * answer_bytes, BUFFER_STORAGE, "answers");
     assert_int_equal(buffer_write(in, 0, cases, count * case_bytes), WHIT_OK);
-    const struct pipeline_params params = storage_params(spirv, spirv_bytes, 2, "answers");
+    struct pipeline_params params = storage_params(spirv, spirv_bytes, 2, "answers");
+    params.spec = spec;
+    params.spec_count = spec_count;
     struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
@@ -138,6 +141,14 @@ static inline void kernel_answer(struct device *device, const uint32_t *spirv, s
     kernel_free(&run);
     buffer_destroy(in);
     buffer_destroy(out);
+}
+
+static inline void kernel_answer(struct device *device, const uint32_t *spirv, size_t spirv_bytes,
+                                 uint32_t count, const void *cases, size_t case_bytes,
+                                 void *answers, size_t answer_bytes)
+{
+    kernel_answer_as(device, NULL, 0, spirv, spirv_bytes, count, cases, case_bytes, answers,
+                     answer_bytes);
 }
 
 #endif

@@ -4,13 +4,7 @@
 
 #include "accel/pairs_sphere.h"
 #include "fraction_fixture.h"
-
-struct subject {
-    struct vec3 origin, dir, center;
-    float radius, t_min;
-};
-
-typedef struct subject (*make_fn)(void);
+#include "hard_sphere_fixture.h"
 
 /* ---- What is so ---- */
 
@@ -126,156 +120,12 @@ static bool counts(const struct truth *truth, float t_min, bool far)
            (t_min == 0.0f || is_above(truth, nextafterf(t_min, 0.0f), far));
 }
 
-/* ---- Rays and spheres ---- */
-
-static float either_sign(float x)
-{
-    return random_bits() % 2 ? x : -x;
-}
-
-/* Through the sphere or past it; a third grazes it. */
-static struct subject aim(float radius, float away, float size)
-{
-    struct subject s = {.radius = radius, .center = random_point(size)};
-    s.origin = vec3_add(s.center, random_point(away));
-    struct vec3 to = random_point(1.0f);
-    uint32_t kind = random_bits() % 3;
-    if (kind == 0) { /* from the line's side at about one radius */
-        struct vec3 along = vec3_sub(s.center, s.origin), side = vec3_cross(along, to);
-        float length = sqrtf(vec3_dot(side, side));
-        to = length > 0.0f ? vec3_scale(side, 1.0f / length) : to;
-    }
-    s.dir = vec3_sub(vec3_add(s.center, vec3_scale(to, radius)), s.origin);
-    return s;
-}
-
-static struct subject make_ordinary(void)
-{
-    return aim(0.1f + random_float(), 5.0f, 3.0f);
-}
-
-static struct subject make_inside(void)
-{
-    return aim(1.0f + random_float(), 0.5f, 3.0f);
-}
-
-static struct subject make_far(void)
-{
-    return aim(0.1f + random_float(), 1e7f, 3.0f);
-}
-
-static struct subject make_tiny(void)
-{
-    return aim(1e-9f * random_float(), 1e-7f, 1e-8f);
-}
-
-static struct subject make_huge(void)
-{
-    return aim(1e11f * random_float(), 1e13f, 1e12f);
-}
-
-/* Squares of all that is here are 0 in floats. */
-static struct subject make_denormal(void)
-{
-    return aim(1e-40f * random_float(), 1e-38f, 1e-39f);
-}
-
-/* Directions that floats do not square, or do not divide by; components that they lose. */
-static struct subject make_stretched(void)
-{
-    struct subject s = make_ordinary();
-    static const float sizes[] = {1e-40f, 1e-33f, 1e33f};
-    s.dir = vec3_scale(s.dir, sizes[random_bits() % 3]);
-    if (random_bits() % 2)
-        s.dir.x *= 1e-30f;
-    s.radius = random_bits() % 2 ? 3.0f : s.radius;
-    return s;
-}
-
-struct frame {
-    struct vec3 x, y;
-    float length; /* of x and y, which are at right angles, all in integers */
-};
-
-/* Of an integer quaternion (Euler, Rodrigues). */
-static struct frame integer_frame(int most)
-{
-    int a = 1 + (int)(random_bits() % (uint32_t)most), b = (int)(random_bits() % (uint32_t)most);
-    int c = (int)(random_bits() % (uint32_t)most), d = (int)(random_bits() % (uint32_t)most);
-    return (struct frame){
-        .x = vec3_make((float)(a * a + b * b - c * c - d * d), (float)(2 * (b * c + a * d)),
-                       (float)(2 * (b * d - a * c))),
-        .y = vec3_make((float)(2 * (b * c - a * d)), (float)(a * a - b * b + c * c - d * d),
-                       (float)(2 * (c * d + a * b))),
-        .length = (float)(a * a + b * b + c * c + d * d)};
-}
-
-static struct vec3 grid_point(int most)
-{
-    float range = (float)(2 * most + 1), middle = (float)most;
-    float x = floorf(random_float() * range) - middle, y = floorf(random_float() * range) - middle;
-    return vec3_make(x, y, floorf(random_float() * range) - middle);
-}
-
-/* In one point exactly. */
-static struct subject make_tangent(void)
-{
-    struct frame f = integer_frame(20);
-    struct subject s = {.origin = grid_point(10000), .dir = f.x};
-    float k = (float)(1 + random_bits() % 50), along = floorf(random_within(100.0f));
-    s.radius = k * f.length;
-    s.center =
-        vec3_add(s.origin, vec3_add(vec3_scale(f.y, either_sign(k)), vec3_scale(f.x, along)));
-    return s;
-}
-
-/* Within a float of that. */
-static struct subject make_nearly_tangent(void)
-{
-    struct subject s = make_tangent();
-    s.radius = nextafterf(s.radius, random_bits() % 2 ? INFINITY : 0.0f);
-    return s;
-}
-
-/* Through the centre; both t are integers with one bit more than a float has. */
-static struct subject make_between(void)
-{
-    struct frame f = integer_frame(3);
-    float half = (float)(random_bits() % 64), t = (float)(64 + random_bits() % 64);
-    struct subject s = {.dir = f.x, .radius = (half + 1.0f) * f.length};
-    s.origin = vec3_scale(f.x, -16777216.0f);
-    s.center = vec3_scale(f.x, t);
-    return s;
-}
-
-/* On the sphere; inwards, outwards, along it. */
-static struct subject make_on_surface(void)
-{
-    struct frame f = integer_frame(20);
-    struct subject s = {.center = grid_point(10000), .radius = f.length, .dir = f.x};
-    uint32_t kind = random_bits() % 3;
-    if (kind < 2)
-        s.dir = vec3_add(f.x, vec3_scale(f.y, either_sign((float)(random_bits() % 10))));
-    s.origin = vec3_add(s.center, f.y);
-    return s;
-}
-
 /* ---- Both beside each other ---- */
 
 struct tally {
     uint32_t rays, met, exits, wrong, sure, wrong_pairs, inside, outside, bad_bounds;
     double worst; /* error of the room, of its bound */
 };
-
-static void set_t_min(struct subject *s)
-{
-    s->t_min = 0.0f;
-    struct sphere_meeting m;
-    uint32_t kind = random_bits() % 4;
-    exact_meet_sphere(s->origin, s->dir, s->center, s->radius, random_bits() % 2, 0.0f, &m);
-    if (m.met && kind > 0)
-        s->t_min = kind == 1 ? m.key : nextafterf(m.key, kind == 2 ? INFINITY : 0.0f);
-}
 
 static bool is_right(const struct truth *truth, const struct sphere_meeting *m, bool near, bool far)
 {
@@ -342,49 +192,29 @@ static void spheres_are_met_as_fractions_say(void **state)
 {
     (void)state;
     enum { SUBJECTS = 10000 };
-    static const struct {
-        const char *name;
-        make_fn make;
-        double filtered, sure; /* shares that the filter and pairs decide, at least */
-    } kinds[] = {
-        {"ordinary", make_ordinary, 0.6, 0.9},
-        {"from inside", make_inside, 0.9, 0.99},
-        {"from far away", make_far, 0.0, 0.0},
-        {"tiny", make_tiny, 0.6, 0.6},
-        {"huge", make_huge, 0.6, 0.0},
-        {"denormals", make_denormal, 0.0, 0.0},
-        {"long and short directions", make_stretched, 0.0, 0.0},
-        {"exactly tangent", make_tangent, 0.0, 0.0},
-        {"tangent but for one float", make_nearly_tangent, 0.0, 0.8},
-        {"t between two floats", make_between, 0.0, 0.0},
-        {"from the surface", make_on_surface, 0.4, 0.1},
-    };
     struct truth truth;
     truth_init(&truth);
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+    for (uint32_t k = 0; k < SPHERE_KINDS; ++k) {
         struct tally tally = {0};
         random_state = 11 + k;
         for (int i = 0; i < SUBJECTS; ++i) {
-            struct subject s = kinds[k].make();
-            if (s.radius == 0.0f || (s.dir.x == 0.0f && s.dir.y == 0.0f && s.dir.z == 0.0f))
-                continue;
+            struct subject s = make_subject(k);
             find_truth(&s, &truth);
-            set_t_min(&s);
             check_meeting(&s, &truth, &tally);
             check_bounds(&s, &truth, &tally);
         }
         print_message("%-26s %u of %u wrong, %u met, %u at the far end; pairs: %u sure, of which "
                       "%u wrong; filter: %u inside, %u outside, %u bad bounds, error of the room "
                       "at most %.3f of its bound\n",
-                      kinds[k].name, tally.wrong, tally.rays, tally.met, tally.exits, tally.sure,
-                      tally.wrong_pairs, tally.inside, tally.outside, tally.bad_bounds,
+                      sphere_kinds[k].name, tally.wrong, tally.rays, tally.met, tally.exits,
+                      tally.sure, tally.wrong_pairs, tally.inside, tally.outside, tally.bad_bounds,
                       tally.worst);
         assert_int_equal(tally.wrong, 0);
         assert_int_equal(tally.wrong_pairs, 0);
         assert_int_equal(tally.bad_bounds, 0);
         assert_true(tally.met > SUBJECTS / 10 && tally.exits > SUBJECTS / 20);
-        assert_true(tally.inside + tally.outside >= kinds[k].filtered * SUBJECTS);
-        assert_true(tally.sure >= kinds[k].sure * tally.rays);
+        assert_true(tally.inside + tally.outside >= sphere_kinds[k].filtered * SUBJECTS);
+        assert_true(tally.sure >= sphere_kinds[k].sure * tally.rays);
     }
     truth_clear(&truth);
 }

@@ -1,0 +1,189 @@
+/* Rays and spheres that are hard at `exact`: near and far, of all sizes, tangent exactly, with t
+   between two floats, from the surface. */
+#ifndef TESTS_HARD_SPHERE_FIXTURE_H
+#define TESTS_HARD_SPHERE_FIXTURE_H
+
+#include "hard_fixture.h"
+
+#include "accel/exact_sphere.h"
+
+struct subject {
+    struct vec3 origin, dir, center;
+    float radius, t_min;
+};
+
+typedef struct subject (*make_fn)(void);
+
+static inline float either_sign(float x)
+{
+    return random_bits() % 2 ? x : -x;
+}
+
+/* Through the sphere or past it; a third grazes it. */
+static inline struct subject aim(float radius, float away, float size)
+{
+    struct subject s = {.radius = radius, .center = random_point(size)};
+    s.origin = vec3_add(s.center, random_point(away));
+    struct vec3 to = random_point(1.0f);
+    uint32_t kind = random_bits() % 3;
+    if (kind == 0) { /* from the line's side at about one radius */
+        struct vec3 along = vec3_sub(s.center, s.origin), side = vec3_cross(along, to);
+        float length = sqrtf(vec3_dot(side, side));
+        to = length > 0.0f ? vec3_scale(side, 1.0f / length) : to;
+    }
+    s.dir = vec3_sub(vec3_add(s.center, vec3_scale(to, radius)), s.origin);
+    return s;
+}
+
+static inline struct subject make_ordinary(void)
+{
+    return aim(0.1f + random_float(), 5.0f, 3.0f);
+}
+
+static inline struct subject make_inside(void)
+{
+    return aim(1.0f + random_float(), 0.5f, 3.0f);
+}
+
+static inline struct subject make_far(void)
+{
+    return aim(0.1f + random_float(), 1e7f, 3.0f);
+}
+
+static inline struct subject make_tiny(void)
+{
+    return aim(1e-9f * random_float(), 1e-7f, 1e-8f);
+}
+
+static inline struct subject make_huge(void)
+{
+    return aim(1e11f * random_float(), 1e13f, 1e12f);
+}
+
+/* Squares of all that is here are 0 in floats. */
+static inline struct subject make_denormal(void)
+{
+    return aim(1e-40f * random_float(), 1e-38f, 1e-39f);
+}
+
+/* Directions that floats do not square, or do not divide by; components that they lose. */
+static inline struct subject make_stretched(void)
+{
+    struct subject s = make_ordinary();
+    static const float sizes[] = {1e-40f, 1e-33f, 1e33f};
+    s.dir = vec3_scale(s.dir, sizes[random_bits() % 3]);
+    if (random_bits() % 2)
+        s.dir.x *= 1e-30f;
+    s.radius = random_bits() % 2 ? 3.0f : s.radius;
+    return s;
+}
+
+struct frame {
+    struct vec3 x, y;
+    float length; /* of x and y, which are at right angles, all in integers */
+};
+
+/* Of an integer quaternion (Euler, Rodrigues). */
+static inline struct frame integer_frame(int most)
+{
+    int a = 1 + (int)(random_bits() % (uint32_t)most), b = (int)(random_bits() % (uint32_t)most);
+    int c = (int)(random_bits() % (uint32_t)most), d = (int)(random_bits() % (uint32_t)most);
+    return (struct frame){
+        .x = vec3_make((float)(a * a + b * b - c * c - d * d), (float)(2 * (b * c + a * d)),
+                       (float)(2 * (b * d - a * c))),
+        .y = vec3_make((float)(2 * (b * c - a * d)), (float)(a * a - b * b + c * c - d * d),
+                       (float)(2 * (c * d + a * b))),
+        .length = (float)(a * a + b * b + c * c + d * d)};
+}
+
+static inline struct vec3 grid_point(int most)
+{
+    float range = (float)(2 * most + 1), middle = (float)most;
+    float x = floorf(random_float() * range) - middle, y = floorf(random_float() * range) - middle;
+    return vec3_make(x, y, floorf(random_float() * range) - middle);
+}
+
+/* In one point exactly. */
+static inline struct subject make_tangent(void)
+{
+    struct frame f = integer_frame(20);
+    struct subject s = {.origin = grid_point(10000), .dir = f.x};
+    float k = (float)(1 + random_bits() % 50), along = floorf(random_within(100.0f));
+    s.radius = k * f.length;
+    s.center =
+        vec3_add(s.origin, vec3_add(vec3_scale(f.y, either_sign(k)), vec3_scale(f.x, along)));
+    return s;
+}
+
+/* Within a float of that. */
+static inline struct subject make_nearly_tangent(void)
+{
+    struct subject s = make_tangent();
+    s.radius = nextafterf(s.radius, random_bits() % 2 ? INFINITY : 0.0f);
+    return s;
+}
+
+/* Through the centre; both t are integers with one bit more than a float has. */
+static inline struct subject make_between(void)
+{
+    struct frame f = integer_frame(3);
+    float half = (float)(random_bits() % 64), t = (float)(64 + random_bits() % 64);
+    struct subject s = {.dir = f.x, .radius = (half + 1.0f) * f.length};
+    s.origin = vec3_scale(f.x, -16777216.0f);
+    s.center = vec3_scale(f.x, t);
+    return s;
+}
+
+/* On the sphere; inwards, outwards, along it. */
+static inline struct subject make_on_surface(void)
+{
+    struct frame f = integer_frame(20);
+    struct subject s = {.center = grid_point(10000), .radius = f.length, .dir = f.x};
+    uint32_t kind = random_bits() % 3;
+    if (kind < 2)
+        s.dir = vec3_add(f.x, vec3_scale(f.y, either_sign((float)(random_bits() % 10))));
+    s.origin = vec3_add(s.center, f.y);
+    return s;
+}
+
+static const struct sphere_kind {
+    const char *name;
+    make_fn make;
+    double filtered, sure; /* shares that the filter and pairs decide, at least */
+} sphere_kinds[] = {
+    {"ordinary", make_ordinary, 0.6, 0.9},
+    {"from inside", make_inside, 0.9, 0.99},
+    {"from far away", make_far, 0.0, 0.0},
+    {"tiny", make_tiny, 0.6, 0.6},
+    {"huge", make_huge, 0.6, 0.0},
+    {"denormals", make_denormal, 0.0, 0.0},
+    {"long and short directions", make_stretched, 0.0, 0.0},
+    {"exactly tangent", make_tangent, 0.0, 0.0},
+    {"tangent but for one float", make_nearly_tangent, 0.0, 0.8},
+    {"t between two floats", make_between, 0.0, 0.0},
+    {"from the surface", make_on_surface, 0.4, 0.1},
+};
+
+enum { SPHERE_KINDS = sizeof sphere_kinds / sizeof *sphere_kinds };
+
+static inline void set_t_min(struct subject *s)
+{
+    s->t_min = 0.0f;
+    struct sphere_meeting m;
+    uint32_t kind = random_bits() % 4;
+    exact_meet_sphere(s->origin, s->dir, s->center, s->radius, random_bits() % 2, 0.0f, &m);
+    if (m.met && kind > 0)
+        s->t_min = kind == 1 ? m.key : nextafterf(m.key, kind == 2 ? INFINITY : 0.0f);
+}
+
+static inline struct subject make_subject(uint32_t kind)
+{
+    struct subject s;
+    do
+        s = sphere_kinds[kind].make();
+    while (s.radius == 0.0f || vec3_largest_magnitude(s.dir) == 0.0f);
+    set_t_min(&s);
+    return s;
+}
+
+#endif
