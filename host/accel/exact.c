@@ -5,10 +5,6 @@
 
 /* ---- The filter: shaders/lib/exact.glsl, exact_filter ---- */
 
-#define UNIT  (1.0f / 16777216.0f)
-#define TINY  7.8886090522101181e-31f /* 2^-100 */
-#define LARGE 1.2676506002282294e+30f
-
 static float smaller(float a, float b)
 {
     return a < b ? a : b;
@@ -24,8 +20,8 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     float size = float_larger(float_larger(float_larger(fabsf(s.ax), fabsf(s.ay)),
                                            float_larger(fabsf(s.bx), fabsf(s.by))),
                               float_larger(fabsf(s.cx), fabsf(s.cy)));
-    float off = 12.0f * UNIT * far + TINY;
-    float edge_error = 4.125f * (off * (size + off) + UNIT * (size * size)) + TINY;
+    float off = 12.0f * EXACT_UNIT * far + EXACT_TINY;
+    float edge_error = 4.125f * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
     bool below = s.ea < -edge_error || s.eb < -edge_error || s.ec < -edge_error;
     bool above = s.ea > edge_error || s.eb > edge_error || s.ec > edge_error;
     bool all_below = s.ea < -edge_error && s.eb < -edge_error && s.ec < -edge_error;
@@ -37,13 +33,13 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     out->v = s.ec * inv_det;
     out->t = ((s.ea * inv_det) * az + out->u * bz) + out->v * cz;
     float z_lo = smaller(az, smaller(bz, cz)), z_hi = float_larger(az, float_larger(bz, cz));
-    float z_error = 40.0f * UNIT * float_larger(fabsf(z_lo), fabsf(z_hi)) + TINY;
+    float z_error = 40.0f * EXACT_UNIT * float_larger(fabsf(z_lo), fabsf(z_hi)) + EXACT_TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
     out->edge_error = edge_error;
     out->outside = below && above;
-    out->inside = (all_below || all_above) && fabsf(det) < LARGE && fabsf(out->t) < LARGE &&
-                  weights_error < 0.25f;
+    out->inside = (all_below || all_above) && fabsf(det) < EXACT_LARGE &&
+                  fabsf(out->t) < EXACT_LARGE && weights_error < 0.25f;
     float any_lo = z_lo - z_error, any_hi = z_hi + z_error;
     bool known = any_lo <= any_hi; /* not NaN */
     out->lo = out->inside ? out->t - t_error : known ? any_lo : -INFINITY;

@@ -7,6 +7,10 @@
 
 #include "accel/intersect.h"
 
+#define EXACT_UNIT  (1.0f / 16777216.0f)
+#define EXACT_TINY  7.8886090522101181e-31f /* 2^-100: whatever underflows, and more */
+#define EXACT_LARGE 1.2676506002282294e+30f
+
 /* What floats can tell. The key is the exact t, rounded to nearest. */
 struct exact_bounds {
     bool outside; /* surely missed */

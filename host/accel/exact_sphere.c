@@ -1,34 +1,33 @@
 #include "accel/exact_sphere.h"
 
+#include "accel/exact.h"
+
 #include <stdint.h>
 #include <string.h>
 
 /* ---- The filter: shaders/lib/exact_sphere.glsl, bound_sphere ---- */
-
-#define UNIT  (1.0f / 16777216.0f)
-#define TINY  7.8886090522101181e-31f /* 2^-100 */
-#define LARGE 1.2676506002282294e+30f
 
 void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
                   struct sphere_bounds *out)
 {
     struct foot foot = drop_perpendicular(ray, center, radius);
     struct vec3 off = foot.off;
-    float grain = UNIT * vec3_largest_magnitude(foot.c);
+    float grain = EXACT_UNIT * vec3_largest_magnitude(foot.c);
     float ll = (off.x * off.x + off.y * off.y) + off.z * off.z;
     float error = grain * (82.0f * vec3_largest_magnitude(off) + 18500.0f * grain) +
-                  UNIT * (4.5f * ll + 2.5f * foot.rr) + TINY;
+                  EXACT_UNIT * (4.5f * ll + 2.5f * foot.rr) + EXACT_TINY;
     bool inside = foot.room > error;
     float half = inside ? foot.half_length : 0.0f;
-    float slack = inside ? 1.01f * error / half + 40.0f * UNIT * half : 1.5f * sqrtf(error);
+    float slack = inside ? 1.01f * error / half + 40.0f * EXACT_UNIT * half : 1.5f * sqrtf(error);
     float stretch = fabsf(ray->shear.z), middle = foot.mid * ray->shear.z;
     float t_half = half * stretch;
-    float t_error = stretch * (70.0f * grain + slack) + TINY;
-    bool known = fabsf(middle) < LARGE && t_half < LARGE && t_error < LARGE; /* false for NaN */
+    float t_error = stretch * (70.0f * grain + slack) + EXACT_TINY;
+    bool known = fabsf(middle) < EXACT_LARGE && t_half < EXACT_LARGE &&
+                 t_error < EXACT_LARGE; /* false for NaN */
     out->room_error = error;
     out->outside = foot.room < -error;
     out->inside = inside && known;
-    out->inward_known = fabsf(foot.mid) > 53.0f * grain + TINY;
+    out->inward_known = fabsf(foot.mid) > 53.0f * grain + EXACT_TINY;
     out->near_lo = known ? (middle - t_half) - t_error : -INFINITY;
     out->near_hi = known ? (middle - t_half) + t_error : INFINITY;
     out->far_lo = known ? (middle + t_half) - t_error : -INFINITY;

@@ -233,13 +233,35 @@ change(host/accel/exact.c [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 
 change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
 
 mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
-change(shaders/lib/pairs.glsl [[vec2 both = pair_sum(first, second);]]
+change(shaders/lib/pair_numbers.glsl [[vec2 both = pair_sum(first, second);]]
   [[vec2 both = pair_sum(first, 0.0);]])
 
 mutation(pairs_without_bound hard_pairs RED what_is_sure_is_so)
-change(host/accel/pairs.c [[size * RELATIVE + ABSOLUTE]] [[size * RELATIVE / 128.0f + ABSOLUTE]])
+change(host/accel/pairs.c [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
+  [[size * PAIR_RELATIVE / 128.0f + PAIR_ABSOLUTE]])
 change(shaders/lib/pairs.glsl [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
   [[size * PAIR_RELATIVE / 128.0 + PAIR_ABSOLUTE]])
+
+mutation(spheres_with_half_their_bound hard_sphere RED spheres_are_met_as_fractions_say)
+change(host/accel/exact_sphere.c [[82.0f *]] [[41.0f *]])
+change(host/accel/exact_sphere.c [[18500.0f]] [[9250.0f]])
+change(host/accel/exact_sphere.c [[4.5f * ll + 2.5f * foot.rr]] [[2.25f * ll + 1.25f * foot.rr]])
+
+mutation(spheres_without_bound_in_kernels device_sphere RED spheres_are_met_as_in_c)
+change(shaders/lib/exact_sphere.glsl [[foot.room > error;]] [[foot.room > 0.0;]])
+
+mutation(sphere_ties_round_down hard_sphere RED spheres_are_met_as_fractions_say)
+change(host/accel/exact_sphere.c [[(side == 0 && (bits & 1u) != 0)]] [[false]])
+
+mutation(sphere_ties_round_down_in_kernels device_sphere RED spheres_are_met_as_in_c)
+change(shaders/lib/exact_sphere.glsl [[(side == 0 && (middle & 1u) != 0u)]] [[false]])
+
+mutation(sphere_pairs_without_bound hard_sphere RED spheres_are_met_as_fractions_say)
+change(host/accel/pairs_sphere.c [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
+  [[size * PAIR_RELATIVE / 128.0f + PAIR_ABSOLUTE]])
+
+mutation(far_ends_taken_for_near_in_kernels render_numerics RED spheres)
+change(shaders/bind/traverse.glsl [[hit.at_exit = at_exit;]] [[hit.at_exit = false;]])
 
 mutation(waiting_rays_forgotten render_waiting RED batches_are_those_of_looks_in_place)
 change(shaders/kernel/trace.comp [[list_waiting(index);]] [[;]])

@@ -2,9 +2,9 @@
    holds against fractions. */
 #include "hard_sphere_fixture.h"
 
+#include "abi/spec.h"
 #include "accel/pairs_sphere.h"
 #include "device_fixture.h"
-#include "abi/spec.h"
 
 #include "device_sphere.h"
 

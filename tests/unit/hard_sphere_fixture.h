@@ -78,6 +78,25 @@ static inline struct subject make_stretched(void)
     return s;
 }
 
+/* Past a small sphere as near as a float for its radius tells: by 2^-25 of it. */
+static inline struct subject make_grazing(void)
+{
+    struct subject s = {.origin = random_point(1.0f), .center = random_point(1.0f)};
+    float way = powf(0.1f, 4.0f * random_float());
+    s.dir = vec3_sub(vec3_add(s.center, random_point(way)), s.origin);
+    const double m[3] = {(double)s.center.x - (double)s.origin.x,
+                         (double)s.center.y - (double)s.origin.y,
+                         (double)s.center.z - (double)s.origin.z};
+    const double d[3] = {(double)s.dir.x, (double)s.dir.y, (double)s.dir.z};
+    double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], cross2 = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        cross2 += (m[i] * d[j] - m[j] * d[i]) * (m[i] * d[j] - m[j] * d[i]);
+    }
+    s.radius = (float)sqrt(cross2 / dd);
+    return s;
+}
+
 struct frame {
     struct vec3 x, y;
     float length; /* of x and y, which are at right angles, all in integers */
@@ -152,6 +171,7 @@ static const struct sphere_kind {
     double filtered, sure; /* shares that the filter and pairs decide, at least */
 } sphere_kinds[] = {
     {"ordinary", make_ordinary, 0.6, 0.9},
+    {"grazing", make_grazing, 0.0, 0.15},
     {"from inside", make_inside, 0.9, 0.99},
     {"from far away", make_far, 0.0, 0.0},
     {"tiny", make_tiny, 0.6, 0.6},
