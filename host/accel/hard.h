@@ -132,7 +132,6 @@ void hard_topology_finish(struct hard_topology *topology);
 
 struct hard_tally {
     uint64_t rays, hits;  /* hits: exactly */
-    uint64_t undecided;   /* rays that came by a sphere: they count as nothing below */
     uint64_t misses;      /* of rays that hit, exactly */
     uint64_t leaks;       /* of misses: rays that start inside a closed surface; of other rays those
                              that no outline and no open edge excuses */

@@ -143,10 +143,12 @@ static bool is_surrounded(struct rational *rational, const struct gpu_ray *ray)
     return true;
 }
 
+/* Spheres have no edges. */
 static bool touches_open_edge(const struct hard_judgement *j, const struct rational_hit *hit)
 {
     uint32_t mesh = j->hard->scene->instances[hit->instance].mesh;
-    return j->topology->open[j->topology->first[mesh] + hit->primitive];
+    return j->hard->scene->meshes[mesh].sphere_count == 0 &&
+           j->topology->open[j->topology->first[mesh] + hit->primitive];
 }
 
 /* Where the ray starts on the surface it may be to either side of its beginning. */
@@ -230,10 +232,6 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
     const struct gpu_hit *hit = &j->hits[i];
     bool hits = exact->primitive != HIT_NONE, met = hit->primitive != HIT_NONE;
     ++tally->rays;
-    if (exact->undecided) {
-        ++tally->undecided;
-        return;
-    }
     bool same = hit->primitive == exact->primitive && hit->instance == exact->instance;
     tally->hits += hits;
     tally->misses += hits && !met;
@@ -278,7 +276,6 @@ static void add_tally(struct hard_tally *sum, const struct hard_tally *more)
 {
     sum->rays += more->rays;
     sum->hits += more->hits;
-    sum->undecided += more->undecided;
     sum->misses += more->misses;
     sum->leaks += more->leaks;
     sum->false_hits += more->false_hits;

@@ -376,7 +376,28 @@ static struct estimate estimate_meeting(const double origin[3], const double dir
     return out;
 }
 
-/* ---- Every triangle that matters ---- */
+/* |m x d|^2 - r^2 d.d is minus the discriminant. Products of the cross product m x d are off as
+   those above, with two factors fewer; what is left of its size after that is rounded by a few u,
+   as r^2 d.d is. Nothing underflows here either: squares are 0 or at least 2^-702, and at most
+   2^517. */
+static bool surely_misses(const double origin[3], const double dir[3],
+                          const struct gpu_triangle *sphere)
+{
+    double m[AXES], off = 0.0, size = 0.0, radius = (double)sphere->v1[0];
+    for (int k = 0; k < AXES; ++k) {
+        m[k] = (double)sphere->v0[k] - origin[k];
+        size += dir[k] * dir[k];
+    }
+    for (int k = 0; k < AXES; ++k) {
+        int i = (k + 1) % AXES, j = (k + 2) % AXES;
+        double left = m[i] * dir[j], right = m[j] * dir[i];
+        double least = fabs(left - right) - PRODUCT_ERROR * (fabs(left) + fabs(right));
+        off += least > 0.0 ? least * least : 0.0;
+    }
+    return off > (1.0 + 0x1p-48) * radius * radius * size;
+}
+
+/* ---- Every primitive that matters ---- */
 
 struct search {
     struct wide_walk walk; /* the first member: its callbacks get at the rest */
@@ -401,15 +422,26 @@ static bool is_same(uint32_t instance, uint32_t primitive, const struct rational
     return instance == hit->instance && primitive == hit->primitive;
 }
 
+/* The far end of a sphere comes behind its near one, unless their keys are the same. */
+static bool is_behind(float t, uint32_t instance, uint32_t primitive,
+                      const struct rational_hit *hit)
+{
+    return !is_before(t, instance, primitive, hit) &&
+           !(t == hit->t && is_same(instance, primitive, hit));
+}
+
+static bool may_count(const struct search *s, float t, uint32_t instance, uint32_t primitive)
+{
+    return t >= s->world->t_min && t <= s->t_max &&
+           (!s->query->behind || is_behind(t, instance, primitive, s->query->behind));
+}
+
 static void offer_hit(struct search *s, float t, uint32_t edges, uint32_t instance,
                       uint32_t primitive)
 {
-    const struct rational_hit *behind = s->query->behind;
-    if (!(t >= s->world->t_min && t <= s->t_max) || !is_before(t, instance, primitive, &s->best) ||
-        (behind &&
-         (is_before(t, instance, primitive, behind) || is_same(instance, primitive, behind))))
+    if (!may_count(s, t, instance, primitive) || !is_before(t, instance, primitive, &s->best))
         return;
-    s->best = (struct rational_hit){t, primitive, instance, edges, s->best.undecided};
+    s->best = (struct rational_hit){t, primitive, instance, edges};
     s->walk.limit = (double)t;
     s->walk.done = s->query->any;
 }
@@ -426,17 +458,37 @@ static void visit_exactly(struct search *s, const struct gpu_triangle *triangle,
         offer_hit(s, key, edges, instance, triangle->primitive);
 }
 
+static void visit_sphere(struct search *s, const struct gpu_triangle *sphere, uint32_t instance,
+                         bool own)
+{
+    struct rational_chord chord;
+    own &= !s->query->behind;
+    if (!s->query->brute && surely_misses(s->walk.ray.origin, s->walk.ray.dir, sphere))
+        return;
+    ++s->rational->work.exact;
+    if (!rational_meet_sphere(s->rational, vec3_load(s->ray.origin), vec3_load(s->ray.dir),
+                              vec3_load(sphere->v0), sphere->v1[0], &chord) ||
+        (own && !chord.inward))
+        return;
+    if (chord.near_there && !own && may_count(s, chord.near_key, instance, sphere->primitive))
+        offer_hit(s, chord.near_key, 0, instance, sphere->primitive);
+    else if (chord.far_there)
+        offer_hit(s, chord.far_key, 0, instance, sphere->primitive);
+}
+
 static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
-    if (s->query->own && is_same(instance, triangle->primitive, s->query->own))
+    bool own = s->query->own && is_same(instance, triangle->primitive, s->query->own);
+    bool sphere = triangle->flags & TRIANGLE_SPHERE;
+    if (own && !sphere)
         return;
-    if (triangle->flags & TRIANGLE_SPHERE) {
-        s->best.undecided = true;
+    ++s->rational->work.primitives;
+    if (sphere) {
+        visit_sphere(s, triangle, instance, own);
         return;
     }
-    ++s->rational->work.triangles;
     if (s->query->brute) {
         visit_exactly(s, triangle, instance);
         return;

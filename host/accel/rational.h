@@ -19,10 +19,10 @@
 
    where that has roots: in a near end and a far one, which are the same where the line touches. An
    end before the origin (t < 0) is not there; nor is one whose key would be infinite. Keys are
-   those of triangles: t, now a root, rounded to float.
+   those of triangles: t, now a root, rounded to float. Of ends that count the near one is hit, else
+   the far one: the first in the order, or the first behind a known hit.
 
-   In an instance the ray is what accel_local_ray makes of it, roundings and all. rational_trace
-   does not decide spheres yet. */
+   In an instance the ray is what accel_local_ray makes of it, roundings and all. */
 #ifndef ACCEL_RATIONAL_H
 #define ACCEL_RATIONAL_H
 
@@ -33,15 +33,16 @@ struct rational_hit {
     float t;                      /* the key; infinity: miss */
     uint32_t primitive, instance; /* HIT_NONE: miss */
     uint32_t edges;               /* that the point is on: 0 inside, 1, 2 at a vertex */
-    bool undecided;               /* the walk came by a sphere, which may be nearer */
 };
 
 /* All fields may be zero: the closest hit. */
 struct rational_query {
     bool any;                          /* the first one that is found */
-    bool brute;                        /* no tree and no filter: integers for every triangle */
+    bool brute;                        /* no tree and no filter: integers for every primitive */
     const struct rational_hit *behind; /* the first hit that comes after this one */
-    const struct rational_hit *own;    /* its primitive is not hit */
+    /* Its primitive is not hit; a sphere is at its far end where the ray goes into it (S > 0), and
+       with `behind` like others. */
+    const struct rational_hit *own;
 };
 
 /* Numbers to work with, for one thread at a time. `accel` is borrowed and may be NULL for
@@ -71,9 +72,9 @@ bool rational_meet_sphere(struct rational *rational, struct vec3 origin, struct 
 void rational_trace(struct rational *rational, const struct gpu_ray *ray,
                     const struct rational_query *query, struct rational_hit *hit);
 
-/* Triangles of traced rays that came to the filter, and those that it left to integers. */
+/* Primitives of traced rays that came to the filter, and those that it left to integers. */
 struct rational_work {
-    uint64_t triangles, exact;
+    uint64_t primitives, exact;
 };
 struct rational_work rational_work(const struct rational *rational);
 

@@ -125,7 +125,6 @@ static void add_tally(whit_hard_row *row, const struct hard_tally *tally)
 {
     row->rays += tally->rays;
     row->hits += tally->hits;
-    row->undecided += tally->undecided;
     row->misses += tally->misses;
     row->leaks += tally->leaks;
     row->false_hits += tally->false_hits;

@@ -94,8 +94,7 @@ static whit_result paint(struct view *view, struct image *image)
         const struct gpu_hit *hit = &view->hits[i];
         const struct rational_hit *exact = &view->exact[i];
         to[0] = to[1] = to[2] = headlight(&view->plain[i], hit);
-        if (exact->undecided ||
-            (hit->primitive == exact->primitive && hit->instance == exact->instance))
+        if (hit->primitive == exact->primitive && hit->instance == exact->instance)
             continue;
         const struct hard_judgement judgement = {.hard = &view->hard,
                                                  .topology = &view->topology,

@@ -5,9 +5,8 @@
 #include "accel/hard.h"
 #include "api/handles.h"
 #include "base/array.h"
-#include "base/threads.h"
 
-enum { RAYS_DEFAULT = 20000, RAYS_MOST = 1 << 24, SEED = 77, CHUNK = 256 };
+enum { RAYS_DEFAULT = 20000, RAYS_MOST = 1 << 24, SEED = 77 };
 
 struct whit_judge {
     struct log log;
@@ -18,7 +17,6 @@ struct whit_judge {
     struct hard_ray *rays;
     whit_ray *plain;
     struct rational_hit *exact;
-    bool by_walk; /* some answers are those of the walk in double */
 };
 
 /* ---- Rays ---- */
@@ -62,35 +60,6 @@ static whit_result make_rays(whit_judge *judge, const whit_judge_params *params,
     return result;
 }
 
-/* ---- Spheres, which exact arithmetic does not decide ---- */
-
-static void answer_chunk(void *context, uint32_t chunk)
-{
-    whit_judge *judge = context;
-    uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
-    for (uint64_t i = (uint64_t)chunk * CHUNK; i < end && i < judge->count; ++i) {
-        struct rational_hit *exact = &judge->exact[i];
-        struct oracle_hit hit;
-        if (!exact->undecided)
-            continue;
-        oracle_trace(judge->hard.accel, &judge->rays[i].ray, false, &hit);
-        *exact = (struct rational_hit){
-            .t = (float)hit.t, .primitive = hit.primitive, .instance = hit.instance};
-    }
-}
-
-static whit_result find_answers(whit_judge *judge)
-{
-    whit_result result =
-        hard_trace_exact(&judge->hard, judge->rays, judge->count, judge->threads, judge->exact);
-    for (uint64_t i = 0; result == WHIT_OK && i < judge->count; ++i)
-        judge->by_walk = judge->by_walk || judge->exact[i].undecided;
-    if (result == WHIT_OK)
-        threads_for(judge->threads, (uint32_t)((judge->count + CHUNK - 1) / CHUNK), answer_chunk,
-                    judge);
-    return result;
-}
-
 /* ---- Life ---- */
 
 static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_judge_params *params)
@@ -115,7 +84,10 @@ static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_j
         result = hard_topology_init(scene->scene, &judge->topology);
     if (result == WHIT_OK)
         result = make_rays(judge, params, wanted);
-    return result == WHIT_OK ? find_answers(judge) : result;
+    if (result == WHIT_OK)
+        result =
+            hard_trace_exact(&judge->hard, judge->rays, judge->count, judge->threads, judge->exact);
+    return result;
 }
 
 whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
@@ -200,9 +172,6 @@ static whit_result measure_t(const whit_judge *judge, const whit_hit *hits, whit
 whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, const whit_hit *hits,
                             whit_judgement *out)
 {
-    /* `exact` promises of spheres what `watertight` does. */
-    if (judge->by_walk && numerics == WHIT_NUMERICS_EXACT)
-        numerics = WHIT_NUMERICS_WATERTIGHT;
     const struct hard_judgement judgement = {.hard = &judge->hard,
                                              .topology = &judge->topology,
                                              .rays = judge->rays,

@@ -73,10 +73,10 @@ static void set_answers(const struct probe_ray *from, whit_probe_ray *to)
     to->twin = hit_of((double)from->twin.t, from->twin.instance, from->twin.primitive);
     to->exact = hit_of(INFINITY, WHIT_NONE, WHIT_NONE);
     to->equal = from->equal;
-    to->exact_known = from->exact != PROBE_EXACT_NONE;
+    to->exact_known = from->exact_known;
     to->exact_equal = to->exact_known && from->exact_equal;
     if (to->exact_known)
-        to->exact = hit_of(from->exact_t, from->exact_instance, from->exact_primitive);
+        to->exact = hit_of((double)from->exact_t, from->exact_instance, from->exact_primitive);
     to->passed = from->passed;
 }
 

@@ -32,7 +32,6 @@ typedef struct whit_hard_row {
     whit_numerics numerics;
     uint64_t rays;
     uint64_t hits;       /* exactly */
-    uint64_t undecided;  /* rays that came by a sphere: they count as nothing below */
     uint64_t misses;     /* of rays that hit, exactly */
     uint64_t leaks;      /* misses of rays that start inside a closed surface; of others, those that
                             pass neither an outline nor an open edge */
@@ -104,13 +103,13 @@ WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_jud
 void whit_judge_destroy(whit_judge *judge);
 const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
 
-/* Of `rays`. Where a ray came by a sphere the answer is that of the walk in double. */
+/* Of `rays`. */
 typedef struct whit_judgement {
     uint64_t rays, hits; /* hits: exactly */
     uint64_t misses, false_hits, other_ids;
     uint64_t leaks; /* of misses, as in whit_hard_row */
     uint64_t wrong; /* of misses, false hits and other ids: no bound of float errors excuses them;
-                       of `exact` all, but where rays came by spheres: then as of `watertight` */
+                       of `exact` all */
     uint64_t non_finite; /* hits with a t, u or v that is no number */
     /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
        of hits nearer than 2^-20 of the origin's coordinates. */

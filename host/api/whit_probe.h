@@ -45,8 +45,7 @@ typedef struct whit_probe_ray {
     whit_probe_hit device, twin, exact;
     bool equal; /* twin: ids and every bit of t, and of u and v. Whether a cut-out is solid is the
                    device's word; shadow rays: any blocker that the device may have met */
-    bool exact_known; /* false: not traced, or a sphere is in the way of a ray that is no camera ray
-                       */
+    bool exact_known; /* false: not traced, or too many surfaces let it pass */
     bool exact_equal; /* ids (shadow rays: blocked or not), at WHIT_NUMERICS_EXACT t as well */
     uint32_t passed;  /* cut-outs, and one-sided surfaces from behind, that it went through; shadow
                          rays: also filters, and what casts no shadow */

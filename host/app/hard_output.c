@@ -140,7 +140,6 @@ static json_t *row_document(const whit_hard_row *row)
     document_text(out, "numerics", job_numerics_name(row->numerics));
     document_count(out, "rays", row->rays);
     document_count(out, "hits", row->hits);
-    document_count(out, "undecided", row->undecided);
     document_count(out, "misses", row->misses);
     document_count(out, "leaks", row->leaks);
     document_count(out, "false_hits", row->false_hits);

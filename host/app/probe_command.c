@@ -136,9 +136,9 @@ const struct cli_command command_probe = {
         "Beside\n"
         "what the device met stands what its twin on the CPU says (`=`: the same, to the last "
         "bit)\n"
-        "and what exact arithmetic says (`=`: the same primitive, and t to float; `-`: not known, "
-        "as\n"
-        "where spheres are in the way). A cut-out that let a ray pass is taken from the device.\n"
+        "and what exact arithmetic says (`=`: the same primitive, and t to float; `-`: not "
+        "known).\n"
+        "A cut-out that let a ray pass is taken from the device.\n"
         "Exit code 1 when device and twin differ, but at --numerics fast.\n",
     .options = options,
     .run = run,

@@ -5,13 +5,6 @@
 #include "abi/shade.h"
 #include "render/render.h"
 
-/* What exact answers come from. */
-enum probe_exact {
-    PROBE_EXACT_NONE,     /* no answer: not traced, or too many surfaces let the ray pass */
-    PROBE_EXACT_RATIONAL, /* exact arithmetic (accel/rational.h): t is a key */
-    PROBE_EXACT_DOUBLE,   /* the double oracle, where spheres are in the way */
-};
-
 struct probe_ray {
     struct gpu_probe_ray traced; /* as the device has it, but for the origin of a ray that was cut:
                                     the point that it would have left */
@@ -23,8 +16,10 @@ struct probe_ray {
     uint32_t passed; /* surfaces that let it through on the way there: cut-outs, one-sided ones from
                         behind; shadow rays: filters, and what casts none */
     bool equal;      /* to the device's answer: ids, and every bit of t, u and v */
-    enum probe_exact exact;
-    double exact_t; /* infinity: none */
+    /* What exact arithmetic says (accel/rational.h). Unknown: not traced, or too many surfaces let
+       the ray pass. */
+    bool exact_known;
+    float exact_t; /* a key; infinity: none */
     uint32_t exact_instance, exact_primitive;
     bool exact_equal; /* ids (shadow rays: blocked or not); at NUMERICS_EXACT t as well */
 };

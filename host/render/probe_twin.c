@@ -63,11 +63,14 @@ static void pass(struct asking *a, const struct gpu_hit *hit)
     }
 }
 
-static bool was_passed(const struct asking *a, const struct rational_hit *hit)
+/* Whether it was passed. A sphere may be passed at each of its ends, and is met as often. */
+static bool take_passed(struct asking *a, const struct rational_hit *hit)
 {
     for (uint32_t i = 0; i < a->ray->passed && i < PASSED_MOST; ++i) {
-        if (a->passed_instance[i] == hit->instance && a->passed_primitive[i] == hit->primitive)
+        if (a->passed_instance[i] == hit->instance && a->passed_primitive[i] == hit->primitive) {
+            a->passed_primitive[i] = HIT_NONE;
             return true;
+        }
     }
     return false;
 }
@@ -132,63 +135,31 @@ static bool exact_agrees(const struct asking *a)
     bool met = ray->exact_primitive != HIT_NONE;
     if (is_shadow(a))
         return met == (traced->end == PROBE_BLOCKED);
-    bool exact_t =
-        a->renderer->params.numerics == NUMERICS_EXACT && ray->exact == PROBE_EXACT_RATIONAL;
+    bool exact_t = a->renderer->params.numerics == NUMERICS_EXACT;
     return ray->exact_primitive == traced->primitive && ray->exact_instance == traced->instance &&
-           (!exact_t || ray->exact_t == (double)traced->t);
-}
-
-static void answer_exactly(struct asking *a, enum probe_exact by, double t, uint32_t instance,
-                           uint32_t primitive)
-{
-    struct probe_ray *ray = a->ray;
-    ray->exact = by;
-    ray->exact_t = primitive == HIT_NONE ? INFINITY : t;
-    ray->exact_instance = instance;
-    ray->exact_primitive = primitive;
-    ray->exact_equal = exact_agrees(a);
-}
-
-/* Where a sphere is in the way, and the ray may meet all there is. */
-static void ask_oracle(struct asking *a)
-{
-    const struct probe_ray *ray = a->ray;
-    struct oracle_hit hit;
-    if (is_shadow(a) || ray->passed > 0 || ray->traced.skip_primitive != HIT_NONE)
-        return;
-    oracle_trace(a->renderer->accel, &a->line, false, &hit);
-    answer_exactly(a, PROBE_EXACT_DOUBLE, hit.t, hit.instance, hit.primitive);
-}
-
-/* A sphere may be met again at its far side. */
-static bool starts_on_triangle(const struct asking *a)
-{
-    const struct gpu_probe_ray *traced = &a->ray->traced;
-    return traced->skip_primitive != HIT_NONE &&
-           !(accel_primitive_flags(a->renderer->accel, traced->skip_instance,
-                                   traced->skip_primitive) &
-             TRIANGLE_SPHERE);
+           (!exact_t || ray->exact_t == traced->t);
 }
 
 static void ask_exactly(struct asking *a)
 {
-    const struct gpu_probe_ray *traced = &a->ray->traced;
-    const struct rational_hit own = {.instance = traced->skip_instance,
-                                     .primitive = traced->skip_primitive};
-    struct rational_query query = {.own = starts_on_triangle(a) ? &own : NULL};
+    struct probe_ray *ray = a->ray;
+    const struct rational_hit own = {.instance = ray->traced.skip_instance,
+                                     .primitive = ray->traced.skip_primitive};
+    struct rational_query query = {.own = &own};
     struct rational_hit hit, before;
-    if (a->ray->passed > PASSED_MOST || (blocker_is_unknown(traced) && a->by_cutout))
+    if (ray->passed > PASSED_MOST || (blocker_is_unknown(&ray->traced) && a->by_cutout))
         return;
     rational_trace(a->rational, &a->line, &query, &hit);
-    while (!hit.undecided && hit.primitive != HIT_NONE && was_passed(a, &hit)) {
+    while (hit.primitive != HIT_NONE && take_passed(a, &hit)) {
         before = hit;
         query.behind = &before;
         rational_trace(a->rational, &a->line, &query, &hit);
     }
-    if (hit.undecided)
-        ask_oracle(a);
-    else
-        answer_exactly(a, PROBE_EXACT_RATIONAL, (double)hit.t, hit.instance, hit.primitive);
+    ray->exact_known = true;
+    ray->exact_t = hit.t;
+    ray->exact_instance = hit.instance;
+    ray->exact_primitive = hit.primitive;
+    ray->exact_equal = exact_agrees(a);
 }
 
 whit_result probe_ask_twin(const struct renderer *renderer, struct probe_report *report)

@@ -40,8 +40,8 @@ static void add_to_sums(const struct probe_report *report, struct sums *sums)
         sums->straight += straight;
         sums->through += (ray->traced.kind & PROBE_THROUGH) != 0;
         sums->passed += ray->passed;
-        sums->exact += ray->exact != PROBE_EXACT_NONE;
-        sums->exact_equal += ray->exact != PROBE_EXACT_NONE && ray->exact_equal;
+        sums->exact += ray->exact_known;
+        sums->exact_equal += ray->exact_known && ray->exact_equal;
         ++sums->rays;
     }
 }

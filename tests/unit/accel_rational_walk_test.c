@@ -1,0 +1,382 @@
+/* The rational oracle's spheres in whole scenes, among triangles: what it finds by trees and
+   filter, and without, is the least of all ends of all chords in the order of hits. */
+#include "accel_fixture.h"
+
+#include "accel/rational.h"
+#include "coordinate_fixture.h"
+#include "sphere_fixture.h"
+
+/* ---- The definition, with nothing left out ---- */
+
+struct listing {
+    const struct gpu_ray *world;
+    const struct rational_query *query;
+    struct rational_hit best;
+    uint32_t count; /* of ends and points that count */
+};
+
+static bool comes_before(const struct rational_hit *a, const struct rational_hit *b)
+{
+    if (a->t != b->t)
+        return a->t < b->t;
+    return a->instance != b->instance ? a->instance < b->instance : a->primitive < b->primitive;
+}
+
+static void list_point(struct listing *list, struct rational_hit point)
+{
+    if (!(point.t >= list->world->t_min && point.t <= list->world->t_max) ||
+        (list->query->behind && !comes_before(list->query->behind, &point)))
+        return;
+    ++list->count;
+    if (comes_before(&point, &list->best))
+        list->best = point;
+}
+
+static void list_record(struct listing *list, struct rational *rational,
+                        const struct gpu_triangle *record, const struct gpu_ray *ray,
+                        uint32_t instance)
+{
+    const struct rational_hit *own = list->query->own;
+    struct vec3 origin = vec3_load(ray->origin), dir = vec3_load(ray->dir);
+    const struct vec3 v[3] = {vec3_load(record->v0), vec3_load(record->v1), vec3_load(record->v2)};
+    struct rational_hit point = {.primitive = record->primitive, .instance = instance};
+    bool is_own = own && own->instance == instance && own->primitive == record->primitive;
+    struct rational_chord chord;
+    if (!(record->flags & TRIANGLE_SPHERE)) {
+        if (!is_own && rational_meet(rational, origin, dir, v, &point.t, &point.edges))
+            list_point(list, point);
+        return;
+    }
+    if (!rational_meet_sphere(rational, origin, dir, v[0], record->v1[0], &chord))
+        return;
+    is_own &= !list->query->behind;
+    point.t = chord.near_key;
+    if (chord.near_there && !is_own)
+        list_point(list, point);
+    point.t = chord.far_key;
+    if (chord.far_there && (!is_own || chord.inward))
+        list_point(list, point);
+}
+
+/* Of records that trees have split there are several, alike. */
+static struct rational_hit list_all(struct rational *rational, const struct accel *accel,
+                                    const struct gpu_ray *ray, const struct rational_query *query,
+                                    uint32_t *count)
+{
+    struct listing list = {ray, query, {INFINITY, HIT_NONE, HIT_NONE, 0}, 0};
+    for (uint32_t i = 0; i < (accel->flat ? 1 : accel->instance_count); ++i) {
+        const struct accel_mesh *mesh = &accel->meshes[accel->flat ? 0 : accel->instances[i].mesh];
+        struct gpu_ray local = *ray;
+        if (!accel->flat && !accel->single_identity)
+            local = accel_local_ray(&accel->instances[i], ray);
+        for (uint32_t k = 0; k < mesh->record_count && accel_ray_is_usable(&local); ++k) {
+            const struct gpu_triangle *record = &accel->triangles[mesh->first_triangle + k];
+            list_record(&list, rational, record, &local,
+                        accel->flat ? record->flags >> TRIANGLE_INSTANCE_SHIFT : i);
+        }
+    }
+    *count = list.count;
+    return list.best;
+}
+
+/* ---- Scenes ---- */
+
+static struct scene_mesh whole_spheres(uint32_t count)
+{
+    struct scene_mesh mesh = {0};
+    double spheres[4 * 64];
+    for (uint32_t i = 0; i < 4 * count; ++i)
+        spheres[i] = i % 4 == 3 ? 1.0 + random_bits() % 3 : (double)(random_bits() % 9) - 4.0;
+    assert_int_equal(shape_balls(spheres, count, &mesh), WHIT_OK);
+    return mesh;
+}
+
+/* Spheres in instances with even numbers, a torus in the others; one sphere mesh alone where it is
+   if `placed` is 0. */
+static struct scene *mixed_scene(struct scene_mesh mesh, uint32_t placed, double spread,
+                                 bool even_scale)
+{
+    struct scene *scene = scene_create(&silent, "mixed");
+    struct scene_mesh torus = {0};
+    assert_non_null(scene);
+    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    if (placed) {
+        assert_int_equal(shape_torus(1.0, 0.4, 12, 6, &torus), WHIT_OK);
+        assert_int_not_equal(scene_add_mesh(scene, torus), SCENE_NONE);
+    }
+    for (uint32_t i = 0; i < (placed ? placed : 1); ++i) {
+        struct scene_instance instance = {
+            .mesh = i % 2, .node = SCENE_NONE, .has_local = placed > 0};
+        instance.local = random_placement(spread, i % 3 == 0);
+        if (even_scale) {
+            const double at[3] = {sphere_random(), sphere_random(), sphere_random()};
+            const double unturned[4] = {0, 0, 0, 1}, scale[3] = {0.7, 0.7, 0.7};
+            instance.local = affine_from_trs(at, unturned, scale);
+        }
+        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    }
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    return scene;
+}
+
+static struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
+{
+    if (accel->flat || accel->single_identity)
+        return p;
+    const struct gpu_instance *i = &accel->instances[instance];
+    return vec3_add(accel_rotate_rows(i->forward0, i->forward1, i->forward2, p),
+                    vec3_make(i->origin_x, i->origin_y, i->origin_z));
+}
+
+/* At a point of a record's box, from within the spread or from afar. */
+static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index, float spread)
+{
+    uint32_t instance = random_bits() % accel->instance_count;
+    const struct accel_mesh *mesh =
+        &accel->meshes[accel->flat ? 0 : accel->instances[instance].mesh];
+    const struct gpu_triangle *record =
+        &accel->triangles[mesh->first_triangle + random_bits() % mesh->record_count];
+    struct vec3 target = vec3_load(record->v0), away = point_of(in_cube);
+    if (record->flags & TRIANGLE_SPHERE)
+        target = vec3_add(target, vec3_scale(point_of(in_cube), record->v1[0]));
+    target = in_world(accel, instance, target);
+    struct gpu_ray ray = {.t_max = INFINITY};
+    vec3_store(ray.origin, vec3_add(target, vec3_scale(away, index % 4 ? spread : 1e4f * spread)));
+    vec3_store(ray.dir, vec3_sub(target, vec3_load(ray.origin)));
+    return ray;
+}
+
+/* From a whole point in a whole direction: ends tie, lines touch, origins lie on spheres. */
+static struct gpu_ray whole_ray(const struct accel *accel, uint32_t index, float spread)
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    (void)accel;
+    vec3_store(ray.origin, vec3_scale(point_of(of_grid), index % 3 ? 1.0f : spread));
+    do
+        vec3_store(ray.dir, point_of(of_grid));
+    while (ray.dir[0] == 0.0f && ray.dir[1] == 0.0f && ray.dir[2] == 0.0f);
+    if (index % 2)
+        ray.dir[random_bits() % 3] = ray.dir[random_bits() % 3] = 0.0f;
+    if (ray.dir[0] == 0.0f && ray.dir[1] == 0.0f && ray.dir[2] == 0.0f)
+        ray.dir[index % 3] = -1.0f;
+    return ray;
+}
+
+/* ---- Both beside each other ---- */
+
+struct tally {
+    uint32_t rays, hits, steps, spheres, ties, again, wrong;
+};
+
+static struct rational_hit compare(struct rational *rational, const struct accel *accel,
+                                   const struct gpu_ray *ray, struct rational_query query,
+                                   struct tally *tally)
+{
+    uint32_t count;
+    struct rational_hit wanted = list_all(rational, accel, ray, &query, &count), hit;
+    for (int brute = 0; brute < 2; ++brute) {
+        query.brute = brute;
+        query.any = false;
+        rational_trace(rational, ray, &query, &hit);
+        tally->wrong += hit.primitive != wanted.primitive || hit.instance != wanted.instance ||
+                        hit.t != wanted.t || hit.edges != wanted.edges;
+        query.any = true;
+        rational_trace(rational, ray, &query, &hit);
+        tally->wrong += (hit.primitive != HIT_NONE) != (count > 0) ||
+                        (count > 0 && comes_before(&hit, &wanted));
+    }
+    ++tally->steps;
+    return wanted;
+}
+
+/* All hits one behind the other; what is met from the first one; the ends of the interval at it. */
+static void compare_ray(struct rational *rational, const struct accel *accel, struct gpu_ray ray,
+                        struct tally *tally)
+{
+    struct rational_query query = {0};
+    struct rational_hit first = compare(rational, accel, &ray, query, tally), before, hit = first;
+    ++tally->rays;
+    if (first.primitive == HIT_NONE)
+        return;
+    ++tally->hits;
+    for (int i = 0; i < 20 && hit.primitive != HIT_NONE; ++i) {
+        before = hit;
+        query = (struct rational_query){.behind = &before};
+        hit = compare(rational, accel, &ray, query, tally);
+        query.own = &hit;
+        compare(rational, accel, &ray, query, tally);
+        tally->ties += hit.primitive != HIT_NONE && hit.t == before.t;
+        tally->again += hit.primitive == before.primitive && hit.instance == before.instance;
+    }
+    hit = compare(rational, accel, &ray, (struct rational_query){.own = &first}, tally);
+    tally->again += hit.primitive == first.primitive && hit.instance == first.instance;
+    struct gpu_ray cut = ray;
+    cut.t_max = first.t;
+    hit = compare(rational, accel, &cut, (struct rational_query){0}, tally);
+    tally->wrong += hit.t != first.t;
+    cut.t_min = first.t;
+    hit = compare(rational, accel, &cut, (struct rational_query){0}, tally);
+    tally->wrong += hit.t != first.t;
+    ray.t_min = nextafterf(first.t, INFINITY);
+    compare(rational, accel, &ray, (struct rational_query){0}, tally);
+}
+
+typedef struct gpu_ray (*ray_fn)(const struct accel *accel, uint32_t index, float spread);
+
+static struct tally compare_scene(const char *name, struct scene *scene,
+                                  const struct accel_params *params, ray_fn make, uint32_t rays,
+                                  float spread)
+{
+    struct accel *accel = NULL;
+    struct tally tally = {0};
+    assert_int_equal(accel_create(&silent, scene, params, &accel), WHIT_OK);
+    struct rational *rational = rational_create(accel);
+    assert_non_null(rational);
+    for (uint32_t i = 0; i < rays; ++i)
+        compare_ray(rational, accel, make(accel, i, spread), &tally);
+    print_message("%-20s %u wrong of %u answers: %u rays, %u hit; %u ties, a sphere again %u\n",
+                  name, tally.wrong, tally.steps, tally.rays, tally.hits, tally.ties, tally.again);
+    assert_int_equal(tally.wrong, 0);
+    assert_true(tally.hits > rays / 3 && tally.again > rays / 10);
+    rational_destroy(rational);
+    accel_destroy(accel);
+    scene_destroy(scene);
+    return tally;
+}
+
+static void the_walk_finds_the_first_of_all(void **state)
+{
+    (void)state;
+    const struct accel_params plain = {0}, flat = {.flatten = true},
+                              split = {.mesh = {.builder = BVH_SPATIAL, .spatial_budget = 2.0f}},
+                              none = {.mesh = {.builder = BVH_NONE}};
+    random_state = 31;
+    compare_scene("scattered", mixed_scene(scattered_spheres(120, 1.0, 0.3), 0, 0, false), &plain,
+                  aimed_ray, 600, 2);
+    compare_scene("no tree", mixed_scene(scattered_spheres(40, 1.0, 0.3), 0, 0, false), &none,
+                  aimed_ray, 300, 2);
+    compare_scene("placed", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1.5, false), &split,
+                  aimed_ray, 250, 3);
+    compare_scene("placed far apart", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1e5, false),
+                  &plain, aimed_ray, 250, 3);
+    compare_scene("flat", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1.5, true), &flat,
+                  aimed_ray, 250, 3);
+    struct tally whole = compare_scene("whole numbers", mixed_scene(whole_spheres(40), 0, 0, false),
+                                       &plain, whole_ray, 1000, 20);
+    assert_true(whole.ties > 300);
+}
+
+/* Of rays that pass a sphere within its box nearly all are left out by doubles, and none of those
+   that touch it. */
+static void doubles_leave_out_what_misses(void **state)
+{
+    (void)state;
+    const double unit[4] = {0, 0, 0, 1};
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_balls(unit, 1, &mesh), WHIT_OK);
+    struct scene *scene = mixed_scene(mesh, 0, 0, false);
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
+    struct rational *rational = rational_create(accel);
+    uint32_t hits = 0, touched = 0;
+    random_state = 5;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        struct gpu_ray ray = {.t_max = INFINITY};
+        struct rational_hit hit;
+        vec3_store(ray.origin, vec3_scale(point_of(in_cube), 4.0f));
+        vec3_store(ray.dir, vec3_sub(point_of(in_cube), vec3_load(ray.origin)));
+        rational_trace(rational, &ray, NULL, &hit);
+        hits += hit.primitive != HIT_NONE;
+    }
+    struct rational_work work = rational_work(rational);
+    for (uint32_t i = 0; i < 20000; ++i) {
+        float away = -1.0f - (float)(random_bits() % 4096);
+        float scale = ldexpf(1.0f, (int)(random_bits() % 40) - 20);
+        struct gpu_ray ray = {{1, away, 3 * away}, 0, {0, scale, 3 * scale}, INFINITY};
+        struct rational_hit hit;
+        rational_trace(rational, &ray, NULL, &hit);
+        touched += hit.primitive == 0 && hit.t > 0.0f;
+    }
+    print_message("%u of 20000 hit, %llu of %llu spheres left to integers; %u of 20000 tangents "
+                  "touch\n",
+                  hits, (unsigned long long)work.exact, (unsigned long long)work.primitives,
+                  touched);
+    assert_true(work.primitives > work.exact + 1000 && work.exact < hits + 10);
+    assert_int_equal(touched, 20000);
+    rational_destroy(rational);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+/* The least radius with which the line meets a sphere there: by halves of what floats' bits are. */
+static float least_radius(struct rational *rational, struct vec3 origin, struct vec3 dir,
+                          struct vec3 center)
+{
+    uint32_t missed = 0, met = 0x7f7fffffu;
+    float radius;
+    struct rational_chord chord;
+    while (met - missed > 1) {
+        uint32_t middle = missed + (met - missed) / 2;
+        memcpy(&radius, &middle, sizeof radius);
+        if (rational_meet_sphere(rational, origin, dir, center, radius, &chord))
+            met = middle;
+        else
+            missed = middle;
+    }
+    memcpy(&radius, &met, sizeof radius);
+    return radius;
+}
+
+/* From up to 2^27 radii away, where doubles cancel, at spheres that a float less of radius would
+   make it miss. */
+static void doubles_leave_out_nothing_that_is_hit(void **state)
+{
+    (void)state;
+    enum { RAYS = 10000 };
+    const double unit[4] = {0, 0, 0, 1};
+    const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
+    struct scene_mesh mesh = {0};
+    assert_int_equal(shape_balls(unit, 1, &mesh), WHIT_OK);
+    struct scene *scene = mixed_scene(mesh, 0, 0, false);
+    struct accel *accel = NULL;
+    assert_int_equal(accel_create(&silent, scene, &none, &accel), WHIT_OK);
+    struct rational *rational = rational_create(accel);
+    struct gpu_triangle *sphere = &accel->triangles[0];
+    uint32_t missed = 0, met = 0, asked = 0;
+    random_state = 9;
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct gpu_ray ray = {.t_max = INFINITY};
+        struct rational_hit hit;
+        struct vec3 center = point_of(in_cube), aside = point_of(in_cube);
+        float far = ldexpf(1.0f, (int)(i % 28));
+        vec3_store(sphere->v0, center);
+        vec3_store(ray.origin, vec3_scale(point_of(in_cube), far));
+        vec3_store(ray.dir, vec3_sub(vec3_add(center, aside), vec3_load(ray.origin)));
+        if (vec3_dot(vec3_sub(center, vec3_load(ray.origin)), vec3_load(ray.dir)) < 0.1f)
+            continue; /* perhaps behind */
+        sphere->v1[0] = least_radius(rational, vec3_load(ray.origin), vec3_load(ray.dir), center);
+        ++asked;
+        rational_trace(rational, &ray, NULL, &hit);
+        missed += hit.primitive == HIT_NONE;
+        sphere->v1[0] = nextafterf(sphere->v1[0], 0.0f);
+        rational_trace(rational, &ray, NULL, &hit);
+        met += hit.primitive != HIT_NONE;
+    }
+    print_message("%u of %u rays that just hit missed, %u that just miss hit\n", missed, asked,
+                  met);
+    assert_true(asked > RAYS / 2);
+    assert_int_equal(missed + met, 0);
+    rational_destroy(rational);
+    accel_destroy(accel);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_walk_finds_the_first_of_all),
+        cmocka_unit_test(doubles_leave_out_what_misses),
+        cmocka_unit_test(doubles_leave_out_nothing_that_is_hit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
