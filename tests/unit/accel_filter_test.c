@@ -1,15 +1,16 @@
-/* The filter of NUMERICS_EXACT where its floats are worst. Triangles and rays are climbed towards
-   the largest error that its bound allows for; quotients are off by up to 2.5 units in the last
-   place, as Vulkan allows. What is found is measured in fractions. */
+/* The filter of NUMERICS_EXACT where its floats are worst. Triangles, spheres and rays are climbed
+   towards the largest error that its bound allows for; quotients are off by up to 2.5 units in the
+   last place, as Vulkan allows. What is found is measured in fractions. */
 #include "hard_fixture.h"
 
+#include "accel/exact_sphere.h"
 #include "fraction_fixture.h"
 
 enum { VERTICES = 3, STEPS_MOST = 5 };
 
 /* `steps`: of the three quotients of a ray, in floats, where 2.5 ulp let them go so far. */
 struct subject {
-    float at[15]; /* origin, direction, vertices */
+    float at[15]; /* origin, direction, vertices; or centre and radius */
     int steps[3];
 };
 
@@ -20,6 +21,9 @@ struct view {
     struct vec3 origin, dir, v[VERTICES]; /* as given */
     struct exact_bounds bounds;
     float edge[VERTICES];
+    float radius;
+    struct sphere_bounds of_sphere;
+    struct foot foot;
 };
 
 static float moved_quotient(float quotient, double exact, int steps)
@@ -54,6 +58,9 @@ static void look_at(const struct subject *s, struct view *out)
     out->edge[0] = sheared.ea;
     out->edge[1] = sheared.eb;
     out->edge[2] = sheared.ec;
+    out->radius = fabsf(s->at[9]);
+    bound_sphere(ray, out->v[0], out->radius, &out->of_sphere);
+    out->foot = drop_perpendicular(ray, out->v[0], out->radius);
 }
 
 /* ---- What to climb: in double, which is sure to some 2^-40 of the bounds here ---- */
@@ -62,6 +69,9 @@ enum aim {
     EDGE_ERROR, /* of an edge function, of its bound */
     WRONG_SIGN, /* what an edge function comes out as, on the other side of 0, of its bound */
     T_ERROR,    /* of t, of half the interval of the key */
+    ROOM_ERROR, /* of a sphere's room, of its bound */
+    MISSED_BY,  /* what the room comes out as, on the other side of 0, of its bound */
+    END_ERROR,  /* of the t of an end, of half the interval of its key */
 };
 
 struct truth {
@@ -90,10 +100,54 @@ static struct truth truth_in_double(const struct view *view)
     return truth;
 }
 
+struct chord_truth {
+    double room, near, far;
+};
+
+static struct chord_truth chord_in_double(const struct view *view)
+{
+    const double d[3] = {(double)view->dir.x, (double)view->dir.y, (double)view->dir.z};
+    const double m[3] = {(double)view->v[0].x - (double)view->origin.x,
+                         (double)view->v[0].y - (double)view->origin.y,
+                         (double)view->v[0].z - (double)view->origin.z};
+    double dd = 0.0, md = 0.0, off2 = 0.0, r = (double)view->radius;
+    for (int k = 0; k < 3; ++k) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double cross = m[i] * d[j] - m[j] * d[i];
+        off2 += cross * cross;
+        dd += d[k] * d[k];
+        md += m[k] * d[k];
+    }
+    struct chord_truth truth = {.room = r * r - off2 / dd};
+    double half = sqrt(fmax(truth.room, 0.0) / dd);
+    truth.near = md / dd - half;
+    truth.far = md / dd + half;
+    return truth;
+}
+
+static double end_error(double t, float lo, float hi)
+{
+    return fabs(t - 0.5 * ((double)lo + (double)hi)) / (0.5 * ((double)hi - (double)lo));
+}
+
+static double sphere_score(const struct view *view, enum aim aim)
+{
+    const struct sphere_bounds *said = &view->of_sphere;
+    struct chord_truth truth = chord_in_double(view);
+    double error = fabs((double)view->foot.room - truth.room);
+    if (aim == END_ERROR)
+        return said->inside ? fmax(end_error(truth.near, said->near_lo, said->near_hi),
+                                   end_error(truth.far, said->far_lo, said->far_hi))
+                            : -INFINITY;
+    return (aim == ROOM_ERROR ? error : error - fabs(truth.room)) / (double)said->room_error;
+}
+
 static double score_of(const struct subject *s, enum aim aim)
 {
     struct view view;
     look_at(s, &view);
+    if (aim >= ROOM_ERROR)
+        return sphere_score(&view, aim);
     struct truth truth = truth_in_double(&view);
     if (aim == T_ERROR) {
         double half = 0.5 * ((double)view.bounds.hi - (double)view.bounds.lo);
@@ -137,6 +191,22 @@ static void start_across(struct subject *s)
         s->at[12 + k] = sign * (k < 2 ? away + random_within(size) : away);
         s->steps[k] = random_bits() % 2 ? STEPS_MOST : -STEPS_MOST;
     }
+}
+
+/* Through the middle of a sphere along a diagonal of space, or at its edge. */
+static void start_at_sphere(struct subject *s)
+{
+    float away = ldexpf(1.0f + random_float(), (int)(random_bits() % 4));
+    for (int k = 0; k < 3; ++k) {
+        float sign = either_sign(1.0f),
+              aside = ldexpf(random_within(1.0f), -(int)(random_bits() % 8));
+        s->at[k] = either_sign(ldexpf(1.0f + random_float(), -24));
+        s->at[3 + k] = sign;
+        s->at[6 + k] = sign * away + aside;
+        s->steps[k] = random_bits() % 2 ? STEPS_MOST : -STEPS_MOST;
+    }
+    for (int i = 9; i < 15; ++i)
+        s->at[i] = ldexpf(1.0f + random_float(), -(int)(random_bits() % 4));
 }
 
 static void start_anywhere(struct subject *s)
@@ -238,6 +308,22 @@ static double worst_edge(const struct view *view)
     return most / (double)view->bounds.edge_error;
 }
 
+static bool is_within(bool there, float key, float lo, float hi)
+{
+    return !there || (lo <= key && key <= hi);
+}
+
+static bool is_wrong_of_sphere(struct rational *rational, const struct view *view)
+{
+    const struct sphere_bounds *said = &view->of_sphere;
+    struct rational_chord chord;
+    bool met =
+        rational_meet_sphere(rational, view->origin, view->dir, view->v[0], view->radius, &chord);
+    return (said->outside && met) ||
+           !is_within(met && chord.near_there, chord.near_key, said->near_lo, said->near_hi) ||
+           !is_within(met && chord.far_there, chord.far_key, said->far_lo, said->far_hi);
+}
+
 /* Whether the filter is sure of what is not so. */
 static bool is_wrong(struct rational *rational, const struct view *view)
 {
@@ -248,6 +334,8 @@ static bool is_wrong(struct rational *rational, const struct view *view)
            (met && !(said->lo <= key && key <= said->hi));
 }
 
+enum { CLIMBS = 60, CLIMB_STEPS = 20000 };
+
 struct search {
     const char *name;
     enum aim aim;
@@ -257,7 +345,6 @@ struct search {
 
 static void hunt(const struct search *search, struct rational *rational)
 {
-    enum { CLIMBS = 60, CLIMB_STEPS = 20000 };
     uint32_t wrong = 0, beyond = 0;
     double most_edge = 0.0, most = 0.0;
     random_state = 1;
@@ -289,6 +376,52 @@ static void hunt(const struct search *search, struct rational *rational)
     assert_true(most >= search->at_least && most <= 1.0);
 }
 
+static void hunt_spheres(const struct search *search, struct rational *rational)
+{
+    uint32_t wrong = 0;
+    double most = 0.0;
+    random_state = 2;
+    for (int i = 0; i < CLIMBS; ++i) {
+        struct subject s;
+        struct view view;
+        if (search->across)
+            start_at_sphere(&s);
+        else
+            start_anywhere(&s);
+        if (search->ieee)
+            memset(s.steps, 0, sizeof s.steps);
+        if (search->aim == MISSED_BY)
+            climb(&s, ROOM_ERROR, search->ieee, CLIMB_STEPS);
+        climb(&s, search->aim, search->ieee, CLIMB_STEPS);
+        look_at(&s, &view);
+        most = fmax(most, score_of(&s, search->aim));
+        wrong += is_wrong_of_sphere(rational, &view);
+    }
+    print_message("%-36s %u wrong answers at the ends of %d climbs of %d steps; at most %.3f of "
+                  "the bound\n",
+                  search->name, wrong, (int)CLIMBS, (int)CLIMB_STEPS, most);
+    assert_int_equal(wrong, 0);
+    assert_true(most >= search->at_least && most <= 1.0);
+}
+
+static void errors_of_spheres_stay_within_their_bounds(void **state)
+{
+    (void)state;
+    static const struct search searches[] = {
+        {"room", ROOM_ERROR, true, false, 0.7},
+        {"room of any ray", ROOM_ERROR, false, false, 0.7},
+        {"room, quotients of IEEE", ROOM_ERROR, true, true, 0.7},
+        {"sign of the room", MISSED_BY, true, false, 0.1},
+        {"ends", END_ERROR, true, false, 0.18},
+        {"ends of any ray", END_ERROR, false, false, 0.18},
+    };
+    struct rational *rational = rational_create(NULL);
+    assert_non_null(rational);
+    for (size_t i = 0; i < sizeof searches / sizeof *searches; ++i)
+        hunt_spheres(&searches[i], rational);
+    rational_destroy(rational);
+}
+
 static void errors_stay_within_their_bounds(void **state)
 {
     (void)state;
@@ -310,6 +443,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_stay_within_their_bounds),
+        cmocka_unit_test(errors_of_spheres_stay_within_their_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
