@@ -21,6 +21,8 @@ struct ui {
     float scale;
     bool backend, pressed[3], down[3];
     whit_result result; // of drawing: the first that failed
+    int vertices;       // as many as there is memory for
+    uint32_t images;    // see give_back
 };
 
 static float line_scale = 1.0f;
@@ -74,6 +76,8 @@ static void give(void *memory, void *)
 }
 
 // ---- Failures of the backend ----
+
+enum { IMAGES_LEAST = 2 }; // the backend has no fewer
 
 // It goes on after a call that failed, with what that call did not make: this stops it there.
 struct failed_call {
@@ -270,7 +274,7 @@ static void start_backend(struct ui *ui)
     info.Queue = static_cast<VkQueue>(handles.queue);
     info.PipelineCache = (VkPipelineCache)handles.pipeline_cache;
     info.DescriptorPool = ui->descriptors;
-    info.MinImageCount = 2;
+    info.MinImageCount = ui->images = IMAGES_LEAST;
     info.ImageCount = handles.image_count;
     info.CheckVkResultFn = check_call;
     ui->backend = true; // also where it gets half way: it knows what it has
@@ -290,6 +294,34 @@ static whit_result start(struct ui *ui)
     if (result == WHIT_OK)
         ImGui_ImplVulkan_DestroyFontUploadObjects();
     return result;
+}
+
+template <typename T> static void shrink(ImVector<T> &list)
+{
+    ImVector<T> copy = list; // of this size, not of that capacity
+    list.swap(copy);
+}
+
+// Lists and buffers of Dear ImGui only grow: after thousands of boxes they are of no use any more.
+// Its backend drops its buffers when the least number of images changes, which it uses for nothing
+// else.
+static bool give_back(struct ui *ui)
+{
+    enum { VERTICES_KEPT = 1 << 15 };
+    int count = ImGui::GetDrawData()->TotalVtxCount;
+    ui->vertices = count > ui->vertices ? count : ui->vertices;
+    if (ui->vertices <= VERTICES_KEPT || count > ui->vertices / 4)
+        return false;
+    ui->vertices = count;
+    ui->images = ui->images == IMAGES_LEAST ? IMAGES_LEAST + 1 : IMAGES_LEAST;
+    shrink(ImGui::GetBackgroundDrawList()->VtxBuffer);
+    shrink(ImGui::GetBackgroundDrawList()->IdxBuffer);
+    try {
+        ImGui_ImplVulkan_SetMinImageCount(ui->images);
+    } catch (const failed_call &failure) {
+        ui->result = say_failure(ui, failure);
+    }
+    return true;
 }
 
 extern "C" {
@@ -401,10 +433,11 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     return true;
 }
 
-void ui_end(struct ui *)
+bool ui_end(struct ui *ui)
 {
     layout.again = layout.changed ? layout.again + 1 : 0;
     ImGui::Render();
+    return give_back(ui);
 }
 
 // Not for ever: numbers may change their width from frame to frame.

@@ -45,7 +45,8 @@ bool ui_has_keys(const struct ui *ui);
 
 /* Everything below is drawn between these two. False: there is no memory for it, and no frame. */
 WHIT_CHECK bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
-void ui_end(struct ui *ui);
+/* True where it gave back memory that many lines had needed. */
+bool ui_end(struct ui *ui);
 /* Whether panels found their sizes only now, and the next frame has them where they belong; or a
    button went up already that this frame has down. */
 bool ui_wants_again(const struct ui *ui);

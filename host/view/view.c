@@ -323,7 +323,8 @@ static whit_result draw_window(struct view *view)
     if (!view->picture_set)
         ui_rectangle(0, 0, (float)info.width, (float)info.height, 0xFF181410u, true);
     hud_draw(view);
-    ui_end(view->ui);
+    if (ui_end(view->ui))
+        platform_trim_heaps();
     if (ui_wants_again(view->ui)) { /* panels find their sizes: kept is what comes of it */
         view->dirty = true;
         keep = false;
