@@ -27,47 +27,64 @@ static bool same(struct vec3 a, struct vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+/* Vectors between a ray's origin and a triangle's vertices, and the direction; each scaled to
+   lengths up to 2, by these powers of two. */
+struct pair_triangle {
+    struct pair_vector a, b, ab, ac, bc, along;
+    int way, size, speed;
+    bool fit; /* to be scaled */
+};
+
+static struct pair_triangle pair_triangle(struct vec3 origin, struct vec3 dir, struct vec3 v0,
+                                          struct vec3 v1, struct vec3 v2)
+{
+    struct pair_triangle p = {.a = pair_difference(v0, origin),
+                              .b = pair_difference(v1, origin),
+                              .ab = pair_difference(v1, v0),
+                              .ac = pair_difference(v2, v0),
+                              .bc = pair_difference(v2, v1),
+                              .along = {{dir.x, 0.0f}, {dir.y, 0.0f}, {dir.z, 0.0f}}};
+    float way = float_larger(pair_largest(&p.a), pair_largest(&p.b));
+    float size =
+        float_larger(float_larger(pair_largest(&p.ab), pair_largest(&p.ac)), pair_largest(&p.bc));
+    float speed = vec3_largest_magnitude(dir);
+    p.fit = is_fit(way) && is_fit(size) && is_fit(speed);
+    p.way = length_exponent(way);
+    p.size = length_exponent(size);
+    p.speed = length_exponent(speed);
+    pair_scale(&p.a, power_of_two(-p.way));
+    pair_scale(&p.b, power_of_two(-p.way));
+    pair_scale(&p.ab, power_of_two(-p.size));
+    pair_scale(&p.ac, power_of_two(-p.size));
+    pair_scale(&p.bc, power_of_two(-p.size));
+    pair_scale(&p.along, power_of_two(-p.speed));
+    return p;
+}
+
 bool pair_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
                struct exact_meeting *out, bool *key_known)
 {
-    struct pair_vector a = pair_difference(v0, origin), b = pair_difference(v1, origin);
-    struct pair_vector ab = pair_difference(v1, v0), ac = pair_difference(v2, v0),
-                       bc = pair_difference(v2, v1);
-    struct pair_vector along = {{dir.x, 0.0f}, {dir.y, 0.0f}, {dir.z, 0.0f}};
-    float way = float_larger(pair_largest(&a), pair_largest(&b));
-    float size =
-        float_larger(float_larger(pair_largest(&ab), pair_largest(&ac)), pair_largest(&bc));
-    float speed = vec3_largest_magnitude(dir);
-    int way_exponent = length_exponent(way), size_exponent = length_exponent(size);
-    int speed_exponent = length_exponent(speed);
-    pair_scale(&a, power_of_two(-way_exponent));
-    pair_scale(&b, power_of_two(-way_exponent));
-    pair_scale(&ab, power_of_two(-size_exponent));
-    pair_scale(&ac, power_of_two(-size_exponent));
-    pair_scale(&bc, power_of_two(-size_exponent));
-    pair_scale(&along, power_of_two(-speed_exponent));
-    struct bounded_pair ea = triple(&along, &b, &bc), eb = triple(&along, &ac, &a);
-    struct bounded_pair ec = triple(&along, &a, &ab);
-    struct bounded_pair top = triple(&a, &ab, &ac), bottom = triple(&along, &ab, &ac);
-    bool fit = is_fit(way) && is_fit(size) && is_fit(speed);
-    float e[3] = {ea.value.high, eb.value.high, ec.value.high};
-    float off[3] = {ea.error, eb.error, ec.error};
+    struct pair_triangle p = pair_triangle(origin, dir, v0, v1, v2);
+    const struct bounded_pair edges[3] = {triple(&p.along, &p.b, &p.bc),
+                                          triple(&p.along, &p.ac, &p.a),
+                                          triple(&p.along, &p.a, &p.ab)};
+    struct bounded_pair top = triple(&p.a, &p.ab, &p.ac), bottom = triple(&p.along, &p.ab, &p.ac);
     int below = 0, above = 0;
     for (int i = 0; i < 3; ++i) {
-        below += e[i] < -off[i];
-        above += e[i] > off[i];
+        below += edges[i].value.high < -edges[i].error;
+        above += edges[i].value.high > edges[i].error;
     }
-    bool sided = fit && fabsf(bottom.value.high) > bottom.error;
-    bool outside = fit && below > 0 && above > 0;
+    bool sided = p.fit && fabsf(bottom.value.high) > bottom.error;
+    bool outside = p.fit && below > 0 && above > 0;
     bool inside = sided && (below == 3 || above == 3);
     bool behind = sided && fabsf(top.value.high) > top.error &&
                   (top.value.high < 0.0f) != (bottom.value.high < 0.0f);
     bool point = same(v0, v1) || same(v1, v2) || same(v2, v0);
-    float t, to_weight = power_of_two(way_exponent - size_exponent);
-    *key_known = round_ratio(top, bottom, &t) && fit;
-    out->key = t * power_of_two(way_exponent - speed_exponent);
-    out->u = e[1] / bottom.value.high * to_weight;
-    out->v = e[2] / bottom.value.high * to_weight;
+    float t, to_weight = power_of_two(p.way - p.size);
+    *key_known = round_ratio(top, bottom, &t) && p.fit;
+    out->key = t * power_of_two(p.way - p.speed);
+    out->u = edges[1].value.high / bottom.value.high * to_weight;
+    out->v = edges[2].value.high / bottom.value.high * to_weight;
     out->met = inside && *key_known && !point;
     return outside || behind || point || out->met;
 }

@@ -26,63 +26,92 @@ vec2 pair_triple(PairVector d, PairVector a, PairVector b, out float error)
     return pair_dot(d, pair_cross(a, b));
 }
 
-// What exact_meet() says, if it is sure. `key_known`: if the triangle is met, m.key is the key.
+// Vectors between a ray's origin and a triangle's vertices, and the direction; each scaled to lengths up
+// to 2, by these powers of two.
 //
 // Differences of vertices are exact but for what underflows, below 2^-126; so at 2^-40 and more they
 // are, relative to the largest, good to 2^-86.
+struct PairTriangle {
+    PairVector a, b, ab, ac, bc, along;
+    int way, size, speed;
+    bool fit; // to be scaled
+};
+
+PairTriangle pair_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
+{
+    PairTriangle p;
+    p.a = pair_difference(v0, origin);
+    p.b = pair_difference(v1, origin);
+    p.ab = pair_difference(v1, v0);
+    p.ac = pair_difference(v2, v0);
+    p.bc = pair_difference(v2, v1);
+    p.along = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
+    float way = larger(largest_magnitude(magnitudes(p.a)), largest_magnitude(magnitudes(p.b)));
+    float size = larger(largest_magnitude(magnitudes(p.ab)), largest_magnitude(magnitudes(p.ac)));
+    size = larger(size, largest_magnitude(magnitudes(p.bc)));
+    float speed = largest_magnitude(dir);
+    p.fit = is_fit(way) && is_fit(size) && is_fit(speed);
+    p.way = length_exponent(way);
+    p.size = length_exponent(size);
+    p.speed = length_exponent(speed);
+    p.a = pair_scaled(p.a, power_of_two(-p.way));
+    p.b = pair_scaled(p.b, power_of_two(-p.way));
+    p.ab = pair_scaled(p.ab, power_of_two(-p.size));
+    p.ac = pair_scaled(p.ac, power_of_two(-p.size));
+    p.bc = pair_scaled(p.bc, power_of_two(-p.size));
+    p.along = pair_scaled(p.along, power_of_two(-p.speed));
+    return p;
+}
+
+// d.(b x c) and so on, by the edges: less cancels out; and t as a ratio. `off`, `.._off`: how far they
+// may be off.
+struct PairEdges {
+    vec3 edges, off;
+    vec2 top, bottom;
+    float top_off, bottom_off;
+};
+
+PairEdges pair_edges(PairTriangle p)
+{
+    PairEdges e;
+    for (int n = 0; n < 5; n++) { // a loop, for less code to compile
+        PairVector x = n == 0 ? p.b : n == 1 ? p.ac : n == 2 ? p.a : p.ab;
+        PairVector y = n == 0 ? p.bc : n == 1 ? p.a : n == 2 ? p.ab : p.ac;
+        float error;
+        vec2 value = pair_triple(n == 3 ? p.a : p.along, x, y, error);
+        e.edges = vec3(n == 0 ? value.x : e.edges.x, n == 1 ? value.x : e.edges.y,
+                       n == 2 ? value.x : e.edges.z);
+        e.off = vec3(n == 0 ? error : e.off.x, n == 1 ? error : e.off.y, n == 2 ? error : e.off.z);
+        e.top = n == 3 ? value : e.top;
+        e.top_off = n == 3 ? error : e.top_off;
+        e.bottom = value;
+        e.bottom_off = error;
+    }
+    return e;
+}
+
+// What exact_meet() says, if it is sure. `key_known`: if the triangle is met, m.key is the key.
 bool pair_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting m,
                out bool key_known)
 {
-    PairVector a = pair_difference(v0, origin), b = pair_difference(v1, origin);
-    PairVector ab = pair_difference(v1, v0), ac = pair_difference(v2, v0);
-    PairVector bc = pair_difference(v2, v1);
-    PairVector along = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
-    float way = larger(largest_magnitude(magnitudes(a)), largest_magnitude(magnitudes(b)));
-    float size = larger(larger(largest_magnitude(magnitudes(ab)),
-                               largest_magnitude(magnitudes(ac))),
-                        largest_magnitude(magnitudes(bc)));
-    float speed = largest_magnitude(dir);
-    int way_exponent = length_exponent(way), size_exponent = length_exponent(size);
-    int speed_exponent = length_exponent(speed);
-    a = pair_scaled(a, power_of_two(-way_exponent));
-    b = pair_scaled(b, power_of_two(-way_exponent));
-    ab = pair_scaled(ab, power_of_two(-size_exponent));
-    ac = pair_scaled(ac, power_of_two(-size_exponent));
-    bc = pair_scaled(bc, power_of_two(-size_exponent));
-    along = pair_scaled(along, power_of_two(-speed_exponent));
-    // d.(b x c) and so on, by the edges: less cancels out. A loop, for less code to compile.
-    vec3 edges, off;
-    vec2 top, bottom;
-    float top_off, bottom_off, t;
-    for (int n = 0; n < 5; n++) {
-        PairVector x = n == 0 ? b : n == 1 ? ac : n == 2 ? a : ab;
-        PairVector y = n == 0 ? bc : n == 1 ? a : n == 2 ? ab : ac;
-        float error;
-        vec2 value = pair_triple(n == 3 ? a : along, x, y, error);
-        edges = vec3(n == 0 ? value.x : edges.x, n == 1 ? value.x : edges.y,
-                     n == 2 ? value.x : edges.z);
-        off = vec3(n == 0 ? error : off.x, n == 1 ? error : off.y, n == 2 ? error : off.z);
-        top = n == 3 ? value : top;
-        top_off = n == 3 ? error : top_off;
-        bottom = value;
-        bottom_off = error;
-    }
-    bool fit = is_fit(way) && is_fit(size) && is_fit(speed);
-    bvec3 below = lessThan(edges, -off), above = greaterThan(edges, off);
-    bool sided = fit && abs(bottom.x) > bottom_off;
-    bool outside = fit && any(below) && any(above);
+    PairTriangle p = pair_triangle(origin, dir, v0, v1, v2);
+    PairEdges e = pair_edges(p);
+    bvec3 below = lessThan(e.edges, -e.off), above = greaterThan(e.edges, e.off);
+    bool sided = p.fit && abs(e.bottom.x) > e.bottom_off;
+    bool outside = p.fit && any(below) && any(above);
     bool inside = sided && (all(below) || all(above));
-    bool behind = sided && abs(top.x) > top_off && (top.x < 0.0) != (bottom.x < 0.0);
+    bool behind =
+        sided && abs(e.top.x) > e.top_off && (e.top.x < 0.0) != (e.bottom.x < 0.0);
     bool point = v0 == v1 || v1 == v2 || v2 == v0; // no area
-    key_known = round_ratio(top, bottom, top_off, bottom_off, t) && fit;
-    precise float key = t * power_of_two(way_exponent - speed_exponent);
-    float to_weight = power_of_two(way_exponent - size_exponent);
-    precise float u = edges.y / bottom.x * to_weight;
-    precise float v = edges.z / bottom.x * to_weight;
+    float t, to_weight = power_of_two(p.way - p.size);
+    key_known = round_ratio(e.top, e.bottom, e.top_off, e.bottom_off, t) && p.fit;
+    precise float key = t * power_of_two(p.way - p.speed);
+    precise float u = e.edges.y / e.bottom.x * to_weight;
+    precise float v = e.edges.z / e.bottom.x * to_weight;
     m.key = key;
     m.u = u;
     m.v = v;
-    m.front = bottom.x < 0.0;
+    m.front = e.bottom.x < 0.0;
     m.on_edge = bvec3(false);
     m.met = inside && key_known && !point;
     return outside || behind || point || m.met;
