@@ -11,7 +11,7 @@ if(NOT version MATCHES "version 14[.]")
   message("SKIPPED: no clang-format 14 here (Debian 12: apt-get install clang-format)")
   return()
 endif()
-file(GLOB_RECURSE files ${ROOT}/host/*.[ch] ${ROOT}/host/*.cpp ${ROOT}/tests/*.[ch]
+file(GLOB_RECURSE files ${ROOT}/host/*.[ch] ${ROOT}/host/*.cpp ${ROOT}/host/*.hpp ${ROOT}/tests/*.[ch]
   ${ROOT}/tools/*.[ch])
 list(LENGTH files count)
 execute_process(COMMAND ${CLANG_FORMAT} --dry-run --Werror ${files}

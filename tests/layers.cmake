@@ -80,7 +80,7 @@ endfunction()
 file(GLOB modules RELATIVE ${ROOT}/host ${ROOT}/host/*)
 foreach(module ${modules})
   file(GLOB_RECURSE files ${ROOT}/host/${module}/*.c ${ROOT}/host/${module}/*.cpp
-    ${ROOT}/host/${module}/*.h)
+    ${ROOT}/host/${module}/*.h ${ROOT}/host/${module}/*.hpp)
   if(files AND NOT module IN_LIST names)
     complain("host/${module}/ is not in the table of docs/architecture.md")
   endif()

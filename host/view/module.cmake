@@ -4,5 +4,6 @@ whit_module(view
     engine_draw.c events.c hud.c input.c keys.c measure.c memory.c overlay.c palette.c panels.c
     pick.c price_panel.c prices.c replay.c
     session.c settings.c state.c view.c window.c wish.c ui.cpp
+    ui_widgets.cpp
   LINK whit_base whit_device whit_render whit_api whit_cost whit_kernels glfw PkgConfig::IMGUI PkgConfig::JANSSON
     Vulkan::Vulkan m)

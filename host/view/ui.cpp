@@ -1,5 +1,6 @@
-// The shim over Dear ImGui 1.86 and its Vulkan backend: everything of the viewer that is C++.
-#include "view/ui.h"
+// The shim over Dear ImGui 1.86 and its Vulkan backend: its memory, its life, where panels are.
+// With ui_widgets.cpp this is everything of the viewer that is C++.
+#include "view/ui_inside.hpp"
 
 #include <cstdarg>
 #include <cstdio>
@@ -25,7 +26,7 @@ struct ui {
     uint32_t images;    // see give_back
 };
 
-static float line_scale = 1.0f;
+float line_scale = 1.0f;
 
 // ---- Memory ----
 
@@ -157,8 +158,7 @@ static float inside()
     return 10.0f * line_scale;
 }
 
-// Of a panel, at most.
-static float panel_width()
+float panel_width()
 {
     return ImGui::GetIO().DisplaySize.x - 2.0f * inside();
 }
@@ -208,7 +208,7 @@ static void note_panel(int index)
         layout.obstacles[layout.obstacle_count++] = index;
 }
 
-static void note_item(const char *label)
+void note_item(const char *label)
 {
     if (item_count == ITEMS_MOST)
         return;
@@ -541,83 +541,6 @@ void ui_panel_end(void)
     ImGui::End();
 }
 
-void ui_text(const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    ImGui::TextV(format, args);
-    va_end(args);
-}
-
-void ui_text_dim(const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    ImGui::TextDisabledV(format, args);
-    va_end(args);
-}
-
-void ui_text_color(uint32_t color, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextV(format, args);
-    ImGui::PopStyleColor();
-    va_end(args);
-}
-
-void ui_text_beside(uint32_t color, const char *format, ...)
-{
-    char text[256];
-    va_list args;
-    va_start(args, format);
-    std::vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x +
-                ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(text).x;
-    if (end <= panel_width() - ImGui::GetStyle().WindowPadding.x)
-        ImGui::SameLine();
-    ui_text_color(color, "%s", text);
-}
-
-void ui_cell(uint32_t color, const char *text)
-{
-    ImGui::TableNextColumn();
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::PushTextWrapPos(0.0f); // the cell's right side
-    ImGui::TextUnformatted(text);
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
-
-void ui_separator(void)
-{
-    ImGui::Separator();
-}
-void ui_same_line(float x)
-{
-    ImGui::SameLine(x * ImGui::GetFontSize() * 0.54f);
-}
-static bool noted(bool done, const char *label)
-{
-    note_item(label);
-    return done;
-}
-
-bool ui_button(const char *label)
-{
-    return noted(ImGui::Button(label), label);
-}
-bool ui_selectable(const char *label, bool selected)
-{
-    return noted(ImGui::Selectable(label, selected), label);
-}
-bool ui_checkbox(const char *label, bool *value)
-{
-    return noted(ImGui::Checkbox(label, value), label);
-}
-
 bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut)
 {
     if (index >= (uint32_t)layout.obstacle_count)
@@ -628,156 +551,6 @@ bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut)
     *cut = p.cut;
     std::memcpy(rectangle, sides, sizeof sides);
     return true;
-}
-
-static float field_width()
-{
-    return 9.0f * ImGui::GetFontSize();
-}
-
-bool ui_choice(const char *label, const char *shown, const char *const *names, int count,
-               int *value)
-{
-    ImGui::SetNextItemWidth(field_width());
-    bool open = ImGui::BeginCombo(label, shown), chosen = false;
-    note_item(label);
-    for (int i = 0; open && i < count; ++i) {
-        if (ui_selectable(names[i], i == *value)) {
-            *value = i;
-            chosen = true;
-        }
-    }
-    if (open)
-        ImGui::EndCombo();
-    return chosen;
-}
-
-bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic)
-{
-    ImGui::SetNextItemWidth(field_width());
-    bool moved =
-        ImGui::SliderScalar(label, ImGuiDataType_Double, value, &lo, &hi, "%.4g",
-                            logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-    return noted(moved, label);
-}
-
-bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi)
-{
-    ImGui::SetNextItemWidth(field_width());
-    return noted(ImGui::SliderScalar(label, ImGuiDataType_U32, value, &lo, &hi), label);
-}
-
-bool ui_tree_begin(const char *label, bool open)
-{
-    ImGui::SetNextItemOpen(open, ImGuiCond_Once);
-    return ImGui::TreeNode(label);
-}
-
-void ui_tree_end(void)
-{
-    ImGui::TreePop();
-}
-
-void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count)
-{
-    float em = ImGui::GetFontSize(), width = 20.0f * em, height = 0.8f * em;
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    ImDrawList *list = ImGui::GetWindowDrawList();
-    for (int i = 0; i < count; ++i)
-        list->AddRectFilled(ImVec2(at.x + width * (float)i / (float)count, at.y),
-                            ImVec2(at.x + width * (float)(i + 1) / (float)count, at.y + height),
-                            colors[i]);
-    float last = width - ImGui::CalcTextSize(labels[label_count - 1]).x - 0.5f * em, end = 0.0f;
-    for (int i = 0; i < label_count; ++i) {
-        float part = (float)i / (float)(label_count - 1);
-        float wide = ImGui::CalcTextSize(labels[i]).x, x = at.x + part * width;
-        list->AddLine(ImVec2(x, at.y + height), ImVec2(x, at.y + height + 0.25f * em), 0xFFE0E0E0u,
-                      line_scale);
-        float left = part * (width - wide);
-        if (i > 0 && i < label_count - 1 && (left < end || left + wide > last))
-            continue; // no room for it
-        list->AddText(ImVec2(at.x + left, at.y + height + 0.25f * em), 0xFFE0E0E0u, labels[i]);
-        end = left + wide + 0.5f * em;
-    }
-    ImGui::Dummy(ImVec2(width, height + 1.25f * em));
-}
-
-void ui_progress(float part, const char *text)
-{
-    float shown = part < 0.0f ? 0.0f : part;
-    ImGui::ProgressBar(shown, ImVec2(18.0f * ImGui::GetFontSize(), 0.0f), text);
-}
-
-bool ui_table_begin(const char *id, int columns)
-{
-    return ImGui::BeginTable(id, columns,
-                             ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
-                                 ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX);
-}
-
-static float character_width()
-{
-    return ImGui::CalcTextSize("0").x;
-}
-
-int ui_characters(int columns)
-{
-    const ImGuiStyle &style = ImGui::GetStyle();
-    float room = panel_width() - 2.0f * style.WindowPadding.x - style.ScrollbarSize -
-                 (float)columns * (2.0f * style.CellPadding.x + 1.0f);
-    return (int)(room / character_width());
-}
-
-void ui_table_widths(const int *characters, int count)
-{
-    for (int i = 0; i < count; ++i)
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
-                                (float)characters[i] * character_width() + 1.0f);
-}
-
-void ui_table_header(const char *const *names, int count)
-{
-    for (int i = 0; i < count; ++i)
-        ImGui::TableSetupColumn(names[i]);
-    ImGui::TableHeadersRow();
-}
-
-void ui_table_next(void)
-{
-    ImGui::TableNextColumn();
-}
-void ui_table_end(void)
-{
-    ImGui::EndTable();
-}
-
-void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width)
-{
-    ImGui::GetBackgroundDrawList()->AddLine(ImVec2(x0, y0), ImVec2(x1, y1), color,
-                                            width * line_scale);
-}
-
-void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled)
-{
-    ImDrawList *list = ImGui::GetBackgroundDrawList();
-    if (filled)
-        list->AddRectFilled(ImVec2(x0, y0), ImVec2(x1, y1), color);
-    else
-        list->AddRect(ImVec2(x0, y0), ImVec2(x1, y1), color);
-}
-
-void ui_text_at(float x, float y, uint32_t color, const char *text)
-{
-    ImDrawList *list = ImGui::GetBackgroundDrawList();
-    list->AddText(ImVec2(x + line_scale, y + line_scale), 0xC0000000u, text);
-    list->AddText(ImVec2(x, y), color, text);
-}
-
-void ui_text_size(const char *text, float *width, float *height)
-{
-    ImVec2 size = ImGui::CalcTextSize(text);
-    *width = size.x;
-    *height = size.y;
 }
 
 } // extern "C"

@@ -1,0 +1,14 @@
+// What the two parts of the shim over Dear ImGui share.
+#ifndef VIEW_UI_INSIDE_HPP
+#define VIEW_UI_INSIDE_HPP
+
+#include "view/ui.h"
+
+extern float line_scale; // pixels a unit of lengths on the screen
+
+float panel_width(); // at most, pixels
+
+// The last item is found under its label by ui_item.
+void note_item(const char *label);
+
+#endif
