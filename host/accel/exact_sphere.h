@@ -26,7 +26,7 @@ struct sphere_meeting {
 };
 
 /* The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none.
-   All finite, radius > 0. u and v are those of the normal, square_from_dir. */
+   All finite, radius > 0. */
 void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
                        bool only_far, float t_min, struct sphere_meeting *out);
 

@@ -54,7 +54,7 @@ static inline void bound_ray_setup(struct ray_setup *ray)
     float size = fabsf(ray->dir.x);
     size = fabsf(ray->dir.y) > size ? fabsf(ray->dir.y) : size;
     size = fabsf(ray->dir.z) > size ? fabsf(ray->dir.z) : size;
-    if (!(size > 1.0f / 1.2676506e+30f && size < 1.2676506e+30f))
+    if (!(size > 7.8886090522101181e-31f && size < 1.2676506002282294e+30f))
         ray->shear = vec3_make(NAN, NAN, NAN);
 }
 

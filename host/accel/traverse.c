@@ -529,6 +529,8 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
     walk->any = params->any;
     walk->next = false;
     walk->t_min = ray->t_min;
+    if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
+        walk->t_min = 0.0f;
     walk->skip_instance = params->skip_instance;
     walk->skip_primitive = params->skip_primitive;
     walk->hit = hit;

@@ -23,7 +23,7 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
                             between triangles; hits may depend on the tree */
     WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest;
-                            needs trees when on a device. Spheres: as watertight */
+                            needs trees when on a device */
 } whit_numerics;
 
 typedef struct whit_renderer_params {

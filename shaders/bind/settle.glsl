@@ -143,6 +143,8 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
         }
         first = false;
     } while (again);
+    if (again) // the driver has ended the loop
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
 // NUMERICS_EXACT: makes the t of a hit its key, which nothing may have asked for so far. Not for

@@ -347,15 +347,16 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     bool at_exit = starts_at_exit(mode, p, chord, t_min);
     bool accepted = false, again;
     do {
+        again = false;
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
-        if (has_integers())
+        bool open = SPEC_NUMERICS == NUMERICS_EXACT &&
+                    is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
+                               skip_primitive, hit) && is_unsure(mode, m, hit);
+        if (has_integers() && open)
             settle(ray, origin, dir, t_min, record, p, at_exit, m, hit);
-        bool waits = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u &&
-                     is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
-                                skip_primitive, hit) && is_unsure(mode, m, hit);
-        if (waits)
+        if (SPEC_LOOKS == 0u && open)
             hit.status |= STATUS_RAY_WAITS;
-        if (waits)
+        if (SPEC_LOOKS == 0u && open)
             break;
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
@@ -369,6 +370,8 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
         again = p.is_sphere && goes_through(mode) && refused && !at_exit;
         at_exit = true;
     } while (again);
+    if (again) // the driver has ended the loop
+        hit.status |= STATUS_UNFINISHED_TRAVERSAL;
     return is_over(mode, accepted, hit);
 }
 
@@ -532,6 +535,8 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (!is_usable(origin, dir))
         root = REF_DONE;
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // behind the origin nothing is hit
+        t_min = 0.0;
     if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);
     } else {

@@ -101,7 +101,7 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
 {
     uint p = ball_mantissa[a], q = ball_mantissa[b];
     bool minus = negative != ((p ^ q) >> 31 != 0u);
-    int shift = ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0);
+    int shift = max(ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0), 0); // below 0: of 0
     uint high, low;
     umulExtended(p & 0x7fffffffu, q & 0x7fffffffu, high, low);
     uint bits = uint(shift % BALL_BITS);
@@ -270,6 +270,7 @@ SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius
         }
         choose = false;
     } while (least < most && finished);
+    finished = finished && least >= most;
     SphereMeeting m;
     m.key = uintBitsToFloat(least);
     m.at_exit = at_exit;

@@ -46,7 +46,7 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     // Quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp): NaN, with which no
     // filter decides.
     float length = abs(turned.z);
-    if (SPEC_NUMERICS == NUMERICS_EXACT && !(length > 7.8886e-31 && length < 1.2676506e+30))
+    if (SPEC_NUMERICS == NUMERICS_EXACT && !(length > 7.8886090522101181e-31 && length < 1.2676506002282294e+30))
         shear = vec3(uintBitsToFloat(0x7fc00000u));
     ray.shear = shear;
     return ray;

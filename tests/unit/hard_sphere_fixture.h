@@ -78,6 +78,23 @@ static inline struct subject make_stretched(void)
     return s;
 }
 
+/* Within a float of the shortest directions that the filter takes. */
+static inline struct subject make_short(void)
+{
+    static const float next_to[] = {0.0f, 1.0f, 0x1p-100f};
+    struct subject s = make_ordinary();
+    float *axis[] = {&s.dir.x, &s.dir.y, &s.dir.z};
+    uint32_t longest = 0;
+    for (uint32_t k = 1; k < 3; ++k)
+        longest = fabsf(*axis[k]) > fabsf(*axis[longest]) ? k : longest;
+    float scale = 0x1p-100f / fabsf(*axis[longest]);
+    float length = nextafterf(0x1p-100f, next_to[random_bits() % 3]);
+    *axis[longest] = *axis[longest] < 0.0f ? -length : length;
+    for (uint32_t k = 0; k < 3; ++k)
+        *axis[k] *= k == longest ? 1.0f : scale;
+    return s;
+}
+
 /* Past a small sphere as near as a float for its radius tells: by 2^-25 of it. */
 static inline struct subject make_grazing(void)
 {
@@ -178,6 +195,7 @@ static const struct sphere_kind {
     {"huge", make_huge, 0.6, 0.0},
     {"denormals", make_denormal, 0.0, 0.0},
     {"long and short directions", make_stretched, 0.0, 0.0},
+    {"directions of 2^-100", make_short, 0.03, 0.0},
     {"exactly tangent", make_tangent, 0.0, 0.0},
     {"tangent but for one float", make_nearly_tangent, 0.0, 0.8},
     {"t between two floats", make_between, 0.0, 0.0},
