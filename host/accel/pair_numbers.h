@@ -76,6 +76,14 @@ static inline float pair_largest(const struct pair_vector *v)
     return vec3_largest_magnitude(pair_magnitudes(v));
 }
 
+static inline struct pair_vector pair_cross(const struct pair_vector *a,
+                                            const struct pair_vector *b)
+{
+    return (struct pair_vector){pair_minus(pair_times(a->y, b->z), pair_times(a->z, b->y)),
+                                pair_minus(pair_times(a->z, b->x), pair_times(a->x, b->z)),
+                                pair_minus(pair_times(a->x, b->y), pair_times(a->y, b->x))};
+}
+
 static inline struct pair pair_dot(const struct pair_vector *a, const struct pair_vector *b)
 {
     return pair_plus(pair_plus(pair_times(a->x, b->x), pair_times(a->y, b->y)),

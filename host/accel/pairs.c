@@ -2,13 +2,6 @@
 
 #include "accel/pair_numbers.h"
 
-static struct pair_vector cross(const struct pair_vector *a, const struct pair_vector *b)
-{
-    return (struct pair_vector){pair_minus(pair_times(a->y, b->z), pair_times(a->z, b->y)),
-                                pair_minus(pair_times(a->z, b->x), pair_times(a->x, b->z)),
-                                pair_minus(pair_times(a->x, b->y), pair_times(a->y, b->x))};
-}
-
 /* d.(a x b) of vectors up to 2. */
 static struct bounded_pair triple(const struct pair_vector *d, const struct pair_vector *a,
                                   const struct pair_vector *b)
@@ -18,7 +11,7 @@ static struct bounded_pair triple(const struct pair_vector *d, const struct pair
     float y = ma.z * mb.x + ma.x * mb.z;
     float z = ma.x * mb.y + ma.y * mb.x;
     float size = (md.x * x + md.y * y) + md.z * z;
-    struct pair_vector normal = cross(a, b);
+    struct pair_vector normal = pair_cross(a, b);
     return (struct bounded_pair){pair_dot(d, &normal), size * PAIR_RELATIVE + PAIR_ABSOLUTE};
 }
 

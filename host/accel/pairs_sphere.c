@@ -14,27 +14,32 @@ static struct bounded_pair bounded(struct pair value, float size)
 }
 
 static struct quadratic find_quadratic(const struct pair_vector *m, const struct pair_vector *d,
-                                       float radius)
+                                       struct pair rr)
 {
     struct vec3 sm = pair_magnitudes(m), sd = pair_magnitudes(d);
-    struct pair rr = pair_product(radius, radius), mm = pair_dot(m, m);
-    struct pair p = pair_dot(d, d);
+    struct pair mm = pair_dot(m, m), p = pair_dot(d, d);
     float ms = (sm.x * sd.x + sm.y * sd.y) + sm.z * sd.z;
     return (struct quadratic){.p = bounded(p, p.high),
                               .s = bounded(pair_dot(m, d), ms),
                               .q = bounded(pair_minus(mm, rr), mm.high + rr.high)};
 }
 
-/* S^2 - P Q. */
-static struct bounded_pair discriminant(const struct quadratic *f)
+/* S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): its terms are of the sphere's size, however far it is.
+ */
+static struct bounded_pair discriminant(const struct pair_vector *m, const struct pair_vector *d,
+                                        struct pair rr, struct bounded_pair p)
 {
-    struct pair ss = pair_times(f->s.value, f->s.value), pq = pair_times(f->p.value, f->q.value);
-    float s = fabsf(f->s.value.high), p = f->p.value.high, q = fabsf(f->q.value.high);
-    float of_s = (2.0f * s + f->s.error) * f->s.error;
-    float of_pq = (p + f->p.error) * f->q.error + q * f->p.error;
-    struct bounded_pair d = bounded(pair_minus(ss, pq), ss.high + p * q);
-    d.error = d.error + (of_s + of_pq) * 1.0625f;
-    return d;
+    struct vec3 sm = pair_magnitudes(m), sd = pair_magnitudes(d);
+    struct pair_vector x = pair_cross(m, d);
+    struct vec3 sx = pair_magnitudes(&x);
+    float ex = (sm.y * sd.z + sm.z * sd.y) * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    float ey = (sm.z * sd.x + sm.x * sd.z) * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    float ez = (sm.x * sd.y + sm.y * sd.x) * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    float of_x = ((2.0f * sx.x + ex) * ex + (2.0f * sx.y + ey) * ey) + (2.0f * sx.z + ez) * ez;
+    struct pair rp = pair_times(rr, p.value), xx = pair_dot(&x, &x);
+    struct bounded_pair room = bounded(pair_minus(rp, xx), rp.high + xx.high);
+    room.error = room.error + (of_x + rr.high * p.error) * 1.0625f;
+    return room;
 }
 
 /* Of what is beyond its own error. */
@@ -68,8 +73,10 @@ bool pair_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, f
     int way_exponent = length_exponent(way), speed_exponent = length_exponent(speed);
     pair_scale(&m, power_of_two(-way_exponent));
     pair_scale(&d, power_of_two(-speed_exponent));
-    struct quadratic f = find_quadratic(&m, &d, radius * power_of_two(-way_exponent));
-    struct bounded_pair room = discriminant(&f);
+    float scaled = radius * power_of_two(-way_exponent);
+    struct pair rr = pair_product(scaled, scaled);
+    struct quadratic f = find_quadratic(&m, &d, rr);
+    struct bounded_pair room = discriminant(&m, &d, rr, f.p);
     int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
     /* |S| + root: no digits cancel out in it. The other end is Q over that. */
     struct bounded_pair root = root_of(room), sum = negated(f.s, s < 0);

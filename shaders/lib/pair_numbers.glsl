@@ -62,6 +62,15 @@ vec3 magnitudes(PairVector v)
     return abs(vec3(v.x.x, v.y.x, v.z.x));
 }
 
+PairVector pair_cross(PairVector a, PairVector b)
+{
+    PairVector n;
+    n.x = pair_plus(pair_times(a.y, b.z), -pair_times(a.z, b.y));
+    n.y = pair_plus(pair_times(a.z, b.x), -pair_times(a.x, b.z));
+    n.z = pair_plus(pair_times(a.x, b.y), -pair_times(a.y, b.x));
+    return n;
+}
+
 vec2 pair_dot(PairVector a, PairVector b)
 {
     return pair_plus(pair_plus(pair_times(a.x, b.x), pair_times(a.y, b.y)),

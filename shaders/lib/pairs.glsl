@@ -5,15 +5,6 @@
 
 #include "pair_numbers.glsl"
 
-PairVector pair_cross(PairVector a, PairVector b)
-{
-    PairVector n;
-    n.x = pair_plus(pair_times(a.y, b.z), -pair_times(a.z, b.y));
-    n.y = pair_plus(pair_times(a.z, b.x), -pair_times(a.x, b.z));
-    n.z = pair_plus(pair_times(a.x, b.y), -pair_times(a.y, b.x));
-    return n;
-}
-
 // d.(a x b) of vectors up to 2, and in `error` how far it may be off: by the sizes of what it is the sum
 // of, with room for five times what the operations add up to; and by what underflows, see pair_meet.
 vec2 pair_triple(PairVector d, PairVector a, PairVector b, out float error)

@@ -24,28 +24,31 @@ struct Quadratic {
     BoundedPair p, s, q;
 };
 
-Quadratic find_quadratic(PairVector m, PairVector d, float radius)
+Quadratic find_quadratic(PairVector m, PairVector d, vec2 rr)
 {
     vec3 sm = magnitudes(m), sd = magnitudes(d);
-    vec2 rr = pair_product(radius, radius), mm = pair_dot(m, m), p = pair_dot(d, d);
+    vec2 mm = pair_dot(m, m), p = pair_dot(d, d);
     precise float ms = (sm.x * sd.x + sm.y * sd.y) + sm.z * sd.z;
     precise float qs = mm.x + rr.x;
     return Quadratic(bounded_pair(p, p.x), bounded_pair(pair_dot(m, d), ms),
                      bounded_pair(pair_plus(mm, -rr), qs));
 }
 
-// S^2 - P Q.
-BoundedPair discriminant(Quadratic f)
+// S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): its terms are of the sphere's size, however far it is.
+BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
 {
-    vec2 ss = pair_times(f.s.value, f.s.value), pq = pair_times(f.p.value, f.q.value);
-    float s = abs(f.s.value.x), p = f.p.value.x, q = abs(f.q.value.x);
-    precise float of_s = (2.0 * s + f.s.error) * f.s.error;
-    precise float of_pq = (p + f.p.error) * f.q.error + q * f.p.error;
-    precise float size = ss.x + p * q;
-    BoundedPair d = bounded_pair(pair_plus(ss, -pq), size);
-    precise float error = d.error + (of_s + of_pq) * 1.0625;
-    d.error = error;
-    return d;
+    vec3 sm = magnitudes(m), sd = magnitudes(d);
+    PairVector x = pair_cross(m, d);
+    vec3 sx = magnitudes(x);
+    precise vec3 e = (sm.yzx * sd.zxy + sm.zxy * sd.yzx) * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    precise vec3 each = (2.0 * sx + e) * e;
+    precise float of_x = (each.x + each.y) + each.z;
+    vec2 rp = pair_times(rr, p.value), xx = pair_dot(x, x);
+    precise float size = rp.x + xx.x;
+    BoundedPair room = bounded_pair(pair_plus(rp, -xx), size);
+    precise float error = room.error + (of_x + rr.x * p.error) * 1.0625;
+    room.error = error;
+    return room;
 }
 
 // Of what is beyond its own error. The first float is off by 4.5 units in the last place at most; what
@@ -75,8 +78,10 @@ bool pair_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool onl
     int way_exponent = length_exponent(way), speed_exponent = length_exponent(speed);
     m = pair_scaled(m, power_of_two(-way_exponent));
     d = pair_scaled(d, power_of_two(-speed_exponent));
-    Quadratic f = find_quadratic(m, d, radius * power_of_two(-way_exponent));
-    BoundedPair room = discriminant(f);
+    float scaled = radius * power_of_two(-way_exponent);
+    vec2 rr = pair_product(scaled, scaled);
+    Quadratic f = find_quadratic(m, d, rr);
+    BoundedPair room = discriminant(m, d, rr, f.p);
     int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
     // |S| + root: no digits cancel out in it. The other end is Q over that.
     BoundedPair root = root_of(room);

@@ -257,8 +257,8 @@ mutation(sphere_ties_round_down_in_kernels device_sphere RED spheres_are_met_as_
 change(shaders/lib/exact_sphere.glsl [[(side == 0 && (middle & 1u) != 0u)]] [[false]])
 
 mutation(sphere_pairs_without_bound hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/pairs_sphere.c [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
-  [[size * PAIR_RELATIVE / 128.0f + PAIR_ABSOLUTE]])
+change(host/accel/pairs_sphere.c [[PAIR_RELATIVE + PAIR_ABSOLUTE]]
+  [[PAIR_RELATIVE / 1024.0f + PAIR_ABSOLUTE]])
 
 mutation(far_ends_taken_for_near_in_kernels render_numerics RED spheres)
 change(shaders/bind/traverse.glsl [[hit.at_exit = at_exit;]] [[hit.at_exit = false;]])
