@@ -258,4 +258,14 @@ static inline uint32_t hits_count(const struct gpu_hit *hits, uint32_t count)
     return found;
 }
 
+/* A point of an instance. */
+static inline struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
+{
+    if (accel->flat || accel->single_identity)
+        return p;
+    const struct gpu_instance *i = &accel->instances[instance];
+    return vec3_add(accel_rotate_rows(i->forward0, i->forward1, i->forward2, p),
+                    vec3_make(i->origin_x, i->origin_y, i->origin_z));
+}
+
 #endif

@@ -402,15 +402,6 @@ static void world_finish(struct world *world)
     soup_finish(&world->soup);
 }
 
-static struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
-{
-    if (accel->flat || accel->single_identity)
-        return p;
-    const struct gpu_instance *i = &accel->instances[instance];
-    return vec3_add(accel_rotate_rows(i->forward0, i->forward1, i->forward2, p),
-                    vec3_make(i->origin_x, i->origin_y, i->origin_z));
-}
-
 /* At a vertex, a point of an edge or of the inside of some triangle, from nearby or far away. A
    quarter of them along an axis. */
 static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index)

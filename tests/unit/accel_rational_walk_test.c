@@ -119,15 +119,6 @@ static struct scene *mixed_scene(struct scene_mesh mesh, uint32_t placed, double
     return scene;
 }
 
-static struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
-{
-    if (accel->flat || accel->single_identity)
-        return p;
-    const struct gpu_instance *i = &accel->instances[instance];
-    return vec3_add(accel_rotate_rows(i->forward0, i->forward1, i->forward2, p),
-                    vec3_make(i->origin_x, i->origin_y, i->origin_z));
-}
-
 /* At a point of a record's box, from within the spread or from afar. */
 static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index, float spread)
 {
