@@ -16,8 +16,9 @@
    differ in sign, so |U| / error(U), smallest over the edges that matter, tells how many error
    bounds away the other answer is: below 1 it is possible. t = (sum of U z) / (sum of U) errs by
    the same rules; float clamps it to the triangle's box, which moves it by at most 4 r |t|.
-   Products of errors are kept; one denormal is added to everything that may underflow. The oracle's
-   own roundings are 2^-29 of all this.
+   Products of errors are kept; one denormal is added to everything that may underflow. A sum of U
+   that is denormal may have no reciprocal in floats, so that nothing is sure of such a triangle.
+   The oracle's own roundings are 2^-29 of all this.
 
    The test of a sphere (sphere.h) works on C = centre - origin, off by r |C| on each axis, and on
    D = (S.x, S.y, 1). With m = C.D / D.D, the perpendicular L = C - m D errs by what C, D and the
@@ -40,6 +41,7 @@
 
 #define ROUNDING            0x1p-24
 #define DENORMAL            0x1p-149
+#define NORMAL_LEAST        0x1p-126
 /* Boxes grow by this much of the distance to the ray's origin: what the float test may still hit
    lies within 16 roundings of it. */
 #define BOX_GROWTH          0x1p-18
@@ -191,7 +193,7 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
     }
     struct verdict out = {
         .hit = !(below && above) && det != 0.0, .t_error = INFINITY, .choice = INFINITY};
-    out.margin = edges_margin(edge, out.hit);
+    out.margin = fabs(det) < NORMAL_LEAST ? 0.0 : edges_margin(edge, out.hit);
     if (det != 0.0) {
         out.t = sum / det;
         out.u = edge[1].value / det;
