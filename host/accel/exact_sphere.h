@@ -21,8 +21,8 @@ void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
 struct sphere_meeting {
     bool met;     /* at t >= 0; false where the key exceeds FLT_MAX */
     bool at_exit; /* at the far end */
-    bool inward;  /* from the ray's origin the centre is ahead */
-    float key, u, v;
+    bool inward;  /* where it is met: from the ray's origin the centre is ahead */
+    float key;    /* where it is met */
 };
 
 /* The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none.
