@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "accel/accel.h"
-#include "base/array.h"
-#include "scene/shapes.h"
 
 static char last_error[512];
 
@@ -26,50 +26,20 @@ static void keep_error(void *user, whit_log_level level, const char *message)
 
 static const struct log quiet = {.fn = keep_error, .level = WHIT_LOG_ERROR};
 
-static double random_unit(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-53;
-}
-
-static double random_signed(uint64_t *state)
-{
-    return 2.0 * random_unit(state) - 1.0;
-}
-
 static struct scene *new_scene(void)
 {
-    struct scene *scene = scene_create(&quiet, "flat");
-    struct scene_material grey, glass;
-    assert_non_null(scene);
-    scene_material_init(&grey, "grey");
-    scene_material_init(&glass, "glass");
+    struct scene *scene = scene_begin(&quiet, "flat");
+    struct scene_material glass = material_grey("glass");
     glass.transmission[0] = 0.5f;
-    scene_add_material(scene, grey);
-    scene_add_material(scene, glass);
+    scene_put_material(scene, material_grey("grey"));
+    scene_put_material(scene, glass);
     return scene;
 }
 
 static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings,
                            uint32_t material)
 {
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, segments, rings, &mesh), WHIT_OK);
-    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
-        mesh.materials[i] = material;
-    mesh.name = string_copy("sphere");
-    return scene_add_mesh(scene, mesh);
-}
-
-static void place(struct scene *scene, uint32_t mesh, const struct affine *matrix)
-{
-    struct scene_instance instance = {
-        .name = string_copy("object"), .mesh = mesh, .node = SCENE_NONE};
-    if (matrix) {
-        instance.has_local = true;
-        instance.local = *matrix;
-    }
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    return scene_put_mesh(scene, mesh_wearing(mesh_sphere(1.0, segments, rings), material));
 }
 
 /* Turned, scaled, mirrored (every third) and sheared. */
@@ -98,12 +68,12 @@ static struct scene *mixed_scene(void)
     uint64_t state = 7;
     add_sphere(scene, 24, 16, 0);
     add_sphere(scene, 9, 6, 1);
-    uint32_t empty = scene_add_mesh(scene, (struct scene_mesh){.name = string_copy("empty")});
+    uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
     for (uint32_t i = 0; i < OBJECTS; ++i) {
         struct affine matrix = random_matrix(&state, i);
-        place(scene, i % 13 == 5 ? empty : i % 2, &matrix);
+        scene_put_again(scene, i % 13 == 5 ? empty : i % 2, &(struct put){.matrix = &matrix});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     return scene;
 }
 
@@ -348,10 +318,10 @@ static void scenes_without_anything(void **state)
     for (int k = 0; k < 3; ++k) {
         struct scene *scene = new_scene();
         if (k > 0)
-            scene_add_mesh(scene, (struct scene_mesh){.name = string_copy("empty")});
+            scene_put_mesh(scene, (struct scene_mesh){0});
         if (k > 1)
-            place(scene, 0, NULL);
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
+            scene_put_again(scene, 0, NULL);
+        scene_ready(scene);
         struct accel *accel = build(scene, BVH_BINNED, true);
         uint64_t seed = 1;
         struct gpu_ray ray = random_ray(&seed);
@@ -371,8 +341,8 @@ static void too_many_triangles_are_refused(void **state)
     struct scene *scene = new_scene();
     uint32_t mesh = add_sphere(scene, 150, 100, 0);
     for (int i = 0; i < 5000; ++i)
-        place(scene, mesh, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+        scene_put_again(scene, mesh, NULL);
+    scene_ready(scene);
     const struct accel_params params = {.flatten = true};
     struct accel *accel = NULL;
     assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_ERROR_INPUT);

@@ -11,37 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "accel/accel.h"
-#include "base/array.h"
-#include "scene/shapes.h"
 
 static const struct log silent;
 
-static double random_signed(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-52 - 1.0;
-}
-
 static struct scene *sphere_scene(const struct affine *matrices, uint32_t count)
 {
-    struct scene *scene = scene_create(&silent, "instances");
-    struct scene_mesh mesh;
-    struct scene_material grey;
-    assert_non_null(scene);
-    scene_material_init(&grey, "grey");
-    scene_add_material(scene, grey);
-    assert_int_equal(shape_sphere(1.0, 48, 32, &mesh), WHIT_OK);
-    mesh.name = string_copy("sphere");
-    scene_add_mesh(scene, mesh);
-    for (uint32_t i = 0; i < count; ++i) {
-        struct scene_instance instance = {
-            .name = string_copy("ball"), .node = SCENE_NONE, .has_local = true};
-        instance.local = matrices[i];
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    struct scene *scene = scene_begin(&silent, "instances");
+    scene_put_material(scene, material_grey("grey"));
+    uint32_t sphere = scene_put_mesh(scene, mesh_sphere(1.0, 48, 32));
+    for (uint32_t i = 0; i < count; ++i)
+        scene_put_again(scene, sphere, &(struct put){.matrix = &matrices[i]});
+    return scene_ready(scene);
 }
 
 static struct accel *build(const struct scene *scene)
