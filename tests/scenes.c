@@ -136,8 +136,6 @@ struct scene *scene_begin(const struct log *log, const char *name)
 
 uint32_t scene_put_mesh(struct scene *scene, struct scene_mesh mesh)
 {
-    if (!mesh.name)
-        mesh.name = string_copy("object");
     return added(scene_add_mesh(scene, mesh));
 }
 
@@ -161,7 +159,7 @@ uint32_t scene_put_again(struct scene *scene, uint32_t mesh, const struct put *p
     static const struct put nothing;
     put = put ? put : &nothing;
     struct scene_instance instance = {.mesh = mesh, .node = SCENE_NONE};
-    instance.name = string_copy(put->name ? put->name : "object");
+    instance.name = string_copy(put->name);
     if (put->matrix) {
         instance.has_local = true;
         instance.local = *put->matrix;

@@ -44,7 +44,7 @@ struct scene *scene_begin(const struct log *log, const char *name);
 /* How an instance is put into a scene; all zeros, or NULL for a pointer to it: where its mesh is,
    under the mesh's own materials. Of matrix, node and at only one is meant at a time. */
 struct put {
-    const char *name;                /* of mesh, instance and node; NULL: "object" */
+    const char *name;                /* of mesh and instance; NULL: none */
     struct scene_material *material; /* all of the mesh; taken over. NULL: as the mesh says */
     const struct affine *matrix;     /* the instance's own, below no node */
     const uint32_t *node;            /* the instance is below it */

@@ -46,7 +46,7 @@ static void add_needles(struct scene *scene)
     fuzz_check(mesh.positions && mesh.indices && mesh.materials, "out of memory");
     random_state = 7;
     for (uint32_t i = 0; i < 9 * COUNT; i++) {
-        mesh.positions[i] = random_float();
+        mesh.positions[i] = random_float(&random_state);
         if (i % 9 >= 6)
             mesh.positions[i] = mesh.positions[i - 3] + 0.01f * mesh.positions[i];
     }
@@ -167,8 +167,9 @@ void fuzz_check_rays(const struct accel *accel)
     for (uint32_t i = 0; i < COUNT; i++) {
         struct gpu_ray ray = {.t_max = INFINITY};
         for (uint32_t k = 0; k < 3; k++) {
-            ray.origin[k] = 6.0f * random_float() - 3.0f;
-            float target = i % 3 ? random_float() : 0.5f * (float)(random_bits() % 5) - 1.0f;
+            ray.origin[k] = 6.0f * random_float(&random_state) - 3.0f;
+            float target = i % 3 ? random_float(&random_state)
+                                 : 0.5f * (float)random_below(&random_state, 5) - 1.0f;
             ray.dir[k] = i % 4 == 0 && k != i % 3 ? 0.0f : target - ray.origin[k];
         }
         fuzz_check_ray(accel, &ray);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../random.h"
 #include "accel/accel.h"
 #include "base/array.h"
 
@@ -41,12 +42,6 @@ struct mesh {
     uint32_t count;
 };
 
-static float random_unit(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (float)(*state >> 40) * 0x1p-24f;
-}
-
 /* Triangles of one size, or large ones among them, or many that are the same. */
 static bool mesh_init(struct mesh *mesh, uint32_t number)
 {
@@ -62,8 +57,8 @@ static bool mesh_init(struct mesh *mesh, uint32_t number)
         float *corners = &mesh->positions[9 * (size_t)i];
         float size = number % 2 && i % 8 == 0 ? 1.0f : 0.02f;
         for (uint32_t k = 0; k < 9; ++k)
-            corners[k] = (k < 3 ? random_unit(&state) : corners[k - 3]) +
-                         size * (random_unit(&state) - 0.5f);
+            corners[k] = (k < 3 ? random_float(&state) : corners[k - 3]) +
+                         size * (random_float(&state) - 0.5f);
         if (number % 3 == 2 && i % 4 == 0)
             memcpy(corners, mesh->positions, 9 * sizeof *corners);
         for (uint32_t k = 0; k < 3; ++k) {

@@ -2,15 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../random.h"
 #include "accel/accel.h"
 
 enum { COUNT = 6000 };
-
-static float random_unit(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (float)(*state >> 40) * 0x1p-24f;
-}
 
 /* Every other triangle is one of a grid, where planes cost the same but for rounding. */
 static void triangles_make(float *positions, uint32_t *indices, struct bvh_box *boxes)
@@ -20,7 +15,7 @@ static void triangles_make(float *positions, uint32_t *indices, struct bvh_box *
         struct bvh_box *box = &boxes[i];
         for (uint32_t k = 0; k < 9; ++k) {
             float *at = &positions[9 * i + k];
-            *at = k < 3 ? random_unit(&state) : at[-3] + 0.05f * (random_unit(&state) - 0.5f);
+            *at = k < 3 ? random_float(&state) : at[-3] + 0.05f * (random_float(&state) - 0.5f);
             if (i % 2 == 0) {
                 const uint32_t cell[3] = {i % 13, i / 13 % 17, i / 221};
                 *at = 0.1f * (float)cell[k % 3] + (k / 3 == k % 3 ? 0.07f : 0.0f);

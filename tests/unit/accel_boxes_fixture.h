@@ -32,10 +32,10 @@ static inline struct bvh_box *soup(uint32_t count, float size)
     struct bvh_box *boxes = boxes_alloc(count);
     for (uint32_t i = 0; i < count; ++i) {
         for (int a = 0; a < 3; ++a) {
-            float centre = random_float();
+            float centre = random_float(&random_state);
             boxes[i].lo[a] = FLT_MAX, boxes[i].hi[a] = -FLT_MAX;
             for (int k = 0; k < 3; ++k) {
-                float x = centre + size * (random_float() - 0.5f);
+                float x = centre + size * (random_float(&random_state) - 0.5f);
                 boxes[i].lo[a] = fminf(boxes[i].lo[a], x);
                 boxes[i].hi[a] = fmaxf(boxes[i].hi[a], x);
             }
@@ -195,7 +195,7 @@ static inline struct bvh_box *garbage(uint32_t count)
         for (int k = 0; k < 2; ++k) {
             uint32_t bits;
             do {
-                bits = random_bits();
+                bits = random_bits(&random_state);
                 memcpy(&x[k], &bits, sizeof bits);
             } while (!isfinite(x[k]));
         }

@@ -66,7 +66,7 @@ static struct bvh_box *grid(uint32_t side)
 static void shuffle(struct bvh_box *boxes, uint32_t count)
 {
     for (uint32_t i = count - 1; i > 0; --i) {
-        uint32_t j = random_bits() % (i + 1);
+        uint32_t j = random_below(&random_state, i + 1);
         struct bvh_box moved = boxes[i];
         boxes[i] = boxes[j];
         boxes[j] = moved;

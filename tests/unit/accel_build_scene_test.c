@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "accel/accel.h"
-#include "scene/shapes.h"
 
 static const struct log silent;
 static char last_error[256];
@@ -25,44 +26,10 @@ static void keep_error(void *user, whit_log_level level, const char *message)
         snprintf(last_error, sizeof last_error, "%s", message);
 }
 
-/* Each takes the mesh over and gives an index; no failure is expected. */
 static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings,
                            uint32_t material)
 {
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, segments, rings, &mesh), WHIT_OK);
-    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
-        mesh.materials[i] = material;
-    uint32_t index = scene_add_mesh(scene, mesh);
-    assert_int_not_equal(index, SCENE_NONE);
-    return index;
-}
-
-static uint32_t add_empty_mesh(struct scene *scene)
-{
-    struct scene_mesh mesh = {0};
-    uint32_t index = scene_add_mesh(scene, mesh);
-    assert_int_not_equal(index, SCENE_NONE);
-    return index;
-}
-
-static void add_instance(struct scene *scene, uint32_t mesh, const struct affine *matrix)
-{
-    struct scene_instance instance = {.mesh = mesh, .node = SCENE_NONE};
-    if (matrix) {
-        instance.has_local = true;
-        instance.local = *matrix;
-    }
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-}
-
-static uint32_t add_material(struct scene *scene, const char *name)
-{
-    struct scene_material material;
-    scene_material_init(&material, name);
-    uint32_t index = scene_add_material(scene, material);
-    assert_int_not_equal(index, SCENE_NONE);
-    return index;
+    return scene_put_mesh(scene, mesh_wearing(mesh_sphere(1.0, segments, rings), material));
 }
 
 static struct affine placed(double x, double y, double z, double angle, double sx, double sy,
@@ -71,13 +38,6 @@ static struct affine placed(double x, double y, double z, double angle, double s
     const double at[3] = {x, y, z}, scale[3] = {sx, sy, sz};
     const double rotation[4] = {0.3 * sin(angle), 0.9 * sin(angle), -0.3 * sin(angle), cos(angle)};
     return affine_from_trs(at, rotation, scale);
-}
-
-static struct scene *new_scene(void)
-{
-    struct scene *scene = scene_create(&silent, "test");
-    assert_non_null(scene);
-    return scene;
 }
 
 static struct accel *build(struct scene *scene, uint32_t threads)
@@ -94,21 +54,20 @@ static struct accel *build(struct scene *scene, uint32_t threads)
 /* Two large meshes, three small ones, one without triangles; turned, mirrored, far away. */
 static struct scene *mixed_scene(void)
 {
-    struct scene *scene = new_scene();
-    add_material(scene, "grey");
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put_material(scene, material_grey("grey"));
     static const uint32_t sizes[] = {4, 90, 7, 80, 3};
     for (size_t i = 0; i < 5; ++i)
         add_sphere(scene, sizes[i], sizes[i], 0);
-    uint32_t empty = add_empty_mesh(scene);
-    add_instance(scene, empty, NULL);
+    uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
+    scene_put_again(scene, empty, NULL);
     for (uint32_t i = 0; i < 40; ++i) {
         struct affine m = placed(3.0 * i, i % 7, 1e4 * (i % 3), i, i % 2 ? -1 : 1, 2.0, 0.01);
-        add_instance(scene, i % 5, &m);
+        scene_put_again(scene, i % 5, &(struct put){.matrix = &m});
         if (i % 10 == 0)
-            add_instance(scene, empty, &m);
+            scene_put_again(scene, empty, &(struct put){.matrix = &m});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 static void meshes_lie_side_by_side(void **state)
@@ -253,9 +212,9 @@ static void one_instance_at_the_origin_is_told_apart(void **state)
     moved.m[7] = 1e-30;
     const struct affine *matrices[] = {NULL, &same, &moved};
     for (int k = 0; k < 3; ++k) {
-        struct scene *scene = new_scene();
-        add_instance(scene, add_sphere(scene, 8, 8, 0), matrices[k]);
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        struct scene *scene = scene_begin(&silent, "test");
+        scene_put(scene, mesh_sphere(1.0, 8, 8), &(struct put){.matrix = matrices[k]});
+        scene_ready(scene);
         struct accel *accel = build(scene, 1);
         assert_int_equal(accel->single_identity, k < 2);
         assert_int_equal(accel->instance_root, 1u << BVH_COUNT_SHIFT);
@@ -281,13 +240,13 @@ static void scenes_without_anything(void **state)
 {
     (void)state;
     for (int k = 0; k < 3; ++k) {
-        struct scene *scene = new_scene();
+        struct scene *scene = scene_begin(&silent, "test");
         if (k > 0) {
-            uint32_t mesh = add_empty_mesh(scene);
+            uint32_t mesh = scene_put_mesh(scene, (struct scene_mesh){0});
             for (int i = 1; i < k; ++i)
-                add_instance(scene, mesh, NULL);
+                scene_put_again(scene, mesh, NULL);
         }
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        scene_ready(scene);
         struct accel *accel = build(scene, 2);
         assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
         assert_int_equal(accel->instance_node_count, 0);
@@ -302,11 +261,11 @@ static void many_instances_in_one_place(void **state)
 {
     (void)state;
     enum { COUNT = 3000 };
-    struct scene *scene = new_scene();
+    struct scene *scene = scene_begin(&silent, "test");
     uint32_t mesh = add_sphere(scene, 4, 3, 0);
     for (int i = 0; i < COUNT; ++i)
-        add_instance(scene, mesh, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+        scene_put_again(scene, mesh, NULL);
+    scene_ready(scene);
     struct accel *accel = build(scene, 2);
     assert_int_equal(accel->instance_node_count, 2 * COUNT);
     assert_true(accel->instance_depth <= 12);
@@ -317,11 +276,11 @@ static void many_instances_in_one_place(void **state)
 static void matrices_without_inverse_are_refused(void **state)
 {
     (void)state;
-    struct scene *scene = new_scene();
+    struct scene *scene = scene_begin(&silent, "test");
     uint32_t mesh = add_sphere(scene, 4, 3, 0);
-    add_instance(scene, mesh, NULL);
-    add_instance(scene, mesh, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_put_again(scene, mesh, NULL);
+    scene_put_again(scene, mesh, NULL);
+    scene_ready(scene);
     struct accel *accel = build(scene, 1);
     struct scene_pose pose;
     accel->log = (struct log){.fn = keep_error, .level = WHIT_LOG_ERROR};
@@ -367,15 +326,14 @@ enum { WAYS = sizeof ways / sizeof *ways };
 
 static struct scene *moving_scene(void)
 {
-    struct scene *scene = new_scene();
-    add_material(scene, "grey");
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put_material(scene, material_grey("grey"));
     add_sphere(scene, 12, 8, 0);
     add_sphere(scene, 6, 5, 0);
-    uint32_t empty = add_empty_mesh(scene);
+    uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
     for (uint32_t i = 0; i < MOVING; ++i)
-        add_instance(scene, i % 16 == 7 ? empty : i % 2, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+        scene_put_again(scene, i % 16 == 7 ? empty : i % 2, NULL);
+    return scene_ready(scene);
 }
 
 /* Things of all sizes, shapes and hands that fly through each other. */
@@ -386,12 +344,6 @@ static void move_all(struct scene_pose *pose, double t)
         pose->instances[i] = placed(9.0 * sin(a), 5.0 * cos(1.7 * a), 8.0 * sin(0.6 * a + i), a,
                                     i % 3 ? size : -size, 0.5 * size, 1.5 * size);
     }
-}
-
-static double random_unit(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-53;
 }
 
 static struct gpu_ray random_ray(uint64_t *state)
@@ -410,7 +362,6 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint64_t
                           uint32_t count)
 {
     uint32_t status = 0, met = 0;
-    seed *= 0x9e3779b97f4a7c15u;
     for (uint32_t i = 0; i < count; ++i) {
         struct gpu_ray ray = random_ray(&seed);
         struct gpu_hit x, y;
@@ -496,11 +447,11 @@ static void every_instance_is_hit(void **state)
 {
     (void)state;
     enum { SIDE = 12 };
-    struct scene *scene = new_scene();
+    struct scene *scene = scene_begin(&silent, "test");
     uint32_t mesh = add_sphere(scene, 8, 6, 0);
     for (int i = 0; i < SIDE * SIDE; ++i)
-        add_instance(scene, mesh, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+        scene_put_again(scene, mesh, NULL);
+    scene_ready(scene);
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     for (size_t w = 0; w < WAYS; ++w) {
@@ -534,18 +485,17 @@ static void every_instance_is_hit(void **state)
 static const struct gpu_triangle *bits_of(struct scene *scene, uint32_t material,
                                           struct accel **accel)
 {
-    add_instance(scene, add_sphere(scene, 4, 3, material), NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_put(scene, mesh_wearing(mesh_sphere(1.0, 4, 3), material), NULL);
+    scene_ready(scene);
     *accel = build(scene, 1);
     return &(*accel)->triangles[0];
 }
 
 static void assert_bits(void (*set)(struct scene_material *m), uint32_t flags, uint32_t shadow)
 {
-    struct scene *scene = new_scene();
-    uint32_t material = add_material(scene, "m");
-    uint8_t *pixel = calloc(1, 4);
-    scene_add_texture(scene, (struct scene_texture){.width = 1, .height = 1, .rgba = pixel});
+    struct scene *scene = scene_begin(&silent, "test");
+    uint32_t material = scene_put_material(scene, material_grey("m"));
+    scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
     set(&scene->materials[material]);
     struct accel *accel;
     const struct gpu_triangle *triangle = bits_of(scene, material, &accel);

@@ -68,7 +68,7 @@ static void on_a_line_and_in_a_plane(void **state)
     for (int axes = 1; axes <= 2; ++axes) {
         for (uint32_t i = 0; i < COUNT; ++i) {
             for (int a = 0; a < 3; ++a) {
-                float x = a < axes ? random_float() : 0.25f;
+                float x = a < axes ? random_float(&random_state) : 0.25f;
                 boxes[i].lo[a] = x;
                 boxes[i].hi[a] = a < axes ? x + 0.01f : x;
             }
@@ -130,7 +130,7 @@ static void garbage_bits(void **state)
     (void)state;
     for (uint32_t round = 0; round < 100; ++round) {
         random_state = 1000 + round;
-        uint32_t count = 1 + random_bits() % 300;
+        uint32_t count = 1 + random_below(&random_state, 300);
         struct bvh_box *boxes = garbage(count);
         check_all(boxes, count);
         free(boxes);
@@ -172,7 +172,7 @@ static void medians_separate(void **state)
     random_state = 13;
     struct bvh_box boxes[COUNT];
     for (uint32_t i = 0; i < COUNT; ++i) {
-        float x = (float)(random_bits() % 10);
+        float x = (float)random_below(&random_state, 10);
         boxes[i] = (struct bvh_box){{x, 0, 0}, {x, 0, 0}};
     }
     struct bvh bvh;

@@ -11,11 +11,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "accel/accel.h"
 #include "accel/bvh_file.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/shapes.h"
 
 static char folder[] = "/tmp/whit_accel_file_XXXXXX";
 static char path[64], other[64];
@@ -56,52 +57,31 @@ static int remove_folder(void **state)
 
 static struct scene *spheres(uint32_t first, uint32_t second, double radius, bool painted)
 {
-    struct scene *scene = scene_create(&heard, "balls");
-    assert_non_null(scene);
-    const uint32_t sides[2] = {first, second};
-    for (uint32_t i = 0; i < 2; ++i) {
-        struct scene_mesh mesh;
-        assert_int_equal(shape_sphere(radius, sides[i], sides[i], &mesh), WHIT_OK);
-        assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
-        struct scene_instance instance = {.mesh = i, .node = SCENE_NONE};
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    }
-    struct scene_material material;
-    scene_material_init(&material, "paint");
-    material.diffuse[0] = painted ? 0.25f : 0.75f;
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    struct scene *scene = scene_begin(&heard, "balls");
+    struct scene_material paint = material_grey("paint");
+    paint.diffuse[0] = painted ? 0.25f : 0.75f;
+    scene_put_material(scene, paint);
+    scene_put(scene, mesh_sphere(radius, first, first), NULL);
+    scene_put(scene, mesh_sphere(radius, second, second), NULL);
+    return scene_ready(scene);
 }
 
 /* Long thin triangles that cross, opaque or of glass. */
 static struct scene *needles(bool glass)
 {
     enum { COUNT = 200 };
-    struct scene *scene = scene_create(&heard, "needles");
-    struct scene_mesh mesh = {.vertex_count = 3 * COUNT, .triangle_count = COUNT};
-    mesh.positions = malloc(9 * COUNT * sizeof(float));
-    mesh.indices = malloc(3 * COUNT * sizeof(uint32_t));
-    mesh.materials = calloc(COUNT, sizeof(uint32_t));
-    assert_true(scene && mesh.positions && mesh.indices && mesh.materials);
-    uint32_t seed = 3;
+    float corners[9 * COUNT];
+    uint64_t random = 3;
     for (uint32_t i = 0; i < 9 * COUNT; ++i) {
-        seed = seed * 1664525u + 1013904223u;
-        mesh.positions[i] = (float)(seed >> 8) * 0x1p-24f;
+        corners[i] = random_float(&random);
         if (i % 9 >= 6) /* the third corner is near the second */
-            mesh.positions[i] = mesh.positions[i - 3] + 0.01f * mesh.positions[i];
+            corners[i] = corners[i - 3] + 0.01f * corners[i];
     }
-    for (uint32_t i = 0; i < 3 * COUNT; ++i)
-        mesh.indices[i] = i;
-    struct scene_material material;
-    scene_material_init(&material, "needle");
-    material.transmission[0] = glass ? 0.5f : 0.0f;
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    assert_int_equal(scene_add_mesh(scene, mesh), 0);
-    struct scene_instance instance = {.mesh = 0, .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    struct scene *scene = scene_begin(&heard, "needles");
+    struct scene_material needle = material_grey("needle");
+    needle.transmission[0] = glass ? 0.5f : 0.0f;
+    scene_put(scene, mesh_triangles(corners, COUNT), &(struct put){.material = &needle});
+    return scene_ready(scene);
 }
 
 static whit_result create(const struct scene *scene, const struct bvh_params *mesh,
@@ -340,17 +320,18 @@ static void signed_garbage_does_no_harm(void **state)
     save(scene, &builds[0], path);
     size_t size;
     uint8_t *bytes = bytes_of(path, &size);
-    uint32_t seed = 5, refused = 0;
+    uint64_t random = 5;
+    uint32_t refused = 0;
     for (int round = 0; round < 3000; ++round) {
         uint8_t *copy = malloc(size);
         assert_non_null(copy);
         memcpy(copy, bytes, size);
         for (int k = 0; k <= round % 3; ++k) {
-            seed = seed * 1664525u + 1013904223u;
-            uint32_t words[] = {0, 1, UINT32_MAX, seed, 0x7fc00000u, 128, 0x0fffffffu, 2};
+            uint32_t bits = random_bits(&random);
+            uint32_t words[] = {0, 1, UINT32_MAX, bits, 0x7fc00000u, 128, 0x0fffffffu, 2};
             /* A third of them in the headers. */
-            size_t at = (seed >> 4) % (round % 3 == 0 ? 104 : size - 8);
-            memcpy(copy + (at & ~(size_t)3), &words[seed >> 29], 4);
+            size_t at = (bits >> 4) % (round % 3 == 0 ? 104 : size - 8);
+            memcpy(copy + (at & ~(size_t)3), &words[bits >> 29], 4);
         }
         sign(copy, size);
         whit_result result = parse(scene, copy, size);

@@ -163,50 +163,51 @@ static double score_of(const struct subject *s, enum aim aim)
 
 static float either_sign(float x)
 {
-    return random_bits() % 2 ? x : -x;
+    return random_below(&random_state, 2) ? x : -x;
 }
 
 /* Just above a power of two roundings are largest. */
 static float coordinate(void)
 {
-    uint32_t kind = random_bits() % 3;
-    float mantissa = random_bits() % 2 ? 1.0f : 1.0f + random_float();
+    uint32_t kind = random_below(&random_state, 3);
+    float mantissa = random_below(&random_state, 2) ? 1.0f : 1.0f + random_float(&random_state);
     return kind == 0   ? random_within(1.0f)
            : kind == 1 ? either_sign(mantissa)
-                       : either_sign(ldexpf(mantissa, (int)(random_bits() % 6) - 3));
+                       : either_sign(ldexpf(mantissa, (int)random_below(&random_state, 6) - 3));
 }
 
 /* An edge right across a ray along a diagonal of space, as seen from far away for its size. Such
    quotients are 1, where 2.5 ulp are most, and all errors of both ends may add up. */
 static void start_across(struct subject *s)
 {
-    float size = ldexpf(1.0f + random_float(), -6 - (int)(random_bits() % 6));
-    float away = 1.0f + ldexpf(random_float(), -(int)(random_bits() % 12));
+    float size =
+        ldexpf(1.0f + random_float(&random_state), -6 - (int)random_below(&random_state, 6));
+    float away = 1.0f + ldexpf(random_float(&random_state), -(int)random_below(&random_state, 12));
     for (int k = 0; k < 3; ++k) {
         float sign = either_sign(1.0f);
-        s->at[k] = either_sign(ldexpf(random_float(), -24));
+        s->at[k] = either_sign(ldexpf(random_float(&random_state), -24));
         s->at[3 + k] = sign;
         s->at[6 + k] = sign * (k < 2 ? away + size : away);
         s->at[9 + k] = sign * (k < 2 ? away - size : away);
         s->at[12 + k] = sign * (k < 2 ? away + random_within(size) : away);
-        s->steps[k] = random_bits() % 2 ? STEPS_MOST : -STEPS_MOST;
+        s->steps[k] = random_below(&random_state, 2) ? STEPS_MOST : -STEPS_MOST;
     }
 }
 
 /* Through the middle of a sphere along a diagonal of space, or at its edge. */
 static void start_at_sphere(struct subject *s)
 {
-    float away = ldexpf(1.0f + random_float(), (int)(random_bits() % 4));
+    float away = ldexpf(1.0f + random_float(&random_state), (int)random_below(&random_state, 4));
     for (int k = 0; k < 3; ++k) {
         float sign = either_sign(1.0f),
-              aside = ldexpf(random_within(1.0f), -(int)(random_bits() % 8));
-        s->at[k] = either_sign(ldexpf(1.0f + random_float(), -24));
+              aside = ldexpf(random_within(1.0f), -(int)random_below(&random_state, 8));
+        s->at[k] = either_sign(ldexpf(1.0f + random_float(&random_state), -24));
         s->at[3 + k] = sign;
         s->at[6 + k] = sign * away + aside;
-        s->steps[k] = random_bits() % 2 ? STEPS_MOST : -STEPS_MOST;
+        s->steps[k] = random_below(&random_state, 2) ? STEPS_MOST : -STEPS_MOST;
     }
     for (int i = 9; i < 15; ++i)
-        s->at[i] = ldexpf(1.0f + random_float(), -(int)(random_bits() % 4));
+        s->at[i] = ldexpf(1.0f + random_float(&random_state), -(int)random_below(&random_state, 4));
 }
 
 static void start_anywhere(struct subject *s)
@@ -214,27 +215,27 @@ static void start_anywhere(struct subject *s)
     for (int i = 0; i < 15; ++i)
         s->at[i] = coordinate();
     for (int k = 0; k < 3; ++k)
-        s->steps[k] = (int)(random_bits() % (2 * STEPS_MOST + 1)) - STEPS_MOST;
-    if (random_bits() % 2) /* at the middle of the triangle */
+        s->steps[k] = (int)random_below(&random_state, 2 * STEPS_MOST + 1) - STEPS_MOST;
+    if (random_below(&random_state, 2)) /* at the middle of the triangle */
         for (int k = 0; k < 3; ++k)
             s->at[3 + k] = (s->at[6 + k] + s->at[9 + k] + s->at[12 + k]) / 3.0f - s->at[k];
 }
 
 static void change_number(struct subject *s, int i)
 {
-    uint32_t bits, how = random_bits() % 8;
+    uint32_t bits, how = random_below(&random_state, 8);
     if (how == 0)
         s->at[i] = -s->at[i];
     else if (how == 1)
-        s->at[i] = either_sign(s->at[random_bits() % 15]);
+        s->at[i] = either_sign(s->at[random_below(&random_state, 15)]);
     else if (how == 2)
-        s->at[i] *= random_bits() % 2 ? 2.0f : 0.5f;
+        s->at[i] *= random_below(&random_state, 2) ? 2.0f : 0.5f;
     else if (how == 3)
         s->at[i] = coordinate();
     else { /* by floats */
-        uint32_t by = random_bits() % (1u << random_bits() % 23) + 1;
+        uint32_t by = random_below(&random_state, 1u << random_bits(&random_state) % 23) + 1;
         memcpy(&bits, &s->at[i], sizeof bits);
-        bits += random_bits() % 2 ? by : 0u - by;
+        bits += random_below(&random_state, 2) ? by : 0u - by;
         memcpy(&s->at[i], &bits, sizeof bits);
     }
     float size = fabsf(s->at[i]); /* within which double is enough */
@@ -245,12 +246,12 @@ static void change_number(struct subject *s, int i)
 static struct subject changed(const struct subject *s, bool ieee)
 {
     struct subject other = *s;
-    for (uint32_t n = random_bits() % 3 + 1; n > 0; --n) {
-        uint32_t i = random_bits() % 18;
+    for (uint32_t n = random_below(&random_state, 3) + 1; n > 0; --n) {
+        uint32_t i = random_below(&random_state, 18);
         if (i < 15)
             change_number(&other, (int)i);
         else if (!ieee)
-            other.steps[i - 15] = (int)(random_bits() % (2 * STEPS_MOST + 1)) - STEPS_MOST;
+            other.steps[i - 15] = (int)random_below(&random_state, 2 * STEPS_MOST + 1) - STEPS_MOST;
     }
     return other;
 }

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../scenes.h"
 #include "accel/accel.h"
 #include "accel/accel_inside.h"
 #include "random_fixture.h"
@@ -87,15 +88,13 @@ static inline struct soup soup_of_mesh(const char *name, struct scene_mesh *mesh
 
 static inline struct soup soup_sphere(uint32_t segments, uint32_t rings)
 {
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, segments, rings, &mesh), WHIT_OK);
+    struct scene_mesh mesh = mesh_sphere(1.0, segments, rings);
     return soup_of_mesh("sphere", &mesh);
 }
 
 static inline struct soup soup_terrain(uint32_t steps)
 {
-    struct scene_mesh mesh;
-    assert_int_equal(shape_terrain(10.0, 2.0, steps, 5, &mesh), WHIT_OK);
+    struct scene_mesh mesh = mesh_terrain(10.0, 2.0, steps, 5);
     return soup_of_mesh("terrain", &mesh);
 }
 
@@ -106,9 +105,9 @@ static inline struct soup soup_hair(uint32_t count, float thickness)
     for (uint32_t i = 0; i < count; ++i) {
         float a[3], b[3], c[3];
         for (int k = 0; k < 3; ++k) {
-            a[k] = random_float();
-            b[k] = random_float();
-            c[k] = a[k] + thickness * (random_float() - 0.5f);
+            a[k] = random_float(&random_state);
+            b[k] = random_float(&random_state);
+            c[k] = a[k] + thickness * (random_float(&random_state) - 0.5f);
         }
         soup_set(&soup, i, a, b, c);
     }
@@ -138,15 +137,16 @@ static inline struct soup soup_rooms(uint32_t quads)
         float o[3], u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
         bool wall = i % 4 == 0;
         for (int k = 0; k < 3; ++k)
-            o[k] = wall ? (float)(random_bits() % 16) : 16.0f * random_float();
+            o[k] =
+                wall ? (float)random_below(&random_state, 16) : 16.0f * random_float(&random_state);
         if (wall) {
-            uint32_t axis = random_bits() % 3;
-            u[(axis + 1) % 3] = 1.0f + (float)(random_bits() % 16);
-            v[(axis + 2) % 3] = 1.0f + (float)(random_bits() % 16);
+            uint32_t axis = random_below(&random_state, 3);
+            u[(axis + 1) % 3] = 1.0f + (float)random_below(&random_state, 16);
+            v[(axis + 2) % 3] = 1.0f + (float)random_below(&random_state, 16);
         }
         for (int k = 0; !wall && k < 3; ++k) {
-            u[k] = random_float() - 0.5f;
-            v[k] = random_float() - 0.5f;
+            u[k] = random_float(&random_state) - 0.5f;
+            v[k] = random_float(&random_state) - 0.5f;
         }
         soup_quad(&soup, 2 * i, o, u, v);
     }
@@ -161,7 +161,7 @@ static inline struct soup soup_exponential(uint32_t count, double ratio)
     for (uint32_t i = 0; i < count; ++i) {
         float x = (float)pow(ratio, (double)i - 0.5 * count), corner[3][3];
         for (int k = 0; k < 9; ++k)
-            corner[k / 3][k % 3] = x * (1.0f + random_float());
+            corner[k / 3][k % 3] = x * (1.0f + random_float(&random_state));
         soup_set(&soup, i, corner[0], corner[1], corner[2]);
     }
     soup_box(&soup);
@@ -174,7 +174,7 @@ static inline struct soup soup_garbage(uint32_t count, float limit)
     struct soup soup = soup_make("garbage", count);
     for (uint32_t i = 0; i < 9 * count; ++i) {
         do {
-            uint32_t bits = random_bits();
+            uint32_t bits = random_bits(&random_state);
             memcpy(&soup.positions[i], &bits, sizeof bits);
         } while (!(fabsf(soup.positions[i]) <= limit));
     }
@@ -187,23 +187,9 @@ static inline struct soup soup_garbage(uint32_t count, float limit)
 /* One material, one instance at the origin. */
 static inline struct scene *soup_scene(const struct soup *soup)
 {
-    struct scene *scene = scene_create(&silent, soup->name);
-    struct scene_mesh mesh = {.vertex_count = 3 * soup->count, .triangle_count = soup->count};
-    mesh.positions = malloc(9 * sizeof(float) * soup->count);
-    mesh.indices = malloc(3 * sizeof(uint32_t) * soup->count);
-    mesh.materials = calloc(soup->count, sizeof(uint32_t));
-    assert_true(scene && mesh.positions && mesh.indices && mesh.materials);
-    memcpy(mesh.positions, soup->positions, 9 * sizeof(float) * soup->count);
-    memcpy(mesh.indices, soup->indices, 3 * sizeof(uint32_t) * soup->count);
-    struct scene_material material;
-    scene_material_init(&material, "grey");
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    uint32_t index = scene_add_mesh(scene, mesh);
-    assert_int_not_equal(index, SCENE_NONE);
-    struct scene_instance instance = {.mesh = index, .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    struct scene *scene = scene_begin(&silent, soup->name);
+    scene_put(scene, mesh_triangles(soup->positions, soup->count), NULL);
+    return scene_ready(scene);
 }
 
 static inline struct accel *soup_accel(const struct scene *scene, const struct bvh_params *params)
@@ -219,16 +205,18 @@ static inline struct gpu_ray soup_ray(const struct soup *soup, const struct bvh_
                                       uint32_t index)
 {
     struct gpu_ray ray = {.t_max = INFINITY};
-    uint32_t triangle = random_bits() % soup->count, corner = random_bits() % 3;
+    uint32_t triangle = random_below(&random_state, soup->count),
+             corner = random_below(&random_state, 3);
     const float *a = soup_vertex(soup, triangle, corner);
     const float *b = soup_vertex(soup, triangle, (corner + 1) % 3);
-    float s = random_bits() % 2 ? 0.0f : random_float();
+    float s = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
     bool level = index % 8 == 3; /* in the plane of many boxes */
-    uint32_t axis = random_bits() % 3;
+    uint32_t axis = random_below(&random_state, 3);
     for (uint32_t k = 0; k < 3; ++k) {
         float size = bounds->hi[k] - bounds->lo[k];
-        float target = index % 2 ? a[k] + s * (b[k] - a[k]) : bounds->lo[k] + size * random_float();
-        ray.origin[k] = bounds->lo[k] + size * (1.5f * random_float() - 0.25f);
+        float target = index % 2 ? a[k] + s * (b[k] - a[k])
+                                 : bounds->lo[k] + size * random_float(&random_state);
+        ray.origin[k] = bounds->lo[k] + size * (1.5f * random_float(&random_state) - 0.25f);
         if (level && k == axis)
             ray.origin[k] = target;
         ray.dir[k] = target - ray.origin[k];

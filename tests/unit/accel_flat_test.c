@@ -71,7 +71,8 @@ static struct scene *mixed_scene(void)
     uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
     for (uint32_t i = 0; i < OBJECTS; ++i) {
         struct affine matrix = random_matrix(&state, i);
-        scene_put_again(scene, i % 13 == 5 ? empty : i % 2, &(struct put){.matrix = &matrix});
+        scene_put_again(scene, i % 13 == 5 ? empty : i % 2,
+                        &(struct put){.name = "object", .matrix = &matrix});
     }
     scene_ready(scene);
     return scene;

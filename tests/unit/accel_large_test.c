@@ -23,10 +23,11 @@ static struct gpu_ray ray_at_record(const struct accel *accel, uint32_t i)
 {
     const struct gpu_triangle *t;
     do
-        t = &accel->triangles[random_bits() % accel->record_count];
+        t = &accel->triangles[random_below(&random_state, accel->record_count)];
     while (!(fabsf(t->v0[0]) < 4.9f && fabsf(t->v0[2]) < 4.9f));
     struct vec3 a = vec3_load(t->v0), b = vec3_load(t->v1), c = vec3_load(t->v2);
-    float s = i % 3 ? random_float() : 0.0f, r = i % 3 == 2 ? (1.0f - s) * random_float() : 0.0f;
+    float s = i % 3 ? random_float(&random_state) : 0.0f,
+          r = i % 3 == 2 ? (1.0f - s) * random_float(&random_state) : 0.0f;
     struct vec3 target = vec3_add(a, vec3_scale(vec3_sub(b, a), s));
     target = vec3_add(target, vec3_scale(vec3_sub(c, a), r));
     return ray_through(vec3_add(target, vec3_add(random_point(1.0f), vec3_make(0, 8, 0))), target);

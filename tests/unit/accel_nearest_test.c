@@ -7,40 +7,29 @@
 
 #include <cmocka.h>
 
+#include "../scenes.h"
 #include "accel/accel.h"
-#include "base/array.h"
 #include "random_fixture.h"
-#include "scene/shapes.h"
 
 static const struct log quiet = {0};
 
 /* A ring in a few places, turned, stretched and mirrored. */
 static struct scene *ring_scene(void)
 {
-    struct scene *scene = scene_create(&quiet, "rings");
-    struct scene_material grey;
-    struct scene_mesh mesh = {0};
-    scene_material_init(&grey, "grey");
-    assert_int_not_equal(scene_add_material(scene, grey), SCENE_NONE);
-    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
-    mesh.name = string_copy("ring");
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    struct scene *scene = scene_begin(&quiet, "rings");
+    scene_put_material(scene, material_grey("grey"));
+    uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
     for (int i = 0; i < 12; ++i) {
         double t[3], q[4], s[3] = {i % 3 ? 1.0 : -1.0, 0.6, 1.4};
         for (int k = 0; k < 3; ++k)
-            t[k] = 8.0 * (double)random_float() - 4.0;
+            t[k] = 8.0 * (double)random_float(&random_state) - 4.0;
         for (int k = 0; k < 4; ++k)
-            q[k] = 2.0 * (double)random_float() - 1.0;
-        struct scene_node node;
-        scene_node_init(&node, "node", SCENE_NONE);
-        node.has_matrix = true;
-        node.matrix = affine_from_trs(t, q, s);
-        struct scene_instance instance = {.name = string_copy("ring"),
-                                          .node = scene_add_node(scene, node)};
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+            q[k] = 2.0 * (double)random_float(&random_state) - 1.0;
+        struct affine matrix = affine_from_trs(t, q, s);
+        uint32_t node = scene_put_matrix(scene, SCENE_NONE, &matrix);
+        scene_put_again(scene, ring, &(struct put){.node = &node});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 /* Trees leave nothing out: the bits are those of all triangles in turn. A tree over the scene in
@@ -60,7 +49,7 @@ static void trees_find_the_nearest(void **state)
     for (int n = 0; n < 300; ++n) {
         double p[3];
         for (int k = 0; k < 3; ++k)
-            p[k] = 14.0 * (double)random_float() - 7.0;
+            p[k] = 14.0 * (double)random_float(&random_state) - 7.0;
         double all = accel_distance(accels[0], &pose, p);
         assert_true(accel_distance(accels[1], &pose, p) == all);
         assert_true(fabs(accel_distance(accels[2], &pose, p) - all) < 8 * 0x1p-24);
@@ -76,17 +65,9 @@ static void distances_are_those_of_a_box(void **state)
 {
     (void)state;
     random_state = 5;
-    struct scene *scene = scene_create(&quiet, "box");
-    struct scene_material grey;
-    struct scene_mesh mesh = {0};
-    scene_material_init(&grey, "grey");
-    assert_int_not_equal(scene_add_material(scene, grey), SCENE_NONE);
-    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
-    mesh.name = string_copy("box");
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
-    struct scene_instance instance = {.name = string_copy("box"), .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_begin(&quiet, "box");
+    scene_put(scene, mesh_box(2, 2, 2), NULL);
+    scene_ready(scene);
     struct accel *accel;
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
@@ -94,7 +75,7 @@ static void distances_are_those_of_a_box(void **state)
     for (int n = 0; n < 300; ++n) {
         double p[3], outside = 0.0, inside = INFINITY;
         for (int k = 0; k < 3; ++k) {
-            p[k] = 4.0 * (double)random_float() - 2.0;
+            p[k] = 4.0 * (double)random_float(&random_state) - 2.0;
             outside += pow(fmax(fabs(p[k]) - 1.0, 0.0), 2.0);
             inside = fmin(inside, 1.0 - fabs(p[k]));
         }

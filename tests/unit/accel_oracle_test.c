@@ -11,64 +11,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../scenes.h"
 #include "accel/accel.h"
-#include "scene/shapes.h"
+#include "random_fixture.h"
 
 static const struct log silent;
-
-static uint64_t random_state;
-
-/* splitmix64 */
-static uint32_t random_bits(void)
-{
-    random_state += 0x9e3779b97f4a7c15u;
-    uint64_t z = random_state;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)(z >> 32);
-}
-
-/* In [-1, 1). */
-static double random_signed(void)
-{
-    return (double)random_bits() * 0x1p-31 - 1.0;
-}
-
-static struct scene_mesh mesh_of(uint32_t triangle_count, const float *corners)
-{
-    struct scene_mesh mesh = {.vertex_count = 3 * triangle_count, .triangle_count = triangle_count};
-    size_t bytes = (size_t)triangle_count * 9 * sizeof *corners;
-    mesh.positions = malloc(bytes);
-    mesh.indices = calloc(3 * (size_t)triangle_count, sizeof *mesh.indices);
-    assert_non_null(mesh.positions);
-    assert_non_null(mesh.indices);
-    memcpy(mesh.positions, corners, bytes);
-    for (uint32_t i = 0; i < 3 * triangle_count; ++i)
-        mesh.indices[i] = i;
-    return mesh;
-}
-
-static void add_instance(struct scene *scene, struct scene_mesh mesh, const struct affine *matrix)
-{
-    struct scene_instance instance = {.mesh = scene_add_mesh(scene, mesh), .node = SCENE_NONE};
-    assert_int_not_equal(instance.mesh, SCENE_NONE);
-    if (matrix) {
-        instance.has_local = true;
-        instance.local = *matrix;
-    }
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-}
 
 static struct scene_mesh soup(uint32_t count, double size)
 {
     float *corners = calloc((size_t)count * 9, sizeof *corners);
     assert_non_null(corners);
     for (uint32_t i = 0; i < count; ++i) {
-        double centre[3] = {random_signed(), random_signed(), random_signed()};
+        double centre[3] = {random_signed(&random_state), random_signed(&random_state),
+                            random_signed(&random_state)};
         for (uint32_t k = 0; k < 9; ++k)
-            corners[9 * i + k] = (float)(centre[k % 3] + size * random_signed());
+            corners[9 * i + k] = (float)(centre[k % 3] + size * random_signed(&random_state));
     }
-    struct scene_mesh mesh = mesh_of(count, corners);
+    struct scene_mesh mesh = mesh_triangles(corners, count);
     free(corners);
     return mesh;
 }
@@ -78,17 +37,10 @@ struct world {
     struct accel *accel;
 };
 
-static struct scene *new_scene(void)
-{
-    struct scene *scene = scene_create(&silent, "test");
-    assert_non_null(scene);
-    return scene;
-}
-
 static struct world finish(struct scene *scene)
 {
     struct world world = {.scene = scene};
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     assert_int_equal(accel_create(&silent, scene, NULL, &world.accel), WHIT_OK);
     return world;
 }
@@ -102,22 +54,15 @@ static void world_destroy(struct world *world)
 static struct world soup_world(void)
 {
     random_state = 1;
-    struct scene *scene = new_scene();
-    add_instance(scene, soup(400, 0.2), NULL);
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put(scene, soup(400, 0.2), NULL);
     return finish(scene);
-}
-
-static struct scene_mesh sphere(uint32_t segments)
-{
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, segments, segments, &mesh), WHIT_OK);
-    return mesh;
 }
 
 static struct world sphere_world(void)
 {
-    struct scene *scene = new_scene();
-    add_instance(scene, sphere(20), NULL);
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put(scene, mesh_sphere(1.0, 20, 20), NULL);
     return finish(scene);
 }
 
@@ -125,13 +70,16 @@ static struct world sphere_world(void)
 static struct world instances_world(void)
 {
     random_state = 2;
-    struct scene *scene = new_scene();
+    struct scene *scene = scene_begin(&silent, "test");
     for (int i = 0; i < 12; ++i) {
-        const double at[3] = {random_signed(), random_signed(), i % 3 ? random_signed() : 1000.0};
-        const double rotation[4] = {random_signed(), random_signed(), random_signed(), 1.0};
+        const double at[3] = {random_signed(&random_state), random_signed(&random_state),
+                              i % 3 ? random_signed(&random_state) : 1000.0};
+        const double rotation[4] = {random_signed(&random_state), random_signed(&random_state),
+                                    random_signed(&random_state), 1.0};
         const double scale[3] = {i % 2 ? 1.0 : -0.5, 0.3, 0.1 + 0.1 * i};
         struct affine m = affine_from_trs(at, rotation, scale);
-        add_instance(scene, i % 2 ? sphere(10) : soup(50, 0.3), &m);
+        scene_put(scene, i % 2 ? mesh_sphere(1.0, 10, 10) : soup(50, 0.3),
+                  &(struct put){.matrix = &m});
     }
     return finish(scene);
 }
@@ -151,8 +99,8 @@ static struct gpu_ray random_ray(const struct world *world, uint32_t i)
     double centre_z = world->accel->instance_count > 3 && i % 4 == 0 ? 1000.0 : 0.0;
     double from[3], to[3];
     for (int k = 0; k < 3; ++k) {
-        from[k] = 3.0 * random_signed() + (k == 2 ? centre_z : 0.0);
-        to[k] = random_signed() + (k == 2 ? centre_z : 0.0);
+        from[k] = 3.0 * random_signed(&random_state) + (k == 2 ? centre_z : 0.0);
+        to[k] = random_signed(&random_state) + (k == 2 ? centre_z : 0.0);
     }
     struct gpu_ray ray = ray_between(from, to);
     if (i % 5 == 0)
@@ -167,12 +115,13 @@ static struct gpu_ray random_ray(const struct world *world, uint32_t i)
 /* Through a vertex, or a point of an edge, of some triangle. */
 static struct gpu_ray aimed_ray(const struct world *world, uint32_t i)
 {
-    uint32_t instance = random_bits() % world->accel->instance_count;
+    uint32_t instance = random_below(&random_state, world->accel->instance_count);
     const struct gpu_instance *in = &world->accel->instances[instance];
     const struct accel_mesh *mesh = &world->accel->meshes[in->mesh];
     const struct gpu_triangle *t =
-        &world->accel->triangles[mesh->first_triangle + random_bits() % mesh->triangle_count];
-    double s = i % 2 ? 0.0 : 0.5 + 0.5 * random_signed(), p[3], to[3], from[3];
+        &world->accel
+             ->triangles[mesh->first_triangle + random_below(&random_state, mesh->triangle_count)];
+    double s = i % 2 ? 0.0 : 0.5 + 0.5 * random_signed(&random_state), p[3], to[3], from[3];
     for (int k = 0; k < 3; ++k)
         p[k] = (1.0 - s) * (double)t->v0[k] + s * (double)t->v1[k];
     const float *rows[3] = {in->forward0, in->forward1, in->forward2};
@@ -180,7 +129,7 @@ static struct gpu_ray aimed_ray(const struct world *world, uint32_t i)
     for (int k = 0; k < 3; ++k) {
         to[k] = (double)rows[k][0] * p[0] + (double)rows[k][1] * p[1] + (double)rows[k][2] * p[2] +
                 (double)at[k];
-        from[k] = to[k] + 2.0 * random_signed();
+        from[k] = to[k] + 2.0 * random_signed(&random_state);
     }
     return ray_between(from, to);
 }
@@ -277,8 +226,8 @@ static const float unit_triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 static void one_triangle_is_known(void **state)
 {
     (void)state;
-    struct scene *scene = new_scene();
-    add_instance(scene, mesh_of(1, unit_triangle), NULL);
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put(scene, mesh_triangles(unit_triangle, 1), NULL);
     struct world world = finish(scene);
     struct oracle_hit hit;
     struct gpu_ray ray = {{0.25f, 0.5f, 4.0f}, 0.0f, {0, 0, -2}, INFINITY};
@@ -320,9 +269,9 @@ static void ties_go_to_the_smaller_index(void **state)
     float corners[27];
     for (int i = 0; i < 27; ++i)
         corners[i] = unit_triangle[i % 9];
-    struct scene *scene = new_scene();
-    add_instance(scene, mesh_of(3, corners), NULL);
-    add_instance(scene, mesh_of(3, corners), NULL);
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put(scene, mesh_triangles(corners, 3), NULL);
+    scene_put(scene, mesh_triangles(corners, 3), NULL);
     struct world world = finish(scene);
     struct gpu_ray ray = {{0.25f, 0.25f, 1.0f}, 0.0f, {0, 0, -1}, INFINITY};
     for (int brute = 0; brute < 2; ++brute) {
@@ -351,8 +300,8 @@ static void borders_are_met_along_the_axes(void **state)
             corners[3 * i + u] = corner == 1 || corner == 2 ? 3.0f : -1.0f;
             corners[3 * i + v] = corner >= 2 ? 3.0f : -1.0f;
         }
-        struct scene *scene = new_scene();
-        add_instance(scene, mesh_of(2, corners), NULL);
+        struct scene *scene = scene_begin(&silent, "test");
+        scene_put(scene, mesh_triangles(corners, 2), NULL);
         struct world world = finish(scene);
         for (uint32_t way = 0; way < 9 * 8; ++way) {
             struct gpu_ray ray = {.t_max = INFINITY};

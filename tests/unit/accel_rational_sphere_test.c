@@ -147,7 +147,7 @@ static struct subject scattered(float (*coordinate)(void))
 /* At a point of the sphere, from anywhere. */
 static struct subject case_aimed(void)
 {
-    struct subject s = scattered(random_bits() % 2 ? in_cube : of_any_size);
+    struct subject s = scattered(random_below(&random_state, 2) ? in_cube : of_any_size);
     struct vec3 out = point_of(in_cube);
     float length = sqrtf(vec3_dot(out, out));
     if (length > 0.0f)
@@ -181,7 +181,7 @@ static struct subject case_inside(void)
 static struct subject case_small(void)
 {
     struct subject s = scattered(in_cube);
-    s.radius = ldexpf(s.radius, -15 - (int)(random_bits() % 12));
+    s.radius = ldexpf(s.radius, -15 - (int)random_below(&random_state, 12));
     float reach = s.radius * in_cube();
     s.dir = vec3_add(vec3_sub(s.center, s.origin), vec3_make(reach, 0, 0));
     return s;
@@ -301,8 +301,8 @@ static struct subject touching(int *turns)
 {
     static const int sides[][4] = {{1, 2, 2, 3},  {2, 3, 6, 7},  {1, 4, 8, 9},   {4, 4, 7, 9},
                                    {2, 6, 9, 11}, {6, 6, 7, 11}, {3, 4, 12, 13}, {2, 10, 11, 15}};
-    const int *side = sides[random_bits() % 8];
-    uint32_t turn = random_bits();
+    const int *side = sides[random_below(&random_state, 8)];
+    uint32_t turn = random_bits(&random_state);
     float n[3];
     for (uint32_t k = 0; k < 3; ++k)
         n[(turn + (turn & 8 ? k : 3 - k)) % 3] = (float)side[k] * (turn & 16u << k ? 1.0f : -1.0f);
@@ -310,8 +310,8 @@ static struct subject touching(int *turns)
     do
         dir = vec3_cross(normal, point_of(of_grid));
     while (is_null(dir));
-    *turns = (int)(random_bits() % 1000);
-    int scale = (int)(random_bits() % 160) - 80;
+    *turns = (int)random_below(&random_state, 1000);
+    int scale = (int)random_below(&random_state, 160) - 80;
     struct subject s = {.center = vec3_scale(point_of(of_grid), 100.0f), .radius = (float)side[3]};
     s.origin = vec3_sub(vec3_add(s.center, normal), vec3_scale(dir, (float)*turns));
     s.dir = vec3_scale(dir, 3.0f); /* t = turns / 3 */
@@ -379,8 +379,9 @@ static void ties_round_to_even(void **state)
     random_state = 7;
     uint32_t wrong = 0;
     for (int i = 0; i < 2 * CASES; ++i) {
-        float z = 0x1p25f + 64.0f + 4.0f * (float)(random_bits() % (1u << 22));
-        int scale = (int)(random_bits() % 40) - 20, shape = i % 8, half = shapes[shape].half;
+        float z = 0x1p25f + 64.0f + 4.0f * (float)random_below(&random_state, 1u << 22);
+        int scale = (int)random_below(&random_state, 40) - 20, shape = i % 8,
+            half = shapes[shape].half;
         struct rational_chord chord;
         struct subject s = upright(z, shapes[shape].radius, shapes[shape].aside,
                                    shapes[shape].origin, ldexpf(1.0f, scale));
@@ -406,7 +407,7 @@ static void ties_from_inside_round_to_even(void **state)
     uint32_t wrong = 0;
     random_state = 8;
     for (int i = 0; i < CASES; ++i) {
-        float radius = 0x1.8p25f + 4.0f * (float)(random_bits() % (1u << 20));
+        float radius = 0x1.8p25f + 4.0f * (float)random_below(&random_state, 1u << 20);
         struct rational_chord chord;
         struct subject s = upright(-2, radius, i % 2 ? 0x1p-149f : 0.0f, 0, 1);
         bool up = i % 2 == 0 && fmod((double)radius, 8.0) == 0.0;

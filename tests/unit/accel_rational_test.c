@@ -122,8 +122,8 @@ static struct subject scattered(float (*coordinate)(void))
 /* Aimed at a vertex or a point of an edge, as well as a rounded direction can. */
 static struct subject case_aimed(void)
 {
-    struct subject s = scattered(random_bits() % 2 ? in_cube : of_any_size);
-    float along = random_bits() % 2 ? 0.0f : random_float();
+    struct subject s = scattered(random_below(&random_state, 2) ? in_cube : of_any_size);
+    float along = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
     struct vec3 target = vec3_add(s.v[0], vec3_scale(vec3_sub(s.v[1], s.v[0]), along));
     s.dir = vec3_sub(target, s.origin);
     return s;
@@ -134,16 +134,16 @@ static struct subject case_aimed_grid(void)
 {
     struct subject s = scattered(of_grid);
     struct vec3 target = s.v[0];
-    if (random_bits() % 2)
+    if (random_below(&random_state, 2))
         target = vec3_scale(vec3_add(s.v[0], s.v[1]), 0.5f);
-    s.dir = vec3_scale(vec3_sub(target, s.origin), random_bits() % 2 ? 1.0f : -0.25f);
+    s.dir = vec3_scale(vec3_sub(target, s.origin), random_below(&random_state, 2) ? 1.0f : -0.25f);
     return s;
 }
 
 static struct subject case_needle(void)
 {
     struct subject s = case_aimed();
-    float width = (float)pow(10.0, -6.0 - 6.0 * (double)random_float());
+    float width = (float)pow(10.0, -6.0 - 6.0 * (double)random_float(&random_state));
     s.v[2] = vec3_add(s.v[1], vec3_scale(point_of(in_cube), width));
     return s;
 }
@@ -151,8 +151,8 @@ static struct subject case_needle(void)
 /* Origin and direction in the plane. */
 static struct subject case_coplanar(void)
 {
-    struct subject s = scattered(random_bits() % 2 ? of_grid : in_cube);
-    uint32_t axis = random_bits() % 3;
+    struct subject s = scattered(random_below(&random_state, 2) ? of_grid : in_cube);
+    uint32_t axis = random_below(&random_state, 3);
     float *of[5] = {&s.origin.x, &s.dir.x, &s.v[0].x, &s.v[1].x, &s.v[2].x};
     for (int i = 0; i < 5; ++i)
         of[i][axis] = i == 1 ? 0.0f : 0.75f;
@@ -163,8 +163,8 @@ static struct subject case_coplanar(void)
 static struct subject case_degenerate(void)
 {
     struct subject s = case_aimed_grid();
-    if (random_bits() % 2)
-        s.v[2] = s.v[random_bits() % 2];
+    if (random_below(&random_state, 2))
+        s.v[2] = s.v[random_below(&random_state, 2)];
     else
         s.v[2] = vec3_sub(vec3_scale(s.v[1], 2.0f), s.v[0]);
     return s;
@@ -241,9 +241,9 @@ static void ties_round_to_even(void **state)
     static const float origins[] = {-1.0f, -2.0f, -3.0f, -2.0f - 0x1p-22f, -2.0f + 0x1p-23f};
     for (int i = 0; i < CASES; ++i) {
         /* Between 2^25 and 2^26 floats are 4 apart. */
-        float z = 0x1p25f + 4.0f * (float)(random_bits() % (1u << 23)), key = 0.0f;
+        float z = 0x1p25f + 4.0f * (float)random_below(&random_state, 1u << 23), key = 0.0f;
         float origin = origins[i % 5];
-        int scale = (int)(random_bits() % 40) - 20;
+        int scale = (int)random_below(&random_state, 40) - 20;
         uint32_t quarter = (uint32_t)(((double)z - 0x1p25) / 4.0);
         bool up = origin < -2.0f || (origin == -2.0f && quarter % 2 == 1);
         bool met = key_of(rational, z, origin, ldexpf(1.0f, scale), &key);
@@ -289,7 +289,7 @@ static struct soup soup_grid(uint32_t steps)
     struct soup soup = soup_make("grid", 2 * steps * steps);
     int height[33][33];
     for (uint32_t i = 0; i < 33 * 33; ++i)
-        height[i / 33][i % 33] = (int)(random_bits() % 4);
+        height[i / 33][i % 33] = (int)random_below(&random_state, 4);
     for (uint32_t i = 0; i < steps * steps; ++i) {
         uint32_t x = i % steps, y = i / steps;
         float p[4][3];
@@ -333,30 +333,19 @@ static struct soup soup_cube(void)
 
 static struct scene *placed_scene(struct soup *soup, uint32_t count, double spread)
 {
-    struct scene *scene = scene_create(&silent, soup->name);
-    assert_non_null(scene);
-    struct scene_mesh mesh = {.vertex_count = 3 * soup->count, .triangle_count = soup->count};
-    mesh.positions = soup->positions;
-    mesh.indices = soup->indices;
-    soup->positions = NULL;
-    soup->indices = NULL;
-    uint32_t index = scene_add_mesh(scene, mesh);
-    assert_int_not_equal(index, SCENE_NONE);
+    struct scene *scene = scene_begin(&silent, soup->name);
+    uint32_t mesh = scene_put_mesh(scene, mesh_triangles(soup->positions, soup->count));
     for (uint32_t i = 0; i < count; ++i) {
-        struct scene_instance instance = {.mesh = index, .node = SCENE_NONE, .has_local = true};
-        instance.local = random_placement(spread, i % 3 == 0);
-        if (spread == 0.0) { /* not turned: their corners are those of their boxes */
-            const double at[3] = {3.0 * i, 0.0, 0.0}, unturned[4] = {0, 0, 0, 1};
-            const double scale[3] = {1.1, 0.7, 1.3};
-            instance.local = affine_from_trs(at, unturned, scale);
-        }
+        struct affine matrix = placement_random(&random_state, spread, i % 3 == 0);
+        if (spread == 0.0) /* not turned: their corners are those of their boxes */
+            matrix = affine_from_trs((double[]){3.0 * i, 0.0, 0.0}, (double[]){0, 0, 0, 1},
+                                     (double[]){1.1, 0.7, 1.3});
         if (i % 5 == 4) /* stretched a thousandfold */
             for (size_t k = 0; k < 12; k += 4)
-                instance.local.m[k] *= 1e-3;
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+                matrix.m[k] *= 1e-3;
+        scene_put_again(scene, mesh, &(struct put){.matrix = &matrix});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 struct world {
@@ -387,15 +376,17 @@ static void world_finish(struct world *world)
    quarter of them along an axis. */
 static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index)
 {
-    const struct gpu_triangle *triangle = &accel->triangles[random_bits() % accel->record_count];
-    uint32_t instance = random_bits() % accel->instance_count;
+    const struct gpu_triangle *triangle =
+        &accel->triangles[random_below(&random_state, accel->record_count)];
+    uint32_t instance = random_below(&random_state, accel->instance_count);
     struct vec3 a = in_world(accel, instance, vec3_load(triangle->v0));
     struct vec3 b = in_world(accel, instance, vec3_load(triangle->v1));
     struct vec3 c = in_world(accel, instance, vec3_load(triangle->v2));
-    float s = index % 3 == 0 ? 0.0f : random_float(), t = index % 3 == 2 ? random_float() : 0.0f;
+    float s = index % 3 == 0 ? 0.0f : random_float(&random_state),
+          t = index % 3 == 2 ? random_float(&random_state) : 0.0f;
     struct vec3 target = vec3_add(a, vec3_scale(vec3_sub(b, a), s));
     target = vec3_add(target, vec3_scale(vec3_sub(c, a), t * (1.0f - s)));
-    struct vec3 away = vec3_scale(point_of(in_cube), random_bits() % 4 ? 4.0f : 1e6f);
+    struct vec3 away = vec3_scale(point_of(in_cube), random_below(&random_state, 4) ? 4.0f : 1e6f);
     if (index % 4 == 0)
         away = vec3_make(index % 12 == 0 ? 4.0f : 0.0f, index % 12 == 4 ? -4.0f : 0.0f,
                          index % 12 == 8 ? 4.0f : 0.0f);

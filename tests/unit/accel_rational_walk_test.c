@@ -83,12 +83,11 @@ static struct rational_hit list_all(struct rational *rational, const struct acce
 
 static struct scene_mesh whole_spheres(uint32_t count)
 {
-    struct scene_mesh mesh = {0};
     double spheres[4 * 64];
     for (uint32_t i = 0; i < 4 * count; ++i)
-        spheres[i] = i % 4 == 3 ? 1.0 + random_bits() % 3 : (double)(random_bits() % 9) - 4.0;
-    assert_int_equal(shape_balls(spheres, count, &mesh), WHIT_OK);
-    return mesh;
+        spheres[i] = i % 4 == 3 ? 1.0 + random_below(&random_state, 3)
+                                : (double)random_below(&random_state, 9) - 4.0;
+    return mesh_balls(spheres, count);
 }
 
 /* Spheres in instances with even numbers, a torus in the others; one sphere mesh alone where it is
@@ -96,37 +95,29 @@ static struct scene_mesh whole_spheres(uint32_t count)
 static struct scene *mixed_scene(struct scene_mesh mesh, uint32_t placed, double spread,
                                  bool even_scale)
 {
-    struct scene *scene = scene_create(&silent, "mixed");
-    struct scene_mesh torus = {0};
-    assert_non_null(scene);
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
-    if (placed) {
-        assert_int_equal(shape_torus(1.0, 0.4, 12, 6, &torus), WHIT_OK);
-        assert_int_not_equal(scene_add_mesh(scene, torus), SCENE_NONE);
-    }
+    struct scene *scene = scene_begin(&silent, "mixed");
+    scene_put_mesh(scene, mesh);
+    if (placed)
+        scene_put_mesh(scene, mesh_torus(1.0, 0.4, 12, 6));
     for (uint32_t i = 0; i < (placed ? placed : 1); ++i) {
-        struct scene_instance instance = {
-            .mesh = i % 2, .node = SCENE_NONE, .has_local = placed > 0};
-        instance.local = random_placement(spread, i % 3 == 0);
+        struct affine matrix = placement_random(&random_state, spread, i % 3 == 0);
         if (even_scale) {
             const double at[3] = {sphere_random(), sphere_random(), sphere_random()};
-            const double unturned[4] = {0, 0, 0, 1}, scale[3] = {0.7, 0.7, 0.7};
-            instance.local = affine_from_trs(at, unturned, scale);
+            matrix = affine_from_trs(at, (double[]){0, 0, 0, 1}, (double[]){0.7, 0.7, 0.7});
         }
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+        scene_put_again(scene, i % 2, &(struct put){.matrix = placed ? &matrix : NULL});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 /* At a point of a record's box, from within the spread or from afar. */
 static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index, float spread)
 {
-    uint32_t instance = random_bits() % accel->instance_count;
+    uint32_t instance = random_below(&random_state, accel->instance_count);
     const struct accel_mesh *mesh =
         &accel->meshes[accel->flat ? 0 : accel->instances[instance].mesh];
     const struct gpu_triangle *record =
-        &accel->triangles[mesh->first_triangle + random_bits() % mesh->record_count];
+        &accel->triangles[mesh->first_triangle + random_below(&random_state, mesh->record_count)];
     struct vec3 target = vec3_load(record->v0), away = point_of(in_cube);
     if (record->flags & TRIANGLE_SPHERE)
         target = vec3_add(target, vec3_scale(point_of(in_cube), record->v1[0]));
@@ -147,7 +138,7 @@ static struct gpu_ray whole_ray(const struct accel *accel, uint32_t index, float
         vec3_store(ray.dir, point_of(of_grid));
     while (ray.dir[0] == 0.0f && ray.dir[1] == 0.0f && ray.dir[2] == 0.0f);
     if (index % 2)
-        ray.dir[random_bits() % 3] = ray.dir[random_bits() % 3] = 0.0f;
+        ray.dir[random_below(&random_state, 3)] = ray.dir[random_below(&random_state, 3)] = 0.0f;
     if (ray.dir[0] == 0.0f && ray.dir[1] == 0.0f && ray.dir[2] == 0.0f)
         ray.dir[index % 3] = -1.0f;
     return ray;
@@ -263,9 +254,7 @@ static void doubles_leave_out_what_misses(void **state)
 {
     (void)state;
     const double unit[4] = {0, 0, 0, 1};
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_balls(unit, 1, &mesh), WHIT_OK);
-    struct scene *scene = mixed_scene(mesh, 0, 0, false);
+    struct scene *scene = mixed_scene(mesh_balls(unit, 1), 0, 0, false);
     struct accel *accel = NULL;
     assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
     struct rational *rational = rational_create(accel);
@@ -281,8 +270,8 @@ static void doubles_leave_out_what_misses(void **state)
     }
     struct rational_work work = rational_work(rational);
     for (uint32_t i = 0; i < 20000; ++i) {
-        float away = -1.0f - (float)(random_bits() % 4096);
-        float scale = ldexpf(1.0f, (int)(random_bits() % 40) - 20);
+        float away = -1.0f - (float)random_below(&random_state, 4096);
+        float scale = ldexpf(1.0f, (int)random_below(&random_state, 40) - 20);
         struct gpu_ray ray = {{1, away, 3 * away}, 0, {0, scale, 3 * scale}, INFINITY};
         struct rational_hit hit;
         rational_trace(rational, &ray, NULL, &hit);
@@ -326,9 +315,7 @@ static void doubles_leave_out_nothing_that_is_hit(void **state)
     enum { RAYS = 10000 };
     const double unit[4] = {0, 0, 0, 1};
     const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_balls(unit, 1, &mesh), WHIT_OK);
-    struct scene *scene = mixed_scene(mesh, 0, 0, false);
+    struct scene *scene = mixed_scene(mesh_balls(unit, 1), 0, 0, false);
     struct accel *accel = NULL;
     assert_int_equal(accel_create(&silent, scene, &none, &accel), WHIT_OK);
     struct rational *rational = rational_create(accel);

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "accel/report.h"
-#include "scene/shapes.h"
 
 #define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
 
@@ -18,28 +19,9 @@ static const struct log silent;
 
 static struct scene *scene_of(struct scene_mesh mesh)
 {
-    struct scene *scene = scene_create(&silent, "test");
-    assert_non_null(scene);
-    uint32_t index = scene_add_mesh(scene, mesh);
-    assert_int_not_equal(index, SCENE_NONE);
-    struct scene_instance instance = {.mesh = index, .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
-}
-
-/* Nine floats a triangle. */
-static struct scene *soup_scene(const float *vertices, uint32_t count)
-{
-    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
-    mesh.positions = malloc(9 * sizeof(float) * count);
-    mesh.indices = malloc(3 * sizeof(uint32_t) * count);
-    mesh.materials = calloc(count, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
-    memcpy(mesh.positions, vertices, 9 * sizeof(float) * count);
-    for (uint32_t i = 0; i < 3 * count; ++i)
-        mesh.indices[i] = i;
-    return scene_of(mesh);
+    struct scene *scene = scene_begin(&silent, "test");
+    scene_put(scene, mesh, NULL);
+    return scene_ready(scene);
 }
 
 static struct accel *build(struct scene *scene, const struct bvh_params *mesh)
@@ -48,12 +30,6 @@ static struct accel *build(struct scene *scene, const struct bvh_params *mesh)
     struct accel *accel = NULL;
     assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
     return accel;
-}
-
-static double random_unit(uint32_t *state)
-{
-    *state = *state * 1664525u + 1013904223u;
-    return (double)(*state >> 8) * 0x1p-24;
 }
 
 /* ---- Clipping ---- */
@@ -83,7 +59,7 @@ static void a_triangle_is_cut_to_a_box(void **state)
 static void pieces_add_up(void **state)
 {
     (void)state;
-    uint32_t seed = 1;
+    uint64_t seed = 1;
     for (int round = 0; round < 2000; ++round) {
         float v[3][3], cut[3];
         for (int i = 0; i < 9; ++i)
@@ -149,7 +125,7 @@ static double brute_overlap(const struct accel *accel, const struct scene_mesh *
 }
 
 /* Long triangles that cross each other, some on planes of the axes. */
-static struct scene *crossing_scene(uint32_t count, uint32_t seed)
+static struct scene *crossing_scene(uint32_t count, uint64_t seed)
 {
     float *v = malloc(9 * sizeof(float) * count);
     assert_non_null(v);
@@ -159,7 +135,7 @@ static struct scene *crossing_scene(uint32_t count, uint32_t seed)
         for (uint32_t k = 0; i % 5 == 0 && k < 3; ++k)
             v[9 * i + 3 * k] = 0.5f;
     }
-    struct scene *scene = soup_scene(v, count);
+    struct scene *scene = scene_of(mesh_triangles(v, count));
     free(v);
     return scene;
 }
@@ -199,7 +175,7 @@ static void overlap_by_hand(void **state)
 {
     (void)state;
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
-    struct scene *scene = soup_scene(v, 2);
+    struct scene *scene = scene_of(mesh_triangles(v, 2));
     const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
     struct accel *accel = build(scene, &params);
     struct bvh_epo epo;
@@ -227,9 +203,7 @@ static void overlap_by_hand(void **state)
 static void report_agrees_with_the_tree(void **state)
 {
     (void)state;
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, 60, 60, &mesh), WHIT_OK);
-    struct scene *scene = scene_of(mesh);
+    struct scene *scene = scene_of(mesh_sphere(1.0, 60, 60));
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
         struct accel *accel = build(scene, &builds[i]);
         struct accel_report report;
@@ -274,7 +248,8 @@ static void threads_change_nothing(void **state)
 /* Triangles of hardly any area along the diagonals of their boxes: nothing ends a ray. */
 static struct scene *hair_scene(uint32_t side, double size)
 {
-    uint32_t count = side * side * side, seed = 11;
+    uint32_t count = side * side * side;
+    uint64_t seed = 11;
     float *v = malloc(9 * sizeof(float) * count);
     assert_non_null(v);
     for (uint32_t i = 0; i < count; ++i) {
@@ -287,7 +262,7 @@ static struct scene *hair_scene(uint32_t side, double size)
         }
         p[6] = nextafterf(p[6], -1.0f);
     }
-    struct scene *scene = soup_scene(v, count);
+    struct scene *scene = scene_of(mesh_triangles(v, count));
     free(v);
     return scene;
 }
@@ -313,9 +288,7 @@ static void nothing_hit_is_visited_as_predicted(void **state)
 static void hits_save_visits(void **state)
 {
     (void)state;
-    struct scene_mesh mesh;
-    assert_int_equal(shape_sphere(1.0, 80, 80, &mesh), WHIT_OK);
-    struct scene *scene = scene_of(mesh);
+    struct scene *scene = scene_of(mesh_sphere(1.0, 80, 80));
     struct accel *accel = build(scene, &builds[0]);
     struct accel_report report;
     assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
@@ -329,25 +302,19 @@ static void hits_save_visits(void **state)
 static void meshes_are_weighed_by_area(void **state)
 {
     (void)state;
-    struct scene *scene = scene_create(&silent, "test");
-    struct scene_mesh mesh;
-    assert_non_null(scene);
+    struct scene *scene = scene_begin(&silent, "test");
     static const uint32_t sides[] = {4, 60, 0, 12};
     static const double sizes[] = {100.0, 1.0, 0.0, 5.0};
     for (uint32_t i = 0; i < 4; ++i) {
-        mesh = (struct scene_mesh){0};
-        if (sides[i])
-            assert_int_equal(shape_sphere(sizes[i], sides[i], sides[i], &mesh), WHIT_OK);
-        assert_int_equal(scene_add_mesh(scene, mesh), i);
-        struct scene_instance instance = {.mesh = i, .node = SCENE_NONE, .has_local = true};
+        struct scene_mesh none = {0};
+        scene_put_mesh(scene, sides[i] ? mesh_sphere(sizes[i], sides[i], sides[i]) : none);
         for (uint32_t k = 0; k <= i; ++k) {
             const double at[3] = {300.0 * k, 200.0 * i, 0}, turn[4] = {0, 0, 0, 1};
-            const double scale[3] = {1, 2, 3};
-            instance.local = affine_from_trs(at, turn, scale);
-            assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+            struct affine matrix = affine_from_trs(at, turn, (double[]){1, 2, 3});
+            scene_put_again(scene, i, &(struct put){.matrix = &matrix});
         }
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     struct accel *accel = build(scene, &builds[0]);
     struct accel_report report;
     assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */
@@ -377,8 +344,7 @@ static void meshes_are_weighed_by_area(void **state)
 static void nothing_has_a_report(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    struct scene *scene = scene_of(mesh);
+    struct scene *scene = scene_of((struct scene_mesh){0});
     struct accel *accel = build(scene, &builds[0]);
     struct accel_report report, zero = {0};
     memset(&report, 1, sizeof report);

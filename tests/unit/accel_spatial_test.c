@@ -147,7 +147,7 @@ static void garbage_of_all_sizes(void **state)
     for (uint32_t round = 0; round < 60; ++round) {
         random_state = 100 + round;
         float limit = round % 3 == 0 ? FLT_MAX : round % 3 == 1 ? 1e18f : 10.0f;
-        struct soup soup = soup_garbage(1 + random_bits() % 200, limit);
+        struct soup soup = soup_garbage(1 + random_below(&random_state, 200), limit);
         check_all(&soup);
         soup_finish(&soup);
     }
@@ -191,8 +191,10 @@ static void clips_hold_what_is_inside(void **state)
     random_state = 3;
     uint32_t empty = 0;
     for (int round = 0; round < 10000; ++round) {
-        float at = (float)ldexp(random_float() - 0.5, (int)(random_bits() % 40));
-        float thin = round % 4 == 0 ? 0.0f : (float)ldexp(1.0, -(int)(random_bits() % 30));
+        float at =
+            (float)ldexp(random_float(&random_state) - 0.5, (int)random_below(&random_state, 40));
+        float thin =
+            round % 4 == 0 ? 0.0f : (float)ldexp(1.0, -(int)random_below(&random_state, 30));
         struct soup soup = soup_hair(1, thin);
         for (int k = 0; k < 9; ++k)
             soup.positions[k] += at;
@@ -200,11 +202,12 @@ static void clips_hold_what_is_inside(void **state)
         struct bvh_box cell = soup.boxes[0], box;
         for (int k = 0; k < 6; ++k) {
             float *bound = k < 3 ? &cell.lo[k] : &cell.hi[k - 3];
-            uint32_t pick = random_bits() % 8;
+            uint32_t pick = random_below(&random_state, 8);
             if (pick < 3)
                 *bound = soup_vertex(&soup, 0, pick)[k % 3];
             else if (pick < 5)
-                *bound = cell.lo[k % 3] + random_float() * (cell.hi[k % 3] - cell.lo[k % 3]);
+                *bound = cell.lo[k % 3] +
+                         random_float(&random_state) * (cell.hi[k % 3] - cell.lo[k % 3]);
             if (pick == 7)
                 *bound = nextafterf(*bound, k < 3 ? INFINITY : -INFINITY);
         }
@@ -388,7 +391,7 @@ static void same_cost_for_any_order(void **state)
     struct bvh first, second;
     build(&soup, &(struct bvh_params){0}, &first);
     for (uint32_t i = soup.count - 1; i > 0; --i) {
-        uint32_t j = random_bits() % (i + 1);
+        uint32_t j = random_below(&random_state, i + 1);
         for (uint32_t k = 0; k < 9; ++k) {
             float moved = soup.positions[9 * i + k];
             soup.positions[9 * i + k] = soup.positions[9 * j + k];
@@ -415,25 +418,26 @@ static struct gpu_ray ray_at_leaf(const struct accel *accel, double distance)
 {
     const struct accel_mesh *mesh = &accel->meshes[0];
     for (;;) {
-        uint32_t index = random_bits() % mesh->node_count, edge = random_bits() % 3,
-                 axis = random_bits() % 3;
+        uint32_t index = random_below(&random_state, mesh->node_count),
+                 edge = random_below(&random_state, 3), axis = random_below(&random_state, 3);
         const struct gpu_bvh_node *leaf = &accel->nodes[mesh->first_node + index];
         if (index == 1 || bvh_count(leaf) == 0)
             continue;
         const struct gpu_triangle *t =
-            &accel->triangles[leaf->first + random_bits() % bvh_count(leaf)];
+            &accel->triangles[leaf->first + random_bits(&random_state) % bvh_count(leaf)];
         const float *v[3] = {t->v0, t->v1, t->v2}, *a = v[edge], *b = v[(edge + 1) % 3];
-        double s = ((double)(random_bits() % 2 ? leaf->lo : leaf->hi)[axis] - (double)a[axis]) /
+        double s = ((double)(random_below(&random_state, 2) ? leaf->lo : leaf->hi)[axis] -
+                    (double)a[axis]) /
                    ((double)b[axis] - (double)a[axis]);
         if (!(s >= 0.0 && s <= 1.0))
             continue;
-        bool along = random_bits() % 4 == 0;
-        double w = (double)random_float() * distance;
+        bool along = random_below(&random_state, 4) == 0;
+        double w = (double)random_float(&random_state) * distance;
         struct gpu_ray ray = {.t_max = INFINITY};
         for (int k = 0; k < 3; ++k) {
             double target = (double)a[k] + s * ((double)b[k] - (double)a[k]);
             double size = (double)mesh->box.hi[k] - (double)mesh->box.lo[k];
-            double off = size * ((double)random_float() - 0.5);
+            double off = size * ((double)random_float(&random_state) - 0.5);
             ray.origin[k] = (float)(along ? target + w * ((double)v[(edge + 2) % 3][k] - target) +
                                                 1e-7 * distance * off
                                           : target + distance * off);

@@ -17,20 +17,14 @@ static void note(void *user, whit_log_level level, const char *message)
 /* `placed`: the mesh as several instances of every kind; else once, as it is. */
 static struct scene *sphere_scene(struct scene_mesh mesh, bool placed)
 {
-    struct scene *scene = scene_create(&silent, "spheres");
-    struct scene_material material;
-    scene_material_init(&material, "grey");
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    mesh.name = string_copy("spheres");
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    struct scene *scene = scene_begin(&silent, "spheres");
+    scene_put_material(scene, material_grey("grey"));
+    scene_put_mesh(scene, mesh);
     for (uint32_t i = 0; i < (placed ? 12u : 1u); ++i) {
-        struct scene_instance instance = {.name = string_copy("i"), .node = SCENE_NONE};
-        instance.has_local = placed && i > 0;
-        instance.local = random_placement(1.5, i % 3 == 0);
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+        struct affine matrix = placement_random(&random_state, 1.5, i % 3 == 0);
+        scene_put_again(scene, 0, &(struct put){.matrix = placed && i > 0 ? &matrix : NULL});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 static void check_tree(const struct accel *accel, uint32_t order, const struct gpu_ray *rays,
@@ -95,20 +89,15 @@ static void spheres_mix_with_triangles(void **state)
 {
     (void)state;
     random_state = 2;
-    struct scene *scene = scene_create(&silent, "mixed");
-    struct scene_material material;
-    scene_material_init(&material, "grey");
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    struct scene_mesh mesh = scattered_spheres(40, 1.0, 0.3);
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
-    assert_int_equal(shape_torus(1.0, 0.4, 16, 8, &mesh), WHIT_OK);
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    struct scene *scene = scene_begin(&silent, "mixed");
+    scene_put_material(scene, material_grey("grey"));
+    scene_put_mesh(scene, scattered_spheres(40, 1.0, 0.3));
+    scene_put_mesh(scene, mesh_torus(1.0, 0.4, 16, 8));
     for (uint32_t i = 0; i < 8; ++i) {
-        struct scene_instance instance = {.mesh = i % 2, .node = SCENE_NONE, .has_local = true};
-        instance.local = random_placement(1.0, i % 3 == 0);
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+        struct affine matrix = placement_random(&random_state, 1.0, i % 3 == 0);
+        scene_put_again(scene, i % 2, &(struct put){.matrix = &matrix});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     check_builders(scene, "spheres and rings");
 }
 
@@ -244,12 +233,10 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
 static void check_own(const char *label, double at, double radius)
 {
     enum { RAYS = 100000 };
-    struct scene_mesh mesh;
     struct accel *accel;
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
-    assert_int_equal(shape_balls(sphere, 1, &mesh), WHIT_OK);
-    struct scene *scene = sphere_scene(mesh, false);
+    struct scene *scene = sphere_scene(mesh_balls(sphere, 1), false);
     assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
     for (uint32_t i = 0; i < RAYS; ++i)
         leave(accel, scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
@@ -285,13 +272,11 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
     random_state = 5;
     for (int turned = 0; turned < 2; ++turned) {
         struct scene *scene = sphere_scene(scattered_spheres(50, 1.0, 0.3), false);
-        struct scene_instance instance = {.name = string_copy("second"), .node = SCENE_NONE};
         const double t[3] = {0.25, -1.5, 0.5}, q[4] = {0, turned, 0, 1}, s[3] = {2, 2, 2};
-        instance.has_local = true;
-        instance.local = affine_from_trs(t, q, s);
+        const struct affine matrix = affine_from_trs(t, q, s);
         scene->frozen = false;
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        scene_put_again(scene, 0, &(struct put){.name = "second", .matrix = &matrix});
+        scene_ready(scene);
         struct accel *one = NULL, *many = NULL;
         whit_result result = accel_create(&log, scene, &flat, &one);
         assert_int_equal(result, turned ? WHIT_ERROR_INPUT : WHIT_OK);

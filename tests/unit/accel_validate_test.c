@@ -309,12 +309,13 @@ static void validator_survives_any_bytes(void **state)
     for (int round = 0; round < 5000; ++round) {
         struct bvh bvh;
         assert_int_equal(bvh_build(&silent, boxes, 200, NULL, &bvh), WHIT_OK);
-        uint32_t flips = 1 + random_bits() % 4;
+        uint32_t flips = 1 + random_below(&random_state, 4);
         for (uint32_t k = 0; k < flips; ++k) {
-            uint8_t *bytes = random_bits() % 8 ? (uint8_t *)bvh.nodes : (uint8_t *)bvh.order;
+            uint8_t *bytes =
+                random_below(&random_state, 8) ? (uint8_t *)bvh.nodes : (uint8_t *)bvh.order;
             size_t size = bytes == (uint8_t *)bvh.order ? 200 * sizeof *bvh.order
                                                         : bvh.node_count * sizeof *bvh.nodes;
-            bytes[random_bits() % size] = (uint8_t)random_bits();
+            bytes[random_bits(&random_state) % size] = (uint8_t)random_bits(&random_state);
         }
         accepted += bvh_validate(&silent, &bvh, NULL, 4) == WHIT_OK;
         bvh_finish(&bvh);
@@ -344,7 +345,7 @@ static void a_thousand_trees_are_valid(void **state)
     (void)state;
     for (uint32_t round = 0; round < 1000; ++round) {
         random_state = 5000 + round;
-        uint32_t count = 20 + random_bits() % (round % 10 == 0 ? 281 : 61);
+        uint32_t count = 20 + random_below(&random_state, round % 10 == 0 ? 281 : 61);
         struct bvh_box *boxes = any_boxes(round, count);
         check_all(boxes, count);
         free(boxes);

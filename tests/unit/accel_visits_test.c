@@ -12,8 +12,8 @@ static struct gpu_cost cost_of_rays(const struct accel *accel, uint32_t order)
     for (uint32_t i = 0; i < RAYS; ++i) {
         struct gpu_ray ray = {.t_max = INFINITY};
         for (int a = 0; a < 3; ++a) {
-            ray.origin[a] = 2.0f * random_float() - 1.0f;
-            ray.dir[a] = 2.0f * random_float() - 1.0f;
+            ray.origin[a] = 2.0f * random_float(&random_state) - 1.0f;
+            ray.dir[a] = 2.0f * random_float(&random_state) - 1.0f;
         }
         struct gpu_hit hit;
         traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
@@ -44,10 +44,10 @@ static void one_giant_costs_little(void **state)
     for (uint32_t i = 0; i < small_ones; ++i) {
         float v[3][3], centre[3];
         for (int a = 0; a < 3; ++a)
-            centre[a] = 2.0f * random_float() - 1.0f;
+            centre[a] = 2.0f * random_float(&random_state) - 1.0f;
         for (int k = 0; k < 3; ++k) {
             for (int a = 0; a < 3; ++a)
-                v[k][a] = centre[a] + size * random_float();
+                v[k][a] = centre[a] + size * random_float(&random_state);
         }
         soup_set(&soup, i, v[0], v[1], v[2]);
     }

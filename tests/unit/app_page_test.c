@@ -407,12 +407,12 @@ static void ticks_read_well(void **state)
 static void ticks_of_any_range(void **state)
 {
     (void)state;
-    uint32_t seed = 5;
+    uint64_t seed = 5;
     for (int trial = 0; trial < 20000; ++trial) {
         double ticks[PLOT_TICKS_MOST], low, high;
         bool is_log = trial % 2;
-        low = pow(10.0, (double)(fixture_random(&seed) % 24000) * 1e-3 - 12.0);
-        high = low * (1.0 + pow(10.0, (double)(fixture_random(&seed) % 15000) * 1e-3 - 5.0));
+        low = pow(10.0, (double)random_below(&seed, 24000) * 1e-3 - 12.0);
+        high = low * (1.0 + pow(10.0, (double)random_below(&seed, 15000) * 1e-3 - 5.0));
         if (!is_log && trial % 4 == 0)
             low = -low;
         uint32_t count = plot_ticks(low, high, is_log, 6, ticks);

@@ -64,7 +64,7 @@ static void ranks_are_those_of_the_binomial(void **state)
 /* As times of runs are: none below a floor, a long tail above. */
 static double skewed(void)
 {
-    double u = ((double)random_bits() + 0.5) / 4294967296.0;
+    double u = ((double)random_bits(&random_state) + 0.5) / 4294967296.0;
     return 10.0 - log(u);
 }
 

@@ -25,14 +25,14 @@ static struct filter_answer answers[CASES];
 
 static float any_coordinate(int power)
 {
-    return ldexpf(random_within(1.0f), power + (int)(random_bits() % 5) - 2);
+    return ldexpf(random_within(1.0f), power + (int)random_below(&random_state, 5) - 2);
 }
 
 /* A third at the inside, a third at an edge or a vertex, the others at random. */
 static struct vec3 target_of(const struct vec3 v[3], uint32_t i)
 {
-    float s = random_bits() % 4 ? random_float() : 0.0f;
-    float t = i % 3 == 0 ? (1.0f - s) * random_float() : 0.0f;
+    float s = random_below(&random_state, 4) ? random_float(&random_state) : 0.0f;
+    float t = i % 3 == 0 ? (1.0f - s) * random_float(&random_state) : 0.0f;
     struct vec3 p = vec3_add(v[0], vec3_scale(vec3_sub(v[1], v[0]), s));
     p = vec3_add(p, vec3_scale(vec3_sub(v[2], v[0]), t));
     return i % 3 == 2 ? random_point(2.0f) : p;
@@ -40,7 +40,7 @@ static struct vec3 target_of(const struct vec3 v[3], uint32_t i)
 
 static void make_case(uint32_t i, struct filter_case *out, struct filter_answer *expected)
 {
-    int power = (int)(random_bits() % 81) - 40;
+    int power = (int)random_below(&random_state, 81) - 40;
     struct vec3 v[3];
     for (int k = 0; k < 3; ++k) {
         float x = any_coordinate(power), y = any_coordinate(power);

@@ -300,7 +300,7 @@ static void unit(float *out)
     do {
         length = 0;
         for (int k = 0; k < 3; k++) {
-            v[k] = 2.0 * (double)random_float() - 1.0;
+            v[k] = 2.0 * (double)random_float(&random_state) - 1.0;
             length += v[k] * v[k];
         }
     } while (length < 0.01 || length > 1);

@@ -63,7 +63,7 @@ static void spheres_are_met_as_in_c(void **state)
             struct subject s = make_subject(k);
             struct sphere_case *c = &cases[k * OF_KIND + i];
             *c = (struct sphere_case){
-                .radius = s.radius, .t_min = s.t_min, .only_far = random_bits() % 2};
+                .radius = s.radius, .t_min = s.t_min, .only_far = random_below(&random_state, 2)};
             vec3_store(c->origin, s.origin);
             vec3_store(c->dir, s.dir);
             vec3_store(c->center, s.center);

@@ -126,18 +126,18 @@ static const struct box_kind box_kinds[] = {
 
 static float pick(float a, float b)
 {
-    return random_bits() % 2 ? a : b;
+    return random_below(&random_state, 2) ? a : b;
 }
 
 /* At a corner, a point of an edge or of a face; every fourth from inside or from the surface. */
 static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3], const float hi[3])
 {
     struct gpu_ray ray = {.t_max = INFINITY};
-    uint32_t loose = random_bits() % 3, axis = random_bits() % 3;
-    bool inside = random_bits() % 4 == 0;
+    uint32_t loose = random_below(&random_state, 3), axis = random_below(&random_state, 3);
+    bool inside = random_below(&random_state, 4) == 0;
     float scale = kind->speed > 0.0f ? kind->speed / kind->size : 1.0f;
     for (uint32_t k = 0; k < 3; ++k) {
-        float between = lo[k] + (hi[k] - lo[k]) * random_float();
+        float between = lo[k] + (hi[k] - lo[k]) * random_float(&random_state);
         float target = (k + axis) % 3 < loose ? between : pick(lo[k], hi[k]);
         if (kind->wild)
             target = kind->offset + random_within(3.0f * kind->size);
@@ -155,9 +155,10 @@ static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3],
 
 static void make_box(const struct box_kind *kind, float lo[3], float hi[3])
 {
-    uint32_t axis = random_bits() % 3;
+    uint32_t axis = random_below(&random_state, 3);
     for (uint32_t k = 0; k < 3; ++k) {
-        float middle = kind->offset + random_within(kind->size), half = kind->size * random_float();
+        float middle = kind->offset + random_within(kind->size),
+              half = kind->size * random_float(&random_state);
         lo[k] = middle - half;
         hi[k] = (k + axis) % 3 < (uint32_t)kind->flat ? lo[k] : middle + half;
     }
@@ -297,7 +298,7 @@ static void lengths_of_directions_scale_t(void **state)
             bool met[2];
             make_box(&box_kinds[2], lo, hi);
             struct gpu_ray ray = ray_at_box(&box_kinds[2], lo, hi);
-            int power = (int)(random_bits() % 120) - 60;
+            int power = (int)random_below(&random_state, 120) - 60;
             for (int s = 0; s < 2; ++s) {
                 struct vec3 dir = vec3_scale(vec3_load(ray.dir), s ? ldexpf(1.0f, power) : 1.0f);
                 struct ray_setup setup = make_ray_setup(vec3_load(ray.origin), dir);
@@ -365,12 +366,14 @@ static struct gpu_ray integer_ray_at_box(float lo[3], float hi[3])
 {
     struct gpu_ray ray = {.t_max = INFINITY};
     for (int k = 0; k < 3; ++k) {
-        lo[k] = (float)(random_bits() % 65) - 32.0f;
-        hi[k] = lo[k] + (float)(random_bits() % 17);
-        ray.origin[k] = (float)(random_bits() % 129) - 64.0f;
-        ray.dir[k] = pick(0.0f, ldexpf(pick(-1.0f, 1.0f), (int)(random_bits() % 3)));
-        if (ray.dir[k] == 0.0f || random_bits() % 4 == 0) /* in the box, or on a face */
-            ray.origin[k] = lo[k] + (float)(random_bits() % (1 + (uint32_t)(hi[k] - lo[k])));
+        lo[k] = (float)random_below(&random_state, 65) - 32.0f;
+        hi[k] = lo[k] + (float)random_below(&random_state, 17);
+        ray.origin[k] = (float)random_below(&random_state, 129) - 64.0f;
+        ray.dir[k] = pick(0.0f, ldexpf(pick(-1.0f, 1.0f), (int)random_below(&random_state, 3)));
+        if (ray.dir[k] == 0.0f ||
+            random_below(&random_state, 4) == 0) /* in the box, or on a face */
+            ray.origin[k] =
+                lo[k] + (float)random_below(&random_state, 1 + (uint32_t)(hi[k] - lo[k]));
     }
     return ray;
 }
@@ -425,7 +428,7 @@ static struct gpu_ray ray_at_wall(const struct soup *soup, const struct bvh_box 
 {
     struct gpu_ray ray = soup_ray(soup, bounds, i);
     if (i % 4 == 0) { /* walls are every eighth pair of triangles */
-        uint32_t wall = random_bits() % (soup->count / 8) * 8;
+        uint32_t wall = random_below(&random_state, soup->count / 8) * 8;
         const float *a = soup_vertex(soup, wall, 0), *b = soup_vertex(soup, wall, 1),
                     *c = soup_vertex(soup, wall, 2);
         for (int k = 0; k < 3; ++k)

@@ -75,7 +75,7 @@ static inline void level_trace(const struct level *level, const struct accel *ac
 
 static inline float random_within(float most)
 {
-    return most * (2.0f * random_float() - 1.0f);
+    return most * random_float_signed(&random_state);
 }
 
 /* In a cube around the origin. */

@@ -102,7 +102,8 @@ static void count_leaks(const struct sheets *sheets, float least, struct leaks *
     struct rational *rational = rational_create(sheets->hard.accel);
     assert_non_null(rational);
     for (uint64_t i = 0; i < 8; ++i) {
-        struct hard_ray shot = hard_ray_make(&sheets->hard, HARD_LEAVING, random_bits(), i);
+        struct hard_ray shot =
+            hard_ray_make(&sheets->hard, HARD_LEAVING, random_bits(&random_state), i);
         struct vec3 dir = vec3_add(sheets->normal, random_point(0.25f));
         if (shot.primitive > 1 || vec3_dot(vec3_load(shot.ray.dir), sheets->normal) <= 0.0f)
             continue; /* from the other sheet, or the other way */

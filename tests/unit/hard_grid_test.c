@@ -15,7 +15,7 @@ struct heights {
 /* Two triangles, by the corners of a square in turn; the diagonal is one of both. */
 static void set_square(struct soup *soup, uint32_t *at, float p[4][3])
 {
-    uint32_t turn = random_bits() % 2;
+    uint32_t turn = random_below(&random_state, 2);
     soup_set(soup, *at, p[turn], p[1 + turn], p[2 + turn]);
     soup_set(soup, *at + 1, p[turn], p[2 + turn], p[(3 + turn) % 4]);
     *at += 2;
@@ -59,8 +59,8 @@ static struct soup soup_block(void)
     random_state = 3;
     for (int i = 0; i <= STEPS; ++i)
         for (int j = 0; j <= STEPS; ++j) {
-            h.top[i][j] = (float)(1 + random_bits() % 8);
-            h.bottom[i][j] = -(float)(1 + random_bits() % 4);
+            h.top[i][j] = (float)(1 + random_below(&random_state, 8));
+            h.bottom[i][j] = -(float)(1 + random_below(&random_state, 4));
         }
     set_floor(&soup, &at, h.top, true);
     set_floor(&soup, &at, h.bottom, false);
@@ -152,7 +152,7 @@ static struct gpu_ray ray_of_line(const struct line *line)
     ray.dir[line->axis] = line->up ? 1.0f : -1.0f;
     for (uint32_t k = 0; k < 2; ++k) {
         ray.origin[(line->axis + 1 + k) % 3] = (float)line->at[k] / PARTS;
-        ray.dir[(line->axis + 1 + k) % 3] = random_bits() % 2 ? 0.0f : -0.0f;
+        ray.dir[(line->axis + 1 + k) % 3] = random_below(&random_state, 2) ? 0.0f : -0.0f;
     }
     return ray;
 }

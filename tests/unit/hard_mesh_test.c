@@ -38,10 +38,11 @@ static void follow(const struct level *level, const struct accel *accel, struct 
 /* A vertex or a point of an edge, in the mesh's space. */
 static struct vec3 target_of(const struct soup *soup)
 {
-    uint32_t triangle = random_bits() % soup->count, corner = random_bits() % 3;
+    uint32_t triangle = random_below(&random_state, soup->count),
+             corner = random_below(&random_state, 3);
     struct vec3 a = vec3_load(soup_vertex(soup, triangle, corner));
     struct vec3 b = vec3_load(soup_vertex(soup, triangle, (corner + 1) % 3));
-    float s = random_bits() % 2 ? 0.0f : random_float();
+    float s = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
     return vec3_add(a, vec3_scale(vec3_sub(b, a), s));
 }
 
@@ -53,7 +54,7 @@ static struct gpu_ray leaving_ray(struct vec3 middle, struct vec3 target, float 
         float *from[3] = {&origin.x, &origin.y, &origin.z};
         const float to[3] = {target.x, target.y, target.z};
         const float center[3] = {middle.x, middle.y, middle.z};
-        uint32_t axis = random_bits() % 3;
+        uint32_t axis = random_below(&random_state, 3);
         for (uint32_t k = 0; k < 3; ++k)
             if (k != axis && fabsf(to[k] - center[k]) < reach)
                 *from[k] = to[k];
@@ -169,7 +170,7 @@ static void no_ray_passes_a_plane(void **state)
         for (uint32_t i = 0; i < RAYS * test_times(); ++i) {
             struct vec3 from = vec3_add(vec3_load(at), random_point(1.5f));
             struct vec3 to = inner_target(&soup);
-            from.y = at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float());
+            from.y = at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float(&random_state));
             if (i % 4 == 0) /* down along the axis, or in the planes of boxes */
                 from.x = to.x;
             if (i % 8 == 0)
@@ -325,7 +326,7 @@ static void only_t_junctions_leak(void **state)
         random_state = 6;
         for (uint32_t i = 0; i < RAYS; ++i) {
             struct vec3 from = vec3_add(random_point(0.5f), vec3_make(0, 0, 3)), target;
-            float s = random_float();
+            float s = random_float(&random_state);
             target = vec3_add(vec3_load(a), vec3_scale(vec3_sub(vec3_load(c), vec3_load(a)), s));
             struct gpu_ray ray = ray_through(from, target);
             follow(&levels[l], accel, rational, &ray, &seam);
@@ -351,21 +352,11 @@ static void only_t_junctions_leak(void **state)
 
 static struct scene *instance_scene(struct soup *soup, uint32_t count, const struct affine *places)
 {
-    struct scene *scene = scene_create(&silent, soup->name);
-    struct scene_mesh mesh = {.vertex_count = 3 * soup->count, .triangle_count = soup->count};
-    mesh.positions = malloc(9 * sizeof(float) * soup->count);
-    mesh.indices = malloc(3 * sizeof(uint32_t) * soup->count);
-    assert_true(scene && mesh.positions && mesh.indices);
-    memcpy(mesh.positions, soup->positions, 9 * sizeof(float) * soup->count);
-    memcpy(mesh.indices, soup->indices, 3 * sizeof(uint32_t) * soup->count);
-    uint32_t index = scene_add_mesh(scene, mesh);
-    for (uint32_t i = 0; i < count; ++i) {
-        struct scene_instance instance = {
-            .mesh = index, .node = SCENE_NONE, .has_local = true, .local = places[i]};
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-    }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    struct scene *scene = scene_begin(&silent, soup->name);
+    uint32_t mesh = scene_put_mesh(scene, mesh_triangles(soup->positions, soup->count));
+    for (uint32_t i = 0; i < count; ++i)
+        scene_put_again(scene, mesh, &(struct put){.matrix = &places[i]});
+    return scene_ready(scene);
 }
 
 static struct vec3 placed(const struct affine *place, struct vec3 p)

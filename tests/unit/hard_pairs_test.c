@@ -10,9 +10,9 @@ static struct vec3 random_grid_point(int most)
 {
     int span = 2 * most + 1;
     struct vec3 p;
-    p.x = (float)((int)(random_float() * (float)span) - most);
-    p.y = (float)((int)(random_float() * (float)span) - most);
-    p.z = (float)((int)(random_float() * (float)span) - most);
+    p.x = (float)((int)(random_float(&random_state) * (float)span) - most);
+    p.y = (float)((int)(random_float(&random_state) * (float)span) - most);
+    p.z = (float)((int)(random_float(&random_state) * (float)span) - most);
     return p;
 }
 
@@ -31,26 +31,27 @@ static struct vec3 point_of(const struct vec3 v[3], float a, float b)
 static void make_ordinary(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1.0f, random_point(3.0f), v);
-    float a = random_float(), b = random_float();
+    float a = random_float(&random_state), b = random_float(&random_state);
     *ray = ray_through(random_point(10.0f), point_of(v, 1.5f * a - 0.25f, 1.5f * b - 0.25f));
 }
 
 static void make_far(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(0.05f, vec3_make(0.0f, 0.0f, 0.0f), v);
-    *ray = ray_through(random_point(1e7f), point_of(v, random_float(), random_float()));
+    *ray = ray_through(random_point(1e7f),
+                       point_of(v, random_float(&random_state), random_float(&random_state)));
 }
 
 static void make_tiny(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1e-8f, random_point(1e-6f), v);
-    *ray = ray_through(random_point(1e-6f), point_of(v, 0.5f * random_float(), 0.5f));
+    *ray = ray_through(random_point(1e-6f), point_of(v, 0.5f * random_float(&random_state), 0.5f));
 }
 
 static void make_huge(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1e6f, random_point(1e7f), v);
-    *ray = ray_through(random_point(1e11f), point_of(v, 0.3f, random_float()));
+    *ray = ray_through(random_point(1e11f), point_of(v, 0.3f, random_float(&random_state)));
 }
 
 /* Through the middle of an edge exactly, where the edge function is 0 and its terms are of 68 bits.
@@ -71,9 +72,9 @@ static void make_between(struct vec3 v[3], struct gpu_ray *ray)
     const float t = 16777216.0f; /* 2^24, and 1 more below */
     struct vec3 origin = vec3_scale(random_grid_point(50), 2.0f), dir, p;
     origin = vec3_add(origin, vec3_make(1.0f, 1.0f, 1.0f));
-    dir.x = random_float() < 0.5f ? -1.0f : 1.0f;
-    dir.y = random_float() < 0.5f ? -1.0f : 1.0f;
-    dir.z = random_float() < 0.5f ? -1.0f : 1.0f;
+    dir.x = random_float(&random_state) < 0.5f ? -1.0f : 1.0f;
+    dir.y = random_float(&random_state) < 0.5f ? -1.0f : 1.0f;
+    dir.z = random_float(&random_state) < 0.5f ? -1.0f : 1.0f;
     p.x = dir.x * t + (origin.x + dir.x);
     p.y = dir.y * t + (origin.y + dir.y);
     p.z = dir.z * t + (origin.z + dir.z);
@@ -90,7 +91,7 @@ static void make_between(struct vec3 v[3], struct gpu_ray *ray)
 static void make_without_area(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1.0f, random_point(3.0f), v);
-    int i = (int)(random_float() * 3.0f) % 3;
+    int i = (int)(random_float(&random_state) * 3.0f) % 3;
     v[i] = v[(i + 1) % 3];
     *ray = ray_through(random_point(10.0f), v[i]);
 }

@@ -16,7 +16,7 @@ typedef struct subject (*make_fn)(void);
 
 static inline float either_sign(float x)
 {
-    return random_bits() % 2 ? x : -x;
+    return random_below(&random_state, 2) ? x : -x;
 }
 
 /* Through the sphere or past it; a third grazes it. */
@@ -25,7 +25,7 @@ static inline struct subject aim(float radius, float away, float size)
     struct subject s = {.radius = radius, .center = random_point(size)};
     s.origin = vec3_add(s.center, random_point(away));
     struct vec3 to = random_point(1.0f);
-    uint32_t kind = random_bits() % 3;
+    uint32_t kind = random_below(&random_state, 3);
     if (kind == 0) { /* from the line's side at about one radius */
         struct vec3 along = vec3_sub(s.center, s.origin), side = vec3_cross(along, to);
         float length = sqrtf(vec3_dot(side, side));
@@ -37,33 +37,33 @@ static inline struct subject aim(float radius, float away, float size)
 
 static inline struct subject make_ordinary(void)
 {
-    return aim(0.1f + random_float(), 5.0f, 3.0f);
+    return aim(0.1f + random_float(&random_state), 5.0f, 3.0f);
 }
 
 static inline struct subject make_inside(void)
 {
-    return aim(1.0f + random_float(), 0.5f, 3.0f);
+    return aim(1.0f + random_float(&random_state), 0.5f, 3.0f);
 }
 
 static inline struct subject make_far(void)
 {
-    return aim(0.1f + random_float(), 1e7f, 3.0f);
+    return aim(0.1f + random_float(&random_state), 1e7f, 3.0f);
 }
 
 static inline struct subject make_tiny(void)
 {
-    return aim(1e-9f * random_float(), 1e-7f, 1e-8f);
+    return aim(1e-9f * random_float(&random_state), 1e-7f, 1e-8f);
 }
 
 static inline struct subject make_huge(void)
 {
-    return aim(1e11f * random_float(), 1e13f, 1e12f);
+    return aim(1e11f * random_float(&random_state), 1e13f, 1e12f);
 }
 
 /* Squares of all that is here are 0 in floats. */
 static inline struct subject make_denormal(void)
 {
-    return aim(1e-40f * random_float(), 1e-38f, 1e-39f);
+    return aim(1e-40f * random_float(&random_state), 1e-38f, 1e-39f);
 }
 
 /* Directions that floats do not square, or do not divide by; components that they lose. */
@@ -71,10 +71,10 @@ static inline struct subject make_stretched(void)
 {
     struct subject s = make_ordinary();
     static const float sizes[] = {1e-40f, 1e-33f, 1e33f};
-    s.dir = vec3_scale(s.dir, sizes[random_bits() % 3]);
-    if (random_bits() % 2)
+    s.dir = vec3_scale(s.dir, sizes[random_below(&random_state, 3)]);
+    if (random_below(&random_state, 2))
         s.dir.x *= 1e-30f;
-    s.radius = random_bits() % 2 ? 3.0f : s.radius;
+    s.radius = random_below(&random_state, 2) ? 3.0f : s.radius;
     return s;
 }
 
@@ -88,7 +88,7 @@ static inline struct subject make_short(void)
     for (uint32_t k = 1; k < 3; ++k)
         longest = fabsf(*axis[k]) > fabsf(*axis[longest]) ? k : longest;
     float scale = 0x1p-100f / fabsf(*axis[longest]);
-    float length = nextafterf(0x1p-100f, next_to[random_bits() % 3]);
+    float length = nextafterf(0x1p-100f, next_to[random_below(&random_state, 3)]);
     *axis[longest] = *axis[longest] < 0.0f ? -length : length;
     for (uint32_t k = 0; k < 3; ++k)
         *axis[k] *= k == longest ? 1.0f : scale;
@@ -99,7 +99,7 @@ static inline struct subject make_short(void)
 static inline struct subject make_grazing(void)
 {
     struct subject s = {.origin = random_point(1.0f), .center = random_point(1.0f)};
-    float way = powf(0.1f, 9.0f * random_float());
+    float way = powf(0.1f, 9.0f * random_float(&random_state));
     s.dir = vec3_sub(vec3_add(s.center, random_point(way)), s.origin);
     const double m[3] = {(double)s.center.x - (double)s.origin.x,
                          (double)s.center.y - (double)s.origin.y,
@@ -122,8 +122,10 @@ struct frame {
 /* Of an integer quaternion (Euler, Rodrigues). */
 static inline struct frame integer_frame(int most)
 {
-    int a = 1 + (int)(random_bits() % (uint32_t)most), b = (int)(random_bits() % (uint32_t)most);
-    int c = (int)(random_bits() % (uint32_t)most), d = (int)(random_bits() % (uint32_t)most);
+    int a = 1 + (int)random_below(&random_state, (uint32_t)most),
+        b = (int)random_below(&random_state, (uint32_t)most);
+    int c = (int)random_below(&random_state, (uint32_t)most),
+        d = (int)random_below(&random_state, (uint32_t)most);
     return (struct frame){
         .x = vec3_make((float)(a * a + b * b - c * c - d * d), (float)(2 * (b * c + a * d)),
                        (float)(2 * (b * d - a * c))),
@@ -135,8 +137,9 @@ static inline struct frame integer_frame(int most)
 static inline struct vec3 grid_point(int most)
 {
     float range = (float)(2 * most + 1), middle = (float)most;
-    float x = floorf(random_float() * range) - middle, y = floorf(random_float() * range) - middle;
-    return vec3_make(x, y, floorf(random_float() * range) - middle);
+    float x = floorf(random_float(&random_state) * range) - middle,
+          y = floorf(random_float(&random_state) * range) - middle;
+    return vec3_make(x, y, floorf(random_float(&random_state) * range) - middle);
 }
 
 /* In one point exactly. */
@@ -144,7 +147,7 @@ static inline struct subject make_tangent(void)
 {
     struct frame f = integer_frame(20);
     struct subject s = {.origin = grid_point(10000), .dir = f.x};
-    float k = (float)(1 + random_bits() % 50), along = floorf(random_within(100.0f));
+    float k = (float)(1 + random_below(&random_state, 50)), along = floorf(random_within(100.0f));
     s.radius = k * f.length;
     s.center =
         vec3_add(s.origin, vec3_add(vec3_scale(f.y, either_sign(k)), vec3_scale(f.x, along)));
@@ -155,7 +158,7 @@ static inline struct subject make_tangent(void)
 static inline struct subject make_nearly_tangent(void)
 {
     struct subject s = make_tangent();
-    s.radius = nextafterf(s.radius, random_bits() % 2 ? INFINITY : 0.0f);
+    s.radius = nextafterf(s.radius, random_below(&random_state, 2) ? INFINITY : 0.0f);
     return s;
 }
 
@@ -163,7 +166,8 @@ static inline struct subject make_nearly_tangent(void)
 static inline struct subject make_between(void)
 {
     struct frame f = integer_frame(3);
-    float half = (float)(random_bits() % 64), t = (float)(64 + random_bits() % 64);
+    float half = (float)random_below(&random_state, 64),
+          t = (float)(64 + random_below(&random_state, 64));
     struct subject s = {.dir = f.x, .radius = (half + 1.0f) * f.length};
     s.origin = vec3_scale(f.x, -16777216.0f);
     s.center = vec3_scale(f.x, t);
@@ -175,9 +179,9 @@ static inline struct subject make_on_surface(void)
 {
     struct frame f = integer_frame(20);
     struct subject s = {.center = grid_point(10000), .radius = f.length, .dir = f.x};
-    uint32_t kind = random_bits() % 3;
+    uint32_t kind = random_below(&random_state, 3);
     if (kind < 2)
-        s.dir = vec3_add(f.x, vec3_scale(f.y, either_sign((float)(random_bits() % 10))));
+        s.dir = vec3_add(f.x, vec3_scale(f.y, either_sign((float)random_below(&random_state, 10))));
     s.origin = vec3_add(s.center, f.y);
     return s;
 }
@@ -208,8 +212,9 @@ static inline void set_t_min(struct subject *s)
 {
     s->t_min = 0.0f;
     struct sphere_meeting m;
-    uint32_t kind = random_bits() % 4;
-    exact_meet_sphere(s->origin, s->dir, s->center, s->radius, random_bits() % 2, 0.0f, &m);
+    uint32_t kind = random_below(&random_state, 4);
+    exact_meet_sphere(s->origin, s->dir, s->center, s->radius, random_below(&random_state, 2), 0.0f,
+                      &m);
     if (m.met && kind > 0)
         s->t_min = kind == 1 ? m.key : nextafterf(m.key, kind == 2 ? INFINITY : 0.0f);
 }

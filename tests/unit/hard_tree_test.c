@@ -238,7 +238,7 @@ static struct soup soup_bits(uint32_t count)
 {
     struct soup soup = soup_make("bits", count);
     for (uint32_t i = 0; i < 9 * count; ++i) {
-        uint32_t bits = random_bits();
+        uint32_t bits = random_bits(&random_state);
         if (i % 3) /* every third is of some size that others share */
             bits = (bits & 0x807fffffu) | (0x7e + bits % 3) << 23;
         memcpy(&soup.positions[i], &bits, sizeof bits);
@@ -264,21 +264,18 @@ static uint32_t count_usable(const struct scene_mesh *mesh)
 
 static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
 {
-    struct scene *scene = scene_create(&silent, "bits");
+    struct scene *scene = scene_begin(&silent, "bits");
     for (uint32_t i = 0; i < meshes; ++i) {
-        struct soup soup = soup_bits(1 + random_bits() % 40);
-        struct scene_mesh mesh = {.vertex_count = 3 * soup.count, .triangle_count = soup.count};
-        mesh.positions = soup.positions;
-        mesh.indices = soup.indices;
-        free(soup.boxes);
-        if (random_bits() % 4 == 0)
-            mesh.indices[random_bits() % (3 * soup.count)] = random_bits();
+        struct soup soup = soup_bits(1 + random_below(&random_state, 40));
+        struct scene_mesh mesh = mesh_triangles(soup.positions, soup.count);
+        soup_finish(&soup);
+        if (random_below(&random_state, 4) == 0)
+            mesh.indices[random_below(&random_state, mesh.vertex_count)] =
+                random_bits(&random_state);
         *usable += count_usable(&mesh);
-        struct scene_instance instance = {.mesh = scene_add_mesh(scene, mesh), .node = SCENE_NONE};
-        assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+        scene_put(scene, mesh, NULL);
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 /* U5, U6, U7: a thousand scenes (label long) of twenty meshes of any bits: what cannot be used is

@@ -97,7 +97,8 @@ typedef void (*make_fn)(struct vec3 v[3], struct gpu_ray *ray);
 /* At a point inside, well away from the edges. */
 static struct vec3 inner_point(const struct vec3 v[3])
 {
-    float a = 0.1f + 0.3f * random_float(), b = 0.1f + 0.3f * random_float();
+    float a = 0.1f + 0.3f * random_float(&random_state),
+          b = 0.1f + 0.3f * random_float(&random_state);
     struct vec3 p = vec3_add(vec3_scale(v[0], a), vec3_scale(v[1], b));
     return vec3_add(p, vec3_scale(v[2], 1.0f - a - b));
 }
@@ -111,7 +112,7 @@ static void make_unit(struct vec3 v[3], struct gpu_ray *ray)
 
 static float any_size(void)
 {
-    return random_within((float)pow(10.0, 16.0 * (double)random_float() - 8.0));
+    return random_within((float)pow(10.0, 16.0 * (double)random_float(&random_state) - 8.0));
 }
 
 static void make_any_size(struct vec3 v[3], struct gpu_ray *ray)
@@ -128,7 +129,7 @@ static void make_any_size(struct vec3 v[3], struct gpu_ray *ray)
 static void make_edge_aimed(struct vec3 v[3], struct gpu_ray *ray)
 {
     make_unit(v, ray);
-    float s = random_bits() % 2 ? 0.0f : random_float();
+    float s = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
     struct vec3 target = vec3_add(v[0], vec3_scale(vec3_sub(v[1], v[0]), s));
     *ray = ray_through(vec3_load(ray->origin), target);
 }
@@ -136,15 +137,15 @@ static void make_edge_aimed(struct vec3 v[3], struct gpu_ray *ray)
 static void make_needle(struct vec3 v[3], struct gpu_ray *ray)
 {
     make_unit(v, ray);
-    float width = (float)pow(10.0, -6.0 - 6.0 * (double)random_float());
+    float width = (float)pow(10.0, -6.0 - 6.0 * (double)random_float(&random_state));
     v[2] = vec3_add(v[1], random_point(width));
     *ray = ray_through(vec3_load(ray->origin), inner_point(v));
 }
 
 static struct vec3 random_grid_point(void)
 {
-    float x = (float)(random_bits() % 9), y = (float)(random_bits() % 9);
-    return vec3_make(x, y, (float)(random_bits() % 9));
+    float x = (float)random_below(&random_state, 9), y = (float)random_below(&random_state, 9);
+    return vec3_make(x, y, (float)random_below(&random_state, 9));
 }
 
 /* Within 1e-3 to 1e-7 of the plane. */
@@ -152,7 +153,7 @@ static void make_grazing(struct vec3 v[3], struct gpu_ray *ray)
 {
     make_unit(v, ray);
     struct vec3 n = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
-    float height = (float)pow(10.0, -3.0 - 4.0 * (double)random_float());
+    float height = (float)pow(10.0, -3.0 - 4.0 * (double)random_float(&random_state));
     struct vec3 target = inner_point(v),
                 far = vec3_sub(vec3_scale(v[0], 3.0f), vec3_scale(v[1], 2.0f));
     *ray = ray_through(vec3_add(far, vec3_scale(vec3_normalize(n), height)), target);
@@ -225,11 +226,11 @@ static void distances_are_good(void **state)
 static void make_without_area(struct vec3 v[3], struct gpu_ray *ray)
 {
     struct vec3 p = random_grid_point(), q = random_grid_point();
-    uint32_t kind = random_bits() % 3;
+    uint32_t kind = random_below(&random_state, 3);
     v[0] = random_grid_point();
     v[1] = kind == 0 ? v[0] : q;
     v[2] = kind == 2 ? vec3_sub(vec3_scale(q, 2.0f), v[0]) : v[0];
-    *ray = ray_through(p, random_bits() % 2 ? v[1] : random_grid_point());
+    *ray = ray_through(p, random_below(&random_state, 2) ? v[1] : random_grid_point());
 }
 
 /* From one point of the plane to another. */
@@ -238,7 +239,8 @@ static void make_in_plane(struct vec3 v[3], struct gpu_ray *ray)
     for (int i = 0; i < 3; ++i)
         v[i] = random_grid_point();
     struct vec3 e = vec3_sub(v[1], v[0]), f = vec3_sub(v[2], v[0]);
-    *ray = ray_through(vec3_sub(vec3_sub(v[0], e), f), vec3_add(v[0], random_bits() % 2 ? e : f));
+    *ray = ray_through(vec3_sub(vec3_sub(v[0], e), f),
+                       vec3_add(v[0], random_below(&random_state, 2) ? e : f));
 }
 
 /* T3, T5. Integers, so that nothing of it is lost by rounding: there is no one point in which such
@@ -332,7 +334,8 @@ static void size_does_not_matter(void **state)
             bool at_edge = r % 2 == 0, unit = r % 4 < 2;
             int least = at_edge ? -36 : -50;
             kinds[at_edge ? 2 : 0].make(v, &ray);
-            float scale = ldexpf(1.0f, (int)(random_bits() % (uint32_t)(61 - least)) + least);
+            float scale =
+                ldexpf(1.0f, (int)random_below(&random_state, (uint32_t)(61 - least)) + least);
             far = ray;
             for (int k = 0; k < 3; ++k) {
                 scaled[k] = vec3_scale(v[k], scale);
@@ -401,16 +404,18 @@ static void make_edge_apart(bool towards, struct vec3 v[3], struct gpu_ray *ray)
 {
     struct vec3 o = random_point(1.0f), u = random_point(1.0f), w = random_point(1.0f), end[2];
     for (int i = 0; i < 2; ++i) {
-        float beside = 1.05f + random_float(), along = 4.0f * random_float() - 2.0f;
+        float beside = 1.05f + random_float(&random_state),
+              along = 4.0f * random_float(&random_state) - 2.0f;
         if (towards) { /* to where the corner o is, from beyond the edge opposite to it */
-            float share = 0.2f + 0.6f * random_float(), away = i ? 1.1f : 1.1f + random_float();
+            float share = 0.2f + 0.6f * random_float(&random_state),
+                  away = i ? 1.1f : 1.1f + random_float(&random_state);
             beside = share * away;
             along = (1.0f - share) * away;
         }
         end[i] = vec3_add(o, vec3_add(vec3_scale(u, beside), vec3_scale(w, along)));
     }
     if (towards)
-        end[0] = vec3_add(o, vec3_scale(vec3_sub(end[1], o), 1.5f + random_float()));
+        end[0] = vec3_add(o, vec3_scale(vec3_sub(end[1], o), 1.5f + random_float(&random_state)));
     v[0] = o;
     v[1] = vec3_add(o, u);
     v[2] = vec3_add(o, w);

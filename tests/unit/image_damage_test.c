@@ -68,15 +68,15 @@ static void damage(struct fixture *fixture, struct sample *sample)
     assert_true(try_load(fixture, path, sample->data, sample->size_bytes));
     for (size_t length = 0; length < sample->size_bytes; ++length)
         assert_false(try_load(fixture, path, sample->data, length));
-    uint32_t seed = 99;
+    uint64_t seed = 99;
     uint8_t *copy = malloc(sample->size_bytes);
     assert_non_null(copy);
     for (int i = 0; i < FLIPS; ++i) {
         memcpy(copy, sample->data, sample->size_bytes);
         /* Every other time in the first bytes, where the sizes are. */
         size_t range = i % 2 && sample->size_bytes > 64 ? 64 : sample->size_bytes;
-        for (uint32_t n = 1 + fixture_random(&seed) % 3; n; --n)
-            copy[fixture_random(&seed) % range] = (uint8_t)fixture_random(&seed);
+        for (uint32_t n = 1 + random_below(&seed, 3); n; --n)
+            copy[random_bits(&seed) % range] = (uint8_t)random_bits(&seed);
         try_load(fixture, path, copy, sample->size_bytes);
     }
     free(copy);

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "../random.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "image/image.h"
@@ -77,32 +78,24 @@ static inline void fixture_put(const char *path, const void *data, size_t size_b
     assert_int_equal(fclose(stream), 0);
 }
 
-static inline uint32_t fixture_random(uint32_t *seed)
-{
-    *seed ^= *seed << 13;
-    *seed ^= *seed >> 17;
-    *seed ^= *seed << 5;
-    return *seed;
-}
-
 /* Values on [-0.1, 1.1], all different. */
 static inline struct image fixture_floats(uint32_t width, uint32_t height, uint32_t channels)
 {
     struct image image;
-    uint32_t seed = 12345;
+    uint64_t seed = 12345;
     assert_int_equal(image_init(&image, width, height, channels, false), WHIT_OK);
     for (size_t i = 0; i < (size_t)width * height * channels; ++i)
-        image.pixels[i] = (float)fixture_random(&seed) / 4294967296.0f * 1.2f - 0.1f;
+        image.pixels[i] = random_float(&seed) * 1.2f - 0.1f;
     return image;
 }
 
 static inline struct image fixture_words(uint32_t width, uint32_t height, uint32_t channels)
 {
     struct image image;
-    uint32_t seed = 54321;
+    uint64_t seed = 54321;
     assert_int_equal(image_init(&image, width, height, channels, true), WHIT_OK);
     for (size_t i = 0; i < (size_t)width * height * channels; ++i)
-        image.words[i] = fixture_random(&seed);
+        image.words[i] = random_bits(&seed);
     return image;
 }
 

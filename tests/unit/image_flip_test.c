@@ -373,9 +373,9 @@ static void swapping_changes_nothing(void **state)
 static struct image noisy(const struct image *image, float amplitude)
 {
     struct image out = image_of(image->width, image->height);
-    uint32_t seed = 99;
+    uint64_t seed = 99;
     for (size_t i = 0; i < 3 * (size_t)image->width * image->height; ++i) {
-        float noise = (float)fixture_random(&seed) / 4294967296.0f - 0.5f;
+        float noise = random_float(&seed) - 0.5f;
         out.pixels[i] = image->pixels[i] + amplitude * noise;
     }
     return out;

@@ -51,7 +51,7 @@ static void spheres_equal_twin(void **state)
     scene = fixture_scene(scattered_spheres(40, 1.0, 0.3));
     fixture_place(scene, NULL);
     for (int i = 0; i < 12; ++i) {
-        struct affine placed = random_placement(1.5, i % 3 == 0);
+        struct affine placed = placement_random(&random_state, 1.5, i % 3 == 0);
         fixture_place(scene, &placed);
     }
     check_twin(scene, NULL, "instances");
@@ -68,7 +68,7 @@ static void mixed_scene_equals_twin(void **state)
     assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
     uint32_t ring = scene_add_mesh(scene, mesh);
     for (int i = 0; i < 8; ++i) {
-        struct affine placed = random_placement(1.0, i % 3 == 0);
+        struct affine placed = placement_random(&random_state, 1.0, i % 3 == 0);
         fixture_place(scene, &placed);
         scene->instances[i].mesh = i % 2 ? ring : 0;
     }

@@ -4,45 +4,30 @@
 
 #include <math.h>
 
+#include "../scenes.h"
 #include "random_fixture.h"
-#include "scene/shapes.h"
 
 static inline double sphere_random(void)
 {
-    return 2.0 * (double)random_float() - 1.0;
+    return (double)random_float_signed(&random_state);
 }
 
 /* Centres within a cube of half side `spread`; radii from `most` down to a thousandth of it. Every
    tenth sphere is its neighbour again: ties. */
 static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double most)
 {
-    struct scene_mesh mesh = {0};
     double *spheres = malloc(4 * sizeof(double) * count);
     assert_non_null(spheres);
     for (uint32_t i = 0; i < count; ++i) {
         for (size_t k = 0; k < 3; ++k)
             spheres[4 * (size_t)i + k] = spread * sphere_random();
-        spheres[4 * (size_t)i + 3] = most * pow(10.0, -3.0 * (double)random_float());
+        spheres[4 * (size_t)i + 3] = most * pow(10.0, -3.0 * (double)random_float(&random_state));
         if (i % 10 == 9)
             memcpy(&spheres[4 * (size_t)i], &spheres[4 * (size_t)i - 4], 4 * sizeof(double));
     }
-    assert_int_equal(shape_balls(spheres, count, &mesh), WHIT_OK);
+    struct scene_mesh mesh = mesh_balls(spheres, count);
     free(spheres);
     return mesh;
-}
-
-/* Turned, stretched up to 1 : 5, some mirrored. */
-static inline struct affine random_placement(double spread, bool mirrored)
-{
-    double t[3], q[4], s[3];
-    for (int k = 0; k < 3; ++k) {
-        t[k] = spread * sphere_random();
-        s[k] = 1.0 + 0.66 * sphere_random();
-    }
-    for (int k = 0; k < 4; ++k)
-        q[k] = sphere_random();
-    s[0] = mirrored ? -s[0] : s[0];
-    return affine_from_trs(t, q, s);
 }
 
 /* A quarter each: anywhere; at a sphere; past it within a millionth of its radius; from inside.
@@ -51,9 +36,11 @@ static inline struct gpu_ray ray_at_spheres(const struct scene_mesh *mesh, uint3
                                             double away)
 {
     struct gpu_ray ray = {.t_max = INFINITY};
-    const float *sphere = &mesh->spheres[4 * (size_t)(random_bits() % mesh->sphere_count)];
+    const float *sphere =
+        &mesh->spheres[4 * (size_t)random_below(&random_state, mesh->sphere_count)];
     double radius = (double)sphere[3], out[3], side[3], length = 0.0, along = 0.0;
-    double far = index % 4 == 3 ? (double)random_float() : pow(away, (double)random_float());
+    double far = index % 4 == 3 ? (double)random_float(&random_state)
+                                : pow(away, (double)random_float(&random_state));
     for (int k = 0; k < 3; ++k) {
         out[k] = sphere_random();
         side[k] = sphere_random();
@@ -68,7 +55,8 @@ static inline struct gpu_ray ray_at_spheres(const struct scene_mesh *mesh, uint3
         width += side[k] * side[k];
     }
     width = sqrt(width);
-    double offset = index % 4 == 2 ? 1.0 + 1e-6 * sphere_random() : (double)random_float();
+    double offset =
+        index % 4 == 2 ? 1.0 + 1e-6 * sphere_random() : (double)random_float(&random_state);
     for (int k = 0; k < 3; ++k) {
         double from = (double)sphere[k] + radius * far * out[k] / length;
         double to = (double)sphere[k] + radius * offset * side[k] / width;
