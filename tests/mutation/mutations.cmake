@@ -1,7 +1,10 @@
 # Sources broken on purpose. Each must turn a test red, and in it the check that RED names:
 #     mutation(NAME TEST RED check [GREEN what it prints otherwise] [TARGET to build; default TEST_test])
-#     change(FILE [[text]] [[in place of it]])    every occurrence; one or more a mutation
-# A text that is no longer there is a failure: texts are short, so that few edits touch them. Shaders
+#     change(FILE FUNCTION [[regular expression]] [[replacement, \1 ... for what was captured]])
+#     change(FILE [[text]] [[in place of it]])    every occurrence
+# with one or more changes a mutation. What an expression names must be in the function exactly once (see
+# change.cmake); it is an operator, a constant or a call rather than local names, so that few edits
+# touch it. The second form is for what is in no function, and for shaders and host/render/. Shaders
 # and their twins in C are broken alone, where the comparison with the other finds it, and both in the
 # same way, where only an oracle can.
 
@@ -55,18 +58,18 @@ change(host/render/upload.c [[frame->uv1_row, TRIANGLE_UV_ROWS, fill_second_uvs]
 # ---- Only what is called for ----
 
 mutation(fallback_unsaid device_fallback RED kernels_go_to_the_driver_whole)
-change(host/device/pipeline.c [[if (!info->specialized) {]] [[if (false) {]])
+change(host/device/pipeline.c prepare_kernel [[if \([^()]*specialized\)]] [[if (false)]])
 
 mutation(fallback_without_constants device_fallback RED kernels_go_to_the_driver_whole)
-change(host/device/pipeline.c [[params->spec_count > 0 && !kernel->specialized]] [[false]])
+change(host/device/pipeline.c make_pipeline [[[^ ]+spec_count > 0 && [^ ]+specialized]] [[false]])
 
 mutation(scan_misses_highlights scene_cube RED "--effects all gives the same picture"
   TARGET picture_check)
-change(host/scene/effects.c [[(m->model == SCENE_MODEL_PHONG && any(m->specular))]] [[false]])
+change(host/scene/effects.c scan_optics
+  [[\([^()]*SCENE_MODEL_PHONG && any\([^()]*specular\)\)]] [[false]])
 
 mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_changed)
-change(host/api/renderer_api.c [[? &out->effects_added : &out->effects_removed]]
-  [[? &out->effects_added : &out->effects_added]])
+change(host/api/renderer_api.c switch_effect [[: ([^ ;]+)effects_removed]] [[: \1effects_added]])
 
 # ---- Loops that end early ----
 
@@ -95,8 +98,7 @@ set_source_files_properties(accel/traverse.c PROPERTIES COMPILE_OPTIONS
 
 mutation(contracted_kernels spirv RED ".* float operations may be contracted"
   GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
-change(tools/spirv_exact.c [[    put_decorations(&out, words, count, marked);]]
-  [[    (void)put_decorations;]])
+change(tools/spirv_exact.c main [[put_decorations\([^;]*;]] [[(void)put_decorations;]])
 
 # lavapipe rounds fma() twice, so that no picture shows it there.
 mutation(fused_edges_in_kernels spirv RED ".* float operations may be contracted"
@@ -105,35 +107,38 @@ change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
   [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
 
 mutation(fused_edges peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h [[s.ea = s.cx * s.by - s.cy * s.bx;]]
-  [[s.ea = fmaf(s.cx, s.by, -(s.cy * s.bx));]])
-change(host/accel/intersect.h [[s.eb = s.ax * s.cy - s.ay * s.cx;]]
-  [[s.eb = fmaf(s.ax, s.cy, -(s.ay * s.cx));]])
-change(host/accel/intersect.h [[s.ec = s.bx * s.ay - s.by * s.ax;]]
-  [[s.ec = fmaf(s.bx, s.ay, -(s.by * s.ax));]])
+change(host/accel/intersect.h shear_triangle
+  [[ea = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ea = fmaf(\1, \2, -(\3));]])
+change(host/accel/intersect.h shear_triangle
+  [[eb = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[eb = fmaf(\1, \2, -(\3));]])
+change(host/accel/intersect.h shear_triangle
+  [[ec = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ec = fmaf(\1, \2, -(\3));]])
 
 mutation(t_of_areas_times_lengths hard_triangle RED size_does_not_matter)
-change(host/accel/intersect.h [[((s.ea * inv_det) * az + *u * bz) + *v * cz;]]
-  [[((s.ea * az + s.eb * bz) + s.ec * cz) * inv_det;]])
+change(host/accel/intersect.h intersect_triangle
+  [[\(\(([a-z]+\.)ea \* ([a-z_]+)\) \* ([a-z]+) \+ [^ ]+ \* ([a-z]+)\) \+ [^ ]+ \* ([a-z]+);]] [[((\1ea * \3 + \1eb * \4) + \1ec * \5) * \2;]])
 
 mutation(t_of_areas_times_lengths_in_kernels render_scale RED pictures_do_not_depend_on_the_unit)
 change(shaders/lib/intersect.glsl [[(weight_a * z.x + weight_b * z.y) + weight_c * z.z;]]
   [[((edges.x * z.x + edges.y * z.y) + edges.z * z.z) * inv_det;]])
 
 mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h [[SLAB_FAR_SCALE (1.0f + 1.0f / 1048576.0f)]] [[SLAB_FAR_SCALE 1.0f]])
+change(host/accel/intersect.h SLAB_FAR_SCALE [[\(1\.0f .*\)]] [[1.0f]])
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_factor_gone_in_kernels render_trace RED far_sphere_equals_twin)
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_by_fma peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h [[slab_axis(float lo,]] [[slab_axis(float o, float lo,]])
-change(host/accel/intersect.h [[lo * inv_dir;]] [[fmaf(lo + o, inv_dir, -(o * inv_dir));]])
-change(host/accel/intersect.h [[hi * inv_dir;]] [[fmaf(hi + o, inv_dir, -(o * inv_dir));]])
-change(host/accel/intersect.h [[slab_axis(lo.x,]] [[slab_axis(ray->origin.x, lo.x,]])
-change(host/accel/intersect.h [[slab_axis(lo.y,]] [[slab_axis(ray->origin.y, lo.y,]])
-change(host/accel/intersect.h [[slab_axis(lo.z,]] [[slab_axis(ray->origin.z, lo.z,]])
+change(host/accel/intersect.h slab_axis [[slab_axis\(float]] [[slab_axis(float o, float]])
+change(host/accel/intersect.h slab_axis [[= lo \* ([a-z_]+);]] [[= fmaf(lo + o, \1, -(o * \1));]])
+change(host/accel/intersect.h slab_axis [[= hi \* ([a-z_]+);]] [[= fmaf(hi + o, \1, -(o * \1));]])
+change(host/accel/intersect.h slab_interval
+  [[slab_axis\(([a-z.]+x, [a-z.]+x, )([a-z]+->)]] [[slab_axis(\2origin.x, \1\2]])
+change(host/accel/intersect.h slab_interval
+  [[slab_axis\(([a-z.]+y, [a-z.]+y, )([a-z]+->)]] [[slab_axis(\2origin.y, \1\2]])
+change(host/accel/intersect.h slab_interval
+  [[slab_axis\(([a-z.]+z, [a-z.]+z, )([a-z]+->)]] [[slab_axis(\2origin.z, \1\2]])
 
 mutation(slab_by_fma_in_kernels render_trace RED far_sphere_equals_twin)
 change(shaders/lib/intersect.glsl [[lo * ray.inv_dir;]]
@@ -142,35 +147,34 @@ change(shaders/lib/intersect.glsl [[hi * ray.inv_dir;]]
   [[(hi + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
-change(host/accel/intersect.h [[vec3_make(1.0f / dir.x, 1.0f / dir.y, 1.0f / dir.z);]]
-  [[vec3_make(fmaxf(fminf(1.0f / dir.x, 1e30f), -1e30f), fmaxf(fminf(1.0f / dir.y, 1e30f), -1e30f),
-      fmaxf(fminf(1.0f / dir.z, 1e30f), -1e30f));]])
+change(host/accel/intersect.h make_ray_setup
+  [[vec3_make\(1\.0f / ([a-z]+)\.x, ([^;]+), ([^;]+)\);]]
+  [[vec3_make(fmaxf(fminf(1.0f / \1.x, 1e30f), -1e30f), fmaxf(fminf(\2, 1e30f), -1e30f),
+      fmaxf(fminf(\3, 1e30f), -1e30f));]])
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
 mutation(reciprocals_clamped_in_kernels render_trace RED box_equals_twin)
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
 mutation(signs_of_directions accel_oracle RED borders_are_met_along_the_axes)
-change(host/accel/intersect.h [[ray.inv_dir.x < 0.0f]] [[dir.x < 0.0f]])
-change(host/accel/intersect.h [[ray.inv_dir.y < 0.0f]] [[dir.y < 0.0f]])
-change(host/accel/intersect.h [[ray.inv_dir.z < 0.0f]] [[dir.z < 0.0f]])
+change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.x < 0]] [[dir.x < 0]])
+change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.y < 0]] [[dir.y < 0]])
+change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.z < 0]] [[dir.z < 0]])
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
 mutation(signs_of_directions_in_kernels render_trace RED box_equals_twin)
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
 mutation(transform_by_a_sum accel_instance RED far_translations_keep_their_precision)
-change(host/accel/accel_inside.h [[accel_rotate_rows(r0, r1, r2, relative)]]
-  [[vec3_sub(accel_rotate_rows(r0, r1, r2, vec3_load(ray->origin)),
-                                     accel_rotate_rows(r0, r1, r2, origin))]])
+change(host/accel/accel_inside.h accel_local_ray
+  [[(\.origin, )(accel_rotate_rows\([^()]*, )[a-z]+\)]] [[\1vec3_sub(\2vec3_load(ray->origin)), \2origin))]])
 
 mutation(transform_by_a_sum_in_kernels render_trace RED instances_equal_twin)
 change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
   [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
 
 mutation(ties_undecided accel_stack RED duplicates_give_the_first)
-change(host/accel/traverse.c [[(t == farthest && (instance < hit->instance ||]]
-  [[(false && (instance < hit->instance ||]])
+change(host/accel/traverse.c is_nearer [[[a-z]+ == farthest]] [[false]])
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
@@ -179,7 +183,7 @@ change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.insta
   [[(false && (instance < hit.instance ||]])
 
 mutation(stack_without_end accel_stack RED too_deep_trees_are_reported)
-change(host/accel/traverse.c [[if (*top == STACK_SIZE) {]] [[if (false) {]])
+change(host/accel/traverse.c push_ref [[[^( ]+ == STACK_SIZE]] [[false]])
 
 mutation(stack_without_end_in_kernels render_cost RED understated_depth_is_reported)
 change(shaders/bind/traverse.glsl [[if (stack.in_memory < SPEC_STACK_SIZE) {]] [[if (true) {]])
@@ -196,40 +200,40 @@ change(shaders/lib/moller.glsl [[weight_b >= 0.0 && weight_c >= 0.0 && weights <
 
 mutation(fast_with_an_epsilon epsilons RED "small numbers that nothing accounts for"
   GREEN " 0 of them not accounted for" TARGET kernel_dump)
-change(host/accel/moller.h [[det != 0.0f]] [[fabsf(det) > 1e-6f]])
+change(host/accel/moller.h intersect_moller [[([a-z]+) != 0\.0f]] [[fabsf(\1) > 1e-6f]])
 change(shaders/lib/moller.glsl [[det != 0.0]] [[abs(det) > 1e-6]])
 
 mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
 change(shaders/bind/camera.glsl [[inverse_square_root(squared)]] [[inversesqrt(squared)]])
 
 mutation(filter_without_bound accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 0.0f *]])
+change(host/accel/exact.c exact_filter [[4\.125f]] [[0.0f]])
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
 mutation(filter_with_half_its_bound accel_filter RED errors_stay_within_their_bounds)
-change(host/accel/exact.c [[float edge_error = 4.125f *]] [[float edge_error = 2.0625f *]])
+change(host/accel/exact.c exact_filter [[4\.125f]] [[2.0625f]])
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
 
 mutation(filter_with_half_its_bound_in_kernels device_filter RED bounds_are_those_of_c)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
 
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c [[float t_error = weights_error * (z_hi - z_lo) + z_error;]]
-  [[float t_error = 0.0f * z_error;]])
+change(host/accel/exact.c exact_filter
+  [[= ([a-z_]+ \* \([a-z_]+ - [a-z_]+\) \+ [a-z_]+);]] [[= 0.0f * (\1);]])
 change(shaders/lib/exact.glsl [[t_error = weights_error * (z_hi - z_lo) + z_error;]]
   [[t_error = 0.0 * z_error;]])
 
 mutation(keys_unrounded accel_hard RED cases_are_what_they_say)
-change(host/accel/traverse.c [[!walk->any && walk->lo < walk->hi)]] [[!walk->any && false)]])
+change(host/accel/traverse.c traverse_all [[[a-z]+->lo < [a-z]+->hi]] [[false]])
 
 mutation(keys_unrounded_in_kernels render_numerics RED one_mesh)
 change(shaders/bind/settle.glsl [[bool loose = hit.lo < hit.hi;]] [[bool loose = false;]])
 
 mutation(keys_cut_off accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0 ? 1u : 0u;]])
+change(host/accel/exact.c round_quotient [[up \?]] [[up && mantissa == 0 ?]])
 change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
 
 mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
@@ -237,21 +241,20 @@ change(shaders/lib/pair_numbers.glsl [[vec2 both = pair_sum(first, second);]]
   [[vec2 both = pair_sum(first, 0.0);]])
 
 mutation(pairs_without_bound hard_pairs RED what_is_sure_is_so)
-change(host/accel/pairs.c [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
-  [[size * PAIR_RELATIVE / 128.0f + PAIR_ABSOLUTE]])
+change(host/accel/pairs.c triple [[PAIR_RELATIVE]] [[PAIR_RELATIVE / 128.0f]])
 change(shaders/lib/pairs.glsl [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
   [[size * PAIR_RELATIVE / 128.0 + PAIR_ABSOLUTE]])
 
 mutation(spheres_with_half_their_bound hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/exact_sphere.c [[82.0f *]] [[41.0f *]])
-change(host/accel/exact_sphere.c [[18500.0f]] [[9250.0f]])
-change(host/accel/exact_sphere.c [[4.5f * ll + 2.5f * foot.rr]] [[2.25f * ll + 1.25f * foot.rr]])
+change(host/accel/exact_sphere.c bound_sphere [[82\.0f]] [[41.0f]])
+change(host/accel/exact_sphere.c bound_sphere [[18500\.0f]] [[9250.0f]])
+change(host/accel/exact_sphere.c bound_sphere [[4\.5f ([^)]*) 2\.5f]] [[2.25f \1 1.25f]])
 
 mutation(spheres_without_bound_in_kernels device_sphere RED spheres_are_met_as_in_c)
 change(shaders/lib/exact_sphere.glsl [[foot.room > error;]] [[foot.room > 0.0;]])
 
 mutation(sphere_ties_round_down hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/exact_sphere.c [[(side == 0 && (bits & 1u) != 0)]] [[false]])
+change(host/accel/exact_sphere.c is_beyond [[\([a-z]+ == 0 && [^)]*\) != 0\)]] [[false]])
 
 mutation(sphere_ties_round_down_in_kernels device_sphere RED spheres_are_met_as_in_c)
 change(shaders/lib/exact_sphere.glsl [[(side == 0 && (middle & 1u) != 0u)]] [[false]])
@@ -273,8 +276,7 @@ mutation(waiting_rays_leave_children render_waiting RED pictures_are_those_of_lo
 change(shaders/kernel/whitted.comp [[if (SPEC_LOOKS == 0u && must_wait(status)) {]] [[if (false) {]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
-change(host/accel/traverse.c [[if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)]]
-  [[if (false)]])
+change(host/accel/traverse.c is_nearer_key [[if \([^()]*->lo < [^()]*->hi\)]] [[if (false)]])
 
 mutation(hits_unsettled_in_kernels render_numerics RED ties)
 change(shaders/bind/settle.glsl [[again = m.met && hit.lo < hit.hi &&]] [[again = false &&]])
@@ -285,27 +287,26 @@ change(shaders/bind/settle.glsl [[m.met && exact.met && exact.key]] [[m.met && e
 # ---- whit hard ----
 
 mutation(leaks_uncounted accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c [[hits && !met && is_leak(]] [[false && is_leak(]])
+change(host/accel/hard_judge.c judge_ray [[\+= [^;]*is_leak]] [[+= false && is_leak]])
 
 mutation(promises_always_kept accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c [[if (numerics == NUMERICS_FAST)]] [[if (numerics < 9)]])
+change(host/accel/hard_judge.c hard_promise_kept [[== NUMERICS_FAST]] [[< 9]])
 
 mutation(differences_unseen accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c [[&b[i], sizeof a[i]) != 0;]] [[&b[i], 1) != 0;]])
+change(host/accel/hard_judge.c hard_count_differing [[sizeof [^)]*]] [[1]])
 
 mutation(identities_unhashed accel_hard RED cases_are_what_they_say)
-change(host/accel/hard_judge.c [[ids[2] = {exact[i].instance, exact[i].primitive};]]
-  [[ids[2] = {exact[i].instance, 0};]])
+change(host/accel/hard_judge.c hard_hash [[[^ ]+\.primitive]] [[0]])
 
 mutation(self_hits_unseen accel_hard RED self_hits_are_seen)
-change(host/accel/hard_judge.c [[j->hard->truth == HARD_MUST_MISS ||]] [[]])
+change(host/accel/hard_judge.c judge_ray [[[^ (]+truth == HARD_MUST_MISS]] [[false]])
 
 mutation(open_edges_unseen accel_hard RED surfaces_are_described)
-change(host/accel/hard_topology.c [[open_edges += end - first == 1;]] [[open_edges += 0;]])
+change(host/accel/hard_topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 0]])
 
 mutation(broken_promises_are_fine cli_hard RED "a twin that loses rays: exit code 1"
   TARGET whit_leaky)
-change(host/app/hard_command.c [[status == EXIT_FINE ? EXIT_DIFFERS : status;]] [[status;]])
+change(host/app/hard_command.c work [[[a-z]+ == EXIT_FINE \? EXIT_DIFFERS : ]] [[]])
 
 # ---- The reference in double ----
 
@@ -313,17 +314,16 @@ mutation(schlick_by_fourth_power reference_effects RED every_effect_agrees_with_
 change(shaders/lib/optics.glsl [[return x2 * x2 * x;]] [[return x2 * x2;]])
 
 mutation(reference_schlick_by_fourth_power reference_formula RED glass_follows_fresnel_and_snell)
-change(host/reference/optics.c [[SCHLICK_POWER 5.0]] [[SCHLICK_POWER 4.0]])
+change(host/reference/optics.c SCHLICK_POWER [[5\.0]] [[4.0]])
 
 mutation(reference_beer_by_halves reference_formula RED bodies_absorb_by_beer)
-change(host/reference/media.c [[exp(-absorption * t)]] [[exp(-0.5 * absorption * t)]])
+change(host/reference/media.c transmitted [[exp\(-]] [[exp(-0.5 * ]])
 
 mutation(reference_without_room reference_formula RED light_falls_with_cosine_and_square)
-change(host/reference/surface.c [[s.room = ROOM]] [[s.room = 0.0 * ROOM]])
+change(host/reference/surface.c surface_at [[ROOM]] [[0.0 * ROOM]])
 
 mutation(reference_samples_alike reference_effects RED every_effect_agrees_with_the_device)
-change(host/reference/picture.c [[tracer->sample = i;]] [[tracer->sample = 0 * i;]])
+change(host/reference/picture.c draw_pixel [[->sample = ([a-z]+);]] [[->sample = 0 * \1;]])
 
 mutation(reference_fresnel_of_two_percent reference_scenes RED default_scenes_agree)
-change(host/reference/optics.c [[0.5 * (sine * sine + tangent * tangent)]]
-  [[0.51 * (sine * sine + tangent * tangent)]])
+change(host/reference/optics.c optics_fresnel [[return 0\.5]] [[return 0.51]])

@@ -1,5 +1,4 @@
-# The table of mutations in docs/numerics.md is that of mutations.cmake, and the texts that they change
-# are there:
+# The table of mutations in docs/numerics.md is that of mutations.cmake, and what they change is there:
 #     cmake -DROOT=<repository> -P table.cmake
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${ROOT}/docs/numerics.md rows ENCODING UTF-8 REGEX "^\\| `[a-z_]+` \\|.*\\| `[a-z_]+`")
@@ -16,14 +15,22 @@ function(mutation name test)
   endif()
 endfunction()
 
-function(change file from)
+include(${CMAKE_CURRENT_LIST_DIR}/change.cmake)
+
+function(change file)
   set(text "")
   if(EXISTS ${ROOT}/${file})
     file(READ ${ROOT}/${file} text)
   endif()
-  string(FIND "${text}" "${from}" at)
-  if(at EQUAL -1)
-    message(SEND_ERROR "${mutated}: ${file} has no such text any more: ${from}")
+  if(ARGC EQUAL 4)
+    change_text(text changed ${file} ${ARGV1} "${ARGV2}" "${ARGV3}")
+  else()
+    change_text(text changed ${file} "${ARGV1}" "${ARGV2}")
+  endif()
+  if(changed_error)
+    message(SEND_ERROR "${mutated}: ${changed_error}")
+  elseif(changed STREQUAL text)
+    message(SEND_ERROR "${mutated}: ${file} is the same afterwards")
   endif()
 endfunction()
 
