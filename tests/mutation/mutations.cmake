@@ -198,9 +198,11 @@ mutation(fast_with_slack_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/moller.glsl [[weight_b >= 0.0 && weight_c >= 0.0 && weights <= 1.0]]
   [[weight_b >= -1e-6 && weight_c >= -1e-6 && weights <= 1.000001]])
 
-mutation(fast_with_an_epsilon epsilons RED "small numbers that nothing accounts for"
-  GREEN " 0 of them not accounted for" TARGET kernel_dump)
+mutation(fast_with_an_epsilon hard_triangle RED size_does_not_matter)
 change(host/accel/moller.h intersect_moller [[([a-z]+) != 0\.0f]] [[fabsf(\1) > 1e-6f]])
+change(shaders/lib/moller.glsl [[det != 0.0]] [[abs(det) > 1e-6]])
+
+mutation(fast_with_an_epsilon_in_kernels render_numerics RED split_triangles)
 change(shaders/lib/moller.glsl [[det != 0.0]] [[abs(det) > 1e-6]])
 
 mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
