@@ -1,18 +1,45 @@
-/* A picture is worth the name when it is finite, of the expected size, and neither black nor of one
-   colour:
-       picture_check PICTURE WIDTH HEIGHT */
+/* What holds of the picture of every scene:
+       picture_check SCENE [validated | levels]
+   The picture is finite, neither black nor of one colour, and nothing that may not change it does
+   so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
+   for the scene is smaller than the one with every effect, which traces the same rays, and none of
+   a kind that the scene does not call for. `validated`: the same picture under GPU-assisted
+   validation. `levels`: the kernel with every effect beside the scene's own at the other levels of
+   numerics.
+       picture_check PICTURE WIDTH HEIGHT
+   A picture in a file is finite, of that size, neither black nor of one colour. */
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "whit.h"
 
+enum { WIDTH = 64, HEIGHT = 48 };
+
+static bool failed;
+
+static void check(bool holds, const char *what)
+{
+    printf("%s  %s\n", holds ? "ok    " : "FAILED", what);
+    fflush(stdout);
+    failed = failed || !holds;
+}
+
+/* Nothing is wrong with these scenes: a warning is a failure, as is a message of the validation
+   layers. */
 static void on_message(void *user, whit_log_level level, const char *message)
 {
     (void)user;
     (void)level;
     fprintf(stderr, "picture_check: %s\n", message);
+    failed = true;
 }
+
+static const whit_log messages = {.fn = on_message, .level = WHIT_LOG_WARNING};
+
+/* ---- One picture ---- */
 
 /* Pixels that differ from their right neighbour. */
 static uint32_t count_steps(const float *pixels, const whit_image_info *info)
@@ -51,19 +78,266 @@ static const char *find_fault(const whit_image *image, unsigned long width, unsi
     return NULL;
 }
 
+static void check_picture(const char *path, const whit_image *image, unsigned long width,
+                          unsigned long height)
+{
+    const char *fault = find_fault(image, width, height);
+    if (fault)
+        fprintf(stderr, "%s: %s\n", path, fault);
+    check(!fault, "the picture is worth the name");
+}
+
+static void check_file(const char *path, const char *width, const char *height)
+{
+    whit_image *image = NULL;
+    if (whit_image_load(path, &messages, &image) == WHIT_OK)
+        check_picture(path, image, strtoul(width, NULL, 10), strtoul(height, NULL, 10));
+    whit_image_destroy(image);
+}
+
+/* ---- Pictures of a scene ---- */
+
+/* Linked in the place of accel_stack_size (--wrap). The size of the node stack is part of a
+   kernel. A floor gives the same kernel to trees of different depths, and to different scenes: then
+   the driver compiles it once. */
+uint32_t __real_accel_stack_size(const void *accel);
+uint32_t __wrap_accel_stack_size(const void *accel);
+static uint32_t stack_floor, stack_needed;
+enum { STACK_OF_ALL = 64 };
+
+uint32_t __wrap_accel_stack_size(const void *accel)
+{
+    stack_needed = __real_accel_stack_size(accel);
+    return stack_needed > stack_floor ? stack_needed : stack_floor;
+}
+
+/* What a picture is drawn with. */
+struct subject {
+    const char *path;
+    whit_scene *scene;
+    whit_accel *accel;
+    whit_device *device;
+};
+
+struct drawn {
+    whit_image *color, *ids;
+    whit_stats stats;
+};
+
+static void drawn_finish(struct drawn *drawn)
+{
+    whit_image_destroy(drawn->color);
+    whit_image_destroy(drawn->ids);
+    *drawn = (struct drawn){.color = NULL};
+}
+
+static bool draw(const struct subject *subject, const whit_renderer_params *params,
+                 struct drawn *out)
+{
+    whit_renderer_params sized = *params;
+    whit_renderer *renderer = NULL;
+    sized.width = WIDTH;
+    sized.height = HEIGHT;
+    *out = (struct drawn){.color = NULL};
+    bool done =
+        whit_renderer_create(subject->device, subject->accel, &sized, &renderer) == WHIT_OK &&
+        whit_renderer_render(renderer) == WHIT_OK &&
+        whit_renderer_image(renderer, WHIT_AOV_COLOR, &out->color) == WHIT_OK &&
+        whit_renderer_image(renderer, WHIT_AOV_IDS, &out->ids) == WHIT_OK;
+    if (done)
+        whit_renderer_get_stats(renderer, &out->stats);
+    whit_renderer_destroy(renderer);
+    check(done, "a picture is drawn");
+    return done;
+}
+
+static bool same_colors(const struct drawn *a, const struct drawn *b)
+{
+    const float *x = whit_image_floats(a->color), *y = whit_image_floats(b->color);
+    return memcmp(x, y, sizeof *x * 4 * WIDTH * HEIGHT) == 0;
+}
+
+static bool same_ids(const struct drawn *a, const struct drawn *b)
+{
+    const uint32_t *x = whit_image_words(a->ids), *y = whit_image_words(b->ids);
+    return memcmp(x, y, sizeof *x * 2 * WIDTH * HEIGHT) == 0;
+}
+
+static void check_same(const struct subject *subject, const struct drawn *first,
+                       const whit_renderer_params *params, const char *way)
+{
+    char what[96];
+    struct drawn other;
+    if (draw(subject, params, &other)) {
+        snprintf(what, sizeof what, "%s gives the same picture", way);
+        check(same_colors(first, &other), what);
+        snprintf(what, sizeof what, "%s gives the same identities", way);
+        check(same_ids(first, &other), what);
+    }
+    drawn_finish(&other);
+}
+
+/* On a device and over trees of their own; drivers read the environment when a device is made. */
+static void check_apart(const struct subject *subject, const struct drawn *first,
+                        const whit_accel_params *trees, const whit_renderer_params *params,
+                        const char *way)
+{
+    struct subject other = *subject;
+    bool made = whit_accel_create(subject->scene, trees, &other.accel) == WHIT_OK &&
+                whit_device_create(NULL, &messages, &other.device) == WHIT_OK;
+    check(made, "another device comes up");
+    if (made) {
+        check_same(&other, first, params, way);
+        check(whit_device_validation_messages(other.device) == 0,
+              "the validation layers had nothing to say");
+    }
+    if (other.device != subject->device)
+        whit_device_destroy(other.device);
+    if (other.accel != subject->accel)
+        whit_accel_destroy(other.accel);
+}
+
+/* ---- The kernel with every effect ---- */
+
+static bool is_called(const whit_scene *scene, const char *name)
+{
+    const char *effect;
+    for (uint32_t i = 0; (effect = whit_effect_name(i)) != NULL; ++i) {
+        whit_effect_info info;
+        whit_scene_get_effect(scene, i, &info);
+        if (strcmp(effect, name) == 0)
+            return info.called;
+    }
+    return false;
+}
+
+static void check_rays(const struct subject *subject, const char *effect, uint64_t own,
+                       uint64_t all)
+{
+    char what[96];
+    snprintf(what, sizeof what, "--effects all traces as many rays of %s", effect);
+    check(own == all, what);
+    snprintf(what, sizeof what, "no ray of %s where the scene does not call for it", effect);
+    check(all == 0 || is_called(subject->scene, effect), what);
+}
+
+static void check_all_effects(const struct subject *subject, const struct drawn *first,
+                              whit_renderer_params params)
+{
+    struct drawn other;
+    params.effects = "all";
+    stack_floor = STACK_OF_ALL;
+    if (draw(subject, &params, &other)) {
+        const whit_stats *own = &first->stats, *all = &other.stats;
+        check(same_colors(first, &other), "--effects all gives the same picture");
+        check(same_ids(first, &other), "--effects all gives the same identities");
+        printf("        %u of %u instructions\n", own->kernel_instructions,
+               all->kernel_instructions);
+        check(own->kernel_instructions < all->kernel_instructions,
+              "the kernel of the scene has fewer instructions");
+        check_rays(subject, "shadows", own->rays_shadow, all->rays_shadow);
+        check_rays(subject, "reflection", own->rays_reflected, all->rays_reflected);
+        check_rays(subject, "refraction", own->rays_refracted, all->rays_refracted);
+    }
+    stack_floor = 0;
+    drawn_finish(&other);
+}
+
+/* ---- Ways to draw the same ---- */
+
+static void check_ways(const struct subject *subject, const struct drawn *first)
+{
+    const whit_accel_params median = {.build = WHIT_BUILD_MEDIAN};
+    const whit_renderer_params usual = {.tile_size = 0}, tile = {.tile_size = 512},
+                               storage = {.load_path = "storage"}, texel = {.load_path = "texel"};
+    check_same(subject, first, &tile, "--tile 512");
+    check_same(subject, first, &storage, "--load-path storage");
+    check_same(subject, first, &texel, "--load-path texel");
+    stack_floor = stack_needed;
+    check_apart(subject, first, &median, &usual, "--build median");
+    stack_floor = 0;
+}
+
+/* Each number of threads of the driver's and of whit's own, over tiles that are larger and smaller
+   than needed. */
+static void check_threads(const struct subject *subject, const struct drawn *first)
+{
+    static const char *const drivers[] = {"0", "1", "2"};
+    static const uint32_t tiles[] = {16, 17, 32};
+    for (uint32_t i = 0; i < 3; ++i) {
+        char way[64];
+        const whit_accel_params trees = {.threads = i + 1};
+        const whit_renderer_params params = {.tile_size = tiles[i]};
+        snprintf(way, sizeof way, "--tile %u --threads %u, LP_NUM_THREADS=%s", tiles[i], i + 1,
+                 drivers[i]);
+        setenv("LP_NUM_THREADS", drivers[i], 1);
+        check_apart(subject, first, &trees, &params, way);
+    }
+    unsetenv("LP_NUM_THREADS");
+}
+
+static void check_usual(const struct subject *subject, bool validated)
+{
+    const whit_renderer_params usual = {.tile_size = 0};
+    struct drawn first;
+    if (draw(subject, &usual, &first)) {
+        check_picture(subject->path, first.color, WIDTH, HEIGHT);
+        if (validated) {
+            setenv("WHIT_VALIDATION", "1", 1);
+            check_apart(subject, &first, NULL, &usual, "GPU-assisted validation");
+        } else {
+            check_threads(subject, &first);
+            check_ways(subject, &first);
+            check_all_effects(subject, &first, usual);
+        }
+    }
+    drawn_finish(&first);
+}
+
+static void check_levels(const struct subject *subject)
+{
+    static const whit_numerics levels[] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_EXACT};
+    for (uint32_t i = 0; i < 2; ++i) {
+        const whit_renderer_params params = {.numerics = levels[i]};
+        struct drawn first;
+        if (draw(subject, &params, &first))
+            check_all_effects(subject, &first, params);
+        drawn_finish(&first);
+    }
+}
+
+static void check_scene(const char *path, const char *what)
+{
+    struct subject subject = {.path = path};
+    bool opened = whit_scene_load(path, NULL, &messages, &subject.scene) == WHIT_OK &&
+                  whit_accel_create(subject.scene, NULL, &subject.accel) == WHIT_OK &&
+                  whit_device_create(NULL, &messages, &subject.device) == WHIT_OK;
+    check(opened, "the scene loads and the device comes up");
+    if (opened && strcmp(what, "levels") == 0)
+        check_levels(&subject);
+    else if (opened)
+        check_usual(&subject, strcmp(what, "validated") == 0);
+    if (opened)
+        check(whit_device_validation_messages(subject.device) == 0,
+              "the validation layers had nothing to say");
+    whit_device_destroy(subject.device);
+    whit_accel_destroy(subject.accel);
+    whit_scene_destroy(subject.scene);
+}
+
 int main(int argc, char **argv)
 {
-    const whit_log log = {.fn = on_message, .level = WHIT_LOG_WARNING};
-    whit_image *image;
-    if (argc != 4) {
-        fprintf(stderr, "usage: picture_check PICTURE WIDTH HEIGHT\n");
+    const char *what = argc == 3 ? argv[2] : "";
+    bool known = !*what || strcmp(what, "validated") == 0 || strcmp(what, "levels") == 0;
+    if (argc < 2 || argc > 4 || !known) {
+        fputs("usage: picture_check SCENE [validated | levels]\n"
+              "       picture_check PICTURE WIDTH HEIGHT\n",
+              stderr);
         return 2;
     }
-    if (whit_image_load(argv[1], &log, &image) != WHIT_OK)
-        return EXIT_FAILURE;
-    const char *fault = find_fault(image, strtoul(argv[2], NULL, 10), strtoul(argv[3], NULL, 10));
-    whit_image_destroy(image);
-    if (fault)
-        fprintf(stderr, "%s: %s\n", argv[1], fault);
-    return fault ? EXIT_FAILURE : EXIT_SUCCESS;
+    if (argc == 4)
+        check_file(argv[1], argv[2], argv[3]);
+    else
+        check_scene(argv[1], what);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }
