@@ -261,5 +261,5 @@ int main(void)
         cmocka_unit_test(progress_goes_on_to_the_end),
         cmocka_unit_test(nonsense_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

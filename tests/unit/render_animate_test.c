@@ -359,5 +359,5 @@ int main(void)
         cmocka_unit_test(traced_rays_follow),
         cmocka_unit_test(an_old_picture_is_not_taken_for_a_new_one),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -186,5 +186,5 @@ int main(void)
         cmocka_unit_test(all_effects_need_no_thread),
         cmocka_unit_test(anything_may_come_in_between),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -155,7 +155,7 @@ static void check_picture(struct scene *scene, const struct render_params *param
     assert_int_equal(accel_create(&fixture_log, scene, NULL, &trees), WHIT_OK);
     assert_int_equal(accel_create(&fixture_log, scene, &no_trees, &f.accel), WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
-    assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+    f.device = fixture_device();
     struct picture with = render(&f, trees, params), without = render(&f, f.accel, params);
     size_t pixels = (size_t)params->width * params->height;
     assert_memory_equal(with.color.pixels, without.color.pixels, pixels * 16);
@@ -176,8 +176,7 @@ static void check_picture(struct scene *scene, const struct render_params *param
     picture_finish(&with);
     picture_finish(&without);
     accel_destroy(trees);
-    assert_int_equal(device_validation_messages(f.device), 0);
-    device_destroy(f.device);
+    fixture_validate();
     accel_destroy(f.accel);
     scene_destroy(scene);
 }
@@ -264,5 +263,5 @@ int main(void)
         cmocka_unit_test(long_pictures_are_refused),
         cmocka_unit_test(empty_scenes_have_a_picture),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -289,7 +289,7 @@ static void view_along_up_has_a_picture(void **state)
         } else {
             f.scene = scene;
             assert_int_equal(accel_create(&fixture_log, scene, NULL, &f.accel), WHIT_OK);
-            assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+            f.device = fixture_device();
             assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
                              WHIT_OK);
         }
@@ -305,8 +305,7 @@ static void view_along_up_has_a_picture(void **state)
         assert_int_equal(side * side, lit);
         image_finish(&image);
         renderer_destroy(f.renderer);
-        assert_int_equal(device_validation_messages(f.device), 0);
-        device_destroy(f.device);
+        fixture_validate();
         accel_destroy(f.accel);
     }
     scene_destroy(scene);
@@ -461,5 +460,5 @@ int main(void)
         cmocka_unit_test(sizes_may_be_odd),
         cmocka_unit_test(near_and_far_share_a_picture),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -215,8 +215,7 @@ static void deep_trees_are_walked(void **state)
 {
     (void)state;
     const uint32_t depths[] = {31, 32, 33, 63, 64, 65, 128, 200};
-    struct device *device;
-    assert_int_equal(device_create(&fixture_log, NULL, &device), WHIT_OK);
+    struct device *device = fixture_device();
     for (uint32_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
         const struct render_params params = {
@@ -235,16 +234,14 @@ static void deep_trees_are_walked(void **state)
         accel_destroy(accel);
         scene_destroy(scene);
     }
-    assert_int_equal(device_validation_messages(device), 0);
-    device_destroy(device);
+    fixture_validate();
 }
 
 /* A tree deeper than stated is an error, not a hit. */
 static void understated_depth_is_reported(void **state)
 {
     (void)state;
-    struct device *device;
-    assert_int_equal(device_create(&fixture_log, NULL, &device), WHIT_OK);
+    struct device *device = fixture_device();
     for (uint32_t order = 0; order < ORDERS; ++order) {
         const struct render_params params = {
             .width = 8, .height = 8, .order = order, .count = order == ORDER_SIGN};
@@ -258,7 +255,7 @@ static void understated_depth_is_reported(void **state)
         accel_destroy(accel);
         scene_destroy(scene);
     }
-    device_destroy(device);
+    fixture_validate();
 }
 
 /* Identical triangles: the first one is hit, whatever the order. */
@@ -512,5 +509,5 @@ int main(void)
         cmocka_unit_test(camera_rays_are_those_of_c),
         cmocka_unit_test(samples_add_up),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

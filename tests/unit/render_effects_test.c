@@ -513,5 +513,5 @@ int main(void)
         cmocka_unit_test(only_pixels_that_see_glass_refract),
         cmocka_unit_test(what_comes_into_view_is_right_at_once),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -168,5 +168,5 @@ int main(void)
         cmocka_unit_test(facing_mirrors_end),
         cmocka_unit_test(bailout_keeps_its_bound),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

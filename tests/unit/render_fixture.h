@@ -17,14 +17,45 @@
 #include "render/render.h"
 #include "scene/shapes.h"
 
+/* Messages of the validation layers since fixture_validate. */
+static int fixture_validation;
+
 static void fixture_message(void *user, whit_log_level level, const char *message)
 {
     (void)user;
     (void)level;
+    fixture_validation += strncmp(message, "validation: ", 12) == 0;
     print_message("  %s\n", message);
 }
 
 static const struct log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
+
+/* The one device of all checks of a program: layers and driver take longer to start than most
+   pictures take to draw. */
+static struct device *fixture_shared;
+
+static inline struct device *fixture_device(void)
+{
+    if (!fixture_shared)
+        assert_int_equal(device_create(&fixture_log, NULL, &fixture_shared), WHIT_OK);
+    return fixture_shared;
+}
+
+static inline void fixture_validate(void)
+{
+    int messages = fixture_validation;
+    fixture_validation = 0;
+    assert_int_equal(messages, 0);
+}
+
+/* Ends a program whose checks left `failed` failures: what they did not destroy on the device
+   becomes messages here. */
+static inline int fixture_end(int failed)
+{
+    device_destroy(fixture_shared);
+    fixture_shared = NULL;
+    return fixture_validation ? failed + 1 : failed;
+}
 
 static inline uint32_t fixture_random(uint32_t *state)
 {
@@ -84,7 +115,7 @@ static inline struct fixture fixture_open(struct scene *scene,
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(accel_create(&fixture_log, scene, accel_params, &f.accel), WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
-    assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+    f.device = fixture_device();
     const struct render_params small = {.width = 16, .height = 16, .depth = 4};
     assert_int_equal(renderer_create(&fixture_log, f.device, f.accel,
                                      render_params ? render_params : &small, &f.renderer),
@@ -95,8 +126,7 @@ static inline struct fixture fixture_open(struct scene *scene,
 static inline void fixture_close(struct fixture *f)
 {
     renderer_destroy(f->renderer);
-    assert_int_equal(device_validation_messages(f->device), 0);
-    device_destroy(f->device);
+    fixture_validate();
     accel_destroy(f->accel);
     scene_destroy(f->scene);
 }

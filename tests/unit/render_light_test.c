@@ -388,5 +388,5 @@ int main(void)
         cmocka_unit_test(all_effects_change_nothing),
         cmocka_unit_test(trees_change_nothing),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

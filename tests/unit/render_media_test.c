@@ -443,5 +443,5 @@ int main(void)
         cmocka_unit_test(camera_knows_its_media),
         cmocka_unit_test(snells_window_is_where_it_should_be),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

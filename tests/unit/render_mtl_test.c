@@ -287,5 +287,5 @@ int main(void)
         cmocka_unit_test(classes_mean_what_the_format_says),
         cmocka_unit_test(schlick_takes_the_place_of_fresnel),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -248,5 +248,5 @@ int main(void)
         cmocka_unit_test(refused_without_trees),
         cmocka_unit_test(pictures_agree),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

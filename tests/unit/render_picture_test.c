@@ -452,5 +452,5 @@ int main(void)
         cmocka_unit_test(pictures_may_be_dropped),
         cmocka_unit_test(nonsense_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -290,7 +290,7 @@ static struct fixture open_file(const char *name, const struct render_params *pa
     snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, name);
     assert_int_equal(load_scene(&fixture_log, path, NULL, &f.scene), WHIT_OK);
     assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &f.accel), WHIT_OK);
-    assert_int_equal(device_create(&fixture_log, NULL, &f.device), WHIT_OK);
+    f.device = fixture_device();
     assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, params, &f.renderer),
                      WHIT_OK);
     return f;
@@ -460,5 +460,5 @@ int main(void)
         cmocka_unit_test(pixels_outside_are_refused),
         cmocka_unit_test(pictures_know_nothing_of_it),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -312,5 +312,5 @@ int main(void)
         cmocka_unit_test(beer_from_nothing_to_infinity), cmocka_unit_test(endless_media_are_dark),
         cmocka_unit_test(paths_are_reversible),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

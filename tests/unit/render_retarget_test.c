@@ -125,5 +125,5 @@ int main(void)
         cmocka_unit_test(rays_are_traced_in_between),
         cmocka_unit_test(nonsense_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -97,5 +97,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_do_not_depend_on_the_unit),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -328,5 +328,5 @@ int main(void)
         cmocka_unit_test(masks_heed_the_alpha_of_vertices),
         cmocka_unit_test(frames_stand_in_every_direction),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -526,5 +526,5 @@ int main(void)
         cmocka_unit_test(catchers_show_shadows_alone),
         cmocka_unit_test(cut_walks_through_sheets_are_reported),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

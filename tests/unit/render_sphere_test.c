@@ -335,5 +335,5 @@ int main(void)
         cmocka_unit_test(one_sided_leaves_are_not_seen_from_behind),
         cmocka_unit_test(one_sided_balls_hide_their_inside),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

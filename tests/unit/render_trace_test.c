@@ -380,5 +380,5 @@ int main(void)
         cmocka_unit_test(integers_equal_twin), cmocka_unit_test(degenerate_rays_miss),
         cmocka_unit_test(empty_scene_misses),  cmocka_unit_test(cut_traversals_are_reported),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -111,5 +111,5 @@ int main(void)
         cmocka_unit_test(batches_are_those_of_looks_in_place),
         cmocka_unit_test(pictures_are_those_of_looks_in_place),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
