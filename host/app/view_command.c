@@ -19,6 +19,7 @@ enum view_id {
     ID_REMEMBER,
     ID_STATE,
     ID_UI_SCALE,
+    ID_SPEND,
 };
 
 static const struct cli_option options[] = {
@@ -39,6 +40,9 @@ static const struct cli_option options[] = {
      "options that Ctrl+S saved, one a line; those beside it\n"
      "here come after them"},
     {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)"},
+    {ID_SPEND, "spend", "S",
+     "seconds that measuring costs may take, more or less: for\n"
+     "--budget-ms and --max-error (20), for the list of P (12)"},
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_CHOICE,
@@ -120,6 +124,9 @@ static void read_option(struct view_request *request, struct cli_reader *reader,
         break;
     case ID_STATE:
         request->state = reader->value;
+        break;
+    case ID_SPEND:
+        cli_number(reader, 0.1, 1e6, &view->spend_s);
         break;
     case ID_UI_SCALE:
         if (cli_number(reader, 0.25, 8.0, &request->ui_scale))

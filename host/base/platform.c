@@ -342,6 +342,18 @@ uint64_t platform_peak_memory_bytes(void)
     return (uint64_t)most * 1024; /* Linux counts in KiB */
 }
 
+uint64_t platform_own_memory_bytes(void)
+{
+    char line[128];
+    unsigned long long own_kib = 0;
+    FILE *from = fopen("/proc/self/status", "r");
+    while (from && own_kib == 0 && fgets(line, sizeof line, from))
+        (void)sscanf(line, "RssAnon: %llu kB", &own_kib);
+    if (from)
+        (void)fclose(from);
+    return (uint64_t)own_kib * 1024;
+}
+
 static volatile bool *volatile interrupt_flag;
 static volatile sig_atomic_t interrupt_count;
 

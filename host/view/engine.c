@@ -349,6 +349,9 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
         lane->divisor = task->divisor;
     task->session->last_use = ++engine->uses;
     frame->number = ++lane->frames;
+    if (task->brief)
+        lane->first = frame->number;
+    frame->first = lane->first;
     engine_frame_finish(&lane->frame);
     lane->frame = *frame;
     if (!lane->wanted) /* any more: nobody would take it */
@@ -456,9 +459,12 @@ static void probe_one(struct engine *engine)
 static void tidy_up(struct engine *engine)
 {
     engine->littered = false;
+    engine->busy = true;
     pthread_mutex_unlock(&engine->lock);
     platform_trim_heaps();
     pthread_mutex_lock(&engine->lock);
+    engine->busy = false;
+    wake_window(engine);
 }
 
 static void run_engine(void *context)
@@ -661,7 +667,7 @@ static bool is_still(const struct engine_lane *lane)
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool still = !engine->busy && engine->probe.number == 0 &&
+    bool still = !engine->busy && !engine->littered && engine->probe.number == 0 &&
                  (!engine->probe_wanted || engine->lanes[0].failed);
     for (int i = 0; i < ENGINE_LANES; ++i)
         still = still && is_still(&engine->lanes[i]);

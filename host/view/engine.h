@@ -35,6 +35,7 @@ enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MOST = 8192 };
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {
     uint64_t number;               /* counts up; 0: none yet */
+    uint64_t first;                /* number of the first picture of what was asked for */
     struct view_settings settings; /* drawn */
     struct scene_ref *scene;       /* held */
     whit_image *color; /* floats: linear RGBA, or of one channel where costs are painted */
@@ -105,7 +106,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y);
 bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
 
 /* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
-   is an error. Never while something moves. */
+   is an error, and memory that is free was given back. Never while something moves. */
 bool engine_is_still(struct engine *engine);
 
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */

@@ -45,6 +45,7 @@ struct engine_lane {
     struct session *session;     /* that drew last; NULL: none, or gone */
     struct engine_frame frame;   /* the newest picture; number 0: taken */
     uint64_t frames;
+    uint64_t first;       /* of them, of what is asked for */
     uint64_t place;       /* engine.places, when it drew */
     uint32_t divisor;     /* of the last quick one; 0: none */
     double ms_per_sample; /* of pictures of its session; 0: not known */
@@ -76,7 +77,7 @@ struct engine {
     double drawing_since_ms; /* when it began */
     bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */
     uint32_t validation; /* messages, of sessions that are gone */
-    bool busy;           /* something is being drawn */
+    bool busy;           /* something is being drawn, or memory given back */
     bool littered;       /* a session was made or dropped: its memory lies about in the heaps */
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */

@@ -204,6 +204,13 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         return parse_path(rest, EVENT_DROP, event);
     if (strcmp(verb, "shot") == 0)
         return parse_path(rest, EVENT_SHOT, event);
+    if (strcmp(verb, "until") == 0)
+        return parse_path(rest, EVENT_UNTIL, event);
+    if (strcmp(verb, "await") == 0)
+        return parse_path(rest, EVENT_AWAIT, event);
+    event->kind = EVENT_CLOCK;
+    if (strcmp(verb, "clock") == 0)
+        return strcmp(rest, "real") == 0;
     event->kind = EVENT_SIZE;
     if (strcmp(verb, "size") == 0)
         return sscanf(rest, "%u %u", &event->width, &event->height) == 2;
@@ -260,6 +267,9 @@ void event_to_line(const struct view_event *event, FILE *to)
         break;
     case EVENT_WAIT:
         fprintf(to, "wait %.0f\n", event->x);
+        break;
+    case EVENT_CLOCK:
+        fprintf(to, "clock real\n");
         break;
     case EVENT_CLOSE:
         fprintf(to, "close\n");

@@ -6,10 +6,13 @@
    and, for tests, also
        press [Shift+][Ctrl+][Alt+]NAME   a key down and up
        click X Y                         move there, and the left button down and up
-       still                             until the picture is as good as it gets
-       state [NAME]                      one line of JSON on standard output: see docs/view.md
+       still, picture, priced, until FIELD [= VALUE], await PATH
+                                         the replay goes on once that is so
+       clock real                        `wait` takes its time from here on
+       state [NAME]                      one line of JSON on standard output
        shot FILE.png                     the window, with what is drawn over the picture
-       minimise | restore */
+       minimise | restore
+   docs/view.md says what each of them does. */
 #ifndef VIEW_EVENTS_H
 #define VIEW_EVENTS_H
 
@@ -35,6 +38,9 @@ enum view_event_kind {
     EVENT_STILL,
     EVENT_PICTURE,
     EVENT_PRICED,
+    EVENT_UNTIL,
+    EVENT_AWAIT,
+    EVENT_CLOCK, /* the real one */
     EVENT_STATE,
     EVENT_SHOT,
     EVENT_MINIMISE,
@@ -74,8 +80,8 @@ struct view_event {
     uint32_t code; /* EVENT_CHAR: Unicode */
     double x, y;   /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
     uint32_t width, height;
-    const char *path; /* of files, shorter than EVENT_PATH; EVENT_STATE: its name; borrowed from
-                         where the event came from */
+    const char *path; /* of files, shorter than EVENT_PATH; EVENT_STATE: its name; EVENT_UNTIL: the
+                         condition; borrowed from where the event came from */
 };
 
 /* "T", "Left", "F12", "Comma"; "?" for what has no name. */

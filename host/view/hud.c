@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "view/choices.h"
 #include "view/view_private.h"
 
@@ -41,7 +40,7 @@ static void draw_figures(const struct view *view)
     swapchain_get_info(view->swapchain, &chain);
     double ms = engine_drawn_ms(s);
     char fps[24] = "still";
-    if (view->rate.fps > 0.0 && view_is_moving(view, clock_ms()))
+    if (view->rate.fps > 0.0 && view_is_moving(view))
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
     ui_text("%9s  render %.2f ms", fps, ms);
     ui_text_beside(COLOR_TEXT, " present %.2f ms", chain.present_ms);

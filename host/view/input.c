@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "view/view_private.h"
 
 static const double ORBIT_RADIANS = 3.14159265358979; /* across the window's height */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/file.h"
 #include "view/choices.h"
 #include "view/view_private.h"
@@ -257,7 +256,7 @@ static void switch_playing(struct view *view)
     if (!moves(view))
         return;
     view->clock.playing = !view->clock.playing;
-    view->clock.last_ms = clock_ms();
+    view->clock.last_ms = view_now_ms(view);
     if (view->clock.playing && view->clock.once &&
         view->settings.picture.time_s >= view->scene->info.time_end_s)
         view->settings.picture.time_s = 0.0;
@@ -415,7 +414,7 @@ static void say_fullscreen(const struct view *view, char *text, size_t bytes)
 
 static void escape(struct view *view)
 {
-    double now_ms = clock_ms();
+    double now_ms = view_now_ms(view);
     if (view->help || view->picked || view->panels.settings || view->panels.effects) {
         view->help = view->picked = false;
         view->panels.settings = false;

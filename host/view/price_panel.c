@@ -5,7 +5,7 @@
 #include "view/prices.h"
 #include "view/view_private.h"
 
-static const double PRICES_SECONDS = 12.0;
+static const double SPEND_S = 12.0;
 enum { TABLE_DRAWS = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
                       COLOR_ERROR = 0xFF6070FFu;
@@ -34,6 +34,7 @@ void prices_part(struct view *view)
 
 void price_switch(struct view *view)
 {
+    double spend_s = view->params->spend_s;
     view->prices_open = !view->prices_open;
     if (!view->prices_open) {
         prices_leave(view, view->prices);
@@ -42,11 +43,12 @@ void price_switch(struct view *view)
         view->prices_open = false;
     } else {
         view->prices_drawn = 0;
-        view->prices = prices_start(&(struct prices_params){.settings = &view->frame.settings,
-                                                            .scene = view->scene,
-                                                            .seconds = PRICES_SECONDS,
-                                                            .wake = window_wake,
-                                                            .wake_user = view->window});
+        view->prices =
+            prices_start(&(struct prices_params){.settings = &view->frame.settings,
+                                                 .scene = view->scene,
+                                                 .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
+                                                 .wake = window_wake,
+                                                 .wake_user = view->window});
         if (!view->prices)
             view_say(view, "out of memory");
     }

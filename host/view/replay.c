@@ -5,18 +5,18 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/file.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
-static const double MANAGER_MS = 1000.0;
-static const double LOOK_MS = 20.0; /* between looks whether the picture is still by now */
+static const double LOOK_MS = 20.0; /* between looks whether what is waited for is there */
+static const double TURN_MS = 50.0; /* by which `wait` turns the clock at a time */
 
 struct replay {
     struct view_event *events;
     uint32_t count, at;
     double wait_until_ms; /* 0: not waiting */
-    bool awaits;          /* a picture other than `seen` */
-    uint64_t seen;        /* number of a picture */
+    bool asked;           /* the window manager was */
 };
 
 whit_result replay_open(struct view *view)
@@ -29,6 +29,7 @@ whit_result replay_open(struct view *view)
             log_error(&view->log, "%s: cannot be written", params->record);
             return WHIT_ERROR_OUTPUT;
         }
+        event_to_line(&(struct view_event){.kind = EVENT_CLOCK}, view->record);
     }
     if (!params->replay)
         return WHIT_OK;
@@ -54,72 +55,131 @@ bool replay_is_over(const struct view *view)
     return view->replay && view->replay->at == view->replay->count && !view->shot[0];
 }
 
+/* ---- What is waited for ---- */
+
+/* The window has its size, and knows what the engine is at. */
+static bool is_settled(const struct view *view, const struct engine_status *status)
+{
+    uint32_t width, height;
+    struct swapchain_info chain;
+    window_pixels(view->window, &width, &height);
+    swapchain_get_info(view->swapchain, &chain);
+    return window_is_settled(view->window) && width == chain.width && height == chain.height &&
+           status->stage == view->status.stage && strcmp(status->error, view->status.error) == 0 &&
+           !view->dirty && !view->shot[0];
+}
+
 /* As good as it gets, and seen. While the animation plays it never is: then nothing is waited for.
  */
 static bool is_still(const struct view *view)
 {
-    uint32_t width, height;
-    struct swapchain_info chain;
+    struct engine_status status;
     if (view_plays(view))
         return true;
-    window_pixels(view->window, &width, &height);
-    swapchain_get_info(view->swapchain, &chain);
-    if (width != chain.width || height != chain.height)
-        return false; /* the window's own event is on its way */
-    struct engine_status status;
     engine_get_status(view->engine, &status);
-    if (status.drawing || status.stage != view->status.stage ||
-        strcmp(status.error, view->status.error) != 0)
-        return false; /* the window does not know as yet */
-    return !view_is_moving(view, clock_ms()) && engine_is_still(view->engine) &&
-           compare_is_still(view) && prices_are_still(view->prices) && wish_is_still(view) &&
-           !view->dirty && !view->shot[0] && (view->frame.number > 0 || view->status.error[0]);
+    return is_settled(view, &status) && !status.drawing && !view_is_moving(view) &&
+           engine_is_still(view->engine) && compare_is_still(view) &&
+           prices_are_still(view->prices) && wish_is_still(view) &&
+           (view->frame.number > 0 || status.error[0]);
 }
 
-/* The window manager does it, where there is one: false until it has. */
-static bool minimise(struct view *view, bool wanted, double now_ms)
+/* A picture of all that was asked for so far was shown, however good; or there is an error. */
+static bool is_shown(const struct view *view)
+{
+    struct engine_status status;
+    const struct engine_frame *frame = &view->frame;
+    if (view_plays(view))
+        return true;
+    engine_get_status(view->engine, &status);
+    if (!is_settled(view, &status))
+        return false;
+    return status.error[0] ? !status.drawing
+                           : frame->number > 0 && view->measure.number == frame->number &&
+                                 settings_same(&frame->settings, &view->settings);
+}
+
+/* Whether an event that waits need not wait any more. */
+static bool is_there(struct view *view, const struct view_event *event)
+{
+    switch (event->kind) {
+    case EVENT_STILL:
+        return is_still(view);
+    case EVENT_PICTURE:
+        return is_shown(view);
+    case EVENT_PRICED:
+        return prices_are_still(view->panels.measured);
+    case EVENT_UNTIL:
+        return state_has(view, event->path);
+    case EVENT_AWAIT:
+        return file_exists(event->path);
+    default:
+        return true;
+    }
+}
+
+/* ---- Time ---- */
+
+/* A step at a time, so that keys that are held and animations go on as they would. */
+static bool wait_step(struct view *view, double ms)
 {
     struct replay *replay = view->replay;
-    uint32_t width, height;
-    if (replay->wait_until_ms <= 0.0) {
-        replay->wait_until_ms = now_ms + MANAGER_MS;
-        window_set_minimised(view->window, wanted);
-    }
-    window_pixels(view->window, &width, &height);
-    if ((width == 0) != wanted && now_ms < replay->wait_until_ms)
+    struct view_time *time = &view->time;
+    double now_ms = view_now_ms(view);
+    if (replay->wait_until_ms <= 0.0)
+        replay->wait_until_ms = now_ms + ms;
+    if (now_ms < replay->wait_until_ms) {
+        if (time->turned)
+            time->now_ms = fmin(now_ms + TURN_MS, replay->wait_until_ms);
         return false;
+    }
     replay->wait_until_ms = 0.0;
     return true;
 }
 
-/* Until a picture was shown that was not there when this event came. */
-static bool is_next_shown(struct view *view)
+/* What was moved stands. */
+static void let_stand(struct view *view)
 {
+    if (view->time.turned && !view_plays(view))
+        view->time.now_ms = fmax(view->time.now_ms, view_stands_ms(view));
+}
+
+static void use_real_clock(struct view *view)
+{
+    view->time.ahead_ms = view_now_ms(view) - clock_ms();
+    view->time.turned = false;
+}
+
+/* ---- Events ---- */
+
+/* The window manager does it: false until it has. */
+static bool minimise(struct view *view, bool wanted)
+{
+    uint32_t width, height;
     struct replay *replay = view->replay;
-    if (!replay->awaits)
-        replay->seen = view->measure.number;
-    replay->awaits = view->measure.number == replay->seen;
-    return !replay->awaits;
+    if (!replay->asked)
+        window_set_minimised(view->window, wanted);
+    window_pixels(view->window, &width, &height);
+    replay->asked = (width == 0) != wanted;
+    return !replay->asked;
 }
 
 /* False where the event has to wait. */
-static bool replay_event(struct view *view, const struct view_event *event, double now_ms)
+static bool replay_event(struct view *view, const struct view_event *event)
 {
-    struct replay *replay = view->replay;
     switch (event->kind) {
     case EVENT_WAIT:
-        if (replay->wait_until_ms <= 0.0)
-            replay->wait_until_ms = now_ms + event->x;
-        if (now_ms < replay->wait_until_ms)
-            return false;
-        replay->wait_until_ms = 0.0;
-        return true;
+        return wait_step(view, event->x);
     case EVENT_STILL:
-        return is_still(view);
+        let_stand(view);
+        return is_there(view, event);
     case EVENT_PICTURE:
-        return is_next_shown(view);
     case EVENT_PRICED:
-        return prices_are_still(view->panels.measured);
+    case EVENT_UNTIL:
+    case EVENT_AWAIT:
+        return is_there(view, event);
+    case EVENT_CLOCK:
+        use_real_clock(view);
+        return true;
     case EVENT_STATE:
         state_print(view, event->path, stdout);
         return true;
@@ -129,7 +189,7 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
         return true;
     case EVENT_MINIMISE:
     case EVENT_RESTORE:
-        return minimise(view, event->kind == EVENT_MINIMISE, now_ms);
+        return minimise(view, event->kind == EVENT_MINIMISE);
     case EVENT_SIZE: /* comes back from the window */
         window_set_pixels(view->window, event->width, event->height);
         return true;
@@ -139,27 +199,23 @@ static bool replay_event(struct view *view, const struct view_event *event, doub
     }
 }
 
-bool replay_step(struct view *view, double now_ms)
+void replay_step(struct view *view)
 {
     struct replay *replay = view->replay;
-    if (!replay)
-        return false;
-    while (replay->at < replay->count && !view->quit && !view->shot[0]) {
-        if (!replay_event(view, &replay->events[replay->at], now_ms))
-            break;
+    while (replay && replay->at < replay->count && !view->quit && !view->shot[0] &&
+           replay_event(view, &replay->events[replay->at]))
         ++replay->at;
-    }
-    return replay->at < replay->count;
 }
 
-double replay_wait_s(const struct view *view, double now_ms)
+double replay_wait_s(struct view *view)
 {
     const struct replay *replay = view->replay;
     if (!replay || replay->at == replay->count)
         return HUGE_VAL;
-    bool waits = replay->events[replay->at].kind == EVENT_WAIT && replay->wait_until_ms > 0.0;
-    double left_ms = waits ? replay->wait_until_ms - now_ms : LOOK_MS;
-    return left_ms > 0.0 ? left_ms * 1e-3 : 0.0;
+    const struct view_event *event = &replay->events[replay->at];
+    if (event->kind == EVENT_WAIT && replay->wait_until_ms > 0.0)
+        return view->time.turned ? 0.0 : (replay->wait_until_ms - view_now_ms(view)) * 1e-3;
+    return is_there(view, event) ? 0.0 : LOOK_MS * 1e-3;
 }
 
 void record_event(struct view *view, const struct view_event *event)

@@ -1,11 +1,13 @@
 /* What the viewer is at, as one line of JSON: for tests, which read it between events. */
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <jansson.h>
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "base/platform.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
@@ -43,6 +45,7 @@ static json_t *frame_json(const struct engine_frame *frame)
     settings_words(&frame->settings, " ", words, sizeof words);
     size_t pixels = (size_t)frame->width * frame->height;
     put_count(object, "number", frame->number);
+    put_count(object, "first", frame->first);
     put_count(object, "width", frame->width);
     put_count(object, "height", frame->height);
     put_count(object, "divisor", frame->divisor);
@@ -246,16 +249,17 @@ static json_t *wish_json(const struct view *view)
     return object;
 }
 
-void state_print(struct view *view, const char *name, FILE *to)
+/* All of it, for the caller to give back. */
+static json_t *state_json(struct view *view, const char *name)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
     char words[4096], line[4096];
     struct swapchain_info chain;
     json_t *root = json_object();
+    put_text(root, "at", name);
     settings_words(&view->settings, " ", words, sizeof words);
     settings_render_line(&view->settings, line, sizeof line);
     swapchain_get_info(view->swapchain, &chain);
-    put_text(root, "at", name);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);
     put_text(root, "render", line);
@@ -272,6 +276,8 @@ void state_print(struct view *view, const char *name, FILE *to)
     put_text(root, "work", session_stage_name(view->status.stage));
     put_number(root, "part", (double)view->status.part);
     put_count(root, "shown", view->shown);
+    put_number(root, "now_ms", view_now_ms(view));
+    put_count(root, "own_kb", platform_own_memory_bytes() / 1024);
     json_object_set_new(root, "keys", keys_json(view));
     json_object_set_new(root, "frame", frame_json(&view->frame));
     put_bool(root, "picked", view->picked);
@@ -287,6 +293,43 @@ void state_print(struct view *view, const char *name, FILE *to)
     json_object_set_new(root, "wish", wish_json(view));
     json_object_set_new(root, "change", change_json(&view->status.change));
     json_object_set_new(root, "measure", measure_json(&view->measure));
+    return root;
+}
+
+/* A field, by the names on the way to it with dots between; borrowed, NULL: there is none. */
+static const json_t *find_field(const json_t *object, const char *path, size_t length)
+{
+    while (object && length > 0) {
+        const char *dot = memchr(path, '.', length);
+        size_t part = dot ? (size_t)(dot - path) : length;
+        char name[64];
+        snprintf(name, sizeof name, "%.*s", (int)part, path);
+        object = json_object_get(object, name);
+        path += part + (dot != NULL);
+        length -= part + (dot != NULL);
+    }
+    return object;
+}
+
+bool state_has(struct view *view, const char *condition)
+{
+    const char *equals = strstr(condition, " = ");
+    json_t *root = state_json(view, "");
+    const json_t *field =
+        find_field(root, condition, equals ? (size_t)(equals - condition) : strlen(condition));
+    char *dumped = json_dumps(field, JSON_ENCODE_ANY);
+    const char *text = json_is_string(field) ? json_string_value(field) : dumped ? dumped : "";
+    bool nothing = !text[0] || json_is_false(field) ||
+                   (json_is_number(field) && json_number_value(field) == 0.0);
+    bool has = equals ? strcmp(text, equals + 3) == 0 : !nothing;
+    free(dumped);
+    json_decref(root);
+    return has;
+}
+
+void state_print(struct view *view, const char *name, FILE *to)
+{
+    json_t *root = state_json(view, name);
     json_dumpf(root, to, JSON_COMPACT);
     fputc('\n', to);
     fflush(to);

@@ -21,13 +21,18 @@ static const double PROGRESS_S = 0.1; /* between looks at what the engine is at 
 static const double WATCH_S = 0.25;   /* between looks at the scene's files */
 static const double IDLE_S = 5.0;
 
+double view_now_ms(const struct view *view)
+{
+    return view->time.turned ? view->time.now_ms : clock_ms() + view->time.ahead_ms;
+}
+
 void view_say(struct view *view, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     vsnprintf(view->toast, sizeof view->toast, format, args);
     va_end(args);
-    view->toast_until_ms = clock_ms() + TOAST_MS;
+    view->toast_until_ms = view_now_ms(view) + TOAST_MS;
     view->dirty = true;
 }
 
@@ -40,7 +45,7 @@ void view_moved(struct view *view)
 {
     camera_to_text(&view->camera, view->settings.camera, sizeof view->settings.camera);
     view->file_camera = -1;
-    view->moved_ms = clock_ms();
+    view->moved_ms = view_now_ms(view);
     view->dirty = true;
 }
 
@@ -196,7 +201,7 @@ static void count_picture(struct view *view)
 {
     struct view_rate *rate = &view->rate;
     const uint32_t most = sizeof rate->shown_ms / sizeof *rate->shown_ms;
-    double now_ms = clock_ms();
+    double now_ms = view_now_ms(view);
     if (rate->count > 0 && now_ms - rate->shown_ms[(rate->count - 1) % most] > REST_MS)
         rate->count = 0;
     rate->shown_ms[rate->count++ % most] = now_ms;
@@ -302,7 +307,7 @@ static whit_result draw_window(struct view *view)
 {
     struct swapchain_info info;
     bool shown = false, keep = view->shot[0] != '\0';
-    double now_ms = clock_ms();
+    double now_ms = view_now_ms(view);
     swapchain_get_info(view->swapchain, &info);
     view->dirty = false;
     if (info.stale || info.width == 0 || view->resized) {
@@ -350,25 +355,30 @@ bool view_plays(const struct view *view)
     return view->clock.playing && view->scene && view->scene->info.time_end_s > 0.0;
 }
 
-bool view_is_moving(const struct view *view, double now_ms)
+double view_stands_ms(const struct view *view)
 {
-    return now_ms - view->moved_ms < MOVING_MS || view_plays(view);
+    return view->moved_ms + MOVING_MS;
 }
 
-static double wait_seconds(const struct view *view, double now_ms, bool goes_on)
+bool view_is_moving(const struct view *view)
 {
-    double wait = IDLE_S;
+    return view_now_ms(view) < view_stands_ms(view) || view_plays(view);
+}
+
+static double wait_seconds(struct view *view, bool goes_on)
+{
+    double wait = IDLE_S, now_ms = view_now_ms(view);
     if (view->dirty || goes_on)
         return 0.0;
-    if (now_ms - view->moved_ms < MOVING_MS)
-        wait = fmin(wait, (MOVING_MS - (now_ms - view->moved_ms)) * 1e-3);
+    if (now_ms < view_stands_ms(view))
+        wait = fmin(wait, (view_stands_ms(view) - now_ms) * 1e-3);
     if (view->toast[0])
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
     if (view->watch)
         wait = fmin(wait, WATCH_S);
-    wait = fmin(wait, replay_wait_s(view, now_ms));
+    wait = fmin(wait, replay_wait_s(view));
     return wait > 0.0 ? wait + 1e-3 : 0.0;
 }
 
@@ -397,29 +407,27 @@ static bool is_hidden(const struct view *view)
     return info.width == 0 && view->frame.number > 0;
 }
 
-static void ask(struct view *view, double now_ms)
+static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
-        engine_ask(view->engine, &view->settings, view_is_moving(view, now_ms));
+        engine_ask(view->engine, &view->settings, view_is_moving(view));
 }
 
 static whit_result step(struct view *view)
 {
-    double now_ms = clock_ms();
-    bool goes_on = input_step(view, now_ms);
-    window_wait(view->window, goes_on || view->dirty ? 0.0 : wait_seconds(view, now_ms, goes_on));
+    bool goes_on = input_step(view, view_now_ms(view));
+    window_wait(view->window, wait_seconds(view, goes_on));
     take_events(view);
-    now_ms = clock_ms();
-    (void)replay_step(view, now_ms);
+    replay_step(view);
     if (watch_changed(view->watch)) {
         ++view->settings.reload;
         view_say(view, "%s was written: reading it again", path_name(view->settings.scene));
     }
-    if (view->toast[0] && now_ms >= view->toast_until_ms) {
+    if (view->toast[0] && view_now_ms(view) >= view->toast_until_ms) {
         view->toast[0] = '\0';
         view->dirty = true;
     }
-    ask(view, now_ms);
+    ask(view);
     if (goes_on)
         engine_wait(view->engine, 50.0);
     take_frame(view);
@@ -431,7 +439,7 @@ static whit_result step(struct view *view)
     prices_part(view);
     wish_step(view);
     panels_step(view);
-    ask(view, now_ms); /* a switch that failed was taken back */
+    ask(view); /* a switch that failed was taken back */
     if (view->params->frames > 0 && view->picture_set)
         view->dirty = true; /* until there were so many */
     if (result == WHIT_OK && view->dirty)
@@ -528,7 +536,8 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     view->panels.fps_goal = params->budget_fps;
     view->hint = params->hint != NULL;
     view->clock.speed = 1.0;
-    view->moved_ms = -1e9;
+    view->moved_ms = view->escape_ms = -1e9;
+    view->time.turned = params->replay != NULL;
     measure_begin(view);
     wish_begin(view);
     view->dirty = true;

@@ -29,6 +29,7 @@ struct view_params {
     struct view_settings settings; /* to begin with; settings.picture's size is the window's */
     bool fullscreen, no_vsync, blit;
     struct view_wish wish;
+    double spend_s;     /* on measuring costs, more or less; 0: as it suits */
     double budget_fps;  /* while something moves; 0: 30 */
     double fps;         /* frames of the animation in a second, for single steps */
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */

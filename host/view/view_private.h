@@ -61,6 +61,14 @@ struct view_measure {
     struct view_figures present; /* ms in the call that presents */
 };
 
+/* The clock of what the viewer does: how long messages stay, when a picture stands, how far an
+   animation is. A replay turns it by its lines `wait`, so that load changes nothing. */
+struct view_time {
+    bool turned;
+    double now_ms;   /* while it is turned */
+    double ahead_ms; /* of the system's clock, once it no longer is */
+};
+
 struct view {
     struct log log;
     const struct view_params *params;
@@ -98,6 +106,7 @@ struct view {
     struct view_clock clock;
     struct view_rate rate;
     struct view_measure measure;
+    struct view_time time;
     double moved_ms; /* when the picture was last changed by hand */
     double drawn_ms; /* when the window was last drawn */
     double escape_ms;
@@ -118,6 +127,8 @@ struct view {
     char shot[EVENT_PATH]; /* of the next drawing; "": none */
 };
 
+/* What all of the viewer but its figures goes by. */
+double view_now_ms(const struct view *view);
 /* Says something for some seconds. */
 void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
 /* The settings changed: draw them. */
@@ -125,7 +136,9 @@ void view_changed(struct view *view);
 /* The camera was moved by hand: its text, and quick pictures for a moment. */
 void view_moved(struct view *view);
 /* Whether quick pictures are wanted, as more will follow. */
-bool view_is_moving(const struct view *view, double now_ms);
+bool view_is_moving(const struct view *view);
+/* When that ends, where nothing is moved any more. */
+double view_stands_ms(const struct view *view);
 /* To what the picture shows, where another kernel or other trees were asked for and are not there
    as yet; false where they were not. */
 bool view_go_back(struct view *view);
@@ -197,13 +210,15 @@ void hud_draw(struct view *view);
 
 /* state.c: the line of JSON that tests read, with its name; the measure begins anew. */
 void state_print(struct view *view, const char *name, FILE *to);
+/* Whether the line would have FIELD = VALUE, or a FIELD that is neither empty, false nor 0. */
+bool state_has(struct view *view, const char *condition);
 
 /* replay.c */
 WHIT_CHECK whit_result replay_open(struct view *view);
-/* Feeds what is due; true where there is more that waits for time or pictures. */
-bool replay_step(struct view *view, double now_ms);
+/* Feeds what is due, and turns the clock. */
+void replay_step(struct view *view);
 /* Until its next event is due; HUGE_VAL without one. */
-double replay_wait_s(const struct view *view, double now_ms);
+double replay_wait_s(struct view *view);
 bool replay_is_over(const struct view *view);
 void replay_close(struct view *view);
 void record_event(struct view *view, const struct view_event *event);

@@ -15,7 +15,8 @@ struct window {
     GLFWwindow *glfw;
     struct device_surface surface;
     bool fullscreen;
-    int x, y, width, height; /* before full screen */
+    int x, y, width, height;         /* before full screen */
+    int wanted_width, wanted_height; /* asked for last; 0: never */
     struct view_event events[EVENTS_HELD];
     uint32_t first, count;
     char dropped[EVENT_PATH]; /* the last file */
@@ -308,14 +309,30 @@ void window_set_title(struct window *window, const char *title)
     glfwSetWindowTitle(window->glfw, title);
 }
 
+static void want_size(struct window *window, int width, int height)
+{
+    window->wanted_width = width;
+    window->wanted_height = height;
+}
+
+bool window_is_settled(const struct window *window)
+{
+    int width, height;
+    if (window->wanted_width == 0 || glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED))
+        return true;
+    glfwGetWindowSize(window->glfw, &width, &height);
+    return width == window->wanted_width && height == window->wanted_height;
+}
+
 void window_set_pixels(struct window *window, uint32_t width, uint32_t height)
 {
     int units_x, units_y, pixels_x, pixels_y;
     glfwGetWindowSize(window->glfw, &units_x, &units_y);
     glfwGetFramebufferSize(window->glfw, &pixels_x, &pixels_y);
-    if (pixels_x > 0 && pixels_y > 0)
-        glfwSetWindowSize(window->glfw, (int)width * units_x / pixels_x,
-                          (int)height * units_y / pixels_y);
+    if (pixels_x == 0 || pixels_y == 0)
+        return;
+    want_size(window, (int)width * units_x / pixels_x, (int)height * units_y / pixels_y);
+    glfwSetWindowSize(window->glfw, window->wanted_width, window->wanted_height);
 }
 
 void window_set_fullscreen(struct window *window, bool fullscreen)
@@ -328,9 +345,11 @@ void window_set_fullscreen(struct window *window, bool fullscreen)
     if (fullscreen) {
         glfwGetWindowPos(window->glfw, &window->x, &window->y);
         glfwGetWindowSize(window->glfw, &window->width, &window->height);
+        want_size(window, mode->width, mode->height);
         glfwSetWindowMonitor(window->glfw, monitor, 0, 0, mode->width, mode->height,
                              mode->refreshRate);
     } else {
+        want_size(window, window->width, window->height);
         glfwSetWindowMonitor(window->glfw, NULL, window->x, window->y, window->width,
                              window->height, GLFW_DONT_CARE);
     }

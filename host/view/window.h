@@ -36,6 +36,8 @@ void window_set_title(struct window *window, const char *title);
 void window_set_pixels(struct window *window, uint32_t width, uint32_t height);
 void window_set_fullscreen(struct window *window, bool fullscreen);
 bool window_is_fullscreen(const struct window *window);
+/* Whether the window manager has made of it what was asked for last. */
+bool window_is_settled(const struct window *window);
 void window_set_minimised(struct window *window, bool minimised);
 void window_copy(struct window *window, const char *text); /* to the clipboard */
 

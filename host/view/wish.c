@@ -5,7 +5,7 @@
 
 #include "view/view_private.h"
 
-static const double MEASURE_SECONDS = 20.0;
+static const double SPEND_S = 20.0;
 enum { TRIES_MOST = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu;
 
@@ -100,13 +100,15 @@ static void measure(struct view *view)
 {
     struct wish *wish = &view->wish;
     struct view_settings usual = view->frame.settings;
+    double spend_s = view->params->spend_s;
     set_usual(&usual);
-    wish->prices = prices_start(&(struct prices_params){.settings = &usual,
-                                                        .scene = view->scene,
-                                                        .seconds = MEASURE_SECONDS,
-                                                        .knobs = shading_knobs(),
-                                                        .wake = window_wake,
-                                                        .wake_user = view->window});
+    wish->prices =
+        prices_start(&(struct prices_params){.settings = &usual,
+                                             .scene = view->scene,
+                                             .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
+                                             .knobs = shading_knobs(),
+                                             .wake = window_wake,
+                                             .wake_user = view->window});
     wish->stage = wish->prices ? WISH_MEASURES : WISH_FAILED;
     snprintf(wish->text, sizeof wish->text, wish->prices ? "" : "out of memory");
     wish->scene = view->scene;

@@ -10,71 +10,56 @@ run() {
     status=$?
 }
 
-# play WHAT OPTION...: `whit view` with the replay on standard input. Leaves $OUT/states, one line
-# of JSON for each `state NAME`. Neither whit nor the validation layers may complain.
+# read_states: makes $OUT/values of $OUT/states, one line of JSON for each `state NAME`: lines of
+# NAME, field and value with tabs between. A field of an object is `frame.ids`.
+read_states() {
+    jq -r '.at as $at | paths(type != "object") as $path |
+        "\($at)\t\($path | join("."))\t\(getpath($path) | tostring | gsub("[\t\n]"; " "))"' \
+        "$OUT/states" >"$OUT/values" || FAILED=1
+}
+
+# play WHAT OPTION...: `whit view` with the replay on standard input, and read_states. Neither whit
+# nor the validation layers may complain.
 play() {
     what=$1
     shift
     cat >"$OUT/replay"
     rm -rf "$XDG_STATE_HOME"
     run view "$@" --replay "$OUT/replay" --quiet
-    cp "$OUT/stdout" "$OUT/states"
+    mv "$OUT/stdout" "$OUT/states"
+    read_states
     check "$what: exit code 0 (got $status)" test "$status" -eq 0
     check "$what: nothing to complain of" test ! -s "$OUT/stderr"
     check "$what: all states are there" test "$(grep -c '^state' "$OUT/replay")" -eq \
         "$(grep -c '^{.*}$' "$OUT/states")"
 }
 
-# value NAME FIELD: of the state NAME. A FIELD of an object is `frame.ids`.
+# value NAME FIELD: of the first state of this name.
 value() {
-    awk -v name="\"at\":\"$1\"," -v path="$2" '
-        function object_of(text,    depth, i, c) {
-            for (i = 1; i <= length(text); ++i) {
-                c = substr(text, i, 1)
-                depth += (c == "{") - (c == "}")
-                if (depth == 0)
-                    return substr(text, 1, i)
-            }
-            return text
-        }
-        index($0, name) {
-            count = split(path, part, ".")
-            text = $0
-            for (i = 1; i <= count; ++i) {
-                at = index(text, "\"" part[i] "\":")
-                if (!at) { print "(no " path ")"; exit }
-                text = substr(text, at + length(part[i]) + 3)
-                if (substr(text, 1, 1) == "{")
-                    text = object_of(text)
-            }
-            if (substr(text, 1, 1) == "\"") {
-                text = substr(text, 2)
-                match(text, /^([^"\\]|\\.)*/)
-            } else {
-                match(text, /^[^,}]*/)
-            }
-            print substr(text, 1, RLENGTH)
-            exit
-        }' "$OUT/states"
+    NAME=$1 FIELD=$2 awk -F '\t' '
+        $1 == ENVIRON["NAME"] && $2 == ENVIRON["FIELD"] { print $3; found = 1; exit }
+        END { if (!found) print "(no " ENVIRON["FIELD"] ")" }' "$OUT/values"
 }
 
 # is NAME FIELD VALUE: the state NAME has it.
 is() {
-    check "at $1: $2 is \`$3\` (\`$(value "$1" "$2")\`)" test "$(value "$1" "$2")" = "$3"
+    has=$(value "$1" "$2")
+    check "at $1: $2 is \`$3\` (\`$has\`)" test "$has" = "$3"
 }
 
 # same FIELD NAME NAME, differs FIELD NAME NAME: of two states.
 same() {
-    check "$1 is the same at $2 and $3 ($(value "$2" "$1"))" \
-        test "$(value "$2" "$1")" = "$(value "$3" "$1")"
+    has=$(value "$2" "$1")
+    check "$1 is the same at $2 and $3 ($has)" test "$has" = "$(value "$3" "$1")"
 }
 differs() {
     check "$1 differs from $2 to $3" test "$(value "$2" "$1")" != "$(value "$3" "$1")"
 }
 
-# renders NAME: the `whit render` line of the state makes, byte for byte, the picture of the window.
+# renders NAME OPTION...: the `whit render` line of the state, with `-o` and others of its own.
 renders() {
-    value "$1" render | sed -e 's/^whit //' -e 's/ -o picture.png$//' >"$OUT/line"
-    eval "run $(cat "$OUT/line") -o '$OUT/rendered.pfm' --ids '$OUT/rendered.exr' --quiet"
-    check "at $1: the line renders (got $status)" test "$status" -eq 0
+    at=$1
+    shift
+    eval "run $(value "$at" render | sed -e 's/^whit //' -e 's/ -o picture.png$//') \"\$@\" --quiet"
+    check "at $at: the line renders (got $status)" test "$status" -eq 0
 }

@@ -112,29 +112,65 @@ state off
 press G
 still
 state on
+drop $SCENES/34k.json
+size 640 480
+still
+state large
+press G
+still
+state refused
 END
 is off keys.trees off
 is on keys.trees on
 same frame.ids start off
 same frame.pixels start off
 is off change.other_ids 0
-play "too long without trees" "$SCENES/34k.json" --size 640x480 <<END
-still
-state start
-press G
-still
-state off
-END
-is off keys.trees on
-same frame.ids start off
-check "it says why" test "$(value off toast | grep -c 'without trees a picture would take')" -eq 1
+is refused keys.trees on
+is large frame.width 640
+same frame.ids large refused
+check "it says why" test "$(value refused toast | grep -c 'without trees a picture would take')" -eq 1
 
-# ---- Bounces and samples ----
+# ---- Bounces and samples, and what is painted ----
 
 # shellcheck disable=SC2086
-play "bounces, samples" "$SCENES/balls.json" $SMALL <<END
+play "bounces, samples, views" "$SCENES/balls.json" $SMALL <<END
 still
 state start
+press B
+still
+state depth
+press Shift+B
+still
+state visits
+press Shift+B
+press Shift+B
+press Shift+B
+still
+state stack
+press Shift+B
+still
+state again
+press B
+still
+state color
+press V
+still
+state v
+key ] down
+key ] up
+still
+state twice
+key [ down
+key [ up
+key [ down
+key [ up
+still
+state half
+key \\ down
+key \\ up
+still
+state own
+press B
 press Minus
 still
 state seven
@@ -187,47 +223,6 @@ is single frame.samples 1
 same frame.pixels up single
 differs frame.pixels four sixtyfour
 
-# ---- What is painted ----
-
-# shellcheck disable=SC2086
-play "views" "$SCENES/default.json" $SMALL <<END
-still
-state start
-press B
-still
-state depth
-press Shift+B
-still
-state visits
-press Shift+B
-press Shift+B
-press Shift+B
-still
-state stack
-press Shift+B
-still
-state again
-press B
-still
-state color
-press V
-still
-state v
-key ] down
-key ] up
-still
-state twice
-key [ down
-key [ up
-key [ down
-key [ up
-still
-state half
-key \\ down
-key \\ up
-still
-state own
-END
 for at in "start color" "depth depth" "visits visits" "stack stack" "again depth" "color color" "v depth"; do
     is "${at% *}" frame.view "${at#* }"
 done
