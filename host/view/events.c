@@ -208,6 +208,8 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         return parse_path(rest, EVENT_UNTIL, event);
     if (strcmp(verb, "await") == 0)
         return parse_path(rest, EVENT_AWAIT, event);
+    if (strcmp(verb, "choose") == 0)
+        return parse_path(rest, EVENT_CHOOSE, event);
     event->kind = EVENT_CLOCK;
     if (strcmp(verb, "clock") == 0)
         return strcmp(rest, "real") == 0;

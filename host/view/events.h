@@ -8,6 +8,7 @@
        click X Y                         move there, and the left button down and up
        still, picture, priced, until FIELD [= VALUE], await PATH
                                          the replay goes on once that is so
+       choose LABEL                      a click on what has this label, once it is there
        clock real                        `wait` takes its time from here on
        state [NAME]                      one line of JSON on standard output
        shot FILE.png                     the window, with what is drawn over the picture
@@ -40,6 +41,7 @@ enum view_event_kind {
     EVENT_PRICED,
     EVENT_UNTIL,
     EVENT_AWAIT,
+    EVENT_CHOOSE,
     EVENT_CLOCK, /* the real one */
     EVENT_STATE,
     EVENT_SHOT,

@@ -192,11 +192,12 @@ static void switch_effect(struct view *view, uint32_t index, bool called, bool o
     view->panels.pending = together ? -1 : (int)index + 1;
 }
 
-/* "on: 3.10 -> 3.52 ms, 120 of 12288 pixels" */
+/* "on: 3.10 -> 3.52 ms, 120 of 12288 pixels", in a narrow window on two lines. */
 static void draw_price(const struct effect_price *price)
 {
     ui_text("%s: %.2f -> %.2f ms,", price->added ? "on" : "off", price->before_ms, price->after_ms);
-    ui_same_line(0);
+    if (ui_characters(3) >= 120)
+        ui_same_line(0);
     ui_text("%llu of %llu pixels", (unsigned long long)price->other_colors,
             (unsigned long long)price->pixels);
 }

@@ -163,6 +163,22 @@ static bool minimise(struct view *view, bool wanted)
     return !replay->asked;
 }
 
+/* False where nothing has this label as yet. */
+static bool choose(struct view *view, const char *wanted)
+{
+    const char *label;
+    float x, y;
+    uint32_t i = 0;
+    while (ui_item(i, &label, &x, &y) && strcmp(label, wanted) != 0)
+        ++i;
+    if (view->dirty || !ui_item(i, &label, &x, &y))
+        return false;
+    input_event(view, &(struct view_event){.kind = EVENT_MOVE, .x = (double)x, .y = (double)y});
+    for (int down = 1; down >= 0; --down)
+        input_event(view, &(struct view_event){.kind = EVENT_BUTTON, .down = down});
+    return true;
+}
+
 /* False where the event has to wait. */
 static bool replay_event(struct view *view, const struct view_event *event)
 {
@@ -187,6 +203,8 @@ static bool replay_event(struct view *view, const struct view_event *event)
         snprintf(view->shot, sizeof view->shot, "%s", event->path);
         view->dirty = true;
         return true;
+    case EVENT_CHOOSE:
+        return choose(view, event->path);
     case EVENT_MINIMISE:
     case EVENT_RESTORE:
         return minimise(view, event->kind == EVENT_MINIMISE);

@@ -4,15 +4,8 @@
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
-DEFAULT=$SCENES/default.json
+BALLS=$SCENES/balls.json
 
-# picture NAME FILE: what `whit render` makes of the state's line.
-picture() {
-    value "$1" render | sed -e 's/^whit //' -e 's/ -o picture.png$//' >"$OUT/line"
-    status=
-    eval "run $(cat "$OUT/line") -o '$2' --quiet"
-    check "at $1: the line renders (got $status)" test "$status" -eq 0
-}
 # about A B: two numbers that differ by less than a millionth of them.
 about() {
     awk -v a="$1" -v b="$2" 'BEGIN { d = a - b; exit !(d * d <= 1e-12 * a * a) }'
@@ -28,14 +21,9 @@ columns() {
     tail -c $((96 * 64 * 12)) "$1" | od -An -v -tx4 -w1152 | cut -d ' ' -f "$((3 * $2 + 2))-$((3 * $3 + 4))"
 }
 
-# figure NAME: of c.json, behind GROUP where that is given.
-figure() {
-    sed -n "/\"${2:-a}\":/,\$s/.*\"$1\": \([^,]*\).*/\1/p" c.json | head -n 1
-}
-
 # ---- Split ----
 
-play "A beside B" "$DEFAULT" --size 96x64 <<END
+play "A beside B" "$BALLS" --size 96x64 <<END
 press F2
 press F2
 still
@@ -71,7 +59,7 @@ is start compare.mode off
 is same compare.mode split
 is same compare.other_ids 0
 is same compare.other_colors 0
-is same compare.flip 0.0
+is same compare.flip 0
 check "half of one and half of the other are the picture" \
     test "$(value same compare.mixed)" = "$(value same frame.pixels)"
 is sign compare.other_colors 0
@@ -95,25 +83,25 @@ check "B is on the right" cmp b.right split.right
 check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
 
 # The figures are those of whit compare, of what whit render makes of the two lines.
-picture start rendered-b.pfm
-picture flat rendered-a.pfm
+renders start -o rendered-b.pfm
+renders flat -o rendered-a.pfm
 expect 0 "whit compare" compare rendered-a.pfm rendered-b.pfm --json c.json
-here=$(value flat compare.largest)
-check "the largest difference is that of whit compare ($(figure largest), $here)" \
-    about "$(figure largest)" "$here"
-here=$(value flat compare.flip)
-check "FLIP is that of whit compare ($(figure mean flip), $here)" about "$(figure mean flip)" "$here"
+for pair in largest:.largest flip:.flip.mean; do
+    here=$(value flat "compare.${pair%:*}")
+    there=$(jq "${pair#*:}" c.json)
+    check "${pair%:*} is that of whit compare ($there, $here)" about "$there" "$here"
+done
 for side in a b; do
     tail -c $((96 * 64 * 12)) rendered-$side.pfm | od -An -v -tf4 -w4 >numbers.$side
 done
 mean=$(paste numbers.a numbers.b | awk '{ d = $1 - $2; s += d < 0 ? -d : d } END { print s / NR }')
 here=$(value flat compare.mean)
 check "the mean difference is that of the two pictures ($mean, $here)" near "$mean" "$here"
-check "as many pixels differ" test "$(figure differing_pixels)" = "$(value flat compare.other_colors)"
+check "as many pixels differ" test "$(jq .differing_pixels c.json)" = "$(value flat compare.other_colors)"
 
 # ---- Difference, and the divider ----
 
-play "A minus B" "$DEFAULT" --size 96x64 --depth 0 <<END
+play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
 still
 press C
 press Equal
@@ -161,7 +149,7 @@ is turned compare.other_ids 0
 check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 
 # Costs are numbers, not colours; and there is nothing between the two.
-play "costs of A and B" "$DEFAULT" --size 96x64 --view visits <<END
+play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
 still
 press C
 press T
@@ -185,34 +173,21 @@ check "both are costs: they are subtracted ($press_v)" test "$press_v" = true
 
 # ---- Effects ----
 
-# at NAME LABEL: where the thing to click is.
-at() {
-    value "$1" "items.$2"
-}
-play "the panel of effects" "$CUBE" --size 640x480 <<END
-press F2
-press F2
-press X
-still
-state panel
-END
-shadows=$(at panel shadows)
-play "effects by click" "$CUBE" --size 640x480 <<END
+play "effects by click" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
 press F2
 press F2
 still
 state start
 press X
-still
-click $shadows
+choose shadows
 still
 state off
-click $shadows
+choose shadows
 still
 state on
 END
-is off words "--size 640x480 --effects -shadows"
-is on words "--size 640x480"
+is off words "--size 320x240 --effects -shadows"
+is on words "--size 320x240"
 is off change.what "effects auto -> -shadows"
 check "the price says how many pixels changed" \
     test "$(value off prices.shadows)" = "$(value off change.other_colors)"
@@ -221,24 +196,7 @@ same frame.pixels start on
 
 # ---- Settings by mouse: what their keys do ----
 
-play "the panel of settings" "$CUBE" --size 640x480 <<END
-press F2
-press F2
-press Tab
-still
-state panel
-END
-traversal=$(at panel traversal)
-play "a list opens" "$CUBE" --size 640x480 <<END
-press F2
-press F2
-press Tab
-still
-click $traversal
-still
-state list
-END
-play "by mouse" "$CUBE" --size 640x480 <<END
+play "by mouse" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
 press F2
 press F2
 press T
@@ -248,19 +206,19 @@ press Shift+T
 still
 press Tab
 still
-click $traversal
+choose traversal
 still
-click $(at list sign)
+choose sign
 still
 state mouse
 END
 same words key mouse
 same "keys.traversal order" key mouse
-is mouse words "--size 640x480 --traversal sign"
+is mouse words "--size 320x240 --traversal sign"
 
 # ---- Files of settings ----
 
-play "saved" "$DEFAULT" --size 96x64 <<END
+play "saved" "$SCENES/8k.json" --size 96x64 <<END
 still
 move 40 30
 button left down
@@ -283,9 +241,9 @@ check "and once more beside" test -s whit-0002.view
 check "one option a line" test "$(grep -c '^--' whit-0001.view)" -eq "$(grep -vc '^#' whit-0001.view)"
 check "as many as there are words" test "$(grep -c '^--' whit-0001.view)" -eq \
     "$(value saved words | grep -o -e ' --' -e '^--' | wc -l)"
-cp "$OUT/states" saved.states
+cp "$OUT/values" saved.values
 echo "--numerics exactly" >bad.view
-play "loaded" "$DEFAULT" --state whit-0001.view <<END
+play "loaded" "$SCENES/8k.json" --state whit-0001.view <<END
 still
 state loaded
 press Ctrl+S
@@ -299,7 +257,7 @@ state dropped
 drop bad.view
 state bad
 END
-cat saved.states >>"$OUT/states"
+cat saved.values >>"$OUT/values"
 same words saved loaded
 same words saved dropped
 same words saved bad
@@ -314,7 +272,7 @@ play "the command line has the last word" "$CUBE" --state whit-0001.view --trave
 still
 state last
 END
-check "of all words one is another" test "$(value last words | grep -c -e '--traversal basic .*--numerics')" -eq 1
+check "of all words one is another ($(value last words))" test "$(value last words | grep -c -e "--traversal basic .*--numerics")" -eq 1
 
 # What whit render refuses is not among the words: costs are not those of adaptive samples.
 play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END

@@ -59,6 +59,7 @@ cp "$CUBE" own.json
 sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
 sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
 line=$(grep -n boxx broken.json | cut -d : -f 1)
+mkfifo "$OUT/pipe"
 cat >"$OUT/replay" <<END
 still
 state start
@@ -68,32 +69,31 @@ move 45 30
 button left up
 still
 state turned
-wait 2500
+until toast = own.json was written: reading it again
+until error
 press R
 still
 state broken
-wait 2500
+await $OUT/work/larger
 press R
 still
 state mended
 END
-rm -f "$OUT/states"
-"$WHIT" view own.json --size 96x64 --replay "$OUT/replay" --quiet >"$OUT/states" 2>"$OUT/stderr" &
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
+    --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
 viewer=$!
-await() {
-    turns=0
-    while ! grep -q "\"at\":\"$1\"" "$OUT/states" 2>/dev/null && [ $turns -lt 300 ]; do
-        sleep 0.1
-        turns=$((turns + 1))
-    done
-}
-await turned
-cp broken.json own.json
-await broken
-cp larger.json own.json
+while read -r state; do
+    echo "$state" >>"$OUT/read"
+    case $state in
+    *'"at":"turned"'*) mv broken.json own.json ;;
+    *'"at":"broken"'*) mv larger.json own.json && touch larger ;;
+    esac
+done <"$OUT/pipe"
 wait $viewer
 check "read again: exit code 0" test $? -eq 0
 check "read again: nothing to complain of" test ! -s "$OUT/stderr"
+mv "$OUT/read" "$OUT/states"
+read_states
 check "the error has file and line" test "$(value broken error | grep -c "own.json:$line:")" -eq 1
 same frame.ids turned broken
 same frame.pixels turned broken
@@ -107,6 +107,12 @@ same words turned mended
 play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
 press F2
 press F2
+still
+press V
+still
+press F12
+state costs
+press B
 still
 move 40 30
 button left down
@@ -126,10 +132,6 @@ wait 4200
 still
 shot shown.png
 state shown
-press V
-still
-press F12
-state costs
 END
 check "F12 saves" test -s whit-0001.png
 check "Ctrl+C copies the line" test "$(value shown frame.whole)" = true
@@ -153,9 +155,7 @@ play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa
 still
 state start
 END
-value start render | sed -e 's/^whit //' -e 's/picture.png$/words.pfm/' >"$OUT/line"
-eval "run $(cat "$OUT/line") --ids words.exr --quiet"
-check "the line renders (got $status)" test "$status" -eq 0
+renders start -o words.pfm --ids words.exr
 is start words "--size 96x64 --traversal basic --numerics fast --build median --instances off --aa 4 --depth 3 --bailout 0.01 --fresnel schlick --opaque-shadows"
 # shellcheck disable=SC2086
 play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
@@ -173,7 +173,7 @@ bad() { # TEXT: refused, with file and line
     printf 'still\n# a comment\n\n%s\n' "$1" >bad.replay
     refuse 2 "\`$1\`" "bad.replay:4: .*no event of a replay" view "$CUBE" --replay bad.replay
 }
-for text in "jump" "key T" "key T sideways" "press Hyper+T" "press" "move 1" "click 1" "wheel" \
+for text in "jump" "until" "await" "choose" "clock" "clock false" "key T" "key T sideways" "press Hyper+T" "press" "move 1" "click 1" "wheel" \
     "size 10" "size x y" "wait -1" "wait soon" "button none down" "char x" "shot" "drop"; do
     bad "$text"
 done

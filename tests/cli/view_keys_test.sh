@@ -113,10 +113,13 @@ press G
 still
 state on
 drop $SCENES/34k.json
-size 640 480
 still
-state large
+state placed
+size 1280 960
+until window_width = 1280
 press G
+until keys.trees = on
+size 96 64
 still
 state refused
 END
@@ -126,14 +129,13 @@ same frame.ids start off
 same frame.pixels start off
 is off change.other_ids 0
 is refused keys.trees on
-is large frame.width 640
-same frame.ids large refused
+same frame.ids placed refused
 check "it says why" test "$(value refused toast | grep -c 'without trees a picture would take')" -eq 1
 
 # ---- Bounces and samples, and what is painted ----
 
 # shellcheck disable=SC2086
-play "bounces, samples, views" "$SCENES/balls.json" $SMALL <<END
+play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
 still
 state start
 press B
@@ -218,7 +220,7 @@ same frame.pixels one up
 is four frame.samples 4
 is sixtyfour frame.samples 64
 is adaptive "keys.anti-aliasing" adaptive:0.05
-is adaptive words "--size 96x64 --aa adaptive:0.05 --depth 1"
+is adaptive words "--size 48x32 --aa adaptive:0.05 --depth 1"
 is single frame.samples 1
 same frame.pixels up single
 differs frame.pixels four sixtyfour

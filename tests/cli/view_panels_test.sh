@@ -5,10 +5,11 @@
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 
-# apart NAME: no two panels of the state overlap.
+# apart NAME WIDTH HEIGHT COUNT: at least COUNT panels of the state, all in the window, no two of them
+# over each other.
 apart() {
-    sed -n "/\"at\":\"$1\",/s/.*\"panels\":{\([^}]*\)}.*/\1/p" "$OUT/states" | tr ',' '\n' |
-        sed 's/"//g; s/:/ : /' >"$OUT/panels"
+    awk -F '\t' -v name="$1" '$1 == name && sub(/^panels\./, "", $2) { print $2 " : " $3 }' \
+        "$OUT/values" >"$OUT/panels"
     overlaps=$(awk -F ' : ' '
         { split($2, r, " "); for (i = 0; i < NR - 1; ++i) if (r[1] < x1[i] && x0[i] < r[3] &&
               r[2] < y1[i] && y0[i] < r[4]) print $1 " and " name[i]
@@ -20,65 +21,89 @@ apart() {
     check "at $1: none outside ($outside)" test -z "$outside"
     check "at $1: at least $4" test "$(grep -c . "$OUT/panels")" -ge "$4"
 }
-# uncut NAME...: nobody has to scroll sideways in the panels of these states.
+# uncut TAG NAME...: nobody has to scroll sideways in the panels of these states.
 uncut() {
+    tag=$1
+    shift
     for state in "$@"; do
-        cut=$(sed -n "/\"at\":\"$state\",/s/.*\"cut_panels\":{\([^}]*\)}.*/\1/p" "$OUT/states")
-        check "at $state: none is cut ($cut)" test -z "$cut"
+        cut=$(grep "^$tag-$state	cut_panels\\." "$OUT/values" | cut -f 2)
+        check "at $tag-$state: none is cut ($cut)" test -z "$cut"
     done
 }
 
-# Small and large; at 2 as large as 320x240 is at 1.
-for case in "320 240 1" "640 480 1" "640 480 2" "1280 720 1" "1280 960 2"; do
-    # shellcheck disable=SC2086
-    set -- $case
-    tag=$1x$2-$3
-    play "panels, $1 x $2 at a scale of $3" "$CUBE" --size "$1x$2" --ui-scale "$3" <<END
+# opened WIDTH HEIGHT: replays all that opens panels, in a window of this size, and closes them.
+opened() {
+    cat <<END
+size $1 $2
 still
 press F2
-state full
+state $1x$2-full
 press F2
 press F2
 press T
 press C
 press M
+press M
 press B
 still
-shot split-$tag.png
-state split
+shot split-$1x$2.png
+state $1x$2-split
 press Tab
 still
-shot settings-$tag.png
-state settings
+shot settings-$1x$2.png
+state $1x$2-settings
 press X
+priced
 still
-shot effects-$tag.png
-state effects
+shot effects-$1x$2.png
+state $1x$2-effects
 press D
 press X
 still
-state difference
+state $1x$2-difference
 press N
 still
-state boxes
+state $1x$2-boxes
 press H
 still
-shot help-$tag.png
-state help
+shot help-$1x$2.png
+state $1x$2-help
 press H
 press D
 press C
 click 60 50
 still
-state pixel
+state $1x$2-pixel
+press Escape
+wait 5000
+press N
+press N
+press B
+press M
+press Shift+T
 END
-    for name in full split settings effects difference boxes help pixel; do
-        apart $name "$1" "$2" 1
+}
+# panels SCALE SIZE...: of windows of these sizes, one after the other, at this scale of text.
+panels() {
+    scale=$1
+    shift
+    for size in "$@"; do
+        opened "${size%x*}" "${size#*x}"
+    done >"$OUT/sizes"
+    play "panels at a scale of $scale" "$CUBE" --size 96x64 --ui-scale "$scale" <"$OUT/sizes"
+    for size in "$@"; do
+        for name in full split settings effects difference boxes help pixel; do
+            apart "$size-$name" "${size%x*}" "${size#*x}" 1
+        done
+        uncut "$size" full split settings difference boxes help
+        if [ $((${size%x*} / scale)) -ge 640 ]; then
+            uncut "$size" effects pixel
+            apart "$size-settings" "${size%x*}" "${size#*x}" 6
+        fi
     done
-    uncut full split settings difference boxes help
-    if [ $(($1 / $3)) -ge 640 ]; then
-        uncut effects pixel
-        apart settings "$1" "$2" 6
-    fi
-done
+}
+
+# Small and large; at 2 as large as 320x240 is at 1.
+panels 1 320x240 640x480 1280x720
+panels 2 640x480 1280x960
 finish

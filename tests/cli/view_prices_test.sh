@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 
-play "prices" "$CUBE" --size 96x72 <<END
+play "prices" "$CUBE" --size 96x72 --spend 0.1 <<END
 still
 state before
 press P
@@ -38,7 +38,11 @@ priced
 state priced
 shot $OUT/effects.png
 press X
-state closed
+still
+press X
+choose highlights
+still
+state switched
 END
 check "none are priced before ($(value before effect_prices.shadows))" \
     test "$(value before effect_prices.shadows)" != "$(value priced effect_prices.shadows)"
@@ -48,16 +52,6 @@ for effect in highlights point-lights; do
     check "$effect has a price, and changes $(value priced effect_prices.$effect) pixels" \
         awk -v n="$(value priced effect_prices.$effect)" 'BEGIN { exit !(n + 0 > 0) }'
 done
-beside=$(value priced effect_prices.highlights)
-place=$(value priced items.highlights)
-play "the same, switched" "$CUBE" --size 128x96 --ui-scale 0.25 <<END
-still
-press X
-still
-click $place
-still
-state switched
-END
-is switched prices.highlights "$beside"
+is switched prices.highlights "$(value priced effect_prices.highlights)"
 is switched words "--size 128x96 --effects -highlights"
 finish

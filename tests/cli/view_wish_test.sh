@@ -2,7 +2,9 @@
 # --budget-ms and --max-error in the window: chosen beside the picture, which stays the user's.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
-tiny="$SCENES/balls.json --size 48x36"
+mkdir "$OUT/work"
+cd "$OUT/work" || exit 1
+tiny="$SCENES/balls.json --size 48x36 --spend 0.1"
 
 # wished WHAT TEXT OPTION...: plays the replay on standard input, and looks at what was chosen.
 wished() {
@@ -12,8 +14,8 @@ wished() {
     play "$*" $tiny "$@" <<END
 picture
 state first
+until wish.stage = measures
 press T
-wait 100
 still
 shot $OUT/wish.png
 state chosen
@@ -24,7 +26,7 @@ press Equal
 still
 state left
 END
-    is first wish.predicted_ms 0.0
+    is first wish.predicted_ms 0
     is chosen wish.stage "$text"
     is chosen "keys.traversal order" sign
     is chosen frame.whole true
@@ -44,7 +46,7 @@ wished chosen --max-error 0.9
 chose chosen
 check "one sample or less will do" awk -v e="$(value chosen wish.predicted_error)" 'BEGIN { exit !(e > 0 && e <= 0.81) }'
 check "its picture was timed" awk -v t="$(value chosen wish.took_ms)" 'BEGIN { exit !(t > 0) }'
-renders chosen
+renders chosen -o rendered.pfm
 
 wished chosen --budget-ms 1e6
 chose chosen
@@ -57,9 +59,8 @@ is chosen wish.text "no setting takes so little here"
 is chosen words "--size 48x36 --traversal sign"
 
 # Another scene is measured anew; what is dropped meanwhile ends what goes on.
-play "another scene" "$CUBE" --size 48x36 --max-error 0.9 <<END
-picture
-wait 500
+play "another scene" "$CUBE" --size 48x36 --spend 0.1 --max-error 0.9 <<END
+until wish.stage = measures
 drop $SCENES/balls.json
 still
 state other
