@@ -127,24 +127,42 @@ fail:
     return result;
 }
 
-static int open_sibling(const char *path, char **temporary_path)
+/* The slot is taken before there is a file, so that a signal just after open() finds it. A file
+   that is there already belongs to somebody else. */
+static int open_new(struct file_write *file)
+{
+    errno = EEXIST;
+    if (file_exists(file->temporary_path))
+        return -1;
+    file->slot = slot_take(file->temporary_path);
+    int fd = open(file->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    int reason = errno;
+    if (fd < 0) {
+        slot_give_back(file->slot);
+        file->slot = 0;
+    }
+    errno = reason;
+    return fd;
+}
+
+static int open_sibling(struct file_write *file)
 {
     enum { NAME_KEPT = 200, ATTEMPTS = 16 }; /* NAME_MAX is 255 */
-    char *folder = path_folder(path);
+    char *folder = path_folder(file->path);
     int fd = -1;
     errno = ENOMEM;
     for (int attempt = 0; folder && attempt < ATTEMPTS && fd < 0; ++attempt) {
         char number[16] = "";
         if (attempt)
             snprintf(number, sizeof number, ".%d", attempt);
-        free(*temporary_path);
-        *temporary_path = string_format("%s.%.*s.%ld%s.tmp", folder, NAME_KEPT, path_name(path),
-                                        (long)getpid(), number);
-        if (!*temporary_path) {
+        free(file->temporary_path);
+        file->temporary_path = string_format("%s.%.*s.%ld%s.tmp", folder, NAME_KEPT,
+                                             path_name(file->path), (long)getpid(), number);
+        if (!file->temporary_path) {
             errno = ENOMEM;
             break;
         }
-        fd = open(*temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        fd = open_new(file);
         if (fd < 0 && errno != EEXIST)
             break;
     }
@@ -181,13 +199,12 @@ static int open_for_writing(struct file_write *file, const char *path)
     file->path = exists ? realpath(path, NULL) : string_copy(path);
     if (!file->path)
         return -1;
-    int fd = open_sibling(file->path, &file->temporary_path);
+    int fd = open_sibling(file);
     if (fd < 0) {
         free(file->temporary_path);
         file->temporary_path = NULL;
         return -1;
     }
-    file->slot = slot_take(file->temporary_path);
     if (exists && fchmod(fd, info.st_mode & 07777) != 0)
         errno = 0; /* keeping the permissions is a courtesy: some file systems have none */
     return fd;
