@@ -270,7 +270,7 @@ static whit_result time_crop(struct renderer *renderer, uint32_t first_block, ui
     double start_ms = clock_ms(), longest_ms = 0.0;
     whit_result result = brute_sample(renderer, &chunk, &progress, &longest_ms);
     *spent_ms = clock_ms() - start_ms;
-    return result;
+    return result == WHIT_OK ? render_stop_asked(renderer, &progress) : result;
 }
 
 static uint32_t crop_blocks(const struct renderer *renderer, uint32_t all)
