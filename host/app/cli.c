@@ -19,11 +19,13 @@ static volatile sig_atomic_t interrupt_signal, end_said;
 static timer_t grace_timer;
 static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
-static bool error_said, hushed;
+static volatile sig_atomic_t error_said;
+static bool hushed;
 static volatile sig_atomic_t grace_ms = GRACE_MS;
 /* Read in signal handlers: the one of two that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
+static const char saving_text[] = "while saving: each file is whole or as it was";
 static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
@@ -46,7 +48,7 @@ void cli_error(const char *format, ...)
     va_start(args, format);
     say("error", format, args);
     va_end(args);
-    error_said = true;
+    error_said = 1;
 }
 
 void cli_warning(const char *format, ...)
@@ -141,7 +143,8 @@ static void on_alarm(int number)
 {
     (void)number;
     whit_file_abandon_all();
-    if (!end_said) { /* else it was about to leave */
+    /* Else it was about to leave, or a time limit has been said by what obeyed it. */
+    if (!end_said && (interrupt_signal || !error_said)) {
         put(interrupt_signal ? "whit: interrupted, " : "whit: error: the time limit has passed, ");
         put(written_text);
         put("\n");
@@ -177,6 +180,11 @@ void cli_set_kept(uint32_t done, uint32_t count, const char *what)
     char *text = written_texts[written_text == written_texts[0]];
     snprintf(text, sizeof written_texts[0], "%u of %u %s", done, count, what);
     written_text = text;
+}
+
+void cli_set_saving(void)
+{
+    written_text = saving_text;
 }
 
 void cli_set_written(uint32_t written, uint32_t count)

@@ -101,6 +101,9 @@ void cli_catch_interrupts(void);
 /* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
    was written. */
 void cli_set_written(uint32_t written, uint32_t count);
+/* For the message of interrupted work from the first file on that is saved: it cannot know how far
+   that got. */
+void cli_set_saving(void);
 /* Interrupted work gets this long to save what is done, before the handler ends the process. A
    second signal ends it at once. */
 void cli_keep_what_is_done(int grace_ms);

@@ -211,8 +211,10 @@ static whit_result save_values(const whit_image *values, const char *path,
     whit_result result = WHIT_OK;
     if (view_is_png(path))
         result = whit_image_heat(values, heat, &colours);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
+        cli_set_saving();
         result = whit_image_save(colours ? colours : values, path, NULL, 0, &cli_log);
+    }
     whit_image_destroy(colours);
     return result;
 }

@@ -140,6 +140,7 @@ whit_result document_save(json_t *value, const char *path)
     if (!text)
         out_of_memory();
     json_decref(value);
+    cli_set_saving();
     whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
     free(text);
     return result;

@@ -68,8 +68,10 @@ static whit_result draw(struct hard *hard, uint64_t *wrong, uint64_t *other)
                                 &image);
     if (result == WHIT_OK)
         result = job_still_wanted();
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
+        cli_set_saving();
         result = whit_image_save(image, hard->output, NULL, 0, &cli_log);
+    }
     whit_image_destroy(image);
     return result;
 }

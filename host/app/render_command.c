@@ -273,6 +273,8 @@ static whit_result render_one(struct job *job, const struct render_request *requ
         return result;
     double start_ms = whit_clock_ms();
     whit_renderer_get_stats(renderer, &sequence->stats);
+    if (!cli_cancel)
+        cli_set_saving();
     result = render_save(job, request, renderer, &sequence->stats);
     sequence->save_ms = whit_clock_ms() - start_ms;
     return result;

@@ -113,9 +113,10 @@ whit_result study_report(struct study *study)
         if (result == WHIT_OK)
             result = study_step(study);
     }
-    if (result == WHIT_OK && study->save_path)
-        result = whit_accel_save(study->rows[0].accel, study->save_path);
-    return result;
+    if (result != WHIT_OK || !study->save_path)
+        return result;
+    cli_set_saving();
+    return whit_accel_save(study->rows[0].accel, study->save_path);
 }
 
 void study_finish(struct study *study)

@@ -128,10 +128,12 @@ static int work(struct job *job, struct trace *trace)
         result = trace_chunks(trace, renderer, &progress);
         if (result == WHIT_OK && cli_cancel)
             result = WHIT_ERROR_CANCELLED;
-        if (result == WHIT_OK)
+        if (result == WHIT_OK) {
+            cli_set_saving();
             result = whit_file_commit(trace->file);
-        else
+        } else {
             whit_file_abandon(trace->file);
+        }
     }
     cli_progress_finish(&progress);
     if (result == WHIT_OK)

@@ -45,10 +45,12 @@ whit_result triangles_write(const struct job *job, const char *path)
         result = writer->result;
     if (result == WHIT_OK && !write_batch(writer))
         result = writer->result;
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
+        cli_set_saving();
         result = whit_file_commit(writer->file);
-    else
+    } else {
         whit_file_abandon(writer->file);
+    }
 done:
     free(writer);
     return result;
