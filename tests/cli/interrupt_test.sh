@@ -1,5 +1,6 @@
 #!/bin/sh
-# Ctrl+C and --time-limit stop a long render soon, and leave no file.
+# Ctrl+C and --time-limit stop a long render within a time, on a machine that does nothing else.
+# Long. fault_stop_* show without a clock that it stops wherever it is, and what it leaves then.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/pictures"
 

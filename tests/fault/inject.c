@@ -1,5 +1,6 @@
-/* Preloaded into a program: makes its n-th call of one kind fail. Only calls from the program's own
-   code count, and from libraries that are named: what a driver asks for it gets. */
+/* Preloaded into a program: something happens at its n-th call. The call fails, or a signal is
+   raised before it, or the clock jumps (fault.h). Only calls from the program's own code count, and
+   calls from libraries that are named: drivers get what they ask for. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -7,11 +8,13 @@
 #include <fcntl.h>
 #include <link.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <vulkan/vulkan.h>
@@ -30,10 +33,15 @@ struct range {
 };
 
 enum { RANGES_MOST = 16, BLOCKS_MOST = 1 << 18 };
+static const int64_t start_ns = 1000000000000, hour_ns = 3600000000000;
 static struct fault_shared *shared;
-static struct range ranges[RANGES_MOST]; /* first the program */
+static struct range ranges[RANGES_MOST]; /* The first one is the program. */
 static uint32_t range_count;
-static void *_Atomic lost; /* what the handles of a lost device have in common; NULL: none is */
+static pid_t program;          /* Its children inherit this library. */
+static void *_Atomic lost;     /* what the handles of a lost device have in common; NULL: none is */
+static _Atomic int64_t now_ns; /* what a clock that the sweep turns shows */
+static atomic_bool timer_runs; /* The program has set its timer. */
+static _Atomic int next_signal; /* raised at the next call; 0: none */
 
 /* ---- Who calls ---- */
 
@@ -77,6 +85,8 @@ __attribute__((constructor)) static void begin(void)
     if (memory == MAP_FAILED)
         abort();
     shared = memory;
+    program = getpid();
+    atomic_store(&now_ns, start_ns);
     dl_iterate_phdr(add_range, &first);
 }
 
@@ -85,7 +95,7 @@ static bool is_own(uintptr_t caller)
     return range_count > 0 && caller >= ranges[0].begin && caller < ranges[0].end;
 }
 
-/* After the count: what this asks for does not fail. */
+/* Is called after the count: what backtrace() itself allocates does not fail. */
 static void note_callers(void)
 {
     void *frames[24];
@@ -96,19 +106,74 @@ static void note_callers(void)
             shared->callers[kept++] = (uintptr_t)frames[i] - ranges[0].begin;
 }
 
-static bool fails(enum fault_kind kind, uintptr_t caller, const char *what)
+/* ---- What happens ---- */
+
+static bool is_counted(enum fault_calls kind, uintptr_t caller)
 {
     bool counts = false;
     for (uint32_t i = 0; i < range_count; ++i)
         counts = counts || (caller >= ranges[i].begin && caller < ranges[i].end);
-    if (!counts || shared->kind != kind)
+    /* Signals go to the program; a child of it is its own affair. */
+    return counts && (shared->counted & kind) &&
+           (shared->event == FAULT_FAILS || getpid() == program);
+}
+
+/* What follows the event at the next call, in whichever thread that is. */
+static void raise_next(void)
+{
+    int number = atomic_exchange(&next_signal, 0);
+    if (number && (number != SIGALRM || atomic_load(&timer_runs)))
+        raise(number);
+}
+
+/* Counts a call. Returns whether the call is to fail. */
+static bool fails(enum fault_calls kind, uintptr_t caller, const char *what)
+{
+    if (!is_counted(kind, caller))
         return false;
-    if (atomic_fetch_add(&shared->seen, 1) + 1 != shared->at)
-        return false;
-    atomic_fetch_add(&shared->fired, 1);
-    snprintf(shared->what, sizeof shared->what, "%s", what);
-    note_callers();
-    return true;
+    raise_next();
+    bool now = atomic_fetch_add(&shared->seen, 1) + 1 == shared->at;
+    if (now) {
+        snprintf(shared->what, sizeof shared->what, "%s", what);
+        note_callers();
+        atomic_store(&shared->fired, 1);
+    }
+    if (atomic_load(&shared->fired) && strcmp(what, "vkQueueSubmit") == 0)
+        atomic_fetch_add(&shared->submits_later, 1);
+    if (now && shared->event == FAULT_SIGNAL)
+        raise(shared->code);
+    if (now && shared->event == FAULT_CLOCK)
+        atomic_fetch_add(&now_ns, hour_ns);
+    if (now)
+        atomic_store(&next_signal, shared->then);
+    return now && shared->event == FAULT_FAILS;
+}
+
+/* ---- Time ---- */
+
+/* In the program the clock stands still between two readings; other libraries read the real one. */
+int clock_gettime(clockid_t id, struct timespec *now)
+{
+    typedef int (*fn)(clockid_t, struct timespec *);
+    NEXT(fn, "clock_gettime");
+    if (!shared || shared->event == FAULT_FAILS || id != CLOCK_MONOTONIC || !is_own(CALLER))
+        return next(id, now);
+    (void)fails(FAULT_CALLS_CLOCK, CALLER, "clock_gettime");
+    int64_t ns = atomic_fetch_add(&now_ns, shared->step_ns);
+    *now = (struct timespec){.tv_sec = ns / 1000000000, .tv_nsec = ns % 1000000000};
+    return 0;
+}
+
+/* The timer runs out when the sweep says so. */
+int timer_settime(timer_t timer, int flags, const struct itimerspec *value,
+                  struct itimerspec *before)
+{
+    typedef int (*fn)(timer_t, int, const struct itimerspec *, struct itimerspec *);
+    NEXT(fn, "timer_settime");
+    if (!shared || shared->event == FAULT_FAILS || !is_own(CALLER))
+        return next(timer, flags, value, before);
+    atomic_store(&timer_runs, value->it_value.tv_sec > 0 || value->it_value.tv_nsec > 0);
+    return 0;
 }
 
 /* ---- Blocks that the program holds ---- */
@@ -205,7 +270,8 @@ void *malloc(size_t bytes)
     if (resolving)
         return take_early(bytes);
     NEXT_MEMORY(fn, "malloc")
-    return fails(FAULT_ALLOC, CALLER, "malloc") ? no_memory() : note_block(next(bytes), CALLER);
+    return fails(FAULT_CALLS_MEMORY, CALLER, "malloc") ? no_memory()
+                                                       : note_block(next(bytes), CALLER);
 }
 
 void *calloc(size_t count, size_t bytes)
@@ -214,15 +280,15 @@ void *calloc(size_t count, size_t bytes)
     if (resolving)
         return take_early(count * bytes);
     NEXT_MEMORY(fn, "calloc")
-    return fails(FAULT_ALLOC, CALLER, "calloc") ? no_memory()
-                                                : note_block(next(count, bytes), CALLER);
+    return fails(FAULT_CALLS_MEMORY, CALLER, "calloc") ? no_memory()
+                                                       : note_block(next(count, bytes), CALLER);
 }
 
 void *realloc(void *block, size_t bytes)
 {
     typedef void *(*fn)(void *, size_t);
     NEXT_MEMORY(fn, "realloc")
-    if (fails(FAULT_ALLOC, CALLER, "realloc"))
+    if (fails(FAULT_CALLS_MEMORY, CALLER, "realloc"))
         return no_memory();
     forget_block(block);
     void *moved = next(block, bytes);
@@ -233,8 +299,9 @@ void *aligned_alloc(size_t alignment, size_t bytes)
 {
     typedef void *(*fn)(size_t, size_t);
     NEXT_MEMORY(fn, "aligned_alloc")
-    return fails(FAULT_ALLOC, CALLER, "aligned_alloc") ? no_memory()
-                                                       : note_block(next(alignment, bytes), CALLER);
+    return fails(FAULT_CALLS_MEMORY, CALLER, "aligned_alloc")
+               ? no_memory()
+               : note_block(next(alignment, bytes), CALLER);
 }
 
 void free(void *block)
@@ -251,7 +318,8 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*run)(vo
 {
     typedef int (*fn)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
     NEXT(fn, "pthread_create");
-    return fails(FAULT_ALLOC, CALLER, "pthread_create") ? EAGAIN : next(thread, how, run, user);
+    return fails(FAULT_CALLS_MEMORY, CALLER, "pthread_create") ? EAGAIN
+                                                               : next(thread, how, run, user);
 }
 
 #endif
@@ -260,7 +328,7 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*run)(vo
 
 static bool disk_full(uintptr_t caller, const char *what)
 {
-    bool full = fails(FAULT_WRITE, caller, what);
+    bool full = fails(FAULT_CALLS_WRITE, caller, what);
     if (full)
         errno = ENOSPC;
     return full;
@@ -305,7 +373,7 @@ int fclose(FILE *stream)
     typedef int (*fn)(FILE *);
     NEXT(fn, "fclose");
     bool written = is_file(stream) && (fcntl(fileno(stream), F_GETFL) & O_ACCMODE) != O_RDONLY;
-    bool full = written && fails(FAULT_WRITE, CALLER, "fclose");
+    bool full = written && fails(FAULT_CALLS_WRITE, CALLER, "fclose");
     int result = next(stream);
     if (full)
         errno = ENOSPC;
@@ -333,7 +401,7 @@ int rename(const char *from, const char *to)
    what leads to the driver in the first word of each, which is the same for all of one device. */
 static bool vulkan_fails(uintptr_t caller, const char *what, const void *of)
 {
-    bool now = fails(FAULT_VULKAN, caller, what);
+    bool now = fails(FAULT_CALLS_VULKAN, caller, what);
     void *device = of ? *(void *const *)of : NULL;
     if (now && shared->code == VK_ERROR_DEVICE_LOST)
         atomic_store(&lost, device);

@@ -1,17 +1,25 @@
-/* Runs a command over and over, and makes another one of its calls fail each time:
-       fault_sweep INJECT KIND [options] -- COMMAND...
-   KIND is alloc, write, or the number of a VkResult. The command works in a folder of its own,
-   where its outputs hold something old. Of each run it is checked that
-   - it exits, with the code that is expected, and with one line of error that says why;
-   - each output is the old one, or the whole new one; no other file is there;
-   - all that the program itself allocated was given back;
+/* Runs a command over and over. Something else happens in each run, at another of its calls:
+       fault_sweep INJECT FAULTS [options] -- COMMAND...
+   FAULTS are names of the table below, with commas between them; the calls take them in turn. The
+   command works in a folder of its own, where its outputs hold something old. Of each run it is
+   checked that
+   - it exits, with the code that is expected, and with one line that says why;
+   - each output is the old one, or the whole new one, and as many are new as it says; no other file
+     is there;
+   - all that the program itself allocated was given back, unless it had to end at once;
+   - it went on for at most as many submissions to a queue as are allowed (--submits);
    - where it went well nevertheless, the outputs are those of a run without a fault; the viewer
      shows the pictures of such a run, or says why not (--stdout pictures).
-   How many runs there were, how many failed as they should and how many went well is printed. */
+   --runs N: at most so many runs, evenly spread over all calls. WHIT_TEST_OFFSET, a whole number,
+   says which of them: as many successive numbers as the stride is cover all calls, and then the
+   next fault in turn. --every N: each N-th call, with each of the faults. The run without a fault
+   is under the validation layers, if they are asked for; the others are not, unless --validated
+   says so. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,8 +30,34 @@
 
 #include "fault.h"
 
-enum { OUTPUTS_MOST = 4, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
+enum { OUTPUTS_MOST = 4, FAULTS_MOST = 8, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
 static const char old_text[] = "old\n";
+
+struct fault {
+    const char *name;
+    uint32_t calls, event; /* as of struct fault_shared */
+    int code, then;
+    int expect;      /* the exit code; not where it goes well nevertheless */
+    const char *say; /* part of its message; NULL: see --say */
+    bool at_once;    /* The program ends without giving back what it holds. */
+};
+
+static const struct fault faults[] = {
+    {"memory", FAULT_CALLS_MEMORY, FAULT_FAILS, 0, 0, 2, NULL, false},
+    {"write", FAULT_CALLS_WRITE, FAULT_FAILS, 0, 0, 2, "cannot write", false},
+    {"host-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -1, 0, 2, "VK_ERROR_OUT_OF_HOST", false},
+    {"device-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -2, 0, 2, "VK_ERROR_OUT_OF_DEVICE", false},
+    {"lost-device", FAULT_CALLS_VULKAN, FAULT_FAILS, -4, 0, 3, "VK_ERROR_DEVICE_LOST", false},
+    /* Ctrl+C: the program ends by itself. */
+    {"int", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, 0, 130, "interrupted", false},
+    {"term", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGTERM, 0, 143, "interrupted", false},
+    /* It has not ended by itself when its time to do so is over. */
+    {"int-late", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, SIGALRM, 130, "interrupted", true},
+    /* A second Ctrl+C. */
+    {"int-int", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, SIGINT, 130, "", true},
+    {"limit", FAULT_CALLS_ALL, FAULT_CLOCK, 0, 0, 5, NULL, false},
+    {"limit-late", FAULT_CALLS_ALL, FAULT_CLOCK, 0, SIGALRM, 5, NULL, true},
+};
 
 struct content {
     char *data;
@@ -37,14 +71,18 @@ struct sweep {
     const char *outputs[OUTPUTS_MOST];
     struct content whole[OUTPUTS_MOST]; /* of the run without a fault */
     uint32_t output_count;
-    bool same_stdout; /* what is printed is an output too */
-    bool pictures;    /* it prints states of the viewer: see judge_states */
-    bool may_leak;
+    bool same_stdout;      /* what is printed is an output too */
+    bool pictures;         /* it prints states of the viewer: see judge_states */
+    bool figures, reports; /* what it measures is other in each run: see is_whole */
+    bool may_leak, validated;
     struct content printed;
-    int expect;
-    uint32_t every, shown;
+    const struct fault *faults[FAULTS_MOST], *fault; /* fault: of this run */
+    uint32_t fault_count;
+    uint32_t most_runs, every, shown, most_submits;
     char **command;
-    uint32_t runs, failed, fine, said, defects; /* said: fine, but a picture is missing */
+    uint32_t runs, fired, failed, fine, said, defects; /* said: fine, but a picture is missing */
+    uint32_t kept;    /* reports of what was measured before the end */
+    uint32_t submits; /* the most that a run had after its event */
 };
 
 static void stop(const char *what)
@@ -86,7 +124,7 @@ static void lay_out(const struct sweep *sweep)
     }
 }
 
-static void run_child(const struct sweep *sweep)
+static void run_child(const struct sweep *sweep, bool validated)
 {
     char number[16], preload[4096];
     const char *before = getenv("LD_PRELOAD");
@@ -99,27 +137,36 @@ static void run_child(const struct sweep *sweep)
              before ? before : "");
     setenv(FAULT_VARIABLE, number, 1);
     setenv("LD_PRELOAD", preload, 1);
+    if (!validated)
+        unsetenv("WHIT_VALIDATION");
     alarm(RUN_LIMIT_S);
     execvp(sweep->command[0], sweep->command);
     _exit(126);
 }
 
-/* What waitpid says. */
-static int run_once(struct sweep *sweep, uint32_t at)
+/* What waitpid says of a run in which something happens at call `at`; 0: nothing does. */
+static int run_once(struct sweep *sweep, const struct fault *fault, uint32_t at, bool validated)
 {
     int status = 0;
     struct fault_shared *shared = sweep->shared;
     lay_out(sweep);
+    sweep->fault = fault;
+    shared->counted = fault->calls;
+    shared->event = fault->event;
+    shared->code = fault->code;
+    shared->then = fault->then;
     shared->at = at;
     atomic_store(&shared->seen, 0);
     atomic_store(&shared->fired, 0);
+    atomic_store(&shared->submits_later, 0);
     shared->live = -1;
     shared->what[0] = '\0';
+    memset(shared->callers, 0, sizeof shared->callers);
     pid_t pid = fork();
     if (pid < 0)
         stop("fork");
     if (pid == 0)
-        run_child(sweep);
+        run_child(sweep, validated);
     if (waitpid(pid, &status, 0) != pid)
         stop("waitpid");
     return status;
@@ -151,43 +198,57 @@ static bool find_stray(const struct sweep *sweep, char *name, size_t name_bytes)
     return found;
 }
 
-static uint32_t count_errors(const char *text)
+static uint32_t count_of(const char *text, const char *part)
 {
     uint32_t count = 0;
-    for (const char *at = text; (at = strstr(at, "whit: error: ")); ++at)
+    for (const char *at = text; (at = strstr(at, part)); ++at)
         ++count;
     return count;
 }
 
-/* What is wrong with a run, NULL: nothing. */
+/* What is wrong with how it ended; NULL: nothing. */
+static const char *judge_end(const struct sweep *sweep, int status, const char *errors)
+{
+    static char text[128];
+    const struct fault *fault = sweep->fault;
+    bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    text[0] = '\0';
+    if (WIFSIGNALED(status))
+        snprintf(text, sizeof text, "it died of signal %d", WTERMSIG(status));
+    else if (!fine && WEXITSTATUS(status) != fault->expect)
+        snprintf(text, sizeof text, "exit code %d", WEXITSTATUS(status));
+    if (text[0])
+        return text;
+    const char *say = fault->say ? fault->say : sweep->say;
+    uint32_t interrupts = count_of(errors, "whit: interrupted, ");
+    uint32_t reasons = count_of(errors, "whit: error: ") + interrupts;
+    bool second = fault->then == SIGINT; /* says nothing, or what the first one had said */
+    bool right = fine ? reasons == 0 : reasons == 1 || (second && reasons == 0);
+    if (!right || (!fine && fault->event == FAULT_SIGNAL && interrupts != reasons) ||
+        (!fine && say && !strcasestr(errors, say)))
+        snprintf(text, sizeof text, "%u errors, exit code %d", reasons, WEXITSTATUS(status));
+    return text[0] ? text : NULL;
+}
+
+/* What is wrong with a run; NULL: nothing. */
 static const char *judge(const struct sweep *sweep, int status, const char *errors)
 {
     static char text[512];
     char stray[256];
-    const struct fault_shared *shared = sweep->shared;
-    bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (find_stray(sweep, stray, sizeof stray)) {
+    struct fault_shared *shared = sweep->shared;
+    uint32_t submits = atomic_load(&shared->submits_later);
+    const char *end = judge_end(sweep, status, errors);
+    if (find_stray(sweep, stray, sizeof stray))
         snprintf(text, sizeof text, "the file %s is left", stray);
-        return text;
-    }
-    if (WIFSIGNALED(status)) {
-        snprintf(text, sizeof text, "it died of signal %d", WTERMSIG(status));
-        return text;
-    }
-    if (!fine && WEXITSTATUS(status) != sweep->expect) {
-        snprintf(text, sizeof text, "exit code %d", WEXITSTATUS(status));
-        return text;
-    }
-    uint32_t lines = count_errors(errors);
-    if (lines != (fine ? 0 : 1) || (!fine && sweep->say && !strcasestr(errors, sweep->say))) {
-        snprintf(text, sizeof text, "%u errors, exit code %d", lines, WEXITSTATUS(status));
-        return text;
-    }
-    if (shared->live != 0 && !sweep->may_leak) {
+    else if (end)
+        return end;
+    else if (shared->live != 0 && !sweep->may_leak && !(shared->live < 0 && sweep->fault->at_once))
         snprintf(text, sizeof text, "%lld blocks were not given back", (long long)shared->live);
-        return text;
-    }
-    return NULL;
+    else if (submits > sweep->most_submits)
+        snprintf(text, sizeof text, "it went on for %u submissions", submits);
+    else
+        return NULL;
+    return text;
 }
 
 /* The text of the first `"name":"text"` of a line; NULL: it has none. */
@@ -234,19 +295,82 @@ static const char *judge_states(const char *whole, const char *now, bool *said)
     return NULL;
 }
 
-static const char *judge_outputs(struct sweep *sweep, bool fine)
+static bool is_of_number(char letter)
+{
+    return letter && strchr("0123456789.-+e", letter);
+}
+
+/* But for their figures, which may be times. */
+static bool same_words(const struct content *a, const struct content *b)
+{
+    const char *left = a->data, *right = b->data;
+    while (left && right && (left[0] || right[0])) {
+        while (is_of_number(left[0]))
+            ++left;
+        while (is_of_number(right[0]))
+            ++right;
+        if (left[0] != right[0])
+            return false;
+        left += left[0] != '\0';
+        right += right[0] != '\0';
+    }
+    return left && right;
+}
+
+/* What an output was without a fault. A report says of itself whether it is complete. */
+static bool is_whole(const struct sweep *sweep, uint32_t output, const struct content *now,
+                     bool fine)
+{
+    if (sweep->figures)
+        return same_words(now, &sweep->whole[output]);
+    if (!sweep->reports)
+        return same(now, &sweep->whole[output]);
+    return now->data && strstr(now->data, fine ? "\"complete\": true" : "\"complete\": ");
+}
+
+/* What it says of how much was written is so; NULL if it is. A program that ends at once may have
+   put a frame in its place that it has not counted. */
+static const char *judge_words(const struct sweep *sweep, const char *errors, uint32_t new_count)
+{
+    unsigned done, count;
+    const char *at = strstr(errors, " of ");
+    if (strstr(errors, "nothing was written") && new_count > 0)
+        return "it says that nothing was written";
+    while (at && at > errors && at[-1] >= '0' && at[-1] <= '9')
+        --at;
+    if (!at || sscanf(at, "%u of %u", &done, &count) != 2)
+        return NULL;
+    if (strstr(errors, "settings were measured") && (done == 0 || new_count == 0))
+        return "it says that settings were measured";
+    if (strstr(errors, "frames were written") && done != new_count &&
+        !(sweep->fault->at_once && done + 1 == new_count))
+        return "it does not say how many frames were written";
+    return NULL;
+}
+
+static const char *judge_outputs(struct sweep *sweep, bool fine, const char *errors)
 {
     static char text[512];
     struct content old = {(char *)(uintptr_t)old_text, sizeof old_text - 1};
+    uint32_t new_count = 0;
+    bool kept = false;
     text[0] = '\0';
     for (uint32_t i = 0; i < sweep->output_count; ++i) {
         struct content now = read_whole(sweep->outputs[i]);
-        bool whole = same(&now, &sweep->whole[i]);
+        bool whole = is_whole(sweep, i, &now, fine);
         if (!whole && (fine || !same(&now, &old)))
             snprintf(text, sizeof text, "%s is neither the old one nor whole", sweep->outputs[i]);
+        new_count += whole;
+        kept = kept || (whole && strstr(now.data, "\"complete\": false"));
         free(now.data);
     }
+    const char *words = judge_words(sweep, errors, new_count);
+    if (words)
+        snprintf(text, sizeof text, "%s, and %u outputs are new", words, new_count);
     struct content printed = read_whole("../stdout");
+    sweep->kept += kept;
+    if (kept && !(printed.data && strstr(printed.data, "not complete")))
+        snprintf(text, sizeof text, "it prints the report of a part as if it were whole");
     if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
         snprintf(text, sizeof text, "it printed something else");
     bool said = false;
@@ -259,55 +383,95 @@ static const char *judge_outputs(struct sweep *sweep, bool fine)
     return text[0] ? text : NULL;
 }
 
-static void show(const struct fault_shared *shared, uint32_t at, const char *defect,
-                 const char *errors)
+static void show(const struct sweep *sweep, uint32_t at, const char *defect, const char *errors)
 {
-    printf("call %u, %s from", at, shared->what);
+    const struct fault_shared *shared = sweep->shared;
+    printf("%s at call %u, %s from", sweep->fault->name, at, shared->what);
     for (int i = 0; i < FAULT_CALLERS && shared->callers[i]; ++i)
         printf(" %#llx", (unsigned long long)shared->callers[i]);
     printf(": %s\n%.600s", defect, errors);
 }
 
-static void check_run(struct sweep *sweep, uint32_t at)
+static void check_run(struct sweep *sweep, const struct fault *fault, uint32_t at)
 {
-    int status = run_once(sweep, at);
+    int status = run_once(sweep, fault, at, sweep->validated);
     struct content errors = read_whole("../stderr");
-    const struct fault_shared *shared = sweep->shared;
     bool fired = atomic_load(&sweep->shared->fired) > 0;
     bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     const char *text = errors.data ? errors.data : "";
     const char *defect = judge(sweep, status, text);
     if (!defect)
-        defect = judge_outputs(sweep, fine);
+        defect = judge_outputs(sweep, fine, text);
     if (!defect && !fired && !fine)
         defect = "it failed without a fault";
     ++sweep->runs;
+    sweep->fired += fired;
     sweep->fine += fine;
     sweep->failed += !fine;
+    uint32_t submits = atomic_load(&sweep->shared->submits_later);
+    sweep->submits = submits > sweep->submits ? submits : sweep->submits;
     if (defect && ++sweep->defects <= sweep->shown)
-        show(shared, at, defect, text);
+        show(sweep, at, defect, text);
     fflush(stdout);
     free(errors.data);
+}
+
+static void stop_without_fault(const char *defect, const char *errors)
+{
+    printf("no fault: %s\n%s", defect, errors);
+    exit(1);
 }
 
 /* The run that all others are held against. */
 static void run_without_fault(struct sweep *sweep)
 {
-    int status = run_once(sweep, 0);
+    int status = run_once(sweep, sweep->faults[0], 0, true);
     struct content errors = read_whole("../stderr");
+    const char *text = errors.data ? errors.data : "";
     for (uint32_t i = 0; i < sweep->output_count; ++i)
         sweep->whole[i] = read_whole(sweep->outputs[i]);
     sweep->printed = read_whole("../stdout");
-    const char *defect = judge(sweep, status, errors.data ? errors.data : "");
+    const char *defect = judge(sweep, status, text);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         defect = "it does not even work without a fault";
     if (!defect)
-        defect = judge_outputs(sweep, true);
-    if (defect) {
-        printf("no fault: %s\n%s", defect, errors.data ? errors.data : "");
-        exit(1);
-    }
+        defect = judge_outputs(sweep, true, text);
+    if (defect)
+        stop_without_fault(defect, text);
     free(errors.data);
+}
+
+/* Of a run as those with a fault are. All faults of a sweep are at the same kinds of calls. */
+static uint32_t count_calls(struct sweep *sweep)
+{
+    int status = run_once(sweep, sweep->faults[0], 0, sweep->validated);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        stop_without_fault("it does not work without validation", "");
+    return atomic_load(&sweep->shared->seen);
+}
+
+/* At most so many runs as are asked for: call `offset % stride + 1`, and each stride-th after it.
+ */
+static void check_some(struct sweep *sweep, uint32_t calls)
+{
+    const char *value = getenv("WHIT_TEST_OFFSET");
+    uint32_t offset = value ? (uint32_t)strtoul(value, NULL, 10) : 0;
+    uint32_t stride = (calls + sweep->most_runs - 1) / sweep->most_runs;
+    stride = stride ? stride : 1;
+    printf("%u calls: each %u-th from the %u-th on; the same again: WHIT_TEST_OFFSET=%u\n", calls,
+           stride, offset % stride + 1, offset);
+    for (uint32_t at = offset % stride + 1; at <= calls; at += stride) {
+        uint32_t turn = (at - 1) / stride + offset / stride;
+        check_run(sweep, sweep->faults[turn % sweep->fault_count], at);
+    }
+}
+
+static void check_each(struct sweep *sweep, uint32_t calls)
+{
+    printf("%u calls: each %u-th, with each fault\n", calls, sweep->every);
+    for (uint32_t at = 1; at <= calls; at += sweep->every)
+        for (uint32_t i = 0; i < sweep->fault_count; ++i)
+            check_run(sweep, sweep->faults[i], at);
 }
 
 static void make_folder(char *folder)
@@ -350,40 +514,72 @@ static void share(struct sweep *sweep)
     sweep->shared = memory;
 }
 
-static void read_kind(struct sweep *sweep, const char *kind)
+static void read_faults(struct sweep *sweep, const char *names)
 {
-    struct fault_shared *shared = sweep->shared;
-    shared->kind = strcmp(kind, "alloc") == 0   ? FAULT_ALLOC
-                   : strcmp(kind, "write") == 0 ? FAULT_WRITE
-                                                : FAULT_VULKAN;
-    shared->code = atoi(kind);
+    while (names[0]) {
+        size_t length = strcspn(names, ",");
+        uint32_t i = 0, count = sizeof faults / sizeof faults[0];
+        while (i < count &&
+               (strlen(faults[i].name) != length || strncmp(faults[i].name, names, length) != 0))
+            ++i;
+        if (i == count || sweep->fault_count == FAULTS_MOST ||
+            (sweep->fault_count > 0 && faults[i].calls != sweep->faults[0]->calls)) {
+            fprintf(stderr, "fault_sweep: the faults `%s`?\n", names);
+            exit(2);
+        }
+        sweep->faults[sweep->fault_count++] = &faults[i];
+        names += length + (names[length] == ',');
+    }
+}
+
+static bool read_number(struct sweep *sweep, const char *name, const char *value)
+{
+    const struct {
+        const char *name;
+        uint32_t *to;
+    } numbers[] = {{"--runs", &sweep->most_runs},
+                   {"--every", &sweep->every},
+                   {"--show", &sweep->shown},
+                   {"--submits", &sweep->most_submits}};
+    for (uint32_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
+        if (strcmp(name, numbers[i].name) != 0)
+            continue;
+        *numbers[i].to = (uint32_t)strtoul(value, NULL, 10);
+        return true;
+    }
+    return false;
+}
+
+static bool read_option(struct sweep *sweep, const char *name, const char *value)
+{
+    if (strcmp(name, "--output") == 0 && sweep->output_count < OUTPUTS_MOST)
+        sweep->outputs[sweep->output_count++] = value;
+    else if (strcmp(name, "--from") == 0)
+        snprintf(sweep->shared->from, sizeof sweep->shared->from, "%s", value);
+    else if (strcmp(name, "--say") == 0)
+        sweep->say = value;
+    else if (strcmp(name, "--leaks") == 0)
+        sweep->may_leak = strcmp(value, "ignore") == 0;
+    else if (strcmp(name, "--validated") == 0)
+        sweep->validated = strcmp(value, "yes") == 0;
+    else if (strcmp(name, "--step-ms") == 0)
+        sweep->shared->step_ns = 1000000 * atoll(value);
+    else if (strcmp(name, "--outputs") == 0) {
+        sweep->reports = strcmp(value, "reports") == 0;
+        sweep->figures = strcmp(value, "figures") == 0;
+    } else if (strcmp(name, "--stdout") == 0) {
+        sweep->same_stdout = strcmp(value, "same") == 0;
+        sweep->pictures = strcmp(value, "pictures") == 0;
+    } else
+        return read_number(sweep, name, value);
+    return true;
 }
 
 static void read_options(struct sweep *sweep, int argc, char **argv)
 {
     int i = 3;
-    for (; i + 1 < argc && strcmp(argv[i], "--") != 0; i += 2) {
-        const char *name = argv[i], *value = argv[i + 1];
-        if (strcmp(name, "--output") == 0 && sweep->output_count < OUTPUTS_MOST)
-            sweep->outputs[sweep->output_count++] = value;
-        else if (strcmp(name, "--from") == 0)
-            snprintf(sweep->shared->from, sizeof sweep->shared->from, "%s", value);
-        else if (strcmp(name, "--expect") == 0)
-            sweep->expect = atoi(value);
-        else if (strcmp(name, "--say") == 0)
-            sweep->say = value;
-        else if (strcmp(name, "--every") == 0)
-            sweep->every = (uint32_t)atoi(value);
-        else if (strcmp(name, "--show") == 0)
-            sweep->shown = (uint32_t)atoi(value);
-        else if (strcmp(name, "--leaks") == 0)
-            sweep->may_leak = strcmp(value, "ignore") == 0;
-        else if (strcmp(name, "--stdout") == 0) {
-            sweep->same_stdout = strcmp(value, "same") == 0;
-            sweep->pictures = strcmp(value, "pictures") == 0;
-        } else
-            break;
-    }
+    while (i + 1 < argc && strcmp(argv[i], "--") != 0 && read_option(sweep, argv[i], argv[i + 1]))
+        i += 2;
     if (i + 1 >= argc || strcmp(argv[i], "--") != 0) {
         fprintf(stderr, "fault_sweep: what is `%s`?\n", i < argc ? argv[i] : "");
         exit(2);
@@ -391,28 +587,42 @@ static void read_options(struct sweep *sweep, int argc, char **argv)
     sweep->command = argv + i + 1;
 }
 
+static void print_sum(const struct sweep *sweep)
+{
+    printf("%u of %u runs wrong: %u ended in an error, %u went well", sweep->defects, sweep->runs,
+           sweep->failed, sweep->fine);
+    if (sweep->pictures)
+        printf(", %u of these without a picture, as their windows said", sweep->said);
+    if (sweep->reports)
+        printf(", %u reports were kept", sweep->kept);
+    if (sweep->faults[0]->event != FAULT_FAILS)
+        printf("; at most %u submissions after the event", sweep->submits);
+    printf("\n");
+}
+
 int main(int argc, char **argv)
 {
     char folder[] = "/tmp/whit-fault-XXXXXX";
     if (argc < 5) {
-        fprintf(stderr, "usage: fault_sweep INJECT KIND [options] -- COMMAND...\n");
+        fprintf(stderr, "usage: fault_sweep INJECT FAULTS [options] -- COMMAND...\n");
         return 2;
     }
-    struct sweep sweep = {.inject = argv[1], .expect = 2, .every = 1, .shown = SHOWN};
+    struct sweep sweep = {
+        .inject = argv[1], .most_runs = 1 << 20, .most_submits = UINT32_MAX, .shown = SHOWN};
     share(&sweep);
-    read_kind(&sweep, argv[2]);
+    sweep.shared->step_ns = 1000000;
+    read_faults(&sweep, argv[2]);
     read_options(&sweep, argc, argv);
     make_folder(folder);
     run_without_fault(&sweep);
-    uint32_t calls = atomic_load(&sweep.shared->seen);
-    for (uint32_t at = 1; at <= calls; at += sweep.every)
-        check_run(&sweep, at);
+    uint32_t calls = count_calls(&sweep);
+    if (sweep.every)
+        check_each(&sweep, calls);
+    else
+        check_some(&sweep, calls);
     remove_folder(&sweep, folder);
-    printf("%u of %u runs wrong; %u calls, one in %u made to fail: %u ended in an error, %u went "
-           "well",
-           sweep.defects, sweep.runs, calls, sweep.every, sweep.failed, sweep.fine);
-    if (sweep.pictures)
-        printf(", %u of these without a picture, as their windows said", sweep.said);
-    printf("\n");
-    return sweep.defects > 0 || sweep.failed + sweep.said == 0;
+    print_sum(&sweep);
+    /* Few runs may all go well; all of them may not. */
+    return sweep.defects > 0 || sweep.fired == 0 || (sweep.reports && sweep.kept == 0) ||
+           (sweep.every == 1 && sweep.failed + sweep.said == 0);
 }
