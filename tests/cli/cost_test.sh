@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit cost`: rows, errors, answers, files, interrupts. The third argument is whit over a library in
+# `whit cost`: rows, errors, answers, files. Ctrl+C: fault_stop_cost. The third argument is whit over a library in
 # which WHIT_TEST_WRONG is wrong.
 . "$(dirname "$0")/common.sh"
 RIGHT=$WHIT
@@ -162,26 +162,7 @@ if command -v python3 >/dev/null; then
     WHIT=$RIGHT
 fi
 
-# ---- Ctrl+C ----
-
-# interrupt SECONDS: leaves $status and $J, where a setting was measured by then.
-interrupt() {
-    "$WHIT" cost "$CUBE" --size 320x240 --quiet --rays 0 --spend 100 --json "$J" >"$OUT/stdout" \
-        2>"$OUT/stderr" &
-    pid=$!
-    sleep "$1"
-    kill -INT $pid
-    wait $pid
-    status=$?
-}
-rm -f "$J"
-interrupt 12
-[ -e "$J" ] || interrupt 40 # a busy machine
-check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
-check "says how much is kept" \
-    grep -q "^whit: interrupted, [1-9][0-9]* of [1-9][0-9]* settings were measured" "$OUT/stderr"
-check "the report says that it is not complete" grep -q '"complete": false' "$J"
-check "as does the text" grep -q "not complete" "$OUT/stdout"
+# ---- What is refused ----
 
 rm -rf "$OUT/files"
 mkdir "$OUT/files"
