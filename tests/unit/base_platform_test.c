@@ -1,15 +1,16 @@
+#include <pthread.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
-#include "base/clock.h"
 #include "base/platform.h"
 #include "base/threads.h"
 
@@ -23,6 +24,49 @@
 
 static const struct child_limits ordinary = {
     .time_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 64u << 20};
+
+/* What is wrapped at link time: the clock that a child's time is measured by, which these tests
+   turn, and what tells whether a child is started while forks are held. */
+double __wrap_clock_ms(void);
+pid_t __real_fork(void);
+pid_t __wrap_fork(void);
+int __real_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
+int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
+
+static double now_ms, step_ms; /* Each reading turns the clock by a step. */
+static uint32_t reading_count, cancel_at;
+static volatile bool cancelled; /* at the reading `cancel_at` */
+static atomic_bool forks_are_held, child_is_wanted, forked_while_held;
+
+static void set_clock(double step)
+{
+    now_ms = 0.0;
+    step_ms = step;
+    reading_count = cancel_at = 0;
+    cancelled = false;
+}
+
+double __wrap_clock_ms(void)
+{
+    if (++reading_count == cancel_at)
+        cancelled = true;
+    now_ms += step_ms;
+    return now_ms;
+}
+
+pid_t __wrap_fork(void)
+{
+    if (atomic_load(&forks_are_held))
+        atomic_store(&forked_while_held, true);
+    atomic_store(&child_is_wanted, true);
+    return __real_fork();
+}
+
+int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock)
+{
+    atomic_store(&child_is_wanted, true);
+    return __real_pthread_rwlock_wrlock(lock);
+}
 
 static int reply_words(void *user, void *to, child_write write)
 {
@@ -49,16 +93,15 @@ static void reply_arrives_whole(void **state)
     }
 }
 
-static atomic_bool forks_are_held;
-
-static void hold_forks_for_a_while(void *context)
+/* Until somebody asks for the lock of children, or starts one without it. */
+static void hold_forks(void *context)
 {
     atomic_bool *holds = context;
-    const struct timespec while_held = {.tv_nsec = 200 * 1000 * 1000};
     platform_hold_forks();
     atomic_store(&forks_are_held, true);
     atomic_store(holds, true);
-    nanosleep(&while_held, NULL);
+    while (!atomic_load(&child_is_wanted))
+        sched_yield();
     atomic_store(&forks_are_held, false);
     platform_release_forks();
 }
@@ -76,15 +119,17 @@ static void no_child_while_forks_are_held(void **state)
     (void)state;
     atomic_bool holds = false;
     struct child_reply reply;
-    struct thread *thread = thread_start(hold_forks_for_a_while, &holds);
+    atomic_store(&child_is_wanted, false);
+    struct thread *thread = thread_start(hold_forks, &holds);
     assert_non_null(thread);
     while (!atomic_load(&holds))
-        continue;
+        sched_yield();
     assert_int_equal(child_run(&ordinary, reply_held, NULL, &reply), CHILD_DONE);
+    thread_join(thread);
+    assert_false(atomic_load(&forked_while_held));
     assert_int_equal(reply.size_bytes, 1);
     assert_int_equal(reply.data[0], 0);
     child_reply_free(&reply);
-    thread_join(thread);
 }
 
 static void reply_limit_is_exact(void **state)
@@ -156,18 +201,10 @@ static void hangs_end_at_the_limit(void **state)
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.time_s = 0.2;
-    double start_ms = clock_ms();
+    set_clock(50.0);
     assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_TIME);
-    double wall_ms = clock_ms() - start_ms;
-    assert_true(wall_ms >= 200.0 && wall_ms < 5000.0);
-}
-
-static volatile bool cancelled;
-
-static void cancel_now(int number)
-{
-    (void)number;
-    cancelled = true;
+    assert_int_equal(reading_count, 6); /* 0 ms after the start, 50, 100, 150, 200, 250 */
+    set_clock(0.0);
 }
 
 static void cancel_ends_it_soon(void **state)
@@ -176,13 +213,34 @@ static void cancel_ends_it_soon(void **state)
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.cancel = &cancelled;
-    cancelled = false;
-    signal(SIGALRM, cancel_now);
-    ualarm(100000, 0);
-    double start_ms = clock_ms();
+    set_clock(0.0);
+    cancel_at = 3;
     assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_CANCELLED);
-    assert_true(clock_ms() - start_ms < 5000.0);
-    signal(SIGALRM, SIG_DFL);
+    assert_int_equal(reading_count, cancel_at);
+    set_clock(0.0);
+}
+
+static int reply_processor_limit(void *user, void *to, child_write write)
+{
+    (void)user;
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_CPU, &limit) != 0)
+        return 1;
+    uint64_t seconds = limit.rlim_cur;
+    return write(to, &seconds, sizeof seconds) ? 0 : 3;
+}
+
+/* The kernel ends it even while its parent is stopped. */
+static void processor_time_is_limited_too(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    uint64_t seconds;
+    assert_int_equal(child_run(&ordinary, reply_processor_limit, NULL, &reply), CHILD_DONE);
+    assert_int_equal(reply.size_bytes, sizeof seconds);
+    memcpy(&seconds, reply.data, sizeof seconds);
+    assert_true(seconds > 0 && seconds <= 2 + 2 * (uint64_t)ordinary.time_s);
+    child_reply_free(&reply);
 }
 
 static int allocate(void *user, void *to, child_write write)
@@ -261,6 +319,7 @@ int main(void)
         cmocka_unit_test(crashes_are_told_apart),
         cmocka_unit_test(hangs_end_at_the_limit),
         cmocka_unit_test(cancel_ends_it_soon),
+        cmocka_unit_test(processor_time_is_limited_too),
         cmocka_unit_test(memory_is_limited),
         cmocka_unit_test(output_goes_nowhere),
         cmocka_unit_test(peak_memory_covers_what_was_used),
