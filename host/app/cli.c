@@ -152,6 +152,14 @@ static void on_alarm(int number)
     _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
 
+/* Whether SIGALRM will come. Safe in a signal handler. */
+static bool set_timer(long milliseconds)
+{
+    const struct itimerspec when = {
+        .it_value = {.tv_sec = milliseconds / 1000, .tv_nsec = milliseconds % 1000 * 1000000L}};
+    return has_grace_timer && timer_settime(grace_timer, 0, &when, NULL) == 0;
+}
+
 static void on_interrupt(int number)
 {
     int reason = errno;
@@ -161,9 +169,7 @@ static void on_interrupt(int number)
         _exit(128 + number);
     }
     interrupt_signal = number;
-    const struct itimerspec grace = {
-        .it_value = {.tv_sec = grace_ms / 1000, .tv_nsec = grace_ms % 1000 * 1000000L}};
-    if (!has_grace_timer || timer_settime(grace_timer, 0, &grace, NULL) != 0) {
+    if (!set_timer(grace_ms)) {
         whit_file_abandon_all();
         _exit(128 + number);
     }
@@ -215,12 +221,9 @@ void cli_limit_time(double seconds)
         return;
     limit_end_ms = whit_clock_ms() + seconds * 1e3;
     /* Rendering stops by itself; whatever does not is ended a little later. */
-    double hard_s = seconds * 1.05 + 0.25;
-    struct itimerspec limit = {0};
-    limit.it_value.tv_sec = (time_t)hard_s;
-    limit.it_value.tv_nsec = (long)((hard_s - (double)limit.it_value.tv_sec) * 1e9);
-    if (has_grace_timer)
-        timer_settime(grace_timer, 0, &limit, NULL);
+    (void)set_timer((long)(seconds * 1050.0 + 250.0));
+    if (interrupt_signal) /* The timer was the interrupt's already. */
+        (void)set_timer(grace_ms);
 }
 
 double cli_time_left_s(void)
