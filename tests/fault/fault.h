@@ -35,6 +35,7 @@ struct fault_shared {
     int64_t step_ns; /* by which each reading turns a clock that stands still */
     char from[128];  /* parts of names of libraries whose calls count besides the program's own */
     _Atomic uint32_t seen, fired;
+    uint32_t timer_ms;              /* that the program last set its timer to */
     _Atomic uint32_t submits_later; /* submissions to a queue since then, that call included */
     int64_t live;  /* blocks that the program itself took and nobody gave back, at its end; -1: it
                       did not get so far */

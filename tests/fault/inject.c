@@ -172,6 +172,8 @@ int timer_settime(timer_t timer, int flags, const struct itimerspec *value,
     NEXT(fn, "timer_settime");
     if (!shared || shared->event == FAULT_FAILS || !is_own(CALLER))
         return next(timer, flags, value, before);
+    shared->timer_ms =
+        (uint32_t)(value->it_value.tv_sec * 1000 + value->it_value.tv_nsec / 1000000);
     atomic_store(&timer_runs, value->it_value.tv_sec > 0 || value->it_value.tv_nsec > 0);
     return 0;
 }

@@ -7,6 +7,7 @@
    - each output is the old one, or the whole new one, and as many are new as it says; no other file
      is there;
    - all that the program itself allocated was given back, unless it had to end at once;
+   - after a signal its timer ends it soon, and later only where it keeps what it has measured;
    - it went on for at most as many submissions to a queue as are allowed (--submits);
    - where it went well nevertheless, the outputs are those of a run without a fault; the viewer
      shows the pictures of such a run, or says why not (--stdout pictures).
@@ -31,6 +32,9 @@
 #include "fault.h"
 
 enum { OUTPUTS_MOST = 4, FAULTS_MOST = 8, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
+enum {
+    GRACE_MS = 200
+}; /* An interrupted program ends within that, by its timer if not by itself. */
 static const char old_text[] = "old\n";
 
 struct fault {
@@ -160,6 +164,7 @@ static int run_once(struct sweep *sweep, const struct fault *fault, uint32_t at,
     atomic_store(&shared->fired, 0);
     atomic_store(&shared->submits_later, 0);
     shared->live = -1;
+    shared->timer_ms = 0;
     shared->what[0] = '\0';
     memset(shared->callers, 0, sizeof shared->callers);
     pid_t pid = fork();
@@ -237,6 +242,7 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
     char stray[256];
     struct fault_shared *shared = sweep->shared;
     uint32_t submits = atomic_load(&shared->submits_later);
+    bool is_signal = sweep->fault->event == FAULT_SIGNAL && atomic_load(&shared->fired) > 0;
     const char *end = judge_end(sweep, status, errors);
     if (find_stray(sweep, stray, sizeof stray))
         snprintf(text, sizeof text, "the file %s is left", stray);
@@ -244,6 +250,8 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
         return end;
     else if (shared->live != 0 && !sweep->may_leak && !(shared->live < 0 && sweep->fault->at_once))
         snprintf(text, sizeof text, "%lld blocks were not given back", (long long)shared->live);
+    else if (is_signal && (shared->timer_ms == 0 || shared->timer_ms > GRACE_MS) && !sweep->reports)
+        snprintf(text, sizeof text, "it has %u ms to end by itself", shared->timer_ms);
     else if (submits > sweep->most_submits)
         snprintf(text, sizeof text, "it went on for %u submissions", submits);
     else
@@ -371,6 +379,8 @@ static const char *judge_outputs(struct sweep *sweep, bool fine, const char *err
     sweep->kept += kept;
     if (kept && !(printed.data && strstr(printed.data, "not complete")))
         snprintf(text, sizeof text, "it prints the report of a part as if it were whole");
+    if (kept && sweep->shared->timer_ms <= GRACE_MS)
+        snprintf(text, sizeof text, "it has %u ms to save a report", sweep->shared->timer_ms);
     if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
         snprintf(text, sizeof text, "it printed something else");
     bool said = false;
