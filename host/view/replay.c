@@ -29,6 +29,7 @@ whit_result replay_open(struct view *view)
             log_error(&view->log, "%s: cannot be written", params->record);
             return WHIT_ERROR_OUTPUT;
         }
+        setvbuf(view->record, NULL, _IOLBF, BUFSIZ); /* a line is there once it has happened */
         event_to_line(&(struct view_event){.kind = EVENT_CLOCK}, view->record);
     }
     if (!params->replay)

@@ -1,15 +1,15 @@
 /* A hand and a window manager for the viewer's tests, on a display of their own: minimises and
    restores windows when they ask for it, makes them as large as the screen, and does what it reads,
    one line each, to the one window that there is:
-       key NAME | move X Y | button N down|up | close | wait MS
-   Events are sent to the window as an X server would send them. Ends with its window.
-   `view_hand DPI` first says to all programs how fine the screen is, as desktops do. */
+       title TEXT | key NAME | move X Y | button N down|up | close
+   `title` waits until the window's title begins with TEXT. Events are sent to the window as an X
+   server would send them. Ends with its window. `view_hand DPI` first says to all programs how fine
+   the screen is, as desktops do. */
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <X11/Xatom.h>
@@ -19,12 +19,6 @@
 static Display *display;
 static Window window;
 static int x, y;
-
-static void sleep_ms(long ms)
-{
-    const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
-    nanosleep(&time, NULL);
-}
 
 static Atom atom(const char *name)
 {
@@ -96,6 +90,7 @@ static void manage(const XEvent *event)
 {
     if (event->type == MapRequest) {
         window = event->xmaprequest.window;
+        XSelectInput(display, window, PropertyChangeMask);
         XMapWindow(display, window);
         set_state(window, NormalState);
     } else if (event->type == ConfigureRequest) {
@@ -127,6 +122,22 @@ static void manage_all(void)
     while (XPending(display)) {
         XEvent event;
         XNextEvent(display, &event);
+        manage(&event);
+    }
+}
+
+static void wait_for_title(const char *text)
+{
+    for (;;) {
+        XEvent event;
+        char *title = NULL;
+        bool there =
+            XFetchName(display, window, &title) && title && strncmp(title, text, strlen(text)) == 0;
+        if (title)
+            XFree(title);
+        if (there)
+            return;
+        XNextEvent(display, &event); /* every change of a title is one */
         manage(&event);
     }
 }
@@ -189,16 +200,14 @@ static bool obey(const char *line)
 {
     char word[32], more[32];
     unsigned number;
-    int ms;
-    if (sscanf(line, "key %31s", word) == 1)
+    if (sscanf(line, "title %31s", word) == 1)
+        wait_for_title(word);
+    else if (sscanf(line, "key %31s", word) == 1)
         press(word);
     else if (sscanf(line, "move %d %d", &x, &y) == 2)
         move();
     else if (sscanf(line, "button %u %31s", &number, more) == 2)
         button(number, strcmp(more, "down") == 0);
-    else if (sscanf(line, "wait %d", &ms) == 1)
-        for (; ms > 0; ms -= 10, manage_all())
-            sleep_ms(10);
     else if (strncmp(line, "close", 5) == 0)
         close_window();
     else

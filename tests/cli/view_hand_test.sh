@@ -4,28 +4,22 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 HAND=$3
-mkfifo "$OUT/orders"
+mkfifo "$OUT/orders" "$OUT/answers" "$OUT/recorded"
 
 # hand [DPI]: starts it, ready for a window; orders go to file descriptor 4.
 hand() {
-    "$HAND" "$@" <"$OUT/orders" >"$OUT/hand" &
+    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$HAND" "$@" <"$OUT/orders" >"$OUT/answers" &
     hand=$!
-    exec 4>"$OUT/orders"
-    turns=0
-    until grep -q ready "$OUT/hand" 2>/dev/null || [ $turns -ge 100 ]; do
-        sleep 0.05
-        turns=$((turns + 1))
-    done
+    exec 4>"$OUT/orders" 6<"$OUT/answers"
+    read -r ready <&6
+    check "the hand is $ready" test "$ready" = ready
 }
+# rest: it tidies up once its window is gone.
 rest() {
     exec 4>&-
-    turns=0
-    while kill -0 $hand 2>/dev/null && [ $turns -lt 60 ]; do # it tidies up
-        sleep 0.05
-        turns=$((turns + 1))
-    done
-    kill $hand 2>/dev/null
-    wait $hand 2>/dev/null
+    wait $hand
+    cat <&6 >"$OUT/hand"
+    exec 6<&-
 }
 
 hand
@@ -36,8 +30,7 @@ minimise
 still
 state minimised
 press T
-wait 200
-state switched
+still
 wait 1000
 state hidden
 restore
@@ -95,7 +88,7 @@ still
 state shown
 END
     rest
-    is shown ui_scale "$(awk -v d=$dpi 'BEGIN { printf "%.1f", d / 96 }')"
+    is shown ui_scale "$(awk -v d=$dpi 'BEGIN { print d / 96 }')"
     value shown panels.figures >"$OUT/figures.$dpi"
 done
 wide() {
@@ -109,40 +102,42 @@ still
 state shown
 END
 rest
-is shown ui_scale 1.0
+is shown ui_scale 1
 
-# What somebody does is recorded; the replay ends where he did.
-cat >"$OUT/hands" <<END
-wait 3000
-key t
-wait 50
-key k
-wait 600
-move 40 30
-button 1 down
-move 50 34
-wait 30
-move 60 38
-wait 30
-button 1 up
-wait 300
-button 4 down
-button 4 up
-wait 1500
-close
-END
+# What somebody does is recorded; the replay ends where he did. Each order waits for what it needs: the
+# first picture, or what was recorded before.
+# recorded LINE: until the viewer has taken and recorded this.
+recorded() {
+    while read -r line <&5; do
+        echo "$line" >>"$OUT/record"
+        [ "$line" != "$1" ] || break
+    done
+}
 hand
-cat "$OUT/hands" >&4 &
-run view "$CUBE" --size 96x64 --quiet --record "$OUT/record"
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 96x64 --quiet \
+    --record "$OUT/recorded" >"$OUT/stdout" 2>"$OUT/stderr" &
+viewer=$!
+exec 5<"$OUT/recorded"
+printf 'title cube.json\nkey t\nkey k\nmove 40 30\nbutton 1 down\nmove 50 34\n' >&4
+recorded "move 50 34"
+printf 'move 60 38\nbutton 1 up\nbutton 4 down\nbutton 4 up\nclose\n' >&4
+recorded close
+wait $viewer
+status=$?
+exec 5<&-
 rest
 check "closed by its cross: exit code 0 (got $status)" test "$status" -eq 0
 check "nothing to complain of" test ! -s "$OUT/stderr"
-for line in "key T down" "key T up" "key K down" "button left down" "button left up" "wheel 0 1" close; do
+for line in "clock real" "key T down" "key T up" "key K down" "button left down" "button left up" \
+    "wheel 0 1" close; do
     check "\`$line\` was recorded" grep -q "^$line$" "$OUT/record"
 done
 check "and where the mouse was" grep -q "^move 60 38$" "$OUT/record"
-sed '/^close$/d' "$OUT/record" >"$OUT/again"
-printf 'still\nstate end\n' >>"$OUT/again"
+{
+    echo still # the scene is there, as it was for him
+    sed -e '/^close$/d' -e '/^clock real$/d' "$OUT/record"
+    printf 'still\nstate end\n'
+} >"$OUT/again"
 for turn in 1 2; do
     play "replay $turn" "$CUBE" --size 96x64 <"$OUT/again"
     value end words >"$OUT/words.$turn"
@@ -154,7 +149,7 @@ done
 check "two replays end in the same words" cmp "$OUT/words.1" "$OUT/words.2"
 check "and hits" cmp "$OUT/ids.1" "$OUT/ids.2"
 # The same by arithmetic: a drag of 20 x 8 pixels and a notch of the wheel.
-cp "$OUT/words.1" "$OUT/recorded"
+cp "$OUT/words.1" "$OUT/hand.words"
 play "by replay alone" "$CUBE" --size 96x64 <<END
 still
 press T
@@ -169,5 +164,5 @@ still
 state end
 END
 check "the record holds what was done ($(value end words))" \
-    test "$(value end words)" = "$(cat "$OUT/recorded")"
+    test "$(value end words)" = "$(cat "$OUT/hand.words")"
 finish

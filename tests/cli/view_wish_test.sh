@@ -4,17 +4,20 @@
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
-tiny="$SCENES/balls.json --size 48x36 --spend 0.1"
+BALLS=$SCENES/balls.json
 
-# wished WHAT TEXT OPTION...: plays the replay on standard input, and looks at what was chosen.
+# wished SCENE EVENT TEXT OPTION...: EVENT comes while costs are being measured; looks at what was
+# chosen.
 wished() {
-    text=$1
-    shift
-    # shellcheck disable=SC2086
-    play "$*" $tiny "$@" <<END
+    scene=$1
+    event=$2
+    text=$3
+    shift 3
+    play "$*" "$scene" --size 48x36 --spend 0.1 "$@" <<END
 picture
 state first
 until wish.stage = measures
+$event
 press T
 still
 shot $OUT/wish.png
@@ -27,6 +30,7 @@ still
 state left
 END
     is first wish.predicted_ms 0
+    is chosen scene "$BALLS"
     is chosen wish.stage "$text"
     is chosen "keys.traversal order" sign
     is chosen frame.whole true
@@ -42,31 +46,22 @@ chose() {
         test "$(value "$1" words | sed 's/ --traversal sign//')" = "--size 48x36${text:+ $text}"
 }
 
-wished chosen --max-error 0.9
+# Another scene is measured anew; what is dropped meanwhile ends what goes on.
+wished "$CUBE" "drop $BALLS" chosen --max-error 0.9
 chose chosen
 check "one sample or less will do" awk -v e="$(value chosen wish.predicted_error)" 'BEGIN { exit !(e > 0 && e <= 0.81) }'
 check "its picture was timed" awk -v t="$(value chosen wish.took_ms)" 'BEGIN { exit !(t > 0) }'
 renders chosen -o rendered.pfm
 
-wished chosen --budget-ms 1e6
+wished "$BALLS" "" chosen --budget-ms 1e6
 chose chosen
 case $(value chosen words) in *--aa*) more=yes ;; *) more=no ;; esac
 check "time enough gives more samples ($(value chosen words))" test $more = yes
 differs words chosen left
 
-wished "no choice" --budget-ms 0.001
+wished "$BALLS" "" "no choice" --budget-ms 0.001
 is chosen wish.text "no setting takes so little here"
 is chosen words "--size 48x36 --traversal sign"
-
-# Another scene is measured anew; what is dropped meanwhile ends what goes on.
-play "another scene" "$CUBE" --size 48x36 --spend 0.1 --max-error 0.9 <<END
-until wish.stage = measures
-drop $SCENES/balls.json
-still
-state other
-END
-is other wish.stage chosen
-is other scene "$SCENES/balls.json"
 
 refuse 2 "chosen and given" "chooses --aa" view "$CUBE" --budget-ms 10 --aa 4 --frames 1
 refuse 2 "two wishes" "one of them" view "$CUBE" --budget-ms 10 --max-error 1 --frames 1

@@ -181,17 +181,17 @@ static void no_look_is_cut_short(void **state)
     take_all(engine, &frame);
     assert_true(frame.whole);
     double picture_ms = frame.draw_ms, start_ms = clock_ms();
-    assert_true(picture_ms > 5.0); /* longer than from one question to the next */
-    while (clock_ms() - start_ms < 12.0 * picture_ms) {
+    while (shown <
+           3) { /* from the first question on none gets a picture where looks are cut short */
         snprintf(settings.camera, sizeof settings.camera, "%g,2,6,0,1,0,0,1,0,40",
                  0.001 * (double)++asked);
         engine_ask(engine, &settings, true);
         engine_wait(engine, 2.0);
         shown += engine_take(engine, false, &frame);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
     }
     print_message("%u pictures of %.0f ms for %u questions in %.0f ms\n", shown, picture_ms, asked,
                   clock_ms() - start_ms);
-    assert_true(shown >= 3);
     engine_ask(engine, &settings, false);
     take_all(engine, &frame);
     assert_string_equal(frame.settings.camera, settings.camera); /* the last one is answered */
