@@ -188,7 +188,7 @@ static void glass_equals_that_of_trees(void **state)
     struct scene *scene = glass_scene();
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct render_params params = {
-        .width = 45, .height = 30, .depth = 5, .samples = 4, .camera = glass_camera, .count = true};
+        .width = 29, .height = 19, .depth = 5, .samples = 4, .camera = glass_camera, .count = true};
     check_picture(scene, &params);
 }
 
@@ -196,11 +196,11 @@ static void glass_equals_that_of_trees(void **state)
 static void many_ranges_equal_trees(void **state)
 {
     (void)state;
-    struct scene *scene = glass_scene_over(130);
+    struct scene *scene = glass_scene_of(130, 4);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_true(scene->triangle_total > 2 * 16384);
     const struct render_params params = {
-        .width = 26, .height = 18, .depth = 3, .camera = glass_camera, .count = true};
+        .width = 15, .height = 9, .depth = 3, .camera = glass_camera, .count = true};
     check_picture(scene, &params);
 }
 

@@ -99,6 +99,9 @@ static inline void fixture_place(struct scene *scene, const struct affine *matri
     assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
 }
 
+/* Scenes whose trees are of other depths take the same kernels. */
+static const struct accel_params fixture_accel = {.stack_floor = 32};
+
 /* Everything between a scene and its hits. */
 struct fixture {
     struct scene *scene;
@@ -113,7 +116,9 @@ static inline struct fixture fixture_open(struct scene *scene,
 {
     struct fixture f = {.scene = scene};
     assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(accel_create(&fixture_log, scene, accel_params, &f.accel), WHIT_OK);
+    assert_int_equal(
+        accel_create(&fixture_log, scene, accel_params ? accel_params : &fixture_accel, &f.accel),
+        WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
     f.device = fixture_device();
     const struct render_params small = {.width = 16, .height = 16, .depth = 4};

@@ -361,6 +361,8 @@ static void edges_are_crossed_once(void **state)
 
 /* ---- Liquid in a glass ---- */
 
+enum { LIQUID_SIDE = 32, LIQUID_PIXELS = LIQUID_SIDE * LIQUID_SIDE };
+
 /* The liquid is wider than the inside of the glass by `overlap`. */
 static struct image liquid_picture(double overlap, uint32_t glass_priority, double contact,
                                    double ior)
@@ -375,7 +377,8 @@ static struct image liquid_picture(double overlap, uint32_t glass_priority, doub
     add_object(scene, lathe(glass, 6, 48), clear_glass(1.5f, glass_priority), 0, 0, 0);
     add_object(scene, lathe(liquid, 4, 48), clear_glass((float)ior, 0), 0, 0, 0);
     add_coordinate_wall(scene, -3, 4);
-    const struct render_params params = {.width = 64, .height = 64, .depth = 12, .bailout = -1.0};
+    const struct render_params params = {
+        .width = LIQUID_SIDE, .height = LIQUID_SIDE, .depth = 12, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
     fixture_close(&f);
@@ -388,15 +391,15 @@ static uint32_t count_unlike(const char *name, const struct image *a, struct ima
 {
     uint32_t unlike = 0;
     double sum = 0;
-    for (size_t i = 0; i < 64 * 64; ++i) {
+    for (size_t i = 0; i < LIQUID_PIXELS; ++i) {
         double worst = 0;
         for (size_t k = 0; k < 3; ++k)
             worst = fmax(worst, fabs((double)a->pixels[4 * i + k] - (double)b.pixels[4 * i + k]));
         unlike += worst > tolerance;
         sum += worst * worst;
     }
-    print_message("  %s: %u of 4096 pixels differ by more than %g; %.2g root mean square\n", name,
-                  unlike, tolerance, sqrt(sum / 4096));
+    print_message("  %s: %u of %d pixels differ by more than %g; %.2g root mean square\n", name,
+                  unlike, LIQUID_PIXELS, tolerance, sqrt(sum / LIQUID_PIXELS));
     image_finish(&b);
     return unlike;
 }
@@ -414,17 +417,17 @@ static void liquid_in_a_glass(void **state)
     assert_int_equal(count_unlike("gap of 1e-5, contact 1e-4", &touching,
                                   liquid_picture(-1e-5, 1, 1e-4, 1.33), 1e-3),
                      0);
-    /* A surface that is 1e-3, a thirtieth of a pixel, elsewhere: edges may fall on another pixel.
+    /* A surface that is 1e-3, a sixtieth of a pixel, elsewhere: edges may fall on another pixel.
      */
     assert_true(count_unlike("overlap of 1e-3, last entered", &touching,
-                             liquid_picture(1e-3, 0, 0, 1.33), 1e-2) <= 4096 / 64);
+                             liquid_picture(1e-3, 0, 0, 1.33), 1e-2) <= LIQUID_PIXELS / 64);
     assert_true(count_unlike("gap of 1e-3, contact 4e-3", &touching,
-                             liquid_picture(-1e-3, 1, 4e-3, 1.33), 1e-2) <= 4096 / 64);
+                             liquid_picture(-1e-3, 1, 4e-3, 1.33), 1e-2) <= LIQUID_PIXELS / 64);
     /* A layer of air reflects all that comes at a flat angle: nearly as if there were no liquid. */
     assert_true(count_unlike("gap of 1e-5, no contact", &touching,
-                             liquid_picture(-1e-5, 1, 0, 1.33), 1e-2) > 4096 / 8);
+                             liquid_picture(-1e-5, 1, 0, 1.33), 1e-2) > LIQUID_PIXELS / 8);
     assert_true(count_unlike("no liquid", &touching, liquid_picture(-0.2, 1, 0, 1.0), 1e-2) >
-                4096 / 8);
+                LIQUID_PIXELS / 8);
     image_finish(&touching);
 }
 

@@ -321,7 +321,7 @@ static struct scene *plain_scene(void)
     struct scene *scene = dark_scene((double[]){1, 2, 7}, (double[]){0, 0.5, 0});
     struct scene_material clay = material("clay");
     set_rgb(clay.diffuse, 0.6f, 0.5f, 0.4f);
-    add_object(scene, box(2, 2, 2), clay, 0, 0, 0);
+    add_object(scene, box(2, 2, 2), clay, 0.1, 0, 0);
     add_sun(scene, -1, -2, -1, 0.8f);
     return scene;
 }
@@ -329,7 +329,7 @@ static struct scene *plain_scene(void)
 static void tiles_do_not_matter(void **state)
 {
     (void)state;
-    struct render_params a = {.width = 150, .height = 101, .depth = 6, .samples = 4};
+    struct render_params a = {.width = 75, .height = 51, .depth = 6, .samples = 4};
     struct render_params b = a;
     a.tile_size = 16;
     for (uint32_t tile = 32; tile <= 512; tile *= 4) {
@@ -341,7 +341,7 @@ static void tiles_do_not_matter(void **state)
 static void load_paths_do_not_matter(void **state)
 {
     (void)state;
-    struct render_params a = {.width = 120, .height = 90, .depth = 6};
+    struct render_params a = {.width = 48, .height = 36, .depth = 6};
     struct render_params b = a;
     a.load_path = RENDER_LOAD_STORAGE;
     b.load_path = RENDER_LOAD_TEXEL;
@@ -351,7 +351,7 @@ static void load_paths_do_not_matter(void **state)
 static void unused_effects_do_not_matter(void **state)
 {
     (void)state;
-    struct render_params a = {.width = 120, .height = 90, .depth = 6};
+    struct render_params a = {.width = 48, .height = 36, .depth = 6};
     struct render_params b = a;
     b.all_effects = true;
     assert_same_picture(mixed_scene, &a, &b);

@@ -289,7 +289,7 @@ static struct fixture open_file(const char *name, const struct render_params *pa
     struct fixture f = {0};
     snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, name);
     assert_int_equal(load_scene(&fixture_log, path, NULL, &f.scene), WHIT_OK);
-    assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &f.accel), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, f.scene, &fixture_accel, &f.accel), WHIT_OK);
     f.device = fixture_device();
     assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, params, &f.renderer),
                      WHIT_OK);

@@ -33,12 +33,12 @@ static inline struct scene *ring_scene(void)
     return scene;
 }
 
-/* Rings of glass and mirror over terrain, under two lights. */
-/* With 2 * cells^2 triangles of ground. */
-static inline struct scene *glass_scene_over(uint32_t cells)
+/* Rings of glass and mirror over terrain, under two lights: with 2 * cells^2 triangles of ground,
+   and 4 * sides^2 a ring. */
+static inline struct scene *glass_scene_of(uint32_t cells, uint32_t sides)
 {
     struct scene_mesh ring = {0}, ground = {0};
-    assert_int_equal(shape_torus(1.0, 0.3, 24, 12, &ring), WHIT_OK);
+    assert_int_equal(shape_torus(1.0, 0.3, 2 * sides, sides, &ring), WHIT_OK);
     assert_int_equal(shape_terrain(10.0, 1.0, cells, 3, &ground), WHIT_OK);
     struct scene *scene = fixture_scene(ring);
     struct scene_material glass;
@@ -73,7 +73,7 @@ static inline struct scene *glass_scene_over(uint32_t cells)
 
 static inline struct scene *glass_scene(void)
 {
-    return glass_scene_over(24);
+    return glass_scene_of(24, 12);
 }
 
 static const char glass_camera[] = "0,4,8,0,0.5,0,0,1,0,40";
