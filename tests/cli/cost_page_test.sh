@@ -3,8 +3,8 @@
 # where there is no Chromium.
 . "$(dirname "$0")/common.sh"
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
-if [ -z "$browser" ] || ! command -v python3 >/dev/null; then
-    echo "SKIPPED: no Chromium, or no Python"
+if [ -z "$browser" ]; then
+    echo "SKIPPED: no Chromium"
     exit 77
 fi
 XDG_CACHE_HOME=$OUT/cache
@@ -19,17 +19,10 @@ look() {
         --window-size=1100,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
         echo "FAILED  the browser: $(tail -n 1 "$OUT/log")"
     grep CONSOLE "$OUT/log" >"$OUT/console"
-    python3 - "$OUT/net.json" >"$OUT/requests" <<'PYTHON'
-import json, sys
-log = json.load(open(sys.argv[1]))
-kinds = {number: name for name, number in log["constants"]["logSourceType"].items()}
-for event in log["events"]:
-    values = event.get("params", {})
-    if kinds[event["source"]["type"]] != "URL_REQUEST" or "url" not in values:
-        continue
-    if values.get("initiator", "not an origin") != "not an origin":
-        print(values["url"])
-PYTHON
+    jq -r '(.constants.logSourceType | to_entries | map({(.value | tostring): .key}) | add) as $kinds |
+        .events[] | select($kinds[.source.type | tostring] == "URL_REQUEST") | .params |
+        select(.url and (.initiator // "not an origin") != "not an origin") | .url' \
+        "$OUT/net.json" >"$OUT/requests"
 }
 
 page=$OUT/cost.html

@@ -1,22 +1,16 @@
-/* Linked into whit in the place of three calls (--wrap): a library in which one thing is wrong, for
+/* Linked into whit in the place of some calls (--wrap): a library in which one thing is wrong, for
    `whit cost` to find. WHIT_TEST_WRONG names it:
-   slow      renderers of at least 16 bounces take 10 % more CPU time
+   slow      pictures of at least 16 bounces take 10 % more time
    schlick   pictures by Schlick's approximation are 5 % too bright
    triangle  trees by medians have one triangle moved: the 11th, which a camera before the cube sees
- */
+   Clocks move only while a picture is drawn, by the same time for each sample, so that every
+   figure is known. With WHIT_TEST_CLOCK=real they are those of the machine. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "api/handles.h"
+#include "render/renderer.h"
 
-whit_result __real_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out);
-whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out);
-whit_result __real_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params);
-whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params);
 whit_result __real_whit_renderer_render(whit_renderer *renderer);
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer);
 whit_result __real_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
@@ -25,9 +19,16 @@ whit_result __real_whit_accel_create(const whit_scene *scene, const whit_accel_p
                                      whit_accel **out);
 whit_result __wrap_whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
                                      whit_accel **out);
+double __real_whit_clock_ms(void);
+double __wrap_whit_clock_ms(void);
+double __real_whit_clock_cpu_ms(void);
+double __wrap_whit_clock_cpu_ms(void);
 
-/* The latest renderer of the kind that is wrong. */
-static const whit_renderer *slow_one, *schlick_one;
+/* Of one sample, and of 10 % of it: sums of such times are exact. */
+#define SAMPLE_MS (10.0 / 128.0)
+#define TENTH_MS  (1.0 / 128.0)
+
+static double turned_ms; /* what the clocks say */
 
 static bool is_wrong(const char *what)
 {
@@ -35,41 +36,33 @@ static bool is_wrong(const char *what)
     return wanted && strcmp(wanted, what) == 0;
 }
 
-static void note_depth(const whit_renderer *renderer, const whit_renderer_params *params)
+static bool clock_is_real(void)
 {
-    if (params->depth >= 16)
-        slow_one = renderer;
-    else if (slow_one == renderer)
-        slow_one = NULL;
+    const char *clock = getenv("WHIT_TEST_CLOCK");
+    return clock && strcmp(clock, "real") == 0;
 }
 
-whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params)
+double __wrap_whit_clock_ms(void)
 {
-    note_depth(renderer, params);
-    return __real_whit_renderer_set_view(renderer, params);
+    return clock_is_real() ? __real_whit_clock_ms() : turned_ms;
 }
 
-whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out)
+double __wrap_whit_clock_cpu_ms(void)
 {
-    whit_result result = __real_whit_renderer_create(device, accel, params, out);
-    if (result == WHIT_OK)
-        note_depth(*out, params);
-    if (result == WHIT_OK && params->schlick)
-        schlick_one = *out;
-    else if (schlick_one == *out)
-        schlick_one = NULL;
-    return result;
+    return clock_is_real() ? __real_whit_clock_cpu_ms() : turned_ms;
 }
 
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
 {
+    const struct render_params *params = &renderer->renderer->params;
+    bool slow = is_wrong("slow") && params->depth >= 16;
+    double samples = (double)params->width * params->height * params->samples;
     double start_ms = whit_clock_cpu_ms();
     whit_result result = __real_whit_renderer_render(renderer);
+    turned_ms += samples * (SAMPLE_MS + (slow ? TENTH_MS : 0.0));
     double end_ms = whit_clock_cpu_ms();
     end_ms += 0.1 * (end_ms - start_ms);
-    while (is_wrong("slow") && renderer == slow_one && whit_clock_cpu_ms() < end_ms)
+    while (slow && clock_is_real() && whit_clock_cpu_ms() < end_ms)
         ;
     return result;
 }
@@ -78,7 +71,7 @@ whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, wh
 {
     whit_result result = __real_whit_renderer_image(renderer, aov, out);
     if (result != WHIT_OK || aov != WHIT_AOV_COLOR || !is_wrong("schlick") ||
-        renderer != schlick_one)
+        !renderer->renderer->params.schlick)
         return result;
     struct image *image = &(*out)->image;
     for (size_t i = 0; i < (size_t)image->width * image->height * image->channels; ++i)

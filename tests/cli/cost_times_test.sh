@@ -1,0 +1,25 @@
+#!/bin/sh
+# `whit cost` by the clocks of the machine: 10 % more work is found, in its row alone. Long. The third
+# argument is whit over a library in which WHIT_TEST_WRONG is wrong.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/cost_common.sh"
+WHIT=$WRONG
+WHIT_TEST_CLOCK=real
+export WHIT_TEST_CLOCK
+C=$OUT/files/right.csv
+D=$OUT/files/slow.csv
+
+# Nothing meets what a convex body reflects: 16 bounces are what 8 are.
+sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
+deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --samples 4 --spend 8"
+# shellcheck disable=SC2086
+expect 0 "as it is" cost $deep --csv "$C"
+export WHIT_TEST_WRONG=slow
+# shellcheck disable=SC2086
+expect 0 "10 % slower" cost $deep --csv "$D"
+right=$(value "$C" depth 16 ratio) slowed=$(value "$D" depth 16 ratio)
+check "16 bounces cost about what 8 do (x $right)" holds "0.9 < $right && $right < 1.1"
+check "10 % more work is found (x $slowed)" test "$(value "$D" depth 16 verdict)" = 1
+check "about as much as it is" holds "0.05 < $slowed - $right && $slowed - $right < 0.15"
+check "and in no other row" test "$(value "$D" depth 4 verdict)" != 1
+finish
