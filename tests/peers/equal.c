@@ -1,6 +1,9 @@
 /* The same hits and the same pictures, bit for bit, whatever builds the trees and whatever order
    they are walked in:
-       equal [--rays N] [--size N] [--device D] SCENE... */
+       equal [--rays N] [--size N] [--every N] [--device D] SCENE...
+   Hits are traced with every builder and every order. Pictures are drawn with every N-th of these
+   pairs, each builder among them where N is 3: a driver takes long to compile a picture's kernel.
+ */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +16,8 @@
 
 struct options {
     uint64_t rays;
-    uint32_t size; /* of pictures: width; 0: none */
+    uint32_t size;  /* of pictures: width; 0: none */
+    uint32_t every; /* one picture for so many pairs of a builder and an order */
     const char *device;
 };
 
@@ -35,6 +39,7 @@ static const struct builder builders[] = {
     {"spatial+opt", {.builder = BVH_SPATIAL, .optimize = true}, BVH_MEDIAN},
 };
 enum { BUILDERS = sizeof builders / sizeof builders[0], ORDERS = 3 };
+enum { STACK_FLOOR = 64 }; /* trees of different depths share their kernels */
 static const char *const orders[ORDERS] = {
     [ORDER_DISTANCE] = "distance", [ORDER_SIGN] = "sign", [ORDER_BASIC] = "basic"};
 
@@ -52,7 +57,7 @@ struct bench {
     struct device *device;
     struct gpu_ray *rays;
     struct answer reference, other;
-    uint64_t hits_wrong, any_wrong, pictures_wrong, configurations;
+    uint64_t hits_wrong, any_wrong, pictures_wrong, pictures, configurations;
 };
 
 static bool answer_init(struct answer *answer, uint64_t rays)
@@ -70,7 +75,14 @@ static void answer_finish(struct answer *answer)
     image_finish(&answer->ids);
 }
 
-static bool trace(const struct bench *bench, struct accel *accel, uint32_t order,
+static bool draw(struct renderer *renderer, struct answer *out)
+{
+    return renderer_render(renderer) == WHIT_OK &&
+           renderer_read_color(renderer, &out->color) == WHIT_OK &&
+           renderer_read_ids(renderer, &out->ids) == WHIT_OK;
+}
+
+static bool trace(const struct bench *bench, struct accel *accel, uint32_t order, bool picture,
                   struct answer *out)
 {
     uint32_t size = bench->options->size ? bench->options->size : 8;
@@ -83,9 +95,7 @@ static bool trace(const struct bench *bench, struct accel *accel, uint32_t order
     bool done = renderer_create(&peers_log, bench->device, accel, &params, &renderer) == WHIT_OK &&
                 renderer_trace(renderer, bench->rays, n, false, out->closest, NULL) == WHIT_OK &&
                 renderer_trace(renderer, bench->rays, n, true, out->any, NULL) == WHIT_OK &&
-                renderer_render(renderer) == WHIT_OK &&
-                renderer_read_color(renderer, &out->color) == WHIT_OK &&
-                renderer_read_ids(renderer, &out->ids) == WHIT_OK;
+                (!picture || draw(renderer, out));
     renderer_destroy(renderer);
     return done;
 }
@@ -93,7 +103,7 @@ static bool trace(const struct bench *bench, struct accel *accel, uint32_t order
 /* Differing pixels, by all bits of colour and ids. */
 static uint64_t pictures_differ(const struct answer *a, const struct answer *b)
 {
-    uint64_t differ = 0, pixels = (uint64_t)a->color.width * a->color.height;
+    uint64_t differ = 0, pixels = (uint64_t)b->color.width * b->color.height; /* 0: not drawn */
     for (uint64_t i = 0; i < pixels; ++i)
         differ += memcmp(&a->color.pixels[4 * i], &b->color.pixels[4 * i], 16) != 0 ||
                   memcmp(&a->ids.words[2 * i], &b->ids.words[2 * i], 8) != 0;
@@ -127,19 +137,25 @@ static void compare(struct bench *bench, const char *builder, uint32_t order)
     bench->hits_wrong += hits;
     bench->any_wrong += any;
     bench->pictures_wrong += pixels != 0;
+    bench->pictures += b->color.width > 0;
     ++bench->configurations;
 }
 
-static bool run_builder(struct bench *bench, const struct builder *builder, bool reference)
+static bool run_builder(struct bench *bench, uint32_t index)
 {
-    const struct accel_params params = {
-        .mesh = builder->params, .instances = {.builder = builder->instances}, .validate = true};
+    const struct builder *builder = &builders[index];
+    bool reference = index == 0;
+    const struct accel_params params = {.mesh = builder->params,
+                                        .instances = {.builder = builder->instances},
+                                        .stack_floor = STACK_FLOOR,
+                                        .validate = true};
     struct accel *accel = NULL;
     bool done = accel_create(&peers_log, bench->scene, &params, &accel) == WHIT_OK;
     for (uint32_t order = 0; done && order < ORDERS; ++order) {
+        bool picture = (index + order) % bench->options->every == 0;
         if (reference && order == ORDER_DISTANCE)
-            done = trace(bench, accel, order, &bench->reference);
-        done = done && trace(bench, accel, order, &bench->other);
+            done = trace(bench, accel, order, true, &bench->reference);
+        done = done && trace(bench, accel, order, picture, &bench->other);
         if (done)
             compare(bench, builder->name, order);
     }
@@ -158,8 +174,8 @@ static bool run_scene(struct bench *bench)
     for (uint64_t kind = 0; done && kind < RAYS_KINDS; ++kind)
         rays_fill((enum ray_kind)kind, bench->scene, &bench->pose, 1, bench->rays + kind * third,
                   kind + 1 < RAYS_KINDS ? third : n - kind * third);
-    for (size_t i = 0; done && i < BUILDERS; ++i)
-        done = run_builder(bench, &builders[i], i == 0);
+    for (uint32_t i = 0; done && i < BUILDERS; ++i)
+        done = run_builder(bench, i);
     return done;
 }
 
@@ -170,9 +186,10 @@ static bool check_scene(const struct options *options, struct device *device, co
     const char *name = strrchr(path, '/');
     if (done)
         printf("%-20s %8" PRIu64 " triangles, %" PRIu64 " rays x %" PRIu64 " ways: %" PRIu64
-               " hits differ, %" PRIu64 " any-hits, %" PRIu64 " pictures\n",
+               " hits differ, %" PRIu64 " any-hits, %" PRIu64 " of %" PRIu64 " pictures\n",
                name ? name + 1 : path, bench.scene->triangle_total, options->rays,
-               bench.configurations, bench.hits_wrong, bench.any_wrong, bench.pictures_wrong);
+               bench.configurations, bench.hits_wrong, bench.any_wrong, bench.pictures_wrong,
+               bench.pictures);
     fflush(stdout);
     answer_finish(&bench.reference);
     answer_finish(&bench.other);
@@ -184,20 +201,22 @@ static bool check_scene(const struct options *options, struct device *device, co
 
 int main(int argc, char **argv)
 {
-    struct options options = {.rays = 1000000, .size = 96};
+    struct options options = {.rays = 1000000, .size = 96, .every = 1};
     int first = 1;
     for (; first + 1 < argc && argv[first][0] == '-'; first += 2) {
         if (strcmp(argv[first], "--rays") == 0)
             options.rays = strtoull(argv[first + 1], NULL, 10);
         else if (strcmp(argv[first], "--size") == 0)
             options.size = (uint32_t)strtoul(argv[first + 1], NULL, 10);
+        else if (strcmp(argv[first], "--every") == 0)
+            options.every = (uint32_t)strtoul(argv[first + 1], NULL, 10);
         else if (strcmp(argv[first], "--device") == 0)
             options.device = argv[first + 1];
         else
             break;
     }
-    if (first >= argc || argv[first][0] == '-' || options.rays < RAYS_KINDS) {
-        fprintf(stderr, "usage: equal [--rays N] [--size N] [--device D] SCENE...\n");
+    if (first >= argc || argv[first][0] == '-' || options.rays < RAYS_KINDS || options.every == 0) {
+        fprintf(stderr, "usage: equal [--rays N] [--size N] [--every N] [--device D] SCENE...\n");
         return 2;
     }
     struct device *device = NULL;
