@@ -189,6 +189,16 @@ static void keep_session(struct engine *engine, struct session *session)
     }
 }
 
+/* What went well is no answer to what failed on the other side. */
+static void forget_error(struct engine *engine)
+{
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        if (engine->lanes[i].wanted && engine->lanes[i].failed)
+            return;
+    }
+    engine->error[0] = '\0';
+}
+
 /* Takes what a finished job made. */
 static void reap_job(struct engine *engine)
 {
@@ -199,7 +209,7 @@ static void reap_job(struct engine *engine)
     if (job->result == WHIT_OK) {
         job->session->ready = true;
         keep_session(engine, job->session);
-        engine->error[0] = '\0';
+        forget_error(engine);
     } else if (job->result != WHIT_ERROR_CANCELLED) {
         memcpy(engine->error, job->session->error, sizeof engine->error);
         if (!engine->error[0])
@@ -281,7 +291,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         return false;
     if (shows_it(engine, lane)) {
         lane->drawn = lane->asked;
-        engine->error[0] = '\0';
+        forget_error(engine);
         wake_window(engine);
         return false;
     }
@@ -356,7 +366,7 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
     lane->frame = *frame;
     if (!lane->wanted) /* any more: nobody would take it */
         engine_frame_finish(&lane->frame);
-    engine->error[0] = '\0';
+    forget_error(engine);
     engine->lost = 0;
 }
 

@@ -17,17 +17,23 @@ static struct view_settings settings_of(const char *scene)
     return settings;
 }
 
-/* Takes pictures until the engine has nothing left to do; how many. */
-static uint32_t take_all(struct engine *engine, struct engine_frame *frame)
+/* Takes pictures until the engine has nothing left to do. */
+static void take_both(struct engine *engine, struct engine_frame *frame, struct engine_frame *other)
 {
-    uint32_t count = 0;
     double start_ms = clock_ms();
     while (!engine_is_still(engine)) {
         engine_wait(engine, 20.0);
-        count += engine_take(engine, false, frame);
+        (void)engine_take(engine, false, frame);
+        if (other)
+            (void)engine_take(engine, true, other);
         assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
     }
-    return count + engine_take(engine, false, frame);
+    (void)engine_take(engine, false, frame);
+}
+
+static void take_all(struct engine *engine, struct engine_frame *frame)
+{
+    take_both(engine, frame, NULL);
 }
 
 /* The device is lost at the n-th submission of each device: while the engine is opened, later, or
@@ -229,6 +235,36 @@ static void a_switch_keeps_the_picture(void **state)
     assert_int_equal(engine_destroy(engine), 0);
 }
 
+/* Whoever turns the camera beside a scene that cannot be read is still told so. */
+static void an_error_outlives_the_other_side(void **state)
+{
+    (void)state;
+    struct engine *engine;
+    struct engine_frame frame = {0}, other = {0};
+    struct engine_status status;
+    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct view_settings settings = settings_of("cube.json");
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    engine_ask_other(engine, &settings);
+    take_both(engine, &frame, &other);
+    settings = settings_of("nowhere.json");
+    engine_ask(engine, &settings, false);
+    take_both(engine, &frame, &other);
+    uint64_t number = other.number;
+    snprintf(settings.camera, sizeof settings.camera, "0,2,6,0,1,0,0,1,0,40");
+    struct view_settings beside = settings_of("cube.json");
+    settings_set_camera(&beside, &settings);
+    engine_ask_other(engine, &beside);
+    take_both(engine, &frame, &other);
+    assert_true(other.number > number);
+    engine_get_status(engine, &status);
+    assert_non_null(strstr(status.error, "nowhere.json"));
+    engine_frame_finish(&frame);
+    engine_frame_finish(&other);
+    assert_int_equal(engine_destroy(engine), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -236,6 +272,7 @@ int main(void)
         cmocka_unit_test(memory_that_runs_out_is_said),
         cmocka_unit_test(no_look_is_cut_short),
         cmocka_unit_test(a_switch_keeps_the_picture),
+        cmocka_unit_test(an_error_outlives_the_other_side),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
