@@ -27,7 +27,7 @@ static whit_result write_replay(const struct bench *bench, const char *path, boo
         cli_error("%s cannot be written", path);
         return WHIT_ERROR_OUTPUT;
     }
-    fprintf(to, "still\nstate first\n");
+    fprintf(to, "clock real\nstill\nstate first\n");
     for (uint32_t i = 0; i < bench->runs && !only_first; ++i)
         fprintf(to, "wheel 0 %d\nstill\n", i % 2 ? -1 : 1);
     if (!only_first) {

@@ -342,16 +342,19 @@ uint64_t platform_peak_memory_bytes(void)
     return (uint64_t)most * 1024; /* Linux counts in KiB */
 }
 
-uint64_t platform_own_memory_bytes(void)
+void platform_memory_bytes(uint64_t *all, uint64_t *own)
 {
     char line[128];
-    unsigned long long own_kib = 0;
+    unsigned long long all_kib = 0, own_kib = 0;
     FILE *from = fopen("/proc/self/status", "r");
-    while (from && own_kib == 0 && fgets(line, sizeof line, from))
+    while (from && fgets(line, sizeof line, from)) {
+        (void)sscanf(line, "VmRSS: %llu kB", &all_kib);
         (void)sscanf(line, "RssAnon: %llu kB", &own_kib);
+    }
     if (from)
         (void)fclose(from);
-    return (uint64_t)own_kib * 1024;
+    *all = (uint64_t)all_kib * 1024;
+    *own = (uint64_t)own_kib * 1024;
 }
 
 static volatile bool *volatile interrupt_flag;

@@ -249,6 +249,16 @@ static json_t *wish_json(const struct view *view)
     return object;
 }
 
+static json_t *memory_json(void)
+{
+    uint64_t all, own;
+    json_t *object = json_object();
+    platform_memory_bytes(&all, &own);
+    put_count(object, "all", all / 1024);
+    put_count(object, "own", own / 1024);
+    return object;
+}
+
 /* All of it, for the caller to give back. */
 static json_t *state_json(struct view *view, const char *name)
 {
@@ -277,7 +287,7 @@ static json_t *state_json(struct view *view, const char *name)
     put_number(root, "part", (double)view->status.part);
     put_count(root, "shown", view->shown);
     put_number(root, "now_ms", view_now_ms(view));
-    put_count(root, "own_kb", platform_own_memory_bytes() / 1024);
+    json_object_set_new(root, "memory_kb", memory_json());
     json_object_set_new(root, "keys", keys_json(view));
     json_object_set_new(root, "frame", frame_json(&view->frame));
     put_bool(root, "picked", view->picked);

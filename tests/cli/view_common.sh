@@ -6,7 +6,7 @@ export XDG_STATE_HOME
 
 # As in common.sh, but a window that does not end is ended.
 run() {
-    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" "$@" >"$OUT/stdout" 2>"$OUT/stderr"
+    timeout $((${LIMIT_S:-100} * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" "$@" >"$OUT/stdout" 2>"$OUT/stderr"
     status=$?
 }
 

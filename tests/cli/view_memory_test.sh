@@ -12,9 +12,9 @@
 play "boxes" "$SCENES/34k.json" --size 240x160 <"$OUT/boxes"
 is boxes "keys.boxes of trees" "of meshes"
 is after "keys.boxes of trees" off
-before=$(value before own_kb)
-boxes=$(value boxes own_kb)
-after=$(value after own_kb)
+before=$(value before memory_kb.own)
+boxes=$(value boxes memory_kb.own)
+after=$(value after memory_kb.own)
 if [ -n "${ASAN_OPTIONS:-}" ]; then # its allocator keeps what was freed
     echo "memory: $before, $boxes, $after kB; not judged under sanitizers"
     finish

@@ -3,20 +3,16 @@
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/pictures"
 P=$OUT/pictures
-SCENE=$SCENES/default.json
+SCENE=$SCENES/balls.json
 SIZE=96x64
 
 # numbers FILE.pfm: all pixels, one a line (PFM of one channel: three lines of text, then floats).
 numbers() {
     tail -c $((96 * 64 * 4)) "$1" | od -An -v -tf4 -w4
 }
-# figure JSON-FILE KIND GROUP NAME: a number of "costs".
+# figure FIELD: of the costs of camera rays, as --stats tells them.
 figure() {
-    awk -v kind="\"$2\":" -v group="\"$3\":" -v name="\"$4\":" '
-        $1 == "\"costs\":" { costs = 1 }
-        costs && $1 == kind { here = 1 }
-        here && $1 == group { inside = 1 }
-        here && (inside || group == "\"\":") && $1 == name { sub(",", "", $2); print $2; exit }' "$1"
+    jq ".costs.primary.$1" "$OUT/visits.json"
 }
 
 for view in depth visits boxes tris stack; do
@@ -27,21 +23,20 @@ for view in depth visits boxes tris stack; do
 done
 most() { sort -g "$OUT/$1.txt" | tail -1 | awk '{ print $1 + 0 }'; }
 sum() { awk '{ s += $1 } END { printf "%.6g", s }' "$OUT/$1.txt"; }
-J=$OUT/visits.json
 check "the picture's deepest level is that of --stats" \
-    test "$(most depth)" = "$(figure "$J" primary most depth)"
-check "its fullest stack too" test "$(most stack)" = "$(figure "$J" primary most stack)"
-check "its most box tests too" test "$(most boxes)" = "$(figure "$J" primary most boxes)"
-check "its most triangle tests too" test "$(most tris)" = "$(figure "$J" primary most triangles)"
-rays=$(figure "$J" primary "" rays)
+    test "$(most depth)" = "$(figure most.depth)"
+check "its fullest stack too" test "$(most stack)" = "$(figure most.stack)"
+check "its most box tests too" test "$(most boxes)" = "$(figure most.boxes)"
+check "its most triangle tests too" test "$(most tris)" = "$(figure most.triangles)"
+rays=$(figure rays)
 check "one camera ray a pixel ($rays)" test "$rays" = 6144
 for pair in boxes:boxes tris:triangles depth:depth stack:stack; do
-    mean=$(figure "$J" primary mean "${pair#*:}")
+    mean=$(figure "mean.${pair#*:}")
     same=$(awk -v sum="$(sum "${pair%:*}")" -v mean="$mean" 'BEGIN {
         d = sum / 6144 - mean; print (mean > 0 && d * d < 1e-8 * mean * mean) }')
     check "mean ${pair%:*} of the picture and of --stats ($mean)" test "$same" = 1
 done
-visits=$(for name in pairs leaves instances; do figure "$J" primary mean $name; done |
+visits=$(for name in pairs leaves instances; do figure mean.$name; done |
     awk -v sum="$(sum visits)" '{ v += $1 } END { d = sum / 6144 - v; print (d * d < 1e-8 * v * v) }')
 check "visits are pairs, leaves and instances" test "$visits" = 1
 
