@@ -6,7 +6,8 @@ if ! command -v Xvfb >/dev/null; then
     exit 77
 fi
 folder=$(mktemp -d) || exit 1
-# The server finds a number that is free, and writes it down once it listens.
+mkfifo "$folder/number"
+# The server finds a number that is free, and says it once it listens.
 Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp -noreset 3>"$folder/number" \
     2>"$folder/messages" </dev/null >/dev/null &
 server=$!
@@ -17,17 +18,12 @@ finish() {
 }
 trap finish EXIT
 trap 'exit 143' TERM INT
-turns=0
-while [ ! -s "$folder/number" ]; do
-    turns=$((turns + 1))
-    if [ "$turns" -gt 300 ] || ! kill -0 "$server" 2>/dev/null; then
-        echo "Xvfb does not start:"
-        cat "$folder/messages"
-        exit 1
-    fi
-    sleep 0.1
-done
-DISPLAY=:$(cat "$folder/number")
+if ! read -r number <"$folder/number"; then
+    echo "Xvfb does not start:"
+    cat "$folder/messages"
+    exit 1
+fi
+DISPLAY=:$number
 export DISPLAY
 unset WAYLAND_DISPLAY XAUTHORITY
 "$@"
