@@ -335,7 +335,7 @@ static bool is_wrong(struct rational *rational, const struct view *view)
            (met && !(said->lo <= key && key <= said->hi));
 }
 
-enum { CLIMBS = 60, CLIMB_STEPS = 20000 };
+enum { CLIMB_STEPS = 20000 };
 
 struct search {
     const char *name;
@@ -349,7 +349,8 @@ static void hunt(const struct search *search, struct rational *rational)
     uint32_t wrong = 0, beyond = 0;
     double most_edge = 0.0, most = 0.0;
     random_state = 1;
-    for (int i = 0; i < CLIMBS; ++i) {
+    const uint32_t climbs = cases_of(120);
+    for (uint32_t i = 0; i < climbs; ++i) {
         struct subject s;
         struct view view;
         if (search->across)
@@ -369,9 +370,9 @@ static void hunt(const struct search *search, struct rational *rational)
         wrong += is_wrong(rational, &view);
     }
     print_message(
-        "%-36s %u errors beyond their bounds, %u wrong answers at the ends of %d climbs of "
+        "%-36s %u errors beyond their bounds, %u wrong answers at the ends of %u climbs of "
         "%d steps; at most %.3f of the bound, edges %.3f\n",
-        search->name, beyond, wrong, (int)CLIMBS, (int)CLIMB_STEPS, most, most_edge);
+        search->name, beyond, wrong, climbs, (int)CLIMB_STEPS, most, most_edge);
     assert_int_equal(beyond, 0);
     assert_int_equal(wrong, 0);
     assert_true(most >= search->at_least && most <= 1.0);
@@ -382,7 +383,8 @@ static void hunt_spheres(const struct search *search, struct rational *rational)
     uint32_t wrong = 0;
     double most = 0.0;
     random_state = 2;
-    for (int i = 0; i < CLIMBS; ++i) {
+    const uint32_t climbs = cases_of(120);
+    for (uint32_t i = 0; i < climbs; ++i) {
         struct subject s;
         struct view view;
         if (search->across)
@@ -398,9 +400,9 @@ static void hunt_spheres(const struct search *search, struct rational *rational)
         most = fmax(most, score_of(&s, search->aim));
         wrong += is_wrong_of_sphere(rational, &view);
     }
-    print_message("%-36s %u wrong answers at the ends of %d climbs of %d steps; at most %.3f of "
+    print_message("%-36s %u wrong answers at the ends of %u climbs of %d steps; at most %.3f of "
                   "the bound\n",
-                  search->name, wrong, (int)CLIMBS, (int)CLIMB_STEPS, most);
+                  search->name, wrong, climbs, (int)CLIMB_STEPS, most);
     assert_int_equal(wrong, 0);
     assert_true(most >= search->at_least && most <= 1.0);
 }

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../cases.h"
 #include "../scenes.h"
 #include "accel/accel.h"
 #include "accel/accel_inside.h"

@@ -140,7 +140,7 @@ static void same_bytes_for_any_thread_count(void **state)
 {
     (void)state;
     random_state = 3;
-    struct soup soup = soup_rooms(6000);
+    struct soup soup = soup_rooms(cases_of(12000));
     struct bvh one, other;
     struct bvh_params params = {.thread_count = 1, .optimize = true};
     build(&soup, &params, &one);
@@ -203,25 +203,25 @@ static void deep_trees_stay_within_the_limit(void **state)
 static void hits_are_the_same(void **state)
 {
     (void)state;
-    enum { RAYS = 20000 };
+    const uint32_t rays = cases_of(20000);
     random_state = 4;
     struct soup soups[] = {soup_sphere(30, 20), soup_terrain(20), soup_hair(1500, 1e-3f),
                            soup_rooms(700)};
-    struct gpu_hit *expected = malloc(RAYS * sizeof *expected);
-    struct gpu_hit *hits = malloc(RAYS * sizeof *hits);
+    struct gpu_hit *expected = malloc(rays * sizeof *expected);
+    struct gpu_hit *hits = malloc(rays * sizeof *hits);
     assert_true(expected && hits);
     for (size_t i = 0; i < sizeof soups / sizeof *soups; ++i) {
         struct scene *scene = soup_scene(&soups[i]);
         struct accel *plain = soup_accel(scene, &(struct bvh_params){.builder = BVH_BINNED});
-        soup_trace(&soups[i], plain, i, RAYS, expected, NULL);
-        assert_true(hits_count(expected, RAYS) > RAYS / 8);
+        soup_trace(&soups[i], plain, i, rays, expected, NULL);
+        assert_true(hits_count(expected, rays) > rays / 8);
         accel_destroy(plain);
         for (int k = 0; k < ALL_PARAMS; ++k) {
             struct bvh_params params = all_params[k];
             params.optimize = true;
             struct accel *accel = soup_accel(scene, &params);
-            soup_trace(&soups[i], accel, i, RAYS, hits, NULL);
-            assert_memory_equal(hits, expected, RAYS * sizeof *hits);
+            soup_trace(&soups[i], accel, i, rays, hits, NULL);
+            assert_memory_equal(hits, expected, rays * sizeof *hits);
             accel_destroy(accel);
         }
         scene_destroy(scene);

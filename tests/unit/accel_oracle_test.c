@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../cases.h"
 #include "../scenes.h"
 #include "accel/accel.h"
 #include "random_fixture.h"
@@ -202,11 +203,11 @@ static void margins_explain_the_float_twin(void **state)
     for (size_t w = 0; w < 3; ++w) {
         struct tally random = {0}, aimed = {0};
         random_state = 30 + w;
-        for (uint32_t i = 0; i < 20000; ++i) {
+        for (uint32_t i = 0; i < cases_of(20000); ++i) {
             struct gpu_ray ray = random_ray(&worlds[w], i);
             compare_with_twin(&worlds[w], &ray, &random);
         }
-        for (uint32_t i = 0; i < 5000; ++i) {
+        for (uint32_t i = 0; i < cases_of(5000); ++i) {
             struct gpu_ray ray = aimed_ray(&worlds[w], i);
             compare_with_twin(&worlds[w], &ray, &aimed);
         }

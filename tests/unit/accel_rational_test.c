@@ -477,22 +477,27 @@ static void trees_and_filter_change_nothing(void **state)
                               none = {.mesh = {.builder = BVH_NONE}};
     uint32_t on_edges = 0;
     random_state = 21;
-    on_edges += compare_world(world_make("sphere", soup_sphere(24, 12), 0, 0, &plain), 250);
-    on_edges += compare_world(world_make("grid", soup_grid(16), 0, 0, &plain), 250);
-    on_edges += compare_world(world_make("thrice", soup_thrice(60), 0, 0, &plain), 250);
     on_edges +=
-        compare_world(world_make("exponential", soup_exponential(80, 1.3), 0, 0, &plain), 200);
-    on_edges += compare_world(world_make("split hair", soup_hair(200, 0.01f), 0, 0, &split), 70);
-    on_edges += compare_world(world_make("no tree", soup_terrain(8), 0, 0, &none), 200);
+        compare_world(world_make("sphere", soup_sphere(24, 12), 0, 0, &plain), cases_of(250));
+    on_edges += compare_world(world_make("grid", soup_grid(16), 0, 0, &plain), cases_of(250));
+    on_edges += compare_world(world_make("thrice", soup_thrice(60), 0, 0, &plain), cases_of(250));
+    on_edges += compare_world(world_make("exponential", soup_exponential(80, 1.3), 0, 0, &plain),
+                              cases_of(200));
     on_edges +=
-        compare_world(world_make("placed spheres", soup_sphere(12, 6), 12, 3.0, &plain), 70);
+        compare_world(world_make("split hair", soup_hair(200, 0.01f), 0, 0, &split), cases_of(70));
+    on_edges += compare_world(world_make("no tree", soup_terrain(8), 0, 0, &none), cases_of(200));
+    on_edges += compare_world(world_make("placed spheres", soup_sphere(12, 6), 12, 3.0, &plain),
+                              cases_of(70));
     /* Seen from afar, roundings in object space move hits out of the boxes of instances. */
-    on_edges += compare_world(world_make("placed cubes", soup_cube(), 12, 0.0, &plain), 1500);
     on_edges +=
-        compare_world(world_make("placed far apart", soup_sphere(12, 6), 12, 1e5, &plain), 70);
-    on_edges += compare_world(world_make("flat spheres", soup_sphere(12, 6), 12, 3.0, &flat), 70);
-    on_edges += compare_world(world_make("placed grids", soup_grid(4), 20, 3.0, &split), 70);
-    assert_true(on_edges > 500);
+        compare_world(world_make("placed cubes", soup_cube(), 12, 0.0, &plain), cases_of(1500));
+    on_edges += compare_world(world_make("placed far apart", soup_sphere(12, 6), 12, 1e5, &plain),
+                              cases_of(70));
+    on_edges +=
+        compare_world(world_make("flat spheres", soup_sphere(12, 6), 12, 3.0, &flat), cases_of(70));
+    on_edges +=
+        compare_world(world_make("placed grids", soup_grid(4), 20, 3.0, &split), cases_of(70));
+    assert_true(on_edges > cases_of(500));
 }
 
 /* The filter is of use: few of random rays' triangles are left, and aimed rays do need integers. */

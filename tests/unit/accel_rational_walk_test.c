@@ -232,20 +232,20 @@ static void the_walk_finds_the_first_of_all(void **state)
     const struct accel_params plain = {0}, flat = {.flatten = true},
                               split = {.mesh = {.builder = BVH_SPATIAL, .spatial_budget = 2.0f}},
                               none = {.mesh = {.builder = BVH_NONE}};
-    random_state = 31;
+    random_state = 32;
     compare_scene("scattered", mixed_scene(scattered_spheres(120, 1.0, 0.3), 0, 0, false), &plain,
-                  aimed_ray, 600, 2);
+                  aimed_ray, cases_of(600), 2);
     compare_scene("no tree", mixed_scene(scattered_spheres(40, 1.0, 0.3), 0, 0, false), &none,
-                  aimed_ray, 300, 2);
+                  aimed_ray, cases_of(300), 2);
     compare_scene("placed", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1.5, false), &split,
-                  aimed_ray, 250, 3);
+                  aimed_ray, cases_of(250), 3);
     compare_scene("placed far apart", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1e5, false),
-                  &plain, aimed_ray, 250, 3);
+                  &plain, aimed_ray, cases_of(250), 3);
     compare_scene("flat", mixed_scene(scattered_spheres(20, 1.0, 0.3), 9, 1.5, true), &flat,
-                  aimed_ray, 250, 3);
+                  aimed_ray, cases_of(250), 3);
     struct tally whole = compare_scene("whole numbers", mixed_scene(whole_spheres(40), 0, 0, false),
-                                       &plain, whole_ray, 1000, 20);
-    assert_true(whole.ties > 300);
+                                       &plain, whole_ray, cases_of(1000), 20);
+    assert_true(whole.ties > cases_of(300));
 }
 
 /* Of rays that pass a sphere within its box nearly all are left out by doubles, and none of those

@@ -126,11 +126,12 @@ static void degenerate_meshes(void **state)
 {
     (void)state;
     random_state = 2;
-    struct soup soups[] = {soup_make("points", 10000),      soup_make("equal", 10000),
-                           soup_make("crossing", 10000),    soup_exponential(120, 2.0),
+    const uint32_t count = cases_of(10000);
+    struct soup soups[] = {soup_make("points", count),      soup_make("equal", count),
+                           soup_make("crossing", count),    soup_exponential(120, 2.0),
                            soup_exponential(600, 1.3),      soup_garbage(500, 1e18f),
                            soup_garbage(500, FLT_MAX / 16), soup_garbage(500, 1e-30f)};
-    for (uint32_t i = 0; i < 90000; ++i) {
+    for (uint32_t i = 0; i < 9 * count; ++i) {
         soups[1].positions[i] = (float)(i * 7 % 9);
         soups[2].positions[i] = (i / 9 % 2 ? 1.0f : -1.0f) * (float)(i * 5 % 9 - 4);
     }
@@ -362,7 +363,7 @@ static void same_bytes_for_any_thread_count(void **state)
 {
     (void)state;
     random_state = 8;
-    struct soup soups[] = {soup_hair(20000, 1e-3f), soup_rooms(8000)};
+    struct soup soups[] = {soup_hair(cases_of(20000), 1e-3f), soup_rooms(cases_of(8000))};
     for (size_t i = 0; i < sizeof soups / sizeof *soups; ++i) {
         struct bvh one, other;
         struct bvh_params params = {.thread_count = 1, .optimize = i == 1};
@@ -449,11 +450,12 @@ static struct gpu_ray ray_at_leaf(const struct accel *accel, double distance)
 
 static void assert_same_at_leaves(const struct scene *scene)
 {
+    const uint32_t rays = cases_of(RAYS);
     struct accel *plain = soup_accel(scene, &(struct bvh_params){.builder = BVH_BINNED});
     struct accel *split = soup_accel(
         scene, &(struct bvh_params){.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_budget = 4});
     uint32_t status = 0, found = 0;
-    for (uint32_t i = 0; i < RAYS; ++i) {
+    for (uint32_t i = 0; i < rays; ++i) {
         struct gpu_ray ray = ray_at_leaf(split, i % 3 == 0 ? 1e3 : i % 3 == 1 ? 30.0 : 1.0);
         struct gpu_hit expected, hit;
         traverse_float(plain, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &expected, NULL,
@@ -463,19 +465,20 @@ static void assert_same_at_leaves(const struct scene *scene)
         found += hit.primitive != HIT_NONE;
     }
     assert_int_equal(status, 0);
-    assert_true(found > RAYS / 2);
+    assert_true(found > rays / 2);
     accel_destroy(plain);
     accel_destroy(split);
 }
 
 static void assert_same_hits(const struct soup *soup, const struct scene *scene, double visits)
 {
-    struct gpu_hit *expected = malloc(RAYS * sizeof *expected), *hits = malloc(RAYS * sizeof *hits);
+    const uint32_t rays = cases_of(RAYS);
+    struct gpu_hit *expected = malloc(rays * sizeof *expected), *hits = malloc(rays * sizeof *hits);
     assert_true(expected && hits);
     struct gpu_cost before = {0}, after = {0};
     struct accel *plain = soup_accel(scene, &(struct bvh_params){.builder = BVH_BINNED});
-    soup_trace(soup, plain, 1, RAYS, expected, &before);
-    assert_true(hits_count(expected, RAYS) > RAYS / 8);
+    soup_trace(soup, plain, 1, rays, expected, &before);
+    assert_true(hits_count(expected, rays) > rays / 8);
     accel_destroy(plain);
     static const struct bvh_params params[] = {
         {.builder = BVH_SPATIAL},
@@ -484,8 +487,8 @@ static void assert_same_hits(const struct soup *soup, const struct scene *scene,
     };
     for (size_t i = 0; i < sizeof params / sizeof *params; ++i) {
         struct accel *accel = soup_accel(scene, &params[i]);
-        soup_trace(soup, accel, 1, RAYS, hits, i == 0 ? &after : NULL);
-        assert_memory_equal(hits, expected, RAYS * sizeof *hits);
+        soup_trace(soup, accel, 1, rays, hits, i == 0 ? &after : NULL);
+        assert_memory_equal(hits, expected, rays * sizeof *hits);
         accel_destroy(accel);
     }
     assert_true(after.pairs < visits * before.pairs);

@@ -136,12 +136,12 @@ static void compare(const struct accel *accel, const struct gpu_ray *ray, struct
 static void check_double(const char *label, double spread, double radius, double away, bool placed,
                          double unsure_most)
 {
-    enum { RAYS = 40000 };
+    const uint32_t rays = cases_of(40000);
     struct scene *scene = sphere_scene(scattered_spheres(20, spread, radius), placed);
     struct accel *accel;
     struct tally tally = {0};
     assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
-    for (uint32_t i = 0; i < RAYS; ++i) {
+    for (uint32_t i = 0; i < rays; ++i) {
         struct gpu_ray ray = ray_at_spheres(&scene->meshes[0], i, away);
         compare(accel, &ray, &tally);
     }
@@ -150,8 +150,8 @@ static void check_double(const char *label, double spread, double radius, double
                   label, tally.rays, tally.hits, tally.unsure, tally.wrong, tally.worst);
     assert_int_equal(tally.wrong, 0);
     assert_int_equal(tally.off, 0);
-    assert_true(tally.hits > RAYS / 4);
-    assert_true(tally.unsure < unsure_most * RAYS);
+    assert_true(tally.hits > rays / 4);
+    assert_true(tally.unsure < unsure_most * rays);
     accel_destroy(accel);
     scene_destroy(scene);
 }
@@ -232,19 +232,19 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
 
 static void check_own(const char *label, double at, double radius)
 {
-    enum { RAYS = 100000 };
+    const uint32_t rays = cases_of(100000);
     struct accel *accel;
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
     struct scene *scene = sphere_scene(mesh_balls(sphere, 1), false);
     assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
-    for (uint32_t i = 0; i < RAYS; ++i)
+    for (uint32_t i = 0; i < rays; ++i)
         leave(accel, scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
     print_message("  %s: %u met again, %u left, %u wrong; t at worst %.2f of its bound\n", label,
                   own.met, own.missed, own.wrong, own.worst);
     assert_int_equal(own.wrong, 0);
     assert_true(own.worst <= 1.0);
-    assert_true(own.met > RAYS / 3 && own.missed > RAYS / 3);
+    assert_true(own.met > rays / 3 && own.missed > rays / 3);
     accel_destroy(accel);
     scene_destroy(scene);
 }

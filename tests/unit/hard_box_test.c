@@ -195,7 +195,7 @@ static void entered_boxes_are_entered(void **state)
 {
     (void)state;
     enum { KINDS = sizeof box_kinds / sizeof *box_kinds };
-    const uint32_t rays = 70000 * test_times();
+    const uint32_t rays = cases_of(70000);
     for (int l = 0; l < LEVELS; ++l) {
         struct tally all = {0}, denormal = {0};
         for (size_t i = 0; i < KINDS; ++i) {

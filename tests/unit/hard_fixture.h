@@ -27,13 +27,6 @@ enum { LEVELS = sizeof levels / sizeof *levels };
 /* It promises no closed surfaces. */
 static const struct level fast_level = {"fast", NUMERICS_FAST, false, false};
 
-/* Tests with the label long set it: how many times the usual number of rays. */
-static inline uint32_t test_times(void)
-{
-    const char *times = getenv("WHIT_TEST_TIMES");
-    return times && atoi(times) > 0 ? (uint32_t)atoi(times) : 1;
-}
-
 /* Where a ray enters and leaves a box, as a tree's walk asks (step_pair in traverse.c). */
 static inline bool level_enters(const struct level *level, const struct ray_setup *ray,
                                 const float lo[3], const float hi[3], float t_min, float t_max,

@@ -109,7 +109,7 @@ static void no_ray_leaves_closed_meshes(void **state)
         {"W4 spikes at 1e3", {1e3f, -1e3f, 1e3f}, true},
     };
     const struct bvh_params params = {0};
-    const uint32_t rays = RAYS * test_times();
+    const uint32_t rays = cases_of(RAYS);
     for (size_t b = 0; b < sizeof balls / sizeof *balls; ++b) {
         struct soup soup = balls[b].spiky ? soup_spikes() : soup_sphere(32, 16);
         soup_move(&soup, balls[b].at);
@@ -167,7 +167,7 @@ static void no_ray_passes_a_plane(void **state)
     for (int l = 0; l < LEVELS; ++l) {
         struct hunt hunt = {"W2 plane at 148376 1234 -223423", 0, 0, 0, 0};
         random_state = 52;
-        for (uint32_t i = 0; i < RAYS * test_times(); ++i) {
+        for (uint32_t i = 0; i < cases_of(RAYS); ++i) {
             struct vec3 from = vec3_add(vec3_load(at), random_point(1.5f));
             struct vec3 to = inner_target(&soup);
             from.y = at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float(&random_state));
@@ -273,7 +273,7 @@ static void crossings_are_odd(void **state)
 {
     (void)state;
     const struct bvh_params params = {0};
-    const uint32_t rays = RAYS * test_times();
+    const uint32_t rays = cases_of(RAYS);
     struct scene_mesh mesh;
     assert_int_equal(shape_torus(1.0, 0.4, 48, 24, &mesh), WHIT_OK);
     struct soup soup = soup_of_mesh("torus", &mesh);
@@ -384,7 +384,7 @@ static void no_ray_leaves_instances(void **state)
         for (int l = 0; l < LEVELS; ++l) {
             struct hunt hunt = {"W8 turned, mirrored instance", 0, 0, 0, 0};
             random_state = 8;
-            for (uint32_t i = 0; i < RAYS * test_times(); ++i) {
+            for (uint32_t i = 0; i < cases_of(RAYS); ++i) {
                 struct gpu_ray ray = leaving_ray(middle, placed(&place, target_of(&soup)), 0.3f, i);
                 follow(&levels[l], accel, rational, &ray, &hunt);
             }

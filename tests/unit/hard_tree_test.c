@@ -129,7 +129,7 @@ static void compare_trees(const struct level *level, const struct soup *soup,
 static void trees_and_orders_do_not_matter(void **state)
 {
     (void)state;
-    const uint32_t rays = 600 * test_times();
+    const uint32_t rays = cases_of(600);
     for (uint32_t s = 0; s < SCENES; ++s) {
         struct soup soup = make_scene(s);
         struct scene *scene = soup_scene(&soup);
@@ -208,7 +208,7 @@ static void the_first_of_equal_triangles_is_hit(void **state)
 static void equal_triangles_are_shared_out(void **state)
 {
     (void)state;
-    const uint32_t count = test_times() > 1 ? 1000000 : 10000;
+    const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
     struct soup soup = soup_make("equal", count);
     for (uint32_t i = 0; i < count; ++i)
         soup_set(&soup, i, equal[0], equal[1], equal[2]);
@@ -283,7 +283,7 @@ static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
 static void any_bits_have_trees(void **state)
 {
     (void)state;
-    const uint32_t scenes = test_times() > 1 ? 1000 : 40;
+    const uint32_t scenes = cases_times() > 1 ? 1000 : 40;
     uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
     for (uint32_t s = 0; s < scenes; ++s) {
