@@ -143,7 +143,7 @@ uint32_t scene_put(struct scene *scene, struct scene_mesh mesh, const struct put
 {
     if (put && put->material) {
         mesh = mesh_wearing(mesh, scene_put_material(scene, *put->material));
-        put->material->name = NULL; /* the scene's now */
+        put->material->name = put->material->origin.file = NULL; /* the scene's now */
     } else if (scene->material_count == 0) {
         scene_put_material(scene, material_grey("grey"));
     }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
@@ -33,17 +34,10 @@ static struct scene_mesh make_mesh(const float *positions, uint32_t vertices,
     };
 }
 
-static void place(struct scene *scene, uint32_t mesh, uint32_t node)
-{
-    struct scene_instance instance = {.name = string_copy("i"), .mesh = mesh, .node = node};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-}
-
 static struct scene *scene_of(struct scene_mesh mesh)
 {
-    struct scene *scene = scene_create(NULL, "test");
-    assert_non_null(scene);
-    place(scene, scene_add_mesh(scene, mesh), SCENE_NONE);
+    struct scene *scene = scene_begin(NULL, "test");
+    scene_put_again(scene, scene_put_mesh(scene, mesh), NULL);
     return scene;
 }
 
@@ -54,14 +48,6 @@ static bool noted(const struct scene *scene, const char *text)
             return true;
     }
     return false;
-}
-
-static struct scene_mesh box_mesh(void)
-{
-    struct scene_mesh mesh;
-    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
-    mesh.name = string_copy("box");
-    return mesh;
 }
 
 static void bad_triangles_are_dropped_and_counted(void **state)
@@ -108,11 +94,8 @@ static void bad_spheres_are_dropped_and_counted(void **state)
     mesh.spheres = copy_of(spheres, sizeof spheres);
     mesh.materials = copy_of(materials, sizeof materials);
     struct scene *scene = scene_of(mesh);
-    for (int i = 0; i < 2; ++i) {
-        struct scene_material material;
-        scene_material_init(&material, "grey");
-        assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    }
+    scene_put_material(scene, material_grey("grey"));
+    scene_put_material(scene, material_grey("grey"));
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct scene_mesh *m = &scene->meshes[0];
     assert_int_equal(m->sphere_count, 3);
@@ -132,7 +115,7 @@ static void mixed_meshes_are_refused(void **state)
 {
     (void)state;
     const float sphere[] = {0, 0, 0, 1};
-    struct scene_mesh mesh = box_mesh();
+    struct scene_mesh mesh = mesh_box(2, 2, 2);
     mesh.sphere_count = 1;
     mesh.spheres = copy_of(sphere, sizeof sphere);
     struct scene *scene = scene_of(mesh);
@@ -191,13 +174,12 @@ static void normals_of_flat_faces_go(void **state)
 static void materials_are_mended(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(box_mesh());
-    struct scene_material material;
-    scene_material_init(&material, "odd");
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    struct scene_material material = material_grey("odd");
     material.diffuse[0] = (float)NAN;
     material.diffuse[1] = -1.0f;
     material.ior = 0.0f;
-    scene_add_material(scene, material);
+    scene_put_material(scene, material);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct scene_material *m = &scene->materials[0];
     assert_true(m->diffuse[0] == 0.7f && m->diffuse[1] == 0.0f && m->ior == 1.5f);
@@ -208,25 +190,24 @@ static void materials_are_mended(void **state)
 static void broken_references_are_refused(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(box_mesh());
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
     scene->meshes[0].materials[3] = 7;
     assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
     scene_destroy(scene);
-    scene = scene_of(box_mesh());
-    place(scene, 5, SCENE_NONE);
+    scene = scene_of(mesh_box(2, 2, 2));
+    scene_put_again(scene, 5, NULL);
     assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
     scene_destroy(scene);
-    scene = scene_of(box_mesh());
+    scene = scene_of(mesh_box(2, 2, 2));
     struct scene_node node;
     scene_node_init(&node, "n", 0);
     scene_add_node(scene, node); /* its own parent */
     assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
     scene_destroy(scene);
-    scene = scene_of(box_mesh());
-    struct scene_material material;
-    scene_material_init(&material, "m");
+    scene = scene_of(mesh_box(2, 2, 2));
+    struct scene_material material = material_grey("m");
     material.textures[SCENE_SLOT_DIFFUSE].texture = 0;
-    scene_add_material(scene, material);
+    scene_put_material(scene, material);
     assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
     scene_destroy(scene);
 }
@@ -234,15 +215,15 @@ static void broken_references_are_refused(void **state)
 static void singular_instances_and_unused_meshes_go(void **state)
 {
     (void)state;
-    struct scene *scene = scene_create(NULL, "test");
-    scene_add_mesh(scene, box_mesh()); /* unused */
-    uint32_t mesh = scene_add_mesh(scene, box_mesh());
+    struct scene *scene = scene_begin(NULL, "test");
+    scene_put_mesh(scene, mesh_box(2, 2, 2)); /* unused */
+    uint32_t mesh = scene_put_mesh(scene, mesh_box(2, 2, 2));
     struct scene_node node;
     scene_node_init(&node, "flat", SCENE_NONE);
     node.scale[1] = 0.0;
     uint32_t flat = scene_add_node(scene, node);
-    place(scene, mesh, flat);
-    place(scene, mesh, SCENE_NONE);
+    scene_put_again(scene, mesh, &(struct put){.name = "i", .node = &flat});
+    scene_put_again(scene, mesh, NULL);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->instance_count, 1);
     assert_int_equal(scene->mesh_count, 1);
@@ -254,7 +235,7 @@ static void singular_instances_and_unused_meshes_go(void **state)
 static void empty_scene_is_a_background(void **state)
 {
     (void)state;
-    struct scene *scene = scene_create(NULL, "test");
+    struct scene *scene = scene_begin(NULL, "test");
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->camera_count, 1);
     assert_int_equal(scene->light_count, 1);
@@ -267,7 +248,7 @@ static void empty_scene_is_a_background(void **state)
 static void missing_camera_and_light_are_made(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(box_mesh());
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct scene_camera *camera = &scene->cameras[0];
     const struct scene_light *light = &scene->lights[0];
@@ -283,9 +264,9 @@ static void missing_camera_and_light_are_made(void **state)
 static void own_light_gets_no_company(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(box_mesh());
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_light light = {.kind = SCENE_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
-    scene_add_light(scene, light);
+    scene_put_light(scene, light);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->light_count, 1);
     assert_true(scene->lights[0].color[2] == 0.0f);
@@ -298,21 +279,17 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
 {
     struct scene_mesh panel;
     assert_int_equal(shape_plane(2.0, 1.0, steps, 1.0, &panel), WHIT_OK);
-    struct scene *scene = scene_of(box_mesh());
-    struct scene_material material;
-    scene_material_init(&material, "plain");
-    scene_add_material(scene, material);
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    struct scene_material material = material_grey("plain");
+    scene_put_material(scene, material);
     scene_material_init(&material, "panel");
     material.emission[0] = material.emission[1] = material.emission[2] = radiance;
-    uint32_t glowing = scene_add_material(scene, material);
-    for (uint32_t i = 0; i < panel.triangle_count; ++i)
-        panel.materials[i] = glowing;
     struct scene_node node;
     scene_node_init(&node, "up", SCENE_NONE);
     node.translation[1] = 5.0;
     node.scale[0] = 3.0;
     uint32_t up = scene_add_node(scene, node);
-    place(scene, scene_add_mesh(scene, panel), up);
+    scene_put(scene, panel, &(struct put){.material = &material, .node = &up});
     return scene;
 }
 
@@ -399,11 +376,10 @@ static void faint_glow_lights_nothing(void **state)
 
 static uint64_t hash_of(float diffuse, float move)
 {
-    struct scene *scene = scene_of(box_mesh());
-    struct scene_material material;
-    scene_material_init(&material, "m");
+    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    struct scene_material material = material_grey("m");
     material.diffuse[0] = diffuse;
-    scene_add_material(scene, material);
+    scene_put_material(scene, material);
     scene->meshes[0].positions[0] += move;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     uint64_t hash = scene->hash;

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
@@ -26,25 +27,17 @@ static struct scene *moving_scene(enum scene_path path, enum scene_interpolation
                                   const float *times, uint32_t keys, const float *values,
                                   size_t value_count)
 {
-    struct scene *scene = scene_create(NULL, "test");
-    struct scene_mesh mesh;
-    struct scene_node node;
-    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
-    scene_add_mesh(scene, mesh);
-    scene_node_init(&node, "still", SCENE_NONE);
-    node.translation[0] = 10.0;
-    scene_add_node(scene, node);
-    scene_node_init(&node, "moving", 0);
-    scene_add_node(scene, node);
-    scene_add_instance(scene, (struct scene_instance){.name = string_copy("box"), .node = 1});
-    scene_add_channel(scene, (struct scene_channel){.node = 1,
+    struct scene *scene = scene_begin(NULL, "test");
+    uint32_t still = scene_put_node(scene, SCENE_NONE, 10, 0, 0);
+    uint32_t moving = scene_put_node(scene, still, 0, 0, 0);
+    scene_put(scene, mesh_box(2, 2, 2), &(struct put){.name = "box", .node = &moving});
+    scene_add_channel(scene, (struct scene_channel){.node = moving,
                                                     .path = path,
                                                     .interpolation = interpolation,
                                                     .key_count = keys,
                                                     .times_s = copy_of(times, keys),
                                                     .values = copy_of(values, value_count)});
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 static struct affine matrix_at(const struct scene *scene, double time_s)
@@ -184,32 +177,24 @@ static void lights_cameras_and_bounds_follow_their_nodes(void **state)
 
 static struct scene *glass_scene(void)
 {
-    struct scene *scene = scene_create(NULL, "test");
-    struct scene_mesh mesh;
-    struct scene_material material;
-    assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
+    struct scene *scene = scene_begin(NULL, "test");
+    struct scene_mesh mesh = mesh_box(2, 2, 2);
     free(mesh.normals);
     mesh.normals = NULL;
-    scene_add_mesh(scene, mesh);
-    scene_add_instance(scene, (struct scene_instance){.node = SCENE_NONE});
-    scene_material_init(&material, "glass");
+    struct scene_material material = material_grey("glass");
     material.origin = (struct scene_origin){string_copy("models/box.mtl"), 41};
     material.illum = 7;
     material.fresnel = true;
     material.transmission[0] = 1.0f;
-    scene_add_material(scene, material);
-    scene_material_init(&material, "worn by nothing");
+    scene_put(scene, mesh, &(struct put){.material = &material});
+    material = material_grey("worn by nothing");
     material.textures[SCENE_SLOT_NORMAL].texture = 0;
     material.alpha = SCENE_ALPHA_MASK;
     material.absorption[0] = 1.0f;
-    scene_add_material(scene, material);
-    scene_add_texture(scene, (struct scene_texture){string_copy("t"), 1, 1, calloc(4, 1)});
-    scene_add_light(scene, (struct scene_light){.name = string_copy("sun"),
-                                                .kind = SCENE_LIGHT_DIRECTIONAL,
-                                                .node = SCENE_NONE,
-                                                .color = {1, 1, 1}});
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    scene_put_material(scene, material);
+    scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
+    scene_put_sun(scene, 0, -1, 0, 1.0f);
+    return scene_ready(scene);
 }
 
 static void effects_have_reasons(void **state)

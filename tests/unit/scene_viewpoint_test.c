@@ -9,36 +9,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
 
 static struct scene *empty_scene(void)
 {
-    struct scene *scene = scene_create(NULL, "test");
-    assert_non_null(scene);
-    struct scene_material material;
-    scene_material_init(&material, "plain");
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
+    struct scene *scene = scene_begin(NULL, "test");
+    scene_put_material(scene, material_grey("plain"));
     return scene;
-}
-
-static void place(struct scene *scene, struct scene_mesh mesh, uint32_t node)
-{
-    mesh.name = string_copy("m");
-    struct scene_instance instance = {.node = node, .mesh = scene_add_mesh(scene, mesh)};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
 }
 
 /* The walls of a box of half size `half` around the origin, seen from inside, but for those in
    `open`: bit 2 * axis + (1: the high side). `turned`: seen from outside. */
 static struct scene_mesh walls(const float half[3], unsigned open, bool turned)
 {
-    struct scene_mesh mesh = {0};
-    mesh.positions = calloc(6 * 4 * 3, sizeof *mesh.positions);
-    mesh.indices = calloc(sizeof *mesh.indices, 6 * 2 * 3);
-    mesh.materials = calloc(sizeof *mesh.materials, 6 * 2);
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    struct scene_mesh mesh = mesh_zeroed(6 * 4, 6 * 2);
+    mesh.vertex_count = mesh.triangle_count = 0;
     for (uint32_t wall = 0; wall < 6; ++wall) {
         if (open >> wall & 1)
             continue;
@@ -116,7 +104,7 @@ static void closed_shapes_fill_the_usual_view(void **state)
         struct scene *scene = empty_scene();
         struct scene_mesh ball;
         assert_int_equal(shape_sphere(scales[k], 24, 12, &ball), WHIT_OK);
-        place(scene, ball, SCENE_NONE);
+        scene_put(scene, ball, NULL);
         double forward[3], lo[2] = {1, 1}, hi[2] = {-1, -1};
         const struct scene_camera *camera = camera_of(scene, forward);
         const struct scene_mesh *mesh = &scene->meshes[0];
@@ -144,7 +132,7 @@ static void open_boxes_are_seen_through_their_opening(void **state)
     const double expected[][3] = {{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}};
     for (size_t k = 0; k < 4; ++k) {
         struct scene *scene = empty_scene();
-        place(scene, walls(half, 1u << sides[k], false), SCENE_NONE);
+        scene_put(scene, walls(half, 1u << sides[k], false), NULL);
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
         for (int i = 0; i < 3; ++i)
@@ -165,7 +153,7 @@ static void mirrors_do_not_turn_surfaces(void **state)
     scene_node_init(&node, "mirror", SCENE_NONE);
     node.scale[0] = -1.0;
     uint32_t mirror = scene_add_node(scene, node);
-    place(scene, walls(half, 1u << 5, false), mirror);
+    scene_put(scene, walls(half, 1u << 5, false), &(struct put){.node = &mirror});
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] + 1.0) < 1e-6);
@@ -178,9 +166,9 @@ static void rooms_are_seen_from_inside(void **state)
     const float half[3] = {6, 2, 3};
     for (int thick = 0; thick < 2; ++thick) {
         struct scene *scene = empty_scene();
-        place(scene, walls(half, 0, false), SCENE_NONE);
+        scene_put(scene, walls(half, 0, false), NULL);
         if (thick)
-            place(scene, walls((const float[]){6.3f, 2.3f, 3.3f}, 0, true), SCENE_NONE);
+            scene_put(scene, walls((const float[]){6.3f, 2.3f, 3.3f}, 0, true), NULL);
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
         assert_true(noted(scene, "for it is a room"));
@@ -197,7 +185,7 @@ static void rooms_are_seen_from_inside(void **state)
     }
     /* The same walls as a solid. */
     struct scene *scene = empty_scene();
-    place(scene, walls(half, 0, true), SCENE_NONE);
+    scene_put(scene, walls(half, 0, true), NULL);
     double forward[3];
     camera_of(scene, forward);
     assert_false(noted(scene, "room"));
@@ -209,7 +197,7 @@ static void boards_are_seen_straight_on(void **state)
 {
     (void)state;
     struct scene *scene = empty_scene();
-    place(scene, walls((const float[]){2, 1, 0.02f}, 0, true), SCENE_NONE);
+    scene_put(scene, walls((const float[]){2, 1, 0.02f}, 0, true), NULL);
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] + 1.0) < 1e-9);
@@ -221,17 +209,11 @@ static void boards_show_their_pictures(void **state)
 {
     (void)state;
     struct scene *scene = empty_scene();
-    struct scene_material printed;
-    scene_material_init(&printed, "printed");
-    struct scene_texture picture = {string_copy("picture"), 1, 1, calloc(4, 1)};
-    printed.textures[SCENE_SLOT_DIFFUSE].texture = scene_add_texture(scene, picture);
-    uint32_t index = scene_add_material(scene, printed);
-    assert_int_not_equal(index, SCENE_NONE);
+    struct scene_material printed = material_grey("printed");
+    printed.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
     struct scene_mesh board = walls((const float[]){1.2f, 1.2f, 0.02f}, 0x2f, true);
-    for (uint32_t i = 0; i < board.triangle_count; ++i)
-        board.materials[i] = index;
-    place(scene, board, SCENE_NONE);
-    place(scene, walls((const float[]){1, 1, 0.02f}, 0x1f, true), SCENE_NONE);
+    scene_put(scene, board, &(struct put){.material = &printed});
+    scene_put(scene, walls((const float[]){1, 1, 0.02f}, 0x1f, true), NULL);
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] - 1.0) < 1e-9);
@@ -243,20 +225,10 @@ static void animations_stay_in_the_picture(void **state)
 {
     (void)state;
     struct scene *scene = empty_scene();
-    struct scene_node node;
-    scene_node_init(&node, "flies", SCENE_NONE);
-    uint32_t flies = scene_add_node(scene, node);
-    place(scene, walls((const float[]){1, 1, 1}, 0, true), flies);
-    struct scene_channel channel = {.node = flies,
-                                    .path = SCENE_PATH_TRANSLATION,
-                                    .interpolation = SCENE_LINEAR,
-                                    .key_count = 2};
-    channel.times_s = calloc(2, sizeof(float));
-    channel.values = calloc(6, sizeof(float));
-    assert_true(channel.times_s && channel.values);
-    channel.times_s[1] = 2.0f;
-    channel.values[4] = 20.0f;
-    assert_int_not_equal(scene_add_channel(scene, channel), SCENE_NONE);
+    uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
+    scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 2, (float[]){0, 2},
+                      (float[]){0, 0, 0, 0, 20, 0});
     double forward[3], slope[2];
     const struct scene_camera *camera = camera_of(scene, forward);
     assert_true(reach(camera, forward, (const float[]){1, 21, 1}, slope) > 0.0);
@@ -270,25 +242,13 @@ static void animations_stay_in_the_picture(void **state)
 static struct scene *lamp_scene(float emission, const char *file)
 {
     struct scene *scene = empty_scene();
-    struct scene_material material;
-    struct scene_mesh floor, lamp;
-    scene_material_init(&material, "lamp");
+    struct scene_material glowing = material_grey("lamp");
     for (int i = 0; i < 3; ++i)
-        material.emission[i] = emission;
-    material.origin.file = string_copy(file);
-    uint32_t glowing = scene_add_material(scene, material);
-    assert_int_equal(shape_plane(4.0, 4.0, 1, 1.0, &floor), WHIT_OK);
-    assert_int_equal(shape_plane(1.0, 1.0, 1, 1.0, &lamp), WHIT_OK);
-    for (uint32_t i = 0; i < lamp.triangle_count; ++i)
-        lamp.materials[i] = glowing;
-    struct scene_node node;
-    scene_node_init(&node, "up", SCENE_NONE);
-    node.translation[1] = 3.0;
-    uint32_t up = scene_add_node(scene, node);
-    place(scene, floor, SCENE_NONE);
-    place(scene, lamp, up);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+        glowing.emission[i] = emission;
+    glowing.origin.file = string_copy(file);
+    scene_put(scene, mesh_plane(4.0), NULL);
+    scene_put(scene, mesh_plane(1.0), &(struct put){.material = &glowing, .at = {0, 3, 0}});
+    return scene_ready(scene);
 }
 
 /* Over pi, straight on, from far away: flat lights state their radiance. */
@@ -333,18 +293,15 @@ static void lamps_of_models_light_their_scene(void **state)
 static struct scene *lit_scene(float level, const char *file)
 {
     struct scene *scene = empty_scene();
-    struct scene_mesh floor;
     struct scene_light light = {.kind = SCENE_LIGHT_POINT,
                                 .node = SCENE_NONE,
                                 .position = {0, 2, 0},
                                 .color = {level, level, level},
                                 .falloff = true};
     light.origin.file = string_copy(file);
-    assert_int_equal(shape_plane(4.0, 4.0, 1, 1.0, &floor), WHIT_OK);
-    place(scene, floor, SCENE_NONE);
-    scene_add_light(scene, light);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    scene_put(scene, mesh_plane(4.0), NULL);
+    scene_put_light(scene, light);
+    return scene_ready(scene);
 }
 
 static void stated_lights_change_only_where_nothing_is_seen(void **state)
