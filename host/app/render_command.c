@@ -173,7 +173,9 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count = request->view.given || request->counters;
-    return whit_renderer_create(job->device, job->accel, &params, renderer);
+    whit_result result = whit_renderer_create(job->device, job->accel, &params, renderer);
+    /* The renderer counts its time from its creation on. */
+    return result == WHIT_OK ? job_still_wanted() : result;
 }
 
 static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
