@@ -32,9 +32,8 @@
 #include "fault.h"
 
 enum { OUTPUTS_MOST = 4, FAULTS_MOST = 8, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
-enum {
-    GRACE_MS = 200
-}; /* An interrupted program ends within that, by its timer if not by itself. */
+/* An interrupted program ends within that time, by its timer if not by itself. */
+enum { GRACE_MS = 200 };
 static const char old_text[] = "old\n";
 
 struct fault {
@@ -42,7 +41,7 @@ struct fault {
     uint32_t calls, event; /* as of struct fault_shared */
     int code, then;
     int expect;      /* the exit code; not where it goes well nevertheless */
-    const char *say; /* part of its message; NULL: see --say */
+    const char *say; /* part of its message, if not what --say gives */
     bool at_once;    /* The program ends without giving back what it holds. */
 };
 
@@ -59,8 +58,9 @@ static const struct fault faults[] = {
     {"int-late", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, SIGALRM, 130, "interrupted", true},
     /* A second Ctrl+C. */
     {"int-int", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, SIGINT, 130, "", true},
-    {"limit", FAULT_CALLS_ALL, FAULT_CLOCK, 0, 0, 5, NULL, false},
-    {"limit-late", FAULT_CALLS_ALL, FAULT_CLOCK, 0, SIGALRM, 5, NULL, true},
+    /* A time limit: the program ends by itself; the timer behind the limit ends it. */
+    {"limit", FAULT_CALLS_ALL, FAULT_CLOCK, 0, 0, 5, "time limit", false},
+    {"limit-late", FAULT_CALLS_ALL, FAULT_CLOCK, 0, SIGALRM, 5, "time limit", true},
 };
 
 struct content {
@@ -211,6 +211,14 @@ static uint32_t count_of(const char *text, const char *part)
     return count;
 }
 
+/* The message has what the fault or the sweep wants it to say. */
+static bool says_why(const struct sweep *sweep, const char *errors)
+{
+    const char *say = sweep->fault->say;
+    return (!say && !sweep->say) || (say && strcasestr(errors, say)) ||
+           (sweep->say && strcasestr(errors, sweep->say));
+}
+
 /* What is wrong with how it ended; NULL: nothing. */
 static const char *judge_end(const struct sweep *sweep, int status, const char *errors)
 {
@@ -224,13 +232,12 @@ static const char *judge_end(const struct sweep *sweep, int status, const char *
         snprintf(text, sizeof text, "exit code %d", WEXITSTATUS(status));
     if (text[0])
         return text;
-    const char *say = fault->say ? fault->say : sweep->say;
     uint32_t interrupts = count_of(errors, "whit: interrupted, ");
     uint32_t reasons = count_of(errors, "whit: error: ") + interrupts;
     bool second = fault->then == SIGINT; /* says nothing, or what the first one had said */
     bool right = fine ? reasons == 0 : reasons == 1 || (second && reasons == 0);
     if (!right || (!fine && fault->event == FAULT_SIGNAL && interrupts != reasons) ||
-        (!fine && say && !strcasestr(errors, say)))
+        (!fine && !says_why(sweep, errors)))
         snprintf(text, sizeof text, "%u errors, exit code %d", reasons, WEXITSTATUS(status));
     return text[0] ? text : NULL;
 }
@@ -308,7 +315,7 @@ static bool is_of_number(char letter)
     return letter && strchr("0123456789.-+e", letter);
 }
 
-/* But for their figures, which may be times. */
+/* Whether two texts are the same but for their numbers, which may be times. */
 static bool same_words(const struct content *a, const struct content *b)
 {
     const char *left = a->data, *right = b->data;
