@@ -12,10 +12,10 @@ check "a table with all levels" \
 check "no promise is broken" grep -q "^promises   0 of 105 rows broke one$" "$OUT/stdout"
 check "the hash is the one that is stored" \
     grep -q "^hash       $HASH .*, met by the device$" "$OUT/stdout"
-check "and in the JSON, met" test "$(grep -c "\"hash\(_met\)*\": \"$HASH\"" "$J")" -eq 2
+check "and in the JSON, met" jq -e ".hash == \"$HASH\" and .hash_met == \"$HASH\"" "$J"
+# sum LEVEL KEY: over all rows of a level
 sum() {
-    awk -v level="\"$1\"" -v key="\"$2\":" \
-        '$1 == "\"numerics\":" { on = $2 == level "," } on && $1 == key { n += $2 } END { print n + 0 }' "$J"
+    jq "[.rows[] | select(.numerics == \"$1\") | .$2] | add" "$J"
 }
 for level in fast watertight exact; do
     check "$level: 35 rows of 512 rays" test "$(sum $level rays)" -eq 17920
@@ -25,9 +25,6 @@ check "fast leaks ($(sum fast leaks))" test "$(sum fast leaks)" -gt 100
 check "watertight: nothing is wrong" test "$(sum watertight wrong)" -eq 0
 check "exact: nothing is missed" test "$(sum exact misses)" -eq 0
 check "exact: no other primitive" test "$(sum exact other_ids)" -eq 0
-if command -v python3 >/dev/null; then
-    check "the JSON is well-formed" python3 -m json.tool "$J" /dev/null
-fi
 
 expect 0 "one level" hard --quick --quiet --numerics watertight
 check "is that level alone" test "$(grep -c ' \(fast\|exact\)  ' "$OUT/stdout")" -eq 0
@@ -45,7 +42,7 @@ check "is described" grep -q "^surface    3 triangles, .* 1 duplicate" "$OUT/std
 check "a twin that loses rays: exit code 1" test $? -eq 1
 check "says so" grep -q "^whit: error: .* rows break a promise" "$OUT/stderr"
 check "and where" grep -q " NO$" "$OUT/stdout"
-check "the table is in the JSON all the same" grep -q '"kept": false' "$J"
+check "the table is in the JSON all the same" jq -e 'any(.rows[]; .kept == false)' "$J"
 
 # From the middle of the sphere along an axis: rays in the planes of edges.
 V="--view leaks --size 201x151 --camera 0,0,0,1,0,0,0,1,0,90"
