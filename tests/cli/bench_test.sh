@@ -25,14 +25,10 @@ check "the estimate of 34k is explained" grep -q "34k without a tree is estimate
 check "that of sweep-naive too" grep -q "was stopped after 0.2 s and is estimated" "$OUT/stdout"
 check "claims are judged" \
     test "$(grep -cE '^- .*(holds here|does NOT hold here)' "$OUT/stdout")" -ge 5
-check "the figures as JSON" grep -q '"bench":"report".*"tables":\[{"table":"trees"' "$J"
+check "the figures as JSON" jq -e '.bench == "report" and .tables[0].table == "trees"' "$J"
 for key in fps frame_ms build_ms visits_per_ray sah_cost references depth_mean report_fps; do
-    check "with $key" grep -q "\"$key\":" "$J"
+    check "with $key" jq -e "any(.. | objects; has(\"$key\"))" "$J"
 done
-# In the cube's table the estimated scene has by far the longest frame.
-slow=$(awk -F'|' '/^\| 34k, tree/ { tree = $5 } /^\| 34k, no tree/ { none = $5 }
-    END { print (none + 0 > 2 * (tree + 0)) }' "$OUT/stdout")
-check "34k is slower without a tree" test "$slow" = 1
 # Whatever the machine, an order saves visits.
 saved=$(awk -F'|' '/^\| basic/ { b = $6 } /^\| distance/ { d = $6 } /^\| sign/ { s = $6 }
     END { print (b > 0 && d + 0 < b + 0 && s + 0 < b + 0) }' "$OUT/stdout")

@@ -1,6 +1,7 @@
 #!/bin/sh
-# `whit cost` by the clocks of the machine: 10 % more work is found, in its row alone. Long. The third
-# argument is whit over a library in which WHIT_TEST_WRONG is wrong.
+# Times by the clocks of the machine: `whit cost` finds 10 % more work, in its row alone; `whit bench`
+# finds that trees are faster than none. Long. The third argument is whit over a library in which
+# WHIT_TEST_WRONG is wrong.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/cost_common.sh"
 WHIT=$WRONG
@@ -22,4 +23,10 @@ check "16 bounces cost about what 8 do (x $right)" holds "0.9 < $right && $right
 check "10 % more work is found (x $slowed)" test "$(value "$D" depth 16 verdict)" = 1
 check "about as much as it is" holds "0.05 < $slowed - $right && $slowed - $right < 0.15"
 check "and in no other row" test "$(value "$D" depth 4 verdict)" != 1
+unset WHIT_TEST_WRONG
+
+expect 0 "the report, quick" bench report --quick --scenes "$SCENES" --json "$OUT/files/figures.json"
+slow=$(awk -F'|' '/^\| 34k, tree/ { tree = $5 } /^\| 34k, no tree/ { none = $5 }
+    END { print (none + 0 > 2 * (tree + 0)) }' "$OUT/stdout")
+check "34k is slower without a tree" test "$slow" = 1
 finish
