@@ -20,10 +20,10 @@ check "what comes of it is below it" grep -q "^  refracted  .*its hollow" "$OUT/
 check "with shadow rays" grep -q "^ *shadow, lamp, point 0 .* passed " "$OUT/stdout"
 check "and bounces that were used up" grep -q "^ *re[a-z]*  .*bounces used up" "$OUT/stdout"
 rows=$(sed -n '/^ray /,$p' "$OUT/stdout" | tail -n +2 | wc -l)
-check "JSON has as many rays ($rows)" test "$(grep -c '"kind":' "$J")" -eq "$rows"
-check "JSON has one camera ray" test "$(grep -c '"parent": null' "$J")" -eq 1
-check "JSON says where" grep -q '"x": 32,' "$J"
-check "JSON has the material's line" grep -q '"line": 12' "$J"
+check "JSON has as many rays ($rows)" jq -e ".rays | length == $rows" "$J"
+check "JSON has one camera ray" jq -e '[.rays[] | select(.parent == null)] | length == 1' "$J"
+check "JSON says where" jq -e '.pixel.x == 32' "$J"
+check "JSON has the material's line" jq -e '.pixel.material.line == 12' "$J"
 cp "$J" "$OUT/first.json"
 # shellcheck disable=SC2086
 expect 0 "the same once more" probe "$GLASS" $S --pixel 32,20 --quiet --json "$J"
