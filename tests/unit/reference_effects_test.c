@@ -287,5 +287,5 @@ int main(void)
         cmocka_unit_test(every_effect_agrees_with_the_device),
         cmocka_unit_test(touching_smooth_bodies_agree),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

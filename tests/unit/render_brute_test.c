@@ -211,7 +211,7 @@ static void layers_equal_those_of_trees(void **state)
     struct scene *scene;
     assert_int_equal(load_scene(&fixture_log, WHIT_SCENES_DIR "/layers.json", NULL, &scene),
                      WHIT_OK);
-    const struct render_params params = {.width = 36, .height = 24, .depth = 6};
+    const struct render_params params = {.width = 20, .height = 15, .depth = 6};
     check_picture(scene, &params);
 }
 

@@ -399,8 +399,8 @@ static void pictures_cost_the_same(void **state)
 {
     (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
-        struct render_params params = {.width = 75,
-                                       .height = 50,
+        struct render_params params = {.width = 45,
+                                       .height = 30,
                                        .depth = 5,
                                        .camera = glass_camera,
                                        .order = order,
@@ -416,8 +416,8 @@ static void pictures_cost_the_same(void **state)
         assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
                          WHIT_OK);
         render_picture(f.renderer, false, &plain);
-        assert_memory_equal(counted.color.pixels, plain.color.pixels, 75 * 50 * 16);
-        assert_memory_equal(counted.ids.words, plain.ids.words, 75 * 50 * 8);
+        assert_memory_equal(counted.color.pixels, plain.color.pixels, 45 * 30 * 16);
+        assert_memory_equal(counted.ids.words, plain.ids.words, 45 * 30 * 8);
         picture_finish(&counted);
         picture_finish(&plain);
         fixture_close(&f);

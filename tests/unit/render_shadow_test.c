@@ -278,7 +278,8 @@ static void flat_meshes_do_not_change(void **state)
     for (int normals = 0; normals < 2; ++normals) {
         struct image images[2];
         for (int i = 0; i < 2; ++i) {
-            struct render_params params = {.width = 64, .height = 64, .all_effects = true};
+            struct render_params params = {
+                .width = 64, .height = 64, .depth = 4, .all_effects = true};
             if (i)
                 params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
             struct fixture f = fixture_open(flat_scene(normals), NULL, &params);

@@ -96,12 +96,12 @@ static void check_picture(const char *name, struct scene *scene, const char *cam
     fixture_close(&f);
 }
 
-/* Looked at from straight above a corner of its grid: whole rows and columns of pixels are seen
-   along edges. */
+/* Looked at from straight above a corner of the grid of the ground: whole rows and columns of
+   pixels are seen along edges. */
 static void pictures_are_those_of_looks_in_place(void **state)
 {
     (void)state;
-    check_picture("terrain", terrain_scene(), "0,1000,0,0,0,0,0,0,-1,1", 100);
+    check_picture("ground", glass_scene_of(20, 12), "3,1000,3,3,0,3,0,0,-1,1", 100);
     check_picture("glass", glass_scene(), glass_camera, 1);
 }
 
