@@ -251,7 +251,8 @@ static void an_object_may_leave_its_place(void **state)
 static void a_deeper_tree_gets_a_larger_stack(void **state)
 {
     (void)state;
-    struct fixture f = fixture_open(strung_out(), NULL, &animate_params);
+    const struct accel_params as_deep = {0}; /* as its tree, no deeper */
+    struct fixture f = fixture_open(strung_out(), &as_deep, &animate_params);
     uint32_t depth = f.accel->instance_depth, size = f.renderer->node_stack_size;
     struct pipeline *pipeline = f.renderer->whitted.pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 0.01), WHIT_OK);
@@ -267,7 +268,7 @@ static void a_deeper_tree_gets_a_larger_stack(void **state)
     assert_int_equal(f.renderer->node_stack_size, size);
     assert_ptr_equal(f.renderer->whitted.pipeline, pipeline);
     fixture_close(&f);
-    assert_any_order(strung_out(), (double[]){0.0, 0.5, 1.0}, NULL);
+    assert_any_order(strung_out(), (double[]){0.0, 0.5, 1.0}, &as_deep);
 }
 
 /* Root mean square over all channels, relative to the mean of the first. */
