@@ -1,9 +1,11 @@
 /* What holds of the picture of every scene:
-       picture_check SCENE [validated | levels]
+       picture_check SCENE [full | validated | levels]
    The picture is finite, neither black nor of one colour, and nothing that may not change it does
    so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
    for the scene is smaller than the one with every effect, which traces the same rays, and none of
-   a kind that the scene does not call for. `validated`: the same picture under GPU-assisted
+   a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
+   which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
+   `validated`: the same picture under GPU-assisted
    validation. `levels`: the kernel with every effect beside the scene's own at the other levels of
    numerics.
        picture_check PICTURE WIDTH HEIGHT
@@ -245,17 +247,41 @@ static void check_all_effects(const struct subject *subject, const struct drawn 
 
 /* ---- Ways to draw the same ---- */
 
-static void check_ways(const struct subject *subject, const struct drawn *first)
+static void check_storage(const struct subject *subject, const struct drawn *first, bool full)
+{
+    const char *effects = full ? "auto" : "auto,-shadows,-reflection,-refraction";
+    const whit_renderer_params texel = {.load_path = "texel", .effects = effects},
+                               storage = {.load_path = "storage", .effects = effects};
+    struct drawn small;
+    if (full)
+        check_same(subject, first, &storage, "--load-path storage");
+    else if (draw(subject, &texel, &small))
+        check_same(subject, &small, &storage, "--load-path storage, of camera rays,");
+    if (!full)
+        drawn_finish(&small);
+}
+
+static void check_median(const struct subject *subject, const struct drawn *first)
 {
     const whit_accel_params median = {.build = WHIT_BUILD_MEDIAN};
-    const whit_renderer_params usual = {.tile_size = 0}, tile = {.tile_size = 512},
-                               storage = {.load_path = "storage"}, texel = {.load_path = "texel"};
-    check_same(subject, first, &tile, "--tile 512");
-    check_same(subject, first, &storage, "--load-path storage");
-    check_same(subject, first, &texel, "--load-path texel");
+    const whit_renderer_params usual = {.tile_size = 0};
+    struct subject other = *subject;
+    bool made = whit_accel_create(subject->scene, &median, &other.accel) == WHIT_OK;
+    check(made, "other trees are built");
     stack_floor = stack_needed;
-    check_apart(subject, first, &median, &usual, "--build median");
+    if (made)
+        check_same(&other, first, &usual, "--build median");
     stack_floor = 0;
+    if (made)
+        whit_accel_destroy(other.accel);
+}
+
+static void check_ways(const struct subject *subject, const struct drawn *first)
+{
+    const whit_renderer_params tile = {.tile_size = 512}, texel = {.load_path = "texel"};
+    check_same(subject, first, &tile, "--tile 512");
+    check_same(subject, first, &texel, "--load-path texel");
+    check_median(subject, first);
 }
 
 /* Each number of threads of the driver's and of whit's own, over tiles that are larger and smaller
@@ -276,18 +302,19 @@ static void check_threads(const struct subject *subject, const struct drawn *fir
     unsetenv("LP_NUM_THREADS");
 }
 
-static void check_usual(const struct subject *subject, bool validated)
+static void check_usual(const struct subject *subject, const char *what)
 {
     const whit_renderer_params usual = {.tile_size = 0};
     struct drawn first;
     if (draw(subject, &usual, &first)) {
         check_picture(subject->path, first.color, WIDTH, HEIGHT);
-        if (validated) {
+        if (strcmp(what, "validated") == 0) {
             setenv("WHIT_VALIDATION", "1", 1);
             check_apart(subject, &first, NULL, &usual, "GPU-assisted validation");
         } else {
             check_threads(subject, &first);
             check_ways(subject, &first);
+            check_storage(subject, &first, strcmp(what, "full") == 0);
             check_all_effects(subject, &first, usual);
         }
     }
@@ -316,7 +343,7 @@ static void check_scene(const char *path, const char *what)
     if (opened && strcmp(what, "levels") == 0)
         check_levels(&subject);
     else if (opened)
-        check_usual(&subject, strcmp(what, "validated") == 0);
+        check_usual(&subject, what);
     if (opened)
         check(whit_device_validation_messages(subject.device) == 0,
               "the validation layers had nothing to say");
@@ -328,9 +355,10 @@ static void check_scene(const char *path, const char *what)
 int main(int argc, char **argv)
 {
     const char *what = argc == 3 ? argv[2] : "";
-    bool known = !*what || strcmp(what, "validated") == 0 || strcmp(what, "levels") == 0;
+    bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "validated") == 0 ||
+                 strcmp(what, "levels") == 0;
     if (argc < 2 || argc > 4 || !known) {
-        fputs("usage: picture_check SCENE [validated | levels]\n"
+        fputs("usage: picture_check SCENE [full | validated | levels]\n"
               "       picture_check PICTURE WIDTH HEIGHT\n",
               stderr);
         return 2;
