@@ -7,7 +7,7 @@
 RIGHT=$WHIT
 J=$OUT/files/cost.json
 WHITTED=$SCENES/whitted.json
-small="--size 48x36 --quick --rays 600 --quiet --spend 1"
+small="--size 48x36 --quick --rays 600 --quiet --spend 0.1"
 
 # has_closed_elements FILE: every element is closed, the last one that was opened first.
 has_closed_elements() {
