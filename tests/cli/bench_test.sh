@@ -41,9 +41,9 @@ check "strands: more references, fewer visits" test "$split" = 1
 check "no scratch files stay" is_empty "$OUT/tmp"
 
 "$WHIT" bench report --runs 99 --naive-limit 60 --scenes "$SCENES" --json "$OUT/files/never" \
-    >/dev/null 2>"$OUT/stderr" &
+    >"$OUT/stdout" 2>"$OUT/stderr" &
 pid=$!
-sleep 2
+check "a longer report begins" wait_for $pid test -s "$OUT/stdout"
 kill -INT $pid
 wait $pid
 status=$?

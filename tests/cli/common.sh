@@ -47,6 +47,16 @@ refuse() {
     check "$what: says \`$pattern\`" grep -q "^whit: error: .*$pattern" "$OUT/stderr"
 }
 
+# wait_for PID COMMAND...: until the command succeeds; fails where the process ends before.
+wait_for() {
+    awaited=$1
+    shift
+    until "$@"; do
+        kill -0 "$awaited" 2>/dev/null || return 1
+        sleep 0.02
+    done
+}
+
 # Nothing but what the test made lies in the folder, hidden files included.
 is_empty() {
     test -z "$(ls -A "$1")"

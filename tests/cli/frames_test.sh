@@ -84,11 +84,7 @@ check "says how many" grep -q "$(count late) of 10000 frames were written" "$OUT
 mkdir stop
 "$WHIT" render "$SWARM" --frames 0-9999 -o stop/f.####.png --size 64x48 2>"$OUT/stderr" &
 pid=$!
-tries=0
-while [ ! -f stop/f.0002.png ] && [ $tries -lt 300 ]; do
-    sleep 0.1
-    tries=$((tries + 1))
-done
+check "three of many frames are finished" wait_for $pid test -f stop/f.0002.png
 kill -INT $pid
 wait $pid
 status=$?
