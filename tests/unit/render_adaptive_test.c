@@ -163,7 +163,7 @@ static void so_they_are_without_trees(void **state)
 {
     (void)state;
     const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
-    check_scene(glass_scene_of(2, 4), &no_trees, glass_camera, contrasts, 1);
+    check_scene(glass_scene_of(1, 3), &no_trees, glass_camera, contrasts, 1);
 }
 
 static void lens_and_plain_scenes_too(void **state)

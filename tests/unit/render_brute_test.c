@@ -188,7 +188,7 @@ static void glass_equals_that_of_trees(void **state)
     struct scene *scene = glass_scene();
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct render_params params = {
-        .width = 29, .height = 19, .depth = 5, .samples = 4, .camera = glass_camera, .count = true};
+        .width = 19, .height = 11, .depth = 5, .samples = 4, .camera = glass_camera, .count = true};
     check_picture(scene, &params);
 }
 
@@ -200,7 +200,7 @@ static void many_ranges_equal_trees(void **state)
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_true(scene->triangle_total > 2 * 16384);
     const struct render_params params = {
-        .width = 15, .height = 9, .depth = 3, .camera = glass_camera, .count = true};
+        .width = 9, .height = 7, .depth = 3, .camera = glass_camera, .count = true};
     check_picture(scene, &params);
 }
 
@@ -211,7 +211,7 @@ static void layers_equal_those_of_trees(void **state)
     struct scene *scene;
     assert_int_equal(load_scene(&fixture_log, WHIT_SCENES_DIR "/layers.json", NULL, &scene),
                      WHIT_OK);
-    const struct render_params params = {.width = 20, .height = 15, .depth = 6};
+    const struct render_params params = {.width = 12, .height = 9, .depth = 6};
     check_picture(scene, &params);
 }
 

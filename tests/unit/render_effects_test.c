@@ -4,7 +4,7 @@
 #include "render/renderer.h"
 #include "render_scenes.h"
 
-static const struct render_params small = {.width = 48, .height = 36, .depth = 5};
+static const struct render_params small = {.width = 24, .height = 18, .depth = 5};
 
 /* ---- Scenes ---- */
 
@@ -347,7 +347,7 @@ static void effects_left_out_are_gone(void **state)
         params.all_effects = kernels[i].all;
         for (int k = 0; k < 3; ++k)
             params.effects_removed |= kernels[i].without[k] ? bit(effects[k]) : 0;
-        struct drawn drawn = draw(rich_scene(), &params);
+        struct drawn drawn = draw(glass_scene(), &params);
         const uint64_t rays[] = {drawn.stats.rays_shadow, drawn.stats.rays_reflected,
                                  drawn.stats.rays_refracted};
         for (int k = 0; k < 3; ++k)

@@ -361,7 +361,7 @@ static void edges_are_crossed_once(void **state)
 
 /* ---- Liquid in a glass ---- */
 
-enum { LIQUID_SIDE = 32, LIQUID_PIXELS = LIQUID_SIDE * LIQUID_SIDE };
+enum { LIQUID_SIDE = 24, LIQUID_PIXELS = LIQUID_SIDE * LIQUID_SIDE };
 
 /* The liquid is wider than the inside of the glass by `overlap`. */
 static struct image liquid_picture(double overlap, uint32_t glass_priority, double contact,
@@ -417,7 +417,8 @@ static void liquid_in_a_glass(void **state)
     assert_int_equal(count_unlike("gap of 1e-5, contact 1e-4", &touching,
                                   liquid_picture(-1e-5, 1, 1e-4, 1.33), 1e-3),
                      0);
-    /* A surface that is 1e-3, a sixtieth of a pixel, elsewhere: edges may fall on another pixel.
+    /* A surface that is 1e-3, less than a hundredth of a pixel, elsewhere: edges may fall on
+     * another pixel.
      */
     assert_true(count_unlike("overlap of 1e-3, last entered", &touching,
                              liquid_picture(1e-3, 0, 0, 1.33), 1e-2) <= LIQUID_PIXELS / 64);

@@ -120,7 +120,7 @@ static void ties(void **state)
     struct scene_mesh mesh = {0};
     assert_int_equal(shape_terrain(10.0, 2.0, 4, 3, &mesh), WHIT_OK);
     struct scene *scene = fixture_scene(mesh);
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 6; ++i)
         fixture_place(scene, NULL);
     check_levels(scene, NULL);
 }

@@ -351,7 +351,7 @@ static void load_paths_do_not_matter(void **state)
 static void unused_effects_do_not_matter(void **state)
 {
     (void)state;
-    struct render_params a = {.width = 48, .height = 36, .depth = 6};
+    struct render_params a = {.width = 24, .height = 18, .depth = 6};
     struct render_params b = a;
     b.all_effects = true;
     assert_same_picture(mixed_scene, &a, &b);

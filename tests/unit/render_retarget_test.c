@@ -8,16 +8,16 @@ static const char *const aside = "3,2.5,4,0,0.6,0,0,1,0,35";
 
 /* Every step changes something else: size, samples, camera, limits, and back. */
 static const struct render_params steps[] = {
-    {.width = 40, .height = 32, .depth = 4},
-    {.width = 24, .height = 40, .depth = 4},
-    {.width = 24, .height = 40, .depth = 4, .camera = aside},
-    {.width = 24, .height = 40, .depth = 4, .camera = aside, .samples = 4},
-    {.width = 61, .height = 33, .depth = 9, .samples = 1},
-    {.width = 61, .height = 33, .depth = 0},
-    {.width = 61, .height = 33, .depth = 2, .light_samples = 4, .bailout = -1.0},
-    {.width = 40, .height = 32, .depth = 4, .adaptive = 0.1},
-    {.width = 32, .height = 32, .depth = 4, .adaptive = 0.1, .time_s = 0.7},
-    {.width = 40, .height = 32, .depth = 4},
+    {.width = 20, .height = 16, .depth = 4},
+    {.width = 12, .height = 20, .depth = 4},
+    {.width = 12, .height = 20, .depth = 4, .camera = aside},
+    {.width = 12, .height = 20, .depth = 4, .camera = aside, .samples = 4},
+    {.width = 31, .height = 17, .depth = 9, .samples = 1},
+    {.width = 31, .height = 17, .depth = 0},
+    {.width = 31, .height = 17, .depth = 2, .light_samples = 4, .bailout = -1.0},
+    {.width = 20, .height = 16, .depth = 4, .adaptive = 0.1},
+    {.width = 16, .height = 16, .depth = 4, .adaptive = 0.1, .time_s = 0.7},
+    {.width = 20, .height = 16, .depth = 4},
 };
 enum { STEPS = sizeof steps / sizeof *steps };
 
