@@ -99,6 +99,25 @@ static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes
     return result;
 }
 
+/* Bytes of a buffer in Vulkan. lavapipe compiles a kernel again for texel buffers that it takes for
+   images of another kind: those whose bytes are a power of two, and those whose bits 8 to 15 of the
+   bytes are zero, which it reads as a number of levels. Small scenes have all kinds, and a few more
+   bytes make them one. */
+static uint64_t vulkan_bytes(const struct buffer *buffer)
+{
+    const struct device_info *info = &buffer->device->info;
+    uint64_t bytes = buffer->size_bytes;
+    if (!(buffer->uses & BUFFER_TEXELS) || info->kind != DEVICE_CPU)
+        return bytes;
+    if ((bytes >> 8 & 0xff) == 0)
+        bytes += 256;
+    if ((bytes & (bytes - 1)) == 0)
+        bytes += TEXEL_BYTES;
+    return bytes <= info->max_texel_elements * TEXEL_BYTES && bytes <= info->max_allocation_bytes
+               ? bytes
+               : buffer->size_bytes;
+}
+
 static whit_result allocate(struct buffer *buffer)
 {
     struct device *device = buffer->device;
@@ -106,7 +125,7 @@ static whit_result allocate(struct buffer *buffer)
     whit_result result = WHIT_OK;
     VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = buffer->size_bytes,
+        .size = vulkan_bytes(buffer),
         .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
     };
     if (buffer->uses & BUFFER_STORAGE)
@@ -156,7 +175,7 @@ static whit_result make_view(struct buffer *buffer)
         .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
         .buffer = buffer->vk,
         .format = VK_FORMAT_R32G32B32A32_UINT,
-        .range = buffer->size_bytes,
+        .range = vulkan_bytes(buffer),
     };
     VK_TRY(device, vkCreateBufferView(device->vk, &info, NULL, &buffer->texels));
     device_name_object(device, VK_OBJECT_TYPE_BUFFER_VIEW, (uint64_t)buffer->texels, buffer->name);
