@@ -41,9 +41,9 @@ check "strands: more references, fewer visits" test "$split" = 1
 check "no scratch files stay" is_empty "$OUT/tmp"
 
 "$WHIT" bench report --runs 99 --naive-limit 60 --scenes "$SCENES" --json "$OUT/files/never" \
-    >"$OUT/stdout" 2>"$OUT/stderr" &
+    >"$OUT/longer" 2>"$OUT/stderr" &
 pid=$!
-check "a longer report begins" wait_for $pid test -s "$OUT/stdout"
+check "a longer report begins" wait_for $pid test -s "$OUT/longer"
 kill -INT $pid
 wait $pid
 status=$?
