@@ -64,7 +64,8 @@ void platform_trim_heaps(void);
 bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */
 uint64_t platform_peak_memory_bytes(void);
-/* What this process has resident at this moment, in all and for itself alone; 0: not known. */
+/* Resident memory of this process at this moment: all of it, and the anonymous part. Both are 0
+   where the system does not say. */
 void platform_memory_bytes(uint64_t *all, uint64_t *own);
 /* Sets *flag at SIGINT and SIGTERM; a second signal removes unfinished files and ends at once. */
 void platform_catch_interrupts(volatile bool *flag);

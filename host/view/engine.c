@@ -189,7 +189,7 @@ static void keep_session(struct engine *engine, struct session *session)
     }
 }
 
-/* What went well is no answer to what failed on the other side. */
+/* Clears the error of the window, unless the other side of a comparison has failed as well. */
 static void forget_error(struct engine *engine)
 {
     for (int i = 0; i < ENGINE_LANES; ++i) {

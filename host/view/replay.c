@@ -137,7 +137,7 @@ static bool wait_step(struct view *view, double ms)
     return true;
 }
 
-/* What was moved stands. */
+/* Turns the clock of a replay to the moment at which a moved picture counts as standing. */
 static void let_stand(struct view *view)
 {
     if (view->time.turned && !view_plays(view))

@@ -127,7 +127,8 @@ struct view {
     char shot[EVENT_PATH]; /* of the next drawing; "": none */
 };
 
-/* What all of the viewer but its figures goes by. */
+/* The viewer's clock in ms: the system's, or the one that a replay turns. Only figures of measured
+   time read the system's clock in a replay. */
 double view_now_ms(const struct view *view);
 /* Says something for some seconds. */
 void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
