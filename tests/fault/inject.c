@@ -41,6 +41,7 @@ static pid_t program;          /* Its children inherit this library. */
 static void *_Atomic lost;     /* what the handles of a lost device have in common; NULL: none is */
 static _Atomic int64_t now_ns; /* what a clock that the sweep turns shows */
 static atomic_bool timer_runs; /* The program has set its timer. */
+static atomic_bool must_stop;  /* The event has happened: no more submissions but those allowed. */
 static _Atomic int next_signal; /* raised at the next call; 0: none */
 
 /* ---- Who calls ---- */
@@ -137,8 +138,10 @@ static bool fails(enum fault_calls kind, uintptr_t caller, const char *what)
         snprintf(shared->what, sizeof shared->what, "%s", what);
         note_callers();
         atomic_store(&shared->fired, 1);
+        /* The clock may be anywhere before the program begins to count its time limit. */
+        atomic_store(&must_stop, shared->event != FAULT_CLOCK || atomic_load(&timer_runs));
     }
-    if (atomic_load(&shared->fired) && strcmp(what, "vkQueueSubmit") == 0)
+    if (atomic_load(&must_stop) && strcmp(what, "vkQueueSubmit") == 0)
         atomic_fetch_add(&shared->submits_later, 1);
     if (now && shared->event == FAULT_SIGNAL)
         raise(shared->code);
