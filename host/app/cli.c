@@ -1,8 +1,11 @@
 #include "app/cli.h"
 
 #include <errno.h>
+#include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -30,6 +33,26 @@ static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
 
+/* Held by the thread that says why the program ends: SIGALRM comes in any thread and says it too.
+   A thread that holds it does not get that signal. */
+static atomic_flag reason_lock = ATOMIC_FLAG_INIT;
+
+static void lock_reason(sigset_t *before)
+{
+    sigset_t alarm;
+    sigemptyset(&alarm);
+    sigaddset(&alarm, SIGALRM);
+    pthread_sigmask(SIG_BLOCK, &alarm, before);
+    while (atomic_flag_test_and_set(&reason_lock))
+        sched_yield();
+}
+
+static void unlock_reason(const sigset_t *before)
+{
+    atomic_flag_clear(&reason_lock);
+    pthread_sigmask(SIG_SETMASK, before, NULL);
+}
+
 static void say(const char *kind, const char *format, va_list args)
 {
     char text[4096];
@@ -44,11 +67,14 @@ static void say(const char *kind, const char *format, va_list args)
 
 void cli_error(const char *format, ...)
 {
+    sigset_t before;
     va_list args;
     va_start(args, format);
+    lock_reason(&before);
     say("error", format, args);
-    va_end(args);
     error_said = 1;
+    unlock_reason(&before);
+    va_end(args);
 }
 
 void cli_warning(const char *format, ...)
@@ -114,13 +140,17 @@ int cli_exit_of(whit_result result)
 {
     if (result == WHIT_OK)
         return EXIT_FINE;
-    end_said = 1;
-    if (cli_cancel) {
+    sigset_t before;
+    lock_reason(&before);
+    bool cancelled = cli_cancel;
+    if (cancelled)
         fprintf(stderr, "whit: interrupted, %s\n", written_text);
+    else if (!error_said)
+        fprintf(stderr, "whit: error: %s\n", whit_result_name(result));
+    end_said = error_said = 1;
+    unlock_reason(&before);
+    if (cancelled)
         return interrupt_signal ? 128 + (int)interrupt_signal : EXIT_INTERRUPTED;
-    }
-    if (!error_said)
-        cli_error("%s", whit_result_name(result));
     if (cli_time_over())
         return EXIT_TIME;
     return code_of(result);
@@ -143,6 +173,8 @@ static void on_alarm(int number)
 {
     (void)number;
     whit_file_abandon_all();
+    while (atomic_flag_test_and_set(&reason_lock))
+        ;
     /* Else it was about to leave, or a time limit has been said by what obeyed it. */
     if (!end_said && (interrupt_signal || !error_said)) {
         put(interrupt_signal ? "whit: interrupted, " : "whit: error: the time limit has passed, ");
