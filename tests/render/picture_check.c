@@ -1,13 +1,13 @@
 /* What holds of the picture of every scene:
-       picture_check SCENE [full | validated | levels]
+       picture_check SCENE [full | validated | levels | all-levels]
    The picture is finite, neither black nor of one colour, and nothing that may not change it does
    so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
    for the scene is smaller than the one with every effect, which traces the same rays, and none of
    a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
    which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
-   `validated`: the same picture under GPU-assisted
-   validation. `levels`: the kernel with every effect beside the scene's own at the other levels of
-   numerics.
+   `validated`: the same picture under GPU-assisted validation. `levels`: the kernel with every
+   effect beside the scene's own at the other levels of numerics; at `exact` both without
+   refraction, whose traversal makes the driver take twice as long. `all-levels`: with it.
        picture_check PICTURE WIDTH HEIGHT
    A picture in a file is finite, of that size, neither black nor of one colour. */
 #include <inttypes.h>
@@ -224,10 +224,10 @@ static void check_rays(const struct subject *subject, const char *effect, uint64
 }
 
 static void check_all_effects(const struct subject *subject, const struct drawn *first,
-                              whit_renderer_params params)
+                              whit_renderer_params params, const char *effects)
 {
     struct drawn other;
-    params.effects = "all";
+    params.effects = effects;
     stack_floor = STACK_OF_ALL;
     if (draw(subject, &params, &other)) {
         const whit_stats *own = &first->stats, *all = &other.stats;
@@ -315,22 +315,26 @@ static void check_usual(const struct subject *subject, const char *what)
             check_threads(subject, &first);
             check_ways(subject, &first);
             check_storage(subject, &first, strcmp(what, "full") == 0);
-            check_all_effects(subject, &first, usual);
+            check_all_effects(subject, &first, usual, "all");
         }
     }
     drawn_finish(&first);
 }
 
-static void check_levels(const struct subject *subject)
+static void check_level(const struct subject *subject, whit_numerics level, bool refraction)
 {
-    static const whit_numerics levels[] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_EXACT};
-    for (uint32_t i = 0; i < 2; ++i) {
-        const whit_renderer_params params = {.numerics = levels[i]};
-        struct drawn first;
-        if (draw(subject, &params, &first))
-            check_all_effects(subject, &first, params);
-        drawn_finish(&first);
-    }
+    const whit_renderer_params params = {.numerics = level,
+                                         .effects = refraction ? "auto" : "auto,-refraction"};
+    struct drawn first;
+    if (draw(subject, &params, &first))
+        check_all_effects(subject, &first, params, refraction ? "all" : "all,-refraction");
+    drawn_finish(&first);
+}
+
+static void check_levels(const struct subject *subject, bool refraction)
+{
+    check_level(subject, WHIT_NUMERICS_FAST, true);
+    check_level(subject, WHIT_NUMERICS_EXACT, refraction);
 }
 
 static void check_scene(const char *path, const char *what)
@@ -340,8 +344,9 @@ static void check_scene(const char *path, const char *what)
                   whit_accel_create(subject.scene, NULL, &subject.accel) == WHIT_OK &&
                   whit_device_create(NULL, &messages, &subject.device) == WHIT_OK;
     check(opened, "the scene loads and the device comes up");
-    if (opened && strcmp(what, "levels") == 0)
-        check_levels(&subject);
+    bool all = strcmp(what, "all-levels") == 0;
+    if (opened && (all || strcmp(what, "levels") == 0))
+        check_levels(&subject, all);
     else if (opened)
         check_usual(&subject, what);
     if (opened)
@@ -356,9 +361,9 @@ int main(int argc, char **argv)
 {
     const char *what = argc == 3 ? argv[2] : "";
     bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "validated") == 0 ||
-                 strcmp(what, "levels") == 0;
+                 strcmp(what, "levels") == 0 || strcmp(what, "all-levels") == 0;
     if (argc < 2 || argc > 4 || !known) {
-        fputs("usage: picture_check SCENE [full | validated | levels]\n"
+        fputs("usage: picture_check SCENE [full | validated | levels | all-levels]\n"
               "       picture_check PICTURE WIDTH HEIGHT\n",
               stderr);
         return 2;
