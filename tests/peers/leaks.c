@@ -98,7 +98,7 @@ static struct gpu_ray leaving_ray(const struct hunt *hunt, uint64_t i, uint64_t 
         origin[k] = hunt->ball->middle[k] + origin[k];
     if (i % 4 == 0) {
 
-        int axis = (int)(random_bits(state) % 3);
+        int axis = (int)(random_bits64(state) % 3);
         double nearly = i % 8 == 0 ? 0.0 : 1e-6 * random_signed(state);
         for (int k = 0; k < 3; ++k) {
             double middle = hunt->ball->middle[k];

@@ -2,6 +2,7 @@
 #ifndef TESTS_PEERS_H
 #define TESTS_PEERS_H
 
+#include "../random.h"
 #include "accel/accel.h"
 
 extern const struct log peers_log;
@@ -14,11 +15,6 @@ enum ray_kind {
     RAYS_AIMED,   /* at vertices and points of edges */
     RAYS_KINDS
 };
-
-/* splitmix64: any seed will do, and streams of neighbouring seeds are unrelated. */
-uint64_t random_bits(uint64_t *state);
-double random_unit(uint64_t *state);   /* [0, 1) */
-double random_signed(uint64_t *state); /* [-1, 1) */
 
 /* From `origin`, rounded to float, to what `target` is from there. */
 struct gpu_ray ray_to(const double origin[3], const double target[3]);

@@ -12,26 +12,6 @@ static void print_log(void *user, whit_log_level level, const char *message)
 
 const struct log peers_log = {.fn = print_log, .level = WHIT_LOG_ERROR};
 
-/* Steele, Lea and Flood 2014. */
-uint64_t random_bits(uint64_t *state)
-{
-    *state += 0x9e3779b97f4a7c15u;
-    uint64_t z = *state;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-double random_unit(uint64_t *state)
-{
-    return (double)(random_bits(state) >> 11) * 0x1p-53;
-}
-
-double random_signed(uint64_t *state)
-{
-    return 2.0 * random_unit(state) - 1.0;
-}
-
 struct gpu_ray ray_to(const double origin[3], const double target[3])
 {
     struct gpu_ray ray = {.t_max = INFINITY};
@@ -46,7 +26,7 @@ struct gpu_ray ray_to(const double origin[3], const double target[3])
 static void sphere_target(const float *sphere, uint64_t *state, double out[3])
 {
     double arm[3], length = 0.0;
-    bool center = random_bits(state) % 8 == 0;
+    bool center = random_bits64(state) % 8 == 0;
     for (int k = 0; k < 3; ++k) {
         arm[k] = random_signed(state);
         length += arm[k] * arm[k];
@@ -61,20 +41,20 @@ void random_target(const struct scene *scene, const struct scene_pose *pose, uin
 {
     uint32_t i, primitives;
     do {
-        i = (uint32_t)(random_bits(state) % scene->instance_count);
+        i = (uint32_t)(random_bits64(state) % scene->instance_count);
         primitives = scene_mesh_primitives(&scene->meshes[scene->instances[i].mesh]);
     } while (primitives == 0);
     const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
     if (mesh->sphere_count) {
-        sphere_target(&mesh->spheres[4 * (size_t)(random_bits(state) % primitives)], state, out);
+        sphere_target(&mesh->spheres[4 * (size_t)(random_bits64(state) % primitives)], state, out);
         affine_point(&pose->instances[i], (const double[]){out[0], out[1], out[2]}, out);
         return;
     }
-    const uint32_t *corners = &mesh->indices[3 * (size_t)(random_bits(state) % primitives)];
-    uint32_t first = (uint32_t)(random_bits(state) % 3);
+    const uint32_t *corners = &mesh->indices[3 * (size_t)(random_bits64(state) % primitives)];
+    uint32_t first = (uint32_t)(random_bits64(state) % 3);
     const float *a = &mesh->positions[3 * (size_t)corners[first]];
     const float *b = &mesh->positions[3 * (size_t)corners[(first + 1) % 3]];
-    double s = random_bits(state) & 1 ? 0.0 : random_unit(state), at[3];
+    double s = random_bits64(state) & 1 ? 0.0 : random_unit(state), at[3];
     for (int k = 0; k < 3; ++k)
         at[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
     affine_point(&pose->instances[i], at, out);
