@@ -1,3 +1,4 @@
+#include "device/vulkan.h"
 #include "device_fixture.h"
 
 /* More than one staging buffer, and no multiple of anything. */
@@ -5,6 +6,32 @@ enum { LARGE_BYTES = (33 << 20) + 12345 };
 
 static struct device *device;
 static struct messages messages;
+
+/* What was asked of Vulkan last. */
+static VkDeviceSize created_bytes, viewed_bytes;
+
+VkResult __real_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
+                               const VkAllocationCallbacks *allocator, VkBuffer *buffer);
+VkResult __wrap_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
+                               const VkAllocationCallbacks *allocator, VkBuffer *buffer);
+VkResult __real_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
+                                   const VkAllocationCallbacks *allocator, VkBufferView *view);
+VkResult __wrap_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
+                                   const VkAllocationCallbacks *allocator, VkBufferView *view);
+
+VkResult __wrap_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
+                               const VkAllocationCallbacks *allocator, VkBuffer *buffer)
+{
+    created_bytes = info->size;
+    return __real_vkCreateBuffer(vk, info, allocator, buffer);
+}
+
+VkResult __wrap_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
+                                   const VkAllocationCallbacks *allocator, VkBufferView *view)
+{
+    viewed_bytes = info->range;
+    return __real_vkCreateBufferView(vk, info, allocator, view);
+}
 
 static int open_direct(void **state)
 {
@@ -38,6 +65,33 @@ static void sizes_are_rounded_up(void **state)
         struct buffer *buffer = buffer_make(device, sizes[i][0], BUFFER_STORAGE, "size");
         assert_int_equal(buffer_size(buffer), sizes[i][1]);
         buffer_destroy(buffer);
+    }
+}
+
+/* lavapipe has a kernel of its own for texel buffers whose bytes are a power of two, and for those
+   whose bytes have zeros in bits 8 to 15: no buffer is one of them. Storage buffers, and those of
+   devices that are no CPU, are as large as they were asked to be. */
+static void texel_buffers_are_of_one_kind_for_lavapipe(void **state)
+{
+    (void)state;
+    bool is_cpu = device_get_info(device)->kind == DEVICE_CPU;
+    for (uint64_t around = 0; around <= 1 << 18; around += 1 << 15) {
+        for (uint64_t size = around; size < around + 1024; size += 16) {
+            struct buffer *storage = buffer_make(device, size, BUFFER_STORAGE, "storage");
+            assert_int_equal(created_bytes, buffer_size(storage));
+            struct buffer *texels = buffer_make(device, size, BUFFER_TEXELS, "texels");
+            assert_int_equal(buffer_size(texels), buffer_size(storage));
+            assert_int_equal(viewed_bytes, created_bytes);
+            assert_true(created_bytes >= buffer_size(texels));
+            if (is_cpu) {
+                assert_int_not_equal(created_bytes & (created_bytes - 1), 0);
+                assert_int_not_equal(created_bytes >> 8 & 0xff, 0);
+            } else {
+                assert_int_equal(created_bytes, buffer_size(texels));
+            }
+            buffer_destroy(storage);
+            buffer_destroy(texels);
+        }
     }
 }
 
@@ -157,6 +211,7 @@ int main(void)
     setenv("WHIT_NO_CACHE", "1", 1);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes_are_rounded_up),
+        cmocka_unit_test(texel_buffers_are_of_one_kind_for_lavapipe),
         cmocka_unit_test(starts_as_zeros),
         cmocka_unit_test(keeps_what_is_written_where),
         cmocka_unit_test(refuses_access_outside),
