@@ -60,6 +60,13 @@ struct scene_mesh mesh_sphere(double radius, uint32_t segments, uint32_t rings)
     return made(result, mesh);
 }
 
+struct scene_mesh mesh_icosphere(double radius, uint32_t level)
+{
+    struct scene_mesh mesh = {0};
+    whit_result result = shape_icosphere(radius, level, &mesh);
+    return made(result, mesh);
+}
+
 struct scene_mesh mesh_torus(double radius, double tube, uint32_t segments, uint32_t sides)
 {
     struct scene_mesh mesh = {0};
@@ -112,8 +119,9 @@ struct scene_mesh mesh_wearing(struct scene_mesh mesh, uint32_t material)
 struct scene_material material_grey(const char *name)
 {
     struct scene_material material;
-    scene_material_init(&material, name);
-    expect(material.name, "no memory");
+    scene_material_init(&material, NULL);
+    free(material.name);
+    material.name = (char *)name;
     return material;
 }
 
@@ -136,17 +144,15 @@ struct scene *scene_begin(const struct log *log, const char *name)
 
 uint32_t scene_put_mesh(struct scene *scene, struct scene_mesh mesh)
 {
+    if (scene->material_count == 0)
+        scene_put_material(scene, material_grey("grey"));
     return added(scene_add_mesh(scene, mesh));
 }
 
 uint32_t scene_put(struct scene *scene, struct scene_mesh mesh, const struct put *put)
 {
-    if (put && put->material) {
+    if (put && put->material)
         mesh = mesh_wearing(mesh, scene_put_material(scene, *put->material));
-        put->material->name = put->material->origin.file = NULL; /* the scene's now */
-    } else if (scene->material_count == 0) {
-        scene_put_material(scene, material_grey("grey"));
-    }
     if (put && put->name)
         mesh.name = string_copy(put->name);
     uint32_t index = scene_put_mesh(scene, mesh);
@@ -173,8 +179,7 @@ uint32_t scene_put_again(struct scene *scene, uint32_t mesh, const struct put *p
 
 uint32_t scene_put_material(struct scene *scene, struct scene_material material)
 {
-    if (!material.name)
-        material.name = string_copy("material");
+    material.name = string_copy(material.name);
     return added(scene_add_material(scene, material));
 }
 

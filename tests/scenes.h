@@ -19,6 +19,7 @@
 struct scene_mesh mesh_box(double x, double y, double z);
 struct scene_mesh mesh_plane(double size); /* two triangles of the xz plane */
 struct scene_mesh mesh_sphere(double radius, uint32_t segments, uint32_t rings);
+struct scene_mesh mesh_icosphere(double radius, uint32_t level);
 struct scene_mesh mesh_torus(double radius, double tube, uint32_t segments, uint32_t sides);
 struct scene_mesh mesh_terrain(double size, double height, uint32_t steps, uint32_t seed);
 /* Spheres as such: `spheres` has centre and radius of each. */
@@ -30,7 +31,7 @@ struct scene_mesh mesh_triangles(const float *corners, uint32_t triangle_count);
 /* The same mesh, every primitive of it of this material. */
 struct scene_mesh mesh_wearing(struct scene_mesh mesh, uint32_t material);
 
-/* ---- Materials ---- */
+/* ---- Materials: their names are not theirs, and copied where they are put into a scene ---- */
 
 struct scene_material material_grey(const char *name); /* see scene_material_init */
 /* Neither ambient light nor a highlight. */
@@ -44,19 +45,18 @@ struct scene *scene_begin(const struct log *log, const char *name);
 /* How an instance is put into a scene; all zeros, or NULL for a pointer to it: where its mesh is,
    under the mesh's own materials. Of matrix, node and at only one is meant at a time. */
 struct put {
-    const char *name;                /* of mesh and instance; NULL: none */
-    struct scene_material *material; /* all of the mesh; taken over. NULL: as the mesh says */
-    const struct affine *matrix;     /* the instance's own, below no node */
-    const uint32_t *node;            /* the instance is below it */
-    double at[3];                    /* not (0, 0, 0): below a new node that is moved there */
+    const char *name;                      /* of mesh and instance; NULL: none */
+    const struct scene_material *material; /* all of the mesh; NULL: as the mesh says */
+    const struct affine *matrix;           /* the instance's own, below no node */
+    const uint32_t *node;                  /* the instance is below it */
+    double at[3];                          /* not (0, 0, 0): below a new node that is moved there */
 };
 
-/* Adds the mesh, which is taken over, and one instance of it; the index of the mesh. Where the
-   scene has no material so far and put names none, a grey one is added first. */
+/* Adds the mesh, which is taken over, and one instance of it; the index of the mesh. */
 uint32_t scene_put(struct scene *scene, struct scene_mesh mesh, const struct put *put);
 /* Once more a mesh that the scene has, put->material apart; the index of the instance. */
 uint32_t scene_put_again(struct scene *scene, uint32_t mesh, const struct put *put);
-/* A mesh without an instance. */
+/* A mesh without an instance. Where the scene has no material so far, a grey one is added. */
 uint32_t scene_put_mesh(struct scene *scene, struct scene_mesh mesh);
 
 /* Each gives the index of what it adds. */

@@ -19,17 +19,15 @@ static bool see(void *user, const struct accel_box *box)
 
 static struct scene *placed_spheres(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
+    struct scene *scene = scene_begin(&fixture_log, "spheres");
+    scene_put_mesh(scene, mesh_sphere(1.0, 16, 8));
     const double turned[4] = {0.0, 0.3826834323650898, 0.0, 0.9238795325112867};
     for (int i = 0; i < 5; ++i) {
         const double to[3] = {4.0 * i, 0.0, 0.0}, scale[3] = {1.0, 2.0, 1.0};
         struct affine m = affine_from_trs(to, turned, scale);
-        fixture_place(scene, &m);
+        scene_put_again(scene, 0, &(struct put){.matrix = &m});
     }
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    return scene;
+    return scene_ready(scene);
 }
 
 struct world {

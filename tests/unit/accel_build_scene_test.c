@@ -55,7 +55,6 @@ static struct accel *build(struct scene *scene, uint32_t threads)
 static struct scene *mixed_scene(void)
 {
     struct scene *scene = scene_begin(&silent, "test");
-    scene_put_material(scene, material_grey("grey"));
     static const uint32_t sizes[] = {4, 90, 7, 80, 3};
     for (size_t i = 0; i < 5; ++i)
         add_sphere(scene, sizes[i], sizes[i], 0);
@@ -327,7 +326,6 @@ enum { WAYS = sizeof ways / sizeof *ways };
 static struct scene *moving_scene(void)
 {
     struct scene *scene = scene_begin(&silent, "test");
-    scene_put_material(scene, material_grey("grey"));
     add_sphere(scene, 12, 8, 0);
     add_sphere(scene, 6, 5, 0);
     uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});

@@ -20,7 +20,6 @@ static const struct log silent;
 static struct scene *sphere_scene(const struct affine *matrices, uint32_t count)
 {
     struct scene *scene = scene_begin(&silent, "instances");
-    scene_put_material(scene, material_grey("grey"));
     uint32_t sphere = scene_put_mesh(scene, mesh_sphere(1.0, 48, 32));
     for (uint32_t i = 0; i < count; ++i)
         scene_put_again(scene, sphere, &(struct put){.matrix = &matrices[i]});

@@ -17,7 +17,6 @@ static const struct log quiet = {0};
 static struct scene *ring_scene(void)
 {
     struct scene *scene = scene_begin(&quiet, "rings");
-    scene_put_material(scene, material_grey("grey"));
     uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
     for (int i = 0; i < 12; ++i) {
         double t[3], q[4], s[3] = {i % 3 ? 1.0 : -1.0, 0.6, 1.4};

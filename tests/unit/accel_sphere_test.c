@@ -18,7 +18,6 @@ static void note(void *user, whit_log_level level, const char *message)
 static struct scene *sphere_scene(struct scene_mesh mesh, bool placed)
 {
     struct scene *scene = scene_begin(&silent, "spheres");
-    scene_put_material(scene, material_grey("grey"));
     scene_put_mesh(scene, mesh);
     for (uint32_t i = 0; i < (placed ? 12u : 1u); ++i) {
         struct affine matrix = placement_random(&random_state, 1.5, i % 3 == 0);
@@ -90,7 +89,6 @@ static void spheres_mix_with_triangles(void **state)
     (void)state;
     random_state = 2;
     struct scene *scene = scene_begin(&silent, "mixed");
-    scene_put_material(scene, material_grey("grey"));
     scene_put_mesh(scene, scattered_spheres(40, 1.0, 0.3));
     scene_put_mesh(scene, mesh_torus(1.0, 0.4, 16, 8));
     for (uint32_t i = 0; i < 8; ++i) {

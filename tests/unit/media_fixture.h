@@ -8,7 +8,7 @@
 /* Clear, without a highlight: all light is reflected or let through, by Fresnel. */
 static inline struct scene_material clear_glass(float ior, uint32_t priority)
 {
-    struct scene_material m = material("clear");
+    struct scene_material m = material_plain("clear");
     set_rgb(m.diffuse, 0, 0, 0);
     set_rgb(m.transmission, 1, 1, 1);
     m.fresnel = true;
@@ -24,21 +24,11 @@ static inline void set_sky(struct scene *scene, float zenith, float horizon, flo
     set_rgb(scene->environment.ground, ground, ground, ground);
 }
 
-static inline struct scene_mesh empty_mesh(uint32_t vertices, uint32_t triangles)
-{
-    struct scene_mesh mesh = {.vertex_count = vertices, .triangle_count = triangles};
-    mesh.positions = array_alloc_zeroed(vertices, 3 * sizeof *mesh.positions);
-    mesh.indices = array_alloc_zeroed(triangles, 3 * sizeof *mesh.indices);
-    mesh.materials = array_alloc_zeroed(triangles, sizeof *mesh.materials);
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
-    return mesh;
-}
-
 /* A closed profile of radii and heights, turned about the y axis; on the axis the radius is 0. The
    points go so that the surface faces outwards: up at the outside, down at the axis. */
 static inline struct scene_mesh lathe(const double (*profile)[2], uint32_t count, uint32_t segments)
 {
-    struct scene_mesh mesh = empty_mesh(count * segments, 2 * (count - 1) * segments);
+    struct scene_mesh mesh = mesh_zeroed(count * segments, 2 * (count - 1) * segments);
     uint32_t used = 0;
     for (uint32_t s = 0; s < segments; ++s) {
         for (uint32_t i = 0; i < count; ++i) {
@@ -71,7 +61,7 @@ static inline struct scene_mesh lathe(const double (*profile)[2], uint32_t count
    -side to side, blue is 1. Faces +z. */
 static inline void add_coordinate_wall(struct scene *scene, double z, double side)
 {
-    struct scene_mesh mesh = empty_mesh(4, 2);
+    struct scene_mesh mesh = mesh_zeroed(4, 2);
     static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
     memcpy(mesh.indices, indices, sizeof indices);
     mesh.colors = array_alloc_zeroed(4, 4 * sizeof *mesh.colors);
@@ -83,7 +73,7 @@ static inline void add_coordinate_wall(struct scene *scene, double z, double sid
         set_rgb(&mesh.colors[4 * i], (float)right, (float)top, 1.0f);
         mesh.colors[4 * i + 3] = 1.0f;
     }
-    struct scene_material m = material("wall");
+    struct scene_material m = material_plain("wall");
     m.model = SCENE_MODEL_UNLIT;
     set_rgb(m.diffuse, 1, 1, 1);
     add_object(scene, mesh, m, 0, 0, z);

@@ -8,15 +8,12 @@ enum { SIDE = 48 };
 /* 4 x 4 texels of `lowest` and above; alpha from 0 to 255 where wanted. */
 static uint32_t add_noise(struct scene *scene, uint8_t lowest, bool alpha)
 {
-    uint32_t random = 17;
-    struct scene_texture texture = {.name = string_copy("noise"), .width = 4, .height = 4};
-    texture.rgba = malloc(64);
-    assert_non_null(texture.rgba);
+    uint64_t random = 17;
+    uint8_t rgba[64];
     for (int i = 0; i < 64; ++i)
-        texture.rgba[i] = (uint8_t)(lowest + fixture_random(&random) % (256u - lowest));
-    for (int i = 3; !alpha && i < 64; i += 4)
-        texture.rgba[i] = 255;
-    return scene_add_texture(scene, texture);
+        rgba[i] =
+            i % 4 == 3 && !alpha ? 255 : (uint8_t)(lowest + random_below(&random, 256u - lowest));
+    return scene_put_texture(scene, 4, 4, rgba);
 }
 
 static void use_smooth(struct scene_material *m, enum scene_slot slot, uint32_t texture,
@@ -32,41 +29,32 @@ static void use_smooth(struct scene_material *m, enum scene_slot slot, uint32_t 
 
 static struct scene_mesh ball(double radius)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(radius, 16, 8, &mesh), WHIT_OK);
-    return mesh;
+    return mesh_sphere(radius, 16, 8);
 }
 
 static struct scene_mesh ring(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(0.8, 0.3, 16, 8, &mesh), WHIT_OK);
-    return mesh;
+    return mesh_torus(0.8, 0.3, 16, 8);
 }
 
 static struct scene_mesh true_ball(float radius)
 {
-    struct scene_mesh mesh = {.sphere_count = 1};
-    mesh.spheres = array_alloc_zeroed(4, sizeof *mesh.spheres);
-    mesh.materials = array_alloc_zeroed(1, sizeof *mesh.materials);
-    assert_true(mesh.spheres && mesh.materials);
-    mesh.spheres[3] = radius;
-    return mesh;
+    return mesh_balls((double[]){0, 0, 0, (double)radius}, 1);
 }
 
 static struct scene_mesh coloured(struct scene_mesh mesh)
 {
-    uint32_t random = 9;
+    uint64_t random = 9;
     mesh.colors = array_alloc_zeroed(mesh.vertex_count, 4 * sizeof *mesh.colors);
     assert_non_null(mesh.colors);
     for (uint32_t i = 0; i < 4 * mesh.vertex_count; ++i)
-        mesh.colors[i] = 0.75f + 0.25f * fixture_signed(&random);
+        mesh.colors[i] = 0.75f + 0.25f * random_float_signed(&random);
     return mesh;
 }
 
 static struct scene_material glass(float ior, uint32_t priority)
 {
-    struct scene_material m = material("glass");
+    struct scene_material m = material_plain("glass");
     set_rgb(m.diffuse, 0, 0, 0);
     set_rgb(m.transmission, 0.9f, 1, 0.8f);
     set_rgb(m.absorption, 0.3f, 0.1f, 0.9f);
@@ -78,7 +66,7 @@ static struct scene_material glass(float ior, uint32_t priority)
 
 static void add_ground(struct scene *scene)
 {
-    struct scene_material ground = material("ground"), catcher = material("catcher");
+    struct scene_material ground = material_plain("ground"), catcher = material_plain("catcher");
     set_rgb(ground.diffuse, 0.8f, 0.7f, 0.6f);
     set_rgb(ground.ambient, 1, 1, 1);
     set_rgb(ground.specular, 0.3f, 0.3f, 0.3f);
@@ -86,15 +74,15 @@ static void add_ground(struct scene *scene)
     use_smooth(&ground, SCENE_SLOT_DIFFUSE, add_noise(scene, 60, false), 7, SCENE_WRAP_REPEAT);
     use_smooth(&ground, SCENE_SLOT_NORMAL, add_noise(scene, 120, false), 5, SCENE_WRAP_MIRROR);
     ground.normal_scale = 0.4f;
-    add_object(scene, plane(30), ground, 0, 0, 0);
+    add_object(scene, mesh_plane(30), ground, 0, 0, 0);
     catcher.shadow_catcher = true;
-    add_object(scene, plane(3), catcher, -2, 0.1, 2);
+    add_object(scene, mesh_plane(3), catcher, -2, 0.1, 2);
 }
 
 static void add_bodies(struct scene *scene)
 {
-    struct scene_material metal = material("metal"), sheet = material("sheet"),
-                          leaf = material("leaf"), paint = material("paint");
+    struct scene_material metal = material_plain("metal"), sheet = material_plain("sheet"),
+                          leaf = material_plain("leaf"), paint = material_plain("paint");
     metal.model = SCENE_MODEL_METAL_ROUGH;
     set_rgb(metal.diffuse, 0.9f, 0.7f, 0.3f);
     set_rgb(metal.specular, 1, 1, 1);
@@ -105,7 +93,7 @@ static void add_bodies(struct scene *scene)
     sheet.alpha = SCENE_ALPHA_BLEND;
     set_rgb(sheet.diffuse, 0.2f, 0.5f, 0.9f);
     use_smooth(&sheet, SCENE_SLOT_DIFFUSE, add_noise(scene, 30, true), 2, SCENE_WRAP_REPEAT);
-    add_object(scene, box(0.9, 1.5, 0.05), sheet, 1, 0.8, 2.4);
+    add_object(scene, mesh_box(0.9, 1.5, 0.05), sheet, 1, 0.8, 2.4);
     leaf.alpha = SCENE_ALPHA_MASK;
     leaf.alpha_cutoff = 0.45f;
     set_rgb(leaf.diffuse, 0.3f, 0.8f, 0.2f);
@@ -123,17 +111,16 @@ static void add_bodies(struct scene *scene)
 static void add_glass(struct scene *scene)
 {
     add_object(scene, true_ball(0.8f), glass(1.5f, 2), -0.6, 0.85, 1);
-    add_object(scene, box(0.9, 0.9, 0.9), glass(1.33f, 1), -0.3, 0.6, 0.6);
+    add_object(scene, mesh_box(0.9, 0.9, 0.9), glass(1.33f, 1), -0.3, 0.6, 0.6);
     struct scene_material pane = glass(1.5f, 0);
     pane.thin_walled = true;
     set_rgb(pane.absorption, 0, 0, 0);
-    add_object(scene, box(0.1, 1.2, 1.2), pane, 1.4, 0.7, 1.2);
+    add_object(scene, mesh_box(0.1, 1.2, 1.2), pane, 1.4, 0.7, 1.2);
 }
 
 static void add_lights(struct scene *scene)
 {
-    struct scene_light spot = {.name = string_copy("spot"),
-                               .kind = SCENE_LIGHT_SPOT,
+    struct scene_light spot = {.kind = SCENE_LIGHT_SPOT,
                                .node = SCENE_NONE,
                                .position = {3, 5, 3},
                                .direction = {-0.5, -0.75, -0.4330127},
@@ -141,14 +128,12 @@ static void add_lights(struct scene *scene)
                                .range = 30,
                                .cos_inner = 0.97f,
                                .cos_outer = 0.8f};
-    struct scene_light panel = {.name = string_copy("panel"),
-                                .kind = SCENE_LIGHT_RECTANGLE,
+    struct scene_light panel = {.kind = SCENE_LIGHT_RECTANGLE,
                                 .node = SCENE_NONE,
                                 .position = {-3, 3, -2},
                                 .edge_u = {1.5, 0, 0.2},
                                 .edge_v = {0, 0.5, 1.5}};
-    struct scene_light sail = {.name = string_copy("sail"),
-                               .kind = SCENE_LIGHT_TRIANGLE,
+    struct scene_light sail = {.kind = SCENE_LIGHT_TRIANGLE,
                                .node = SCENE_NONE,
                                .position = {-3, 0.5, 3},
                                .edge_u = {0, 2, 0.5},
@@ -157,24 +142,24 @@ static void add_lights(struct scene *scene)
     set_rgb(spot.color, 20, 18, 15);
     set_rgb(panel.color, 2, 2, 3);
     set_rgb(sail.color, 1, 0.5f, 0.5f);
-    assert_int_not_equal(scene_add_light(scene, spot), SCENE_NONE);
-    assert_int_not_equal(scene_add_light(scene, panel), SCENE_NONE);
-    assert_int_not_equal(scene_add_light(scene, sail), SCENE_NONE);
-    add_lamp(scene, 2, 4, -3, 6);
-    add_sun(scene, 0.3, -1, -0.2, 0.4f);
+    scene_put_light(scene, spot);
+    scene_put_light(scene, panel);
+    scene_put_light(scene, sail);
+    scene_put_lamp(scene, 2, 4, -3, 6);
+    scene_put_sun(scene, 0.3, -1, -0.2, 0.4f);
 }
 
 /* A map of 16 x 8 pixels. */
 static void add_sky(struct scene *scene)
 {
-    uint32_t random = 3;
+    uint64_t random = 3;
     scene->environment.kind = SCENE_ENVIRONMENT_MAP;
     scene->environment.width = 16;
     scene->environment.height = 8;
     scene->environment.rgb = array_alloc(16 * 8, 3 * sizeof(float));
     assert_non_null(scene->environment.rgb);
     for (int i = 0; i < 16 * 8 * 3; ++i)
-        scene->environment.rgb[i] = 0.5f + 0.4f * fixture_signed(&random);
+        scene->environment.rgb[i] = 0.5f + 0.4f * random_float_signed(&random);
 }
 
 static struct scene *all_effects(void)
@@ -262,7 +247,7 @@ static struct scene *touching_smooth_bodies(void)
     add_object(scene, true_ball(1), outer, 1.1, 0, 0);
     add_object(scene, ball(1), inner, 1.1, 0, 0);
     scene->contact = 0.12f; /* the mesh of the ball is up to that far inside the sphere */
-    add_sun(scene, -0.2, -1, 0.3, 1.0f);
+    scene_put_sun(scene, -0.2, -1, 0.3, 1.0f);
     return scene;
 }
 

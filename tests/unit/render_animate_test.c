@@ -8,65 +8,9 @@ static const struct render_params animate_params = {.width = 40, .height = 32, .
 
 /* ---- Scenes ---- */
 
-static void animate(struct scene *scene, uint32_t node, enum scene_path path, uint32_t keys,
-                    const float *times_s, const float *values)
-{
-    size_t width = path == SCENE_PATH_ROTATION ? 4 : 3;
-    struct scene_channel channel = {.node = node,
-                                    .path = path,
-                                    .interpolation = SCENE_LINEAR,
-                                    .key_count = keys,
-                                    .times_s = malloc(keys * sizeof *times_s),
-                                    .values = malloc(keys * width * sizeof *values)};
-    assert_non_null(channel.times_s);
-    assert_non_null(channel.values);
-    memcpy(channel.times_s, times_s, keys * sizeof *times_s);
-    memcpy(channel.values, values, keys * width * sizeof *values);
-    assert_int_not_equal(scene_add_channel(scene, channel), SCENE_NONE);
-}
-
-static uint32_t add_node(struct scene *scene, double x, double y, double z)
-{
-    struct scene_node node;
-    scene_node_init(&node, "node", SCENE_NONE);
-    node.translation[0] = x;
-    node.translation[1] = y;
-    node.translation[2] = z;
-    return scene_add_node(scene, node);
-}
-
-static uint32_t add_mesh(struct scene *scene, struct scene_mesh mesh, struct scene_material m)
-{
-    uint32_t material = scene_add_material(scene, m);
-    for (uint32_t i = 0; i < mesh.triangle_count; ++i)
-        mesh.materials[i] = material;
-    mesh.name = string_copy("mesh");
-    return scene_add_mesh(scene, mesh);
-}
-
-static void place(struct scene *scene, uint32_t mesh, uint32_t node)
-{
-    struct scene_instance instance = {.name = string_copy("object"), .mesh = mesh, .node = node};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-}
-
-static struct scene_mesh sphere(double radius)
-{
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(radius, 20, 12, &mesh), WHIT_OK);
-    return mesh;
-}
-
-static struct scene *new_scene(void)
-{
-    struct scene *scene = scene_create(&fixture_log, "animation");
-    assert_non_null(scene);
-    return scene;
-}
-
 static struct scene *spin(void)
 {
-    struct scene *scene = new_scene();
+    struct scene *scene = scene_begin(&fixture_log, "animation");
     assert_int_equal(load_scene_file(scene, WHIT_SCENES_DIR "/spin.json", NULL), WHIT_OK);
     return scene;
 }
@@ -76,46 +20,35 @@ static struct scene *spin(void)
 static struct scene *everything_moves(void)
 {
     static const float times[] = {0, 1, 2};
-    struct scene *scene = new_scene();
-    struct scene_material floor, glass, glow;
-    scene_material_init(&floor, "floor");
-    scene_material_init(&glass, "glass");
-    scene_material_init(&glow, "glow");
+    struct scene *scene = scene_begin(&fixture_log, "animation");
+    struct scene_material glass = material_grey("glass"), glow = material_grey("glow");
     for (int i = 0; i < 3; ++i) {
         glass.transmission[i] = 0.9f;
         glow.emission[i] = 12.0f;
     }
     glass.fresnel = true;
-    struct scene_mesh plane = {0}, lamp = {0};
-    assert_int_equal(shape_plane(12, 12, 1, 1.0, &plane), WHIT_OK);
-    assert_int_equal(shape_plane(0.8, 0.8, 1, 1.0, &lamp), WHIT_OK);
-    place(scene, add_mesh(scene, plane, floor), SCENE_NONE);
-    uint32_t ball = add_node(scene, 0, 1, 0), light = add_node(scene, 0, 3, 0);
-    uint32_t point = add_node(scene, 1, 2, 1), eye = add_node(scene, 0, 0, 0);
-    place(scene, add_mesh(scene, sphere(0.8), glass), ball);
-    place(scene, add_mesh(scene, lamp, glow), light);
-    animate(scene, ball, SCENE_PATH_TRANSLATION, 3, times, (float[]){0, 1, 0, 1, 1, 0, 0, 1.5f, 1});
-    animate(scene, ball, SCENE_PATH_SCALE, 3, times, (float[]){1, 1, 1, -1, 0.7f, 1, 1, -1, 0.5f});
-    animate(scene, light, SCENE_PATH_TRANSLATION, 3, times,
-            (float[]){0, 3, 0, 1.5f, 2.5f, 0, -1, 3, 1});
-    animate(scene, point, SCENE_PATH_TRANSLATION, 3, times,
-            (float[]){1, 2, 1, -1, 2, 1, -1, 3, -1});
-    animate(scene, eye, SCENE_PATH_TRANSLATION, 3, times,
-            (float[]){0, 0, 0, 0.3f, 0.2f, 0, 0.6f, 0, 0.4f});
-    struct scene_light bulb = {.name = string_copy("bulb"),
-                               .kind = SCENE_LIGHT_POINT,
-                               .node = point,
-                               .color = {2, 2, 1},
-                               .falloff = true};
-    assert_int_not_equal(scene_add_light(scene, bulb), SCENE_NONE);
-    struct scene_camera camera = {.name = string_copy("camera"),
-                                  .kind = SCENE_CAMERA_PERSPECTIVE,
-                                  .node = eye,
-                                  .eye = {0, 2.2, 6},
-                                  .target = {0, 0.8, 0},
-                                  .up = {0, 1, 0},
-                                  .fov_y = 0.7f};
-    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+    uint32_t ball = scene_put_node(scene, SCENE_NONE, 0, 1, 0);
+    uint32_t light = scene_put_node(scene, SCENE_NONE, 0, 3, 0);
+    uint32_t point = scene_put_node(scene, SCENE_NONE, 1, 2, 1);
+    uint32_t eye = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    scene_put(scene, mesh_plane(12), NULL);
+    scene_put(scene, mesh_sphere(0.8, 20, 12), &(struct put){.material = &glass, .node = &ball});
+    scene_put(scene, mesh_plane(0.8), &(struct put){.material = &glow, .node = &light});
+    scene_put_channel(scene, ball, SCENE_PATH_TRANSLATION, 3, times,
+                      (float[]){0, 1, 0, 1, 1, 0, 0, 1.5f, 1});
+    scene_put_channel(scene, ball, SCENE_PATH_SCALE, 3, times,
+                      (float[]){1, 1, 1, -1, 0.7f, 1, 1, -1, 0.5f});
+    scene_put_channel(scene, light, SCENE_PATH_TRANSLATION, 3, times,
+                      (float[]){0, 3, 0, 1.5f, 2.5f, 0, -1, 3, 1});
+    scene_put_channel(scene, point, SCENE_PATH_TRANSLATION, 3, times,
+                      (float[]){1, 2, 1, -1, 2, 1, -1, 3, -1});
+    scene_put_channel(scene, eye, SCENE_PATH_TRANSLATION, 3, times,
+                      (float[]){0, 0, 0, 0.3f, 0.2f, 0, 0.6f, 0, 0.4f});
+    scene_put_light(
+        scene, (struct scene_light){
+                   .kind = SCENE_LIGHT_POINT, .node = point, .color = {2, 2, 1}, .falloff = true});
+    scene_put_camera(scene, (double[]){0, 2.2, 6}, (double[]){0, 0.8, 0}, 0.7);
+    scene->cameras[0].node = eye;
     return scene;
 }
 
@@ -123,13 +56,13 @@ static struct scene *everything_moves(void)
 static struct scene *leaves_its_place(void)
 {
     static const float times[] = {0, 1, 2};
-    struct scene *scene = new_scene();
-    struct scene_material mirror;
-    scene_material_init(&mirror, "mirror");
+    struct scene *scene = scene_begin(&fixture_log, "animation");
+    struct scene_material mirror = material_grey("mirror");
     mirror.reflection[0] = mirror.reflection[1] = 0.5f;
-    uint32_t node = add_node(scene, 0, 0, 0);
-    place(scene, add_mesh(scene, sphere(1), mirror), node);
-    animate(scene, node, SCENE_PATH_TRANSLATION, 3, times, (float[]){0, 0, 0, 0.5f, 0, 0, 0, 0, 0});
+    uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    scene_put(scene, mesh_sphere(1, 20, 12), &(struct put){.material = &mirror, .node = &node});
+    scene_put_channel(scene, node, SCENE_PATH_TRANSLATION, 3, times,
+                      (float[]){0, 0, 0, 0.5f, 0, 0, 0, 0, 0});
     return scene;
 }
 
@@ -138,18 +71,17 @@ static struct scene *strung_out(void)
 {
     enum { COUNT = 24 };
     static const float times[] = {0, 1};
-    struct scene *scene = new_scene();
-    struct scene_material grey;
-    scene_material_init(&grey, "grey");
-    uint32_t mesh = add_mesh(scene, sphere(0.4), grey);
+    struct scene *scene = scene_begin(&fixture_log, "animation");
+    uint32_t mesh = scene_put_mesh(scene, mesh_sphere(0.4, 20, 12));
     double far = 0.001;
     for (int i = 0; i < COUNT; ++i, far *= 1.8) {
-        uint32_t node = add_node(scene, 0, 0, 0);
+        uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
         float x = (float)(i % 5), y = (float)(i / 5), size = (float)far * 0.6f;
-        place(scene, mesh, node);
-        animate(scene, node, SCENE_PATH_TRANSLATION, 2, times,
-                (float[]){x, y, 0, (float)far, (float)far * 0.5f, 0});
-        animate(scene, node, SCENE_PATH_SCALE, 2, times, (float[]){1, 1, 1, size, size, size});
+        scene_put_again(scene, mesh, &(struct put){.node = &node});
+        scene_put_channel(scene, node, SCENE_PATH_TRANSLATION, 2, times,
+                          (float[]){x, y, 0, (float)far, (float)far * 0.5f, 0});
+        scene_put_channel(scene, node, SCENE_PATH_SCALE, 2, times,
+                          (float[]){1, 1, 1, size, size, size});
     }
     return scene;
 }

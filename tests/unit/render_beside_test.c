@@ -96,10 +96,9 @@ static void renew(struct fixture *f, const struct render_params *params)
 static struct scene *flat_scene(void)
 {
     struct scene *scene = terrain_scene();
-    struct scene_material dark = material("dark");
-    dark.name = string_copy("dark");
+    struct scene_material dark = material_plain("dark");
     set_rgb(dark.diffuse, 0.1f, 0.2f, 0.3f);
-    uint32_t index = scene_add_material(scene, dark);
+    uint32_t index = scene_put_material(scene, dark);
     for (uint32_t t = 0; t < scene->meshes[0].triangle_count; ++t) {
         if (t % 5 < 2)
             scene->meshes[0].materials[t] = index;

@@ -12,13 +12,13 @@ static void make_rays(const struct fixture *f, struct gpu_ray *rays)
 {
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
-    uint32_t state = 31;
+    uint64_t state = 31;
     for (uint32_t i = 0; i < RAYS; ++i) {
         rays[i] = (struct gpu_ray){.t_max = i % 8 == 7 ? 0.7f : INFINITY};
         for (int k = 0; k < 3; ++k) {
             double center = 0.5 * (pose.lo[k] + pose.hi[k]), size = pose.hi[k] - pose.lo[k] + 1e-3;
-            rays[i].origin[k] = (float)(center + size * 1.2 * (double)fixture_signed(&state));
-            double at = center + 0.5 * size * (double)fixture_signed(&state);
+            rays[i].origin[k] = (float)(center + size * 1.2 * (double)random_float_signed(&state));
+            double at = center + 0.5 * size * (double)random_float_signed(&state);
             rays[i].dir[k] = (float)(at - (double)rays[i].origin[k]);
         }
     }
@@ -83,11 +83,7 @@ static void long_lists_are_cut(void **state)
 {
     (void)state;
     uint32_t count = 70000;
-    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
-    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
-    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    struct scene_mesh mesh = mesh_zeroed(3 * count, count);
     for (uint32_t i = 0; i < count; ++i) {
         float z = (float)(i * 7919 % count); /* each once, in every range far and near ones */
         const float corners[9] = {0, 0, z, 1, 1, z, 0.5f, 1, z};
@@ -95,8 +91,8 @@ static void long_lists_are_cut(void **state)
         for (uint32_t k = 0; k < 3; ++k)
             mesh.indices[3 * i + k] = 3 * i + k;
     }
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "ranges");
+    scene_put(scene, mesh, NULL);
     struct fixture f = fixture_open(scene, &no_trees, NULL);
     assert_true(f.renderer->brute.range_count >= 4);
     struct gpu_ray rays[16];
@@ -252,9 +248,7 @@ static void long_pictures_are_refused(void **state)
 static void empty_scenes_have_a_picture(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
-    struct fixture f = fixture_open(fixture_scene(mesh), &no_trees, NULL);
+    struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), &no_trees, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);

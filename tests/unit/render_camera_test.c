@@ -8,12 +8,10 @@ static const double PI = 3.14159265358979323846;
 /* A ball that shows 1 everywhere. */
 static void add_marker(struct scene *scene, double radius, double x, double y, double z)
 {
-    struct scene_mesh ball = {0};
-    struct scene_material m = material("marker");
-    assert_int_equal(shape_sphere(radius, 16, 8, &ball), WHIT_OK);
+    struct scene_material m = material_plain("marker");
     m.model = SCENE_MODEL_UNLIT;
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, ball, m, x, y, z);
+    add_object(scene, mesh_sphere(radius, 16, 8), m, x, y, z);
 }
 
 static double red(const struct image *image, uint32_t x, uint32_t y)
@@ -236,15 +234,14 @@ static void panorama_sees_all_around(void **state)
 {
     (void)state;
     struct scene *scene = panorama_scene((double[]){0, 0, 0}, (double[]){1, 2, 3});
-    struct scene_material m = material("wall");
+    struct scene_material m = material_plain("wall");
     m.model = SCENE_MODEL_UNLIT;
-    add_object(scene, box(2, 2, 2), m, 0, 0, 0);
+    add_object(scene, mesh_box(2, 2, 2), m, 0, 0, 0);
     for (uint32_t face = 0; face < 6; ++face) {
-        struct scene_material own = material("face");
+        struct scene_material own = material_plain("face");
         own.model = SCENE_MODEL_UNLIT;
-        own.name = string_copy("face");
         set_rgb(own.diffuse, (float)(1 << face), 1, 1);
-        uint32_t index = scene_add_material(scene, own);
+        uint32_t index = scene_put_material(scene, own);
         scene->meshes[0].materials[2 * face] = scene->meshes[0].materials[2 * face + 1] = index;
     }
     const struct render_params params = {.width = 128, .height = 64};
@@ -272,10 +269,10 @@ static void view_along_up_has_a_picture(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, plane(1), m, 0, 0, 0);
-    add_sun(scene, 0, -1, 0, 1.0f);
+    add_object(scene, mesh_plane(1), m, 0, 0, 0);
+    scene_put_sun(scene, 0, -1, 0, 1.0f);
     struct render_params params = picture_params;
     const char *views[] = {NULL, "0,5,0,0,0,0,0,1,0,40", "0,5,0,0,0,0,0,-7,0,40",
                            "0,5,0,0,0,0,0,0,0,40", "0,5,0,0,0,0,1e-30,1e30,0,40"};
@@ -350,10 +347,10 @@ static void rays_along_edges_hit(void **state)
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
     scene->cameras[0].height = 2.0f;
-    struct scene_material m = material("wall");
+    struct scene_material m = material_plain("wall");
     m.model = SCENE_MODEL_UNLIT;
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, box(4, 4, 1), m, 0, 0, 0); /* its diagonals go through pixel middles */
+    add_object(scene, mesh_box(4, 4, 1), m, 0, 0, 0); /* its diagonals go through pixel middles */
     const struct render_params params = {.width = SIDE, .height = SIDE};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
@@ -368,11 +365,12 @@ static void faces_seen_edge_on_are_finite(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 1, 5}, (double[]){0, 1, 0});
-    struct scene_material m = material("box");
+    struct scene_material m = material_plain("box");
     set_rgb(m.diffuse, 1, 1, 1);
     set_rgb(m.specular, 1, 1, 1);
-    add_object(scene, box(1, 2, 1), m, 0, 0, 0); /* its top is in the plane of the middle row */
-    add_sun(scene, 0, 0, -1, 1.0f);              /* and of the light */
+    /* Its top is in the plane of the middle row and of the light. */
+    add_object(scene, mesh_box(1, 2, 1), m, 0, 0, 0);
+    scene_put_sun(scene, 0, 0, -1, 1.0f);
     struct fixture f = fixture_open(scene, NULL, &picture_params);
     struct image image = render(&f);
     assert_finite(&image);
@@ -386,9 +384,8 @@ static void sizes_may_be_odd(void **state)
     (void)state;
     const uint32_t sizes[][2] = {{1, 1}, {1, 4096}, {4096, 1}, {37, 23}, {8, 9}, {65, 1}};
     struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
-    struct scene_mesh ground = {0};
-    assert_int_equal(shape_terrain(10.0, 2.0, 40, 3, &ground), WHIT_OK);
-    add_object(scene, ground, material("ground"), 0, 0, 0);
+    struct scene_mesh ground = mesh_terrain(10.0, 2.0, 40, 3);
+    add_object(scene, ground, material_plain("ground"), 0, 0, 0);
     struct render_params params = {.width = 1, .height = 1};
     struct fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
@@ -427,13 +424,13 @@ static void near_and_far_share_a_picture(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-    struct scene_material near = material("near"), far = material("far");
+    struct scene_material near = material_plain("near"), far = material_plain("far");
     near.model = far.model = SCENE_MODEL_UNLIT;
     set_rgb(near.diffuse, 0.25f, 0.25f, 0.25f);
     set_rgb(far.diffuse, 0.75f, 0.75f, 0.75f);
     /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
-    add_object(scene, box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
-    add_object(scene, box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
+    add_object(scene, mesh_box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
+    add_object(scene, mesh_box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
     struct render_params params = {.width = 40, .height = 20, .samples = 4};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);

@@ -20,15 +20,15 @@ static void make_rays(const struct fixture *f, struct gpu_ray *rays)
 {
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
-    uint32_t state = 77;
+    uint64_t state = 77;
     for (uint32_t i = 0; i < RAYS; ++i) {
         rays[i] = (struct gpu_ray){.t_max = i % 8 == 7 ? 0.7f : INFINITY};
         for (int k = 0; k < 3; ++k) {
             double center = 0.5 * (pose.lo[k] + pose.hi[k]), size = pose.hi[k] - pose.lo[k] + 1e-3;
-            rays[i].origin[k] = (float)(center + size * 1.2 * (double)fixture_signed(&state));
-            double at = center + 0.5 * size * (double)fixture_signed(&state);
+            rays[i].origin[k] = (float)(center + size * 1.2 * (double)random_float_signed(&state));
+            double at = center + 0.5 * size * (double)random_float_signed(&state);
             rays[i].dir[k] =
-                i & 1 ? fixture_signed(&state) : (float)(at - (double)rays[i].origin[k]);
+                i & 1 ? random_float_signed(&state) : (float)(at - (double)rays[i].origin[k]);
         }
     }
     rays[1] = (struct gpu_ray){.dir = {0, 0, 0}}; /* not even started, but a ray */
@@ -160,18 +160,14 @@ static void costs_must_be_asked_for(void **state)
 /* A scene whose only mesh tree is a hand-written chain. */
 static struct accel *caterpillar_accel(struct scene **scene, uint32_t depth)
 {
-    struct scene_mesh mesh = {.vertex_count = 3 * (depth + 1), .triangle_count = depth + 1};
-    mesh.positions = array_alloc(9 * (size_t)(depth + 1), sizeof(float));
-    mesh.indices = array_alloc(3 * (size_t)(depth + 1), sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(depth + 1, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    struct scene_mesh mesh = mesh_zeroed(3 * (depth + 1), depth + 1);
     for (uint32_t i = 0; i <= depth; ++i) {
         caterpillar_corners(i, &mesh.positions[9 * (size_t)i]);
         for (uint32_t k = 0; k < 3; ++k)
             mesh.indices[3 * i + k] = 3 * i + k;
     }
-    *scene = fixture_scene(mesh);
-    fixture_place(*scene, NULL);
+    *scene = scene_begin(&fixture_log, "caterpillar");
+    scene_put(*scene, mesh, NULL);
     assert_int_equal(scene_freeze(*scene), WHIT_OK);
     struct accel *accel;
     assert_int_equal(accel_create(&fixture_log, *scene, NULL, &accel), WHIT_OK);
@@ -265,23 +261,19 @@ static void duplicates_give_the_first(void **state)
     for (uint32_t order = 0; order < ORDERS; ++order) {
         const uint32_t count = 1000;
         uint32_t status = 0;
-        struct scene_mesh mesh = {.vertex_count = 3, .triangle_count = count};
-        mesh.positions = array_alloc(9, sizeof(float));
-        mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
-        mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
-        assert_true(mesh.positions && mesh.indices && mesh.materials);
+        struct scene_mesh mesh = mesh_zeroed(3, count);
         caterpillar_corners(0, mesh.positions);
         for (uint32_t k = 0; k < 3 * count; ++k)
             mesh.indices[k] = k % 3;
-        struct scene *scene = fixture_scene(mesh);
-        fixture_place(scene, NULL);
+        struct scene *scene = scene_begin(&fixture_log, "alike");
+        scene_put(scene, mesh, NULL);
         struct fixture f = open_counting(scene, order);
         struct gpu_ray rays[64];
         struct gpu_hit hits[64];
-        uint32_t random = 3;
+        uint64_t random = 3;
         for (int r = 0; r < 64; ++r)
-            rays[r] = (struct gpu_ray){{0.3f * fixture_signed(&random),
-                                        0.3f * fixture_signed(&random), r & 1 ? -1.0f : 1.0f},
+            rays[r] = (struct gpu_ray){{0.3f * random_float_signed(&random),
+                                        0.3f * random_float_signed(&random), r & 1 ? -1.0f : 1.0f},
                                        0,
                                        {0, 0, r & 1 ? 1.0f : -1.0f},
                                        INFINITY};
@@ -301,16 +293,10 @@ static void duplicates_give_the_first(void **state)
 static void a_leaf_alone_has_no_boxes(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {.vertex_count = 3, .triangle_count = 1};
-    mesh.positions = array_alloc(9, sizeof(float));
-    mesh.indices = array_alloc(3, sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(1, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
-    caterpillar_corners(0, mesh.positions);
-    for (uint32_t k = 0; k < 3; ++k)
-        mesh.indices[k] = k;
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    float corners[9];
+    caterpillar_corners(0, corners);
+    struct scene *scene = scene_begin(&fixture_log, "triangle");
+    scene_put(scene, mesh_triangles(corners, 1), NULL);
     struct fixture f = open_counting(scene, ORDER_DISTANCE);
     struct gpu_ray ray = caterpillar_ray(0, true);
     struct gpu_hit hit;

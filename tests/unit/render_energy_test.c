@@ -40,34 +40,26 @@ static void check_furnace(const char *name, struct scene *scene)
 static void white_furnace(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    check_furnace("cube", furnace(box(1, 1, 1), clear_glass(1.5f, 0)));
-    assert_int_equal(shape_icosphere(1, 3, &mesh), WHIT_OK);
-    check_furnace("smooth mesh", furnace(mesh, clear_glass(1.5f, 0)));
-    assert_int_equal(shape_torus(0.7, 0.3, 24, 12, &mesh), WHIT_OK);
-    check_furnace("smooth ring", furnace(mesh, clear_glass(2.42f, 0)));
-    assert_int_equal(shape_balls((double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
-    check_furnace("ball", furnace(mesh, clear_glass(1.33f, 0)));
+    check_furnace("cube", furnace(mesh_box(1, 1, 1), clear_glass(1.5f, 0)));
+    check_furnace("smooth mesh", furnace(mesh_icosphere(1, 3), clear_glass(1.5f, 0)));
+    check_furnace("smooth ring", furnace(mesh_torus(0.7, 0.3, 24, 12), clear_glass(2.42f, 0)));
+    check_furnace("ball", furnace(mesh_balls((double[]){0, 0, 0, 1}, 1), clear_glass(1.33f, 0)));
     struct scene_material thin = clear_glass(1.5f, 0);
     thin.thin_walled = true;
-    check_furnace("thin cube", furnace(box(1, 1, 1), thin));
-    struct scene_material mirror = material("mirror");
+    check_furnace("thin cube", furnace(mesh_box(1, 1, 1), thin));
+    struct scene_material mirror = material_plain("mirror");
     set_rgb(mirror.diffuse, 0, 0, 0);
     set_rgb(mirror.reflection, 1, 1, 1);
-    assert_int_equal(shape_torus(0.7, 0.3, 24, 12, &mesh), WHIT_OK);
-    check_furnace("mirror ring", furnace(mesh, mirror));
+    check_furnace("mirror ring", furnace(mesh_torus(0.7, 0.3, 24, 12), mirror));
 }
 
 static void white_furnace_of_nested_media(void **state)
 {
     (void)state;
-    struct scene_mesh ball = {0}, ring = {0};
-    struct scene *scene = furnace(box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
-    assert_int_equal(shape_icosphere(0.6, 3, &ball), WHIT_OK);
-    add_object(scene, ball, clear_glass(1.5f, 1), 0.3, 0, 0);
-    assert_int_equal(shape_torus(0.5, 0.2, 24, 12, &ring), WHIT_OK);
-    add_object(scene, ring, clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
-    add_object(scene, box(1, 0.5, 0.5), clear_glass(1.2f, 0), 0.3, -0.25, 0.8);
+    struct scene *scene = furnace(mesh_box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
+    add_object(scene, mesh_icosphere(0.6, 3), clear_glass(1.5f, 1), 0.3, 0, 0);
+    add_object(scene, mesh_torus(0.5, 0.2, 24, 12), clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
+    add_object(scene, mesh_box(1, 0.5, 0.5), clear_glass(1.2f, 0), 0.3, -0.25, 0.8);
     check_furnace("nested", scene);
 }
 
@@ -81,13 +73,13 @@ static void facing_mirrors_end(void **state)
     struct image before = {0};
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-        struct scene_material mirror = material("mirror");
+        struct scene_material mirror = material_plain("mirror");
         set_rgb(mirror.diffuse, 0, 0, 0);
         set_rgb(mirror.reflection, 1, 1, 1);
         set_rgb(mirror.emission, 0.01f, 0.01f, 0.01f);
         for (int i = 0; i < 2; ++i)
-            add_object(scene, box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
-        add_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
+            add_object(scene, mesh_box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
+        scene_put_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
         const struct render_params params = {
             .width = 15, .height = 15, .depth = depths[d], .bailout = -1.0};
         struct fixture f = fixture_open(scene, NULL, &params);
@@ -111,14 +103,14 @@ static struct scene *weak_scene(int which)
 {
     if (which == 0)
         return glass_scene();
-    struct scene *scene = furnace(box(1.2, 1.2, 1.2), clear_glass(1.5f, 0));
-    add_object(scene, box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
-    struct scene_material shiny = material("shiny");
+    struct scene *scene = furnace(mesh_box(1.2, 1.2, 1.2), clear_glass(1.5f, 0));
+    add_object(scene, mesh_box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
+    struct scene_material shiny = material_plain("shiny");
     set_rgb(shiny.diffuse, 0.5f, 0.5f, 0.5f);
     set_rgb(shiny.specular, 0.5f, 0.5f, 0.5f);
     set_rgb(shiny.reflection, 0.3f, 0.3f, 0.3f);
-    add_object(scene, plane(6), shiny, 0, -0.8, 0);
-    add_lamp(scene, 2, 3, 2, 8);
+    add_object(scene, mesh_plane(6), shiny, 0, -0.8, 0);
+    scene_put_lamp(scene, 2, 3, 2, 8);
     return scene;
 }
 

@@ -13,6 +13,8 @@
 
 #include <cmocka.h>
 
+#include "../random.h"
+#include "../scenes.h"
 #include "base/array.h"
 #include "render/render.h"
 #include "scene/shapes.h"
@@ -73,32 +75,16 @@ static inline float fixture_signed(uint32_t *state)
     return (float)((double)fixture_random(state) / 2147483648.0 - 1.0);
 }
 
-/* A scene of one mesh, taken over, under one grey material; instances are added by the caller. */
 static inline struct scene *fixture_scene(struct scene_mesh mesh)
 {
-    struct scene *scene = scene_create(&fixture_log, "test");
-    assert_non_null(scene);
-    struct scene_material material;
-    scene_material_init(&material, "grey");
-    assert_int_not_equal(scene_add_material(scene, material), SCENE_NONE);
-    mesh.name = mesh.name ? mesh.name : string_copy("mesh");
-    assert_int_not_equal(scene_add_mesh(scene, mesh), SCENE_NONE);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put_mesh(scene, mesh);
     return scene;
 }
 
-/* An instance of mesh 0 under a node with this matrix; NULL: no node. */
 static inline void fixture_place(struct scene *scene, const struct affine *matrix)
 {
-    uint32_t node = SCENE_NONE;
-    if (matrix) {
-        struct scene_node placed;
-        scene_node_init(&placed, "node", SCENE_NONE);
-        placed.has_matrix = true;
-        placed.matrix = *matrix;
-        node = scene_add_node(scene, placed);
-    }
-    struct scene_instance instance = {.name = string_copy("instance"), .mesh = 0, .node = node};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    scene_put_again(scene, 0, &(struct put){.matrix = matrix});
 }
 
 /* Scenes whose trees are of other depths take the same kernels. */

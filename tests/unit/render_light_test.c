@@ -9,9 +9,9 @@ static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
 static struct scene *floor_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, plane(40), m, 0, 0, 0);
+    add_object(scene, mesh_plane(40), m, 0, 0, 0);
     return scene;
 }
 
@@ -80,7 +80,7 @@ static void check_form_factor(struct scene_light light, uint32_t samples, double
         .width = SIDE, .height = SIDE, .no_shadows = true, .light_samples = samples};
     struct scene *scene = floor_scene();
     struct scene_light copy = light;
-    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    scene_put_light(scene, light);
     struct fixture f;
     struct image image = picture_of(scene, &params, &f);
     for (uint32_t y = 0; y < SIDE; y += 2) {
@@ -131,8 +131,8 @@ static void half_a_cover_takes_half(void **state)
     for (int k = 0; k < 2; ++k) {
         for (int i = 0; i < 3; ++i) {
             struct scene *scene = floor_scene();
-            struct scene_material m = material("plate");
-            add_object(scene, plane(4), m, 2.0, 1.0, 0);
+            struct scene_material m = material_plain("plate");
+            add_object(scene, mesh_plane(4), m, 2.0, 1.0, 0);
             /* The triangle's line of symmetry is x = 0. */
             struct scene_light light =
                 k == 0 ? emitter(kinds[k], (double[]){-0.2, 2, -0.2}, (double[]){0.4, 0, 0},
@@ -140,7 +140,7 @@ static void half_a_cover_takes_half(void **state)
                        : emitter(kinds[k], (double[]){0, 2, 0.2}, (double[]){-0.2, 0, -0.3},
                                  (double[]){0.2, 0, -0.3}, 3.0f);
             struct scene_light copy = light;
-            assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+            scene_put_light(scene, light);
             struct render_params params = {.width = 1,
                                            .height = 1,
                                            .light_samples = samples[i],
@@ -165,8 +165,8 @@ static void pixel_samples_smooth_shadows(void **state)
     double largest[2];
     for (int i = 0; i < 2; ++i) {
         struct scene *scene = floor_scene();
-        struct scene_material m = material("plate");
-        add_object(scene, plane(6), m, 3.0, 1.5, 0);
+        struct scene_material m = material_plain("plate");
+        add_object(scene, mesh_plane(6), m, 3.0, 1.5, 0);
         assert_int_not_equal(
             scene_add_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-1, 3, -1},
                                            (double[]){2, 0, 0}, (double[]){0, 0, 2}, 3.0f)),
@@ -195,8 +195,7 @@ static void spots_fall_off_between_their_cones(void **state)
     (void)state;
     const double height = 3.0, inner = 0.15, outer = 0.4;
     struct scene *scene = floor_scene();
-    struct scene_light light = {.name = string_copy("spot"),
-                                .kind = SCENE_LIGHT_SPOT,
+    struct scene_light light = {.kind = SCENE_LIGHT_SPOT,
                                 .node = SCENE_NONE,
                                 .position = {0, height, 0},
                                 .direction = {0, -1, 0},
@@ -204,7 +203,7 @@ static void spots_fall_off_between_their_cones(void **state)
                                 .cos_inner = (float)cos(inner),
                                 .cos_outer = (float)cos(outer)};
     set_rgb(light.color, 5, 5, 5);
-    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    scene_put_light(scene, light);
     struct render_params params = {.width = 33, .height = 33};
     struct fixture f;
     struct image image = picture_of(scene, &params, &f);
@@ -237,7 +236,7 @@ static void ranges_end_lights(void **state)
 {
     (void)state;
     struct scene *scene = floor_scene();
-    add_lamp(scene, 0, 1, 0, 2.0f);
+    scene_put_lamp(scene, 0, 1, 0, 2.0f);
     scene->lights[0].range = 1.5f;
     struct render_params params = {.width = 33, .height = 33};
     struct fixture f;
@@ -271,7 +270,7 @@ static void odd_lights_give_finite_pictures(void **state)
             scene_add_light(scene, emitter(SCENE_LIGHT_TRIANGLE, (double[]){-1, 1, -1},
                                            (double[]){2, 0, 0}, (double[]){1, 0, 0}, 1.0f));
         else if (i > 0)
-            add_lamp(scene, 0, i == 1 ? 0.0 : 1e-6, 0, strength);
+            scene_put_lamp(scene, 0, i == 1 ? 0.0 : 1e-6, 0, strength);
         struct render_params params = {.width = 33, .height = 33};
         struct fixture f;
         struct image image = picture_of(scene, &params, &f);
@@ -295,7 +294,7 @@ static void lamps_next_to_a_surface_are_on_one_side(void **state)
         struct scene *scene = floor_scene();
         struct fixture f;
         double worst = 0.0;
-        add_lamp(scene, 0, heights[i], 0, 1.0f);
+        scene_put_lamp(scene, 0, heights[i], 0, 1.0f);
         struct image image = picture_of(scene, &params, &f);
         for (uint32_t k = 0; k < ACROSS * ACROSS; ++k) {
             double p[3], value = (double)image.pixels[4 * k];
@@ -320,16 +319,15 @@ static void lamps_next_to_a_surface_are_on_one_side(void **state)
 static struct scene *room_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 5}, (double[]){0, 1, 0});
-    struct scene_material white = material("white"), pane = material("pane");
+    struct scene_material white = material_plain("white"), pane = material_plain("pane");
     set_rgb(white.diffuse, 0.7f, 0.6f, 0.5f);
     set_rgb(white.specular, 0.3f, 0.3f, 0.3f);
     set_rgb(pane.transmission, 0.5f, 0.9f, 0.4f);
     pane.thin_walled = true;
-    struct scene_mesh ball = {0};
-    assert_int_equal(shape_sphere(0.5, 12, 8, &ball), WHIT_OK);
-    add_object(scene, plane(4), white, 0, 0, 0);
-    add_object(scene, box(0.5, 1.4, 0.5), white, -0.8, 0.7, -0.4);
-    add_object(scene, box(1.0, 0.02, 1.0), pane, 0.5, 1.5, 0);
+    struct scene_mesh ball = mesh_sphere(0.5, 12, 8);
+    add_object(scene, mesh_plane(4), white, 0, 0, 0);
+    add_object(scene, mesh_box(0.5, 1.4, 0.5), white, -0.8, 0.7, -0.4);
+    add_object(scene, mesh_box(1.0, 0.02, 1.0), pane, 0.5, 1.5, 0);
     add_object(scene, ball, white, 0.7, 0.5, 0.3);
     assert_int_not_equal(
         scene_add_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-0.3, 2.4, -0.3},
@@ -339,7 +337,7 @@ static struct scene *room_scene(void)
         scene_add_light(scene, emitter(SCENE_LIGHT_TRIANGLE, (double[]){-1.9, 0.5, -1},
                                        (double[]){0, 1, 0}, (double[]){0, 0, 1}, 2.0f)),
         SCENE_NONE);
-    add_lamp(scene, 1.5, 2, 2, 0.7f);
+    scene_put_lamp(scene, 1.5, 2, 2, 0.7f);
     return scene;
 }
 

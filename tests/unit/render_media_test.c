@@ -17,7 +17,7 @@ static struct scene *layer_scene(const struct layer *layers, int count)
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = (float)FOV;
     for (int i = 0; i < count; ++i)
-        add_object(scene, box(40, 40, 2 * layers[i].half),
+        add_object(scene, mesh_box(40, 40, 2 * layers[i].half),
                    clear_glass(layers[i].ior, layers[i].priority), 0, 0, 0);
     add_coordinate_wall(scene, -4, 8);
     return scene;
@@ -129,8 +129,8 @@ static struct scene *shell_scene(int count)
     set_sky(scene, 1, 1, 1);
     for (int i = 0; i < count; ++i) {
         double side = 10.0 - 0.5 * i;
-        add_object(scene, box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0), 0,
-                   0, 0);
+        add_object(scene, mesh_box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0),
+                   0, 0, 0);
     }
     return scene;
 }
@@ -165,8 +165,7 @@ static void open_meshes_stay_finite(void **state)
     struct scene *scene = dark_scene((double[]){0, 0.3, 4}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
     for (int i = 0; i < 3; ++i) {
-        struct scene_mesh mesh = {0};
-        assert_int_equal(shape_icosphere(1.0, 3, &mesh), WHIT_OK);
+        struct scene_mesh mesh = mesh_icosphere(1.0, 3);
         uint32_t kept = 0;
         for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
             if (t % 3 == 0)
@@ -204,9 +203,7 @@ static void check_eye(struct scene *scene, const uint32_t *expected, uint32_t co
 
 static struct scene_mesh ball(double radius)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_balls((double[]){0, 0, 0, radius}, 1, &mesh), WHIT_OK);
-    return mesh;
+    return mesh_balls((double[]){0, 0, 0, radius}, 1);
 }
 
 static void camera_knows_its_media(void **state)
@@ -215,25 +212,25 @@ static void camera_knows_its_media(void **state)
     const double inside[3] = {0.1, 0.2, 0.1}, away[3] = {0, 0, -9};
     /* Outside; in a box; in two, of which the inner one is entered last; by priority. */
     struct scene *scene = dark_scene((double[]){0, 0, 5}, away);
-    add_object(scene, box(2, 2, 2), clear_glass(1.5f, 0), 0, 0, 0);
+    add_object(scene, mesh_box(2, 2, 2), clear_glass(1.5f, 0), 0, 0, 0);
     check_eye(scene, NULL, 0);
     for (uint32_t high = 0; high < 2; ++high) {
         scene = dark_scene(inside, away);
-        uint32_t inner = add_object(scene, box(2, 2, 2), clear_glass(1.5f, 1), 0, 0, 0);
-        uint32_t outer = add_object(scene, box(3, 3, 3), clear_glass(1.3f, 1 + high), 0, 0, 0);
-        add_object(scene, box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
+        uint32_t inner = add_object(scene, mesh_box(2, 2, 2), clear_glass(1.5f, 1), 0, 0, 0);
+        uint32_t outer = add_object(scene, mesh_box(3, 3, 3), clear_glass(1.3f, 1 + high), 0, 0, 0);
+        add_object(scene, mesh_box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
         check_eye(scene, high ? (uint32_t[]){inner, outer} : (uint32_t[]){outer, inner}, 2);
     }
     /* In a sphere and a thin box, which has no inside. */
     scene = dark_scene(inside, away);
     struct scene_material thin = clear_glass(1.5f, 0);
     thin.thin_walled = true;
-    add_object(scene, box(4, 4, 4), thin, 0, 0, 0);
+    add_object(scene, mesh_box(4, 4, 4), thin, 0, 0, 0);
     uint32_t round = add_object(scene, ball(1.0), clear_glass(1.5f, 0), 0, 0, 0);
     check_eye(scene, &round, 1);
     /* Below a sheet that ends nowhere: no majority says inside, and nothing breaks. */
     scene = dark_scene(inside, away);
-    add_object(scene, plane(8), clear_glass(1.33f, 0), 0, 1, 0);
+    add_object(scene, mesh_plane(8), clear_glass(1.33f, 0), 0, 1, 0);
     check_eye(scene, NULL, 0);
 }
 
@@ -245,7 +242,7 @@ static void snells_window_is_where_it_should_be(void **state)
     struct scene *scene = dark_scene((double[]){0, -1, 0}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = 2.0f;
     set_sky(scene, 1, 1, 0);
-    add_object(scene, box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
+    add_object(scene, mesh_box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
     const struct render_params params = {.width = 101, .height = 101, .depth = 1, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
@@ -296,7 +293,7 @@ static double convex_chord(bool octahedron, const double eye[3], const double d[
 
 static struct scene_mesh octahedron_mesh(void)
 {
-    struct scene_mesh mesh = empty_mesh(6, 8);
+    struct scene_mesh mesh = mesh_zeroed(6, 8);
     for (uint32_t i = 0; i < 6; ++i)
         mesh.positions[3 * i + i / 2] = i % 2 ? -1.0f : 1.0f;
     for (uint32_t i = 0; i < 8; ++i) {
@@ -326,9 +323,10 @@ static void edges_are_crossed_once(void **state)
         scene->cameras[0].fov_y = (float)FOV;
         set_sky(scene, 1, 1, 1);
         if (way >= 2) /* of lower priority: other surfaces may now be at the same place */
-            add_object(scene, box(0.2, 0.2, 0.2), clear_glass(1.0f, 0), 0, -1, 0);
+            add_object(scene, mesh_box(0.2, 0.2, 0.2), clear_glass(1.0f, 0), 0, -1, 0);
         set_rgb(m.absorption, 1, 0.5f, 0);
-        add_object(scene, octahedron ? octahedron_mesh() : box(2, 2, 4), m, 0, 0, octahedron - 1);
+        add_object(scene, octahedron ? octahedron_mesh() : mesh_box(2, 2, 4), m, 0, 0,
+                   octahedron - 1);
         const struct render_params params = {
             .width = SIDE, .height = SIDE, .depth = 6, .bailout = -1.0};
         struct fixture f = fixture_open(scene, NULL, &params);

@@ -181,8 +181,7 @@ static struct scene *load_strips(void)
     write_picture(folder, "color.png", 188);
     write_picture(folder, "fifth.png", 51);
     write_picture(folder, "half.png", 128);
-    struct scene *scene = scene_create(&fixture_log, "classes");
-    assert_non_null(scene);
+    struct scene *scene = scene_begin(&fixture_log, "classes");
     char *path = string_format("%s/a.obj", folder);
     assert_int_equal(load_model(scene, path, SCENE_NONE, false, false, NULL), WHIT_OK);
     free(path);
@@ -211,21 +210,13 @@ static void light_and_look(struct scene *scene)
     set_rgb(scene->environment.ground, ground);
     scene->has_ambient = true;
     set_rgb(scene->ambient, air);
-    struct scene_light light = {.name = string_copy("sun"),
-                                .kind = SCENE_LIGHT_DIRECTIONAL,
-                                .node = SCENE_NONE,
-                                .direction = {0, -COS_LIGHT, -0.5}};
-    set_rgb(light.color, sun);
-    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    scene_put_sun(scene, 0, -COS_LIGHT, -0.5, 1.0f);
+    set_rgb(scene->lights[0].color, sun);
     /* One pixel a strip, through its middle. */
-    struct scene_camera camera = {.name = string_copy("camera"),
-                                  .kind = SCENE_CAMERA_ORTHOGRAPHIC,
-                                  .node = SCENE_NONE,
-                                  .eye = {0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
-                                  .target = {0.5 * STRIPS, 0, 0},
-                                  .up = {0, 1, 0},
-                                  .height = 1};
-    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+    scene_put_camera(scene, (double[]){0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
+                     (double[]){0.5 * STRIPS, 0, 0}, 0);
+    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].height = 1;
 }
 
 static struct image render_strips(const struct render_params *params)

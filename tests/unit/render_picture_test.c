@@ -7,10 +7,10 @@ static void diffuse_follows_the_cosine(void **state)
     for (int degrees = 0; degrees <= 80; degrees += 20) {
         double angle = degrees * 3.14159265358979 / 180.0;
         struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
-        struct scene_material m = material("floor");
+        struct scene_material m = material_plain("floor");
         set_rgb(m.diffuse, 0.8f, 0.4f, 0.2f);
-        add_object(scene, plane(10), m, 0, 0, 0);
-        add_sun(scene, sin(angle), -cos(angle), 0, 2.0f);
+        add_object(scene, mesh_plane(10), m, 0, 0, 0);
+        scene_put_sun(scene, sin(angle), -cos(angle), 0, 2.0f);
         struct fixture f = fixture_open(scene, NULL, &picture_params);
         struct image image = render(&f);
         for (int c = 0; c < 3; ++c)
@@ -25,10 +25,10 @@ static void lamp_falls_with_the_square(void **state)
     (void)state;
     for (double height = 0.5; height < 5.0; height *= 2.0) {
         struct scene *scene = dark_scene((double[]){0, 9, 0}, (double[]){0, 0, 0});
-        struct scene_material m = material("floor");
+        struct scene_material m = material_plain("floor");
         set_rgb(m.diffuse, 1, 1, 1);
-        add_object(scene, plane(10), m, 0, 0, 0);
-        add_lamp(scene, 0, height, 0, 3.0f);
+        add_object(scene, mesh_plane(10), m, 0, 0, 0);
+        scene_put_lamp(scene, 0, height, 0, 3.0f);
         struct fixture f = fixture_open(scene, NULL, &picture_params);
         struct image image = render(&f);
         assert_near(middle(&image)[0], 3.0 / (height * height), 2e-6);
@@ -41,11 +41,12 @@ static void shadow_ends_where_it_should(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material("grey");
+    struct scene_material m = material_plain("grey");
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, plane(20), m, 0, 0, 0);
-    add_object(scene, box(2, 0.01, 2), m, -3, 1.0, 0); /* its shadow: x from -3 to -1, moved by 1 */
-    add_sun(scene, 1, -1, 0, 1.0f);
+    add_object(scene, mesh_plane(20), m, 0, 0, 0);
+    /* Its shadow: x from -3 to -1, moved by 1. */
+    add_object(scene, mesh_box(2, 0.01, 2), m, -3, 1.0, 0);
+    scene_put_sun(scene, 1, -1, 0, 1.0f);
     struct render_params params = picture_params;
     params.width = 401;
     params.height = 1;
@@ -72,19 +73,19 @@ static void mirror_shows_what_is_behind(void **state)
     (void)state;
     /* A mirror at 45 degrees sends the view up to an unlit wall. */
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
-    struct scene_material mirror = material("mirror"), wall = material("wall");
+    struct scene_material mirror = material_plain("mirror"), wall = material_plain("wall");
     set_rgb(mirror.diffuse, 0, 0, 0);
     set_rgb(mirror.reflection, 0.5f, 0.6f, 0.7f);
     set_rgb(wall.diffuse, 0.25f, 0.5f, 1.0f);
     wall.model = SCENE_MODEL_UNLIT;
-    struct scene_mesh tilted = plane(3);
+    struct scene_mesh tilted = mesh_plane(3);
     for (uint32_t i = 0; i < tilted.vertex_count; ++i)
         tilted.positions[3 * i + 1] = -tilted.positions[3 * i + 2];
     free(tilted.normals);
     tilted.normals = NULL;
     add_object(scene, tilted, mirror, 0, 0, 0);
-    add_object(scene, box(6, 0.1, 6), wall, 0, 5, 0);
-    add_sun(scene, 0, -1, 0, 0.0f);
+    add_object(scene, mesh_box(6, 0.1, 6), wall, 0, 5, 0);
+    scene_put_sun(scene, 0, -1, 0, 0.0f);
     struct fixture f = fixture_open(scene, NULL, &picture_params);
     struct image image = render(&f);
     for (int c = 0; c < 3; ++c)
@@ -105,7 +106,7 @@ static void glass_slab_passes_and_absorbs(void **state)
     (void)state;
     const double ior = 1.5, thickness = 2.0, sigma = 0.3;
     struct scene *scene = dark_scene((double[]){0, 0, 9}, (double[]){0, 0, 0});
-    struct scene_material glass = material("glass"), wall = material("wall");
+    struct scene_material glass = material_plain("glass"), wall = material_plain("wall");
     set_rgb(glass.diffuse, 0, 0, 0);
     set_rgb(glass.transmission, 1, 1, 1);
     set_rgb(glass.absorption, (float)sigma, 0, 0);
@@ -113,8 +114,8 @@ static void glass_slab_passes_and_absorbs(void **state)
     glass.fresnel = true;
     set_rgb(wall.diffuse, 1, 1, 1);
     wall.model = SCENE_MODEL_UNLIT;
-    add_object(scene, box(8, 8, thickness), glass, 0, 0, 0);
-    add_object(scene, box(9, 9, 0.1), wall, 0, 0, -4);
+    add_object(scene, mesh_box(8, 8, thickness), glass, 0, 0, 0);
+    add_object(scene, mesh_box(9, 9, 0.1), wall, 0, 0, -4);
     struct render_params params = picture_params;
     params.depth = 12;
     struct fixture f = fixture_open(scene, NULL, &params);
@@ -139,7 +140,7 @@ static void furnace(bool glass, uint32_t depth, double *lowest, double *highest)
     set_rgb(scene->environment.zenith, 1, 1, 1);
     set_rgb(scene->environment.horizon, 1, 1, 1);
     set_rgb(scene->environment.ground, 1, 1, 1);
-    struct scene_material m = material("lossless");
+    struct scene_material m = material_plain("lossless");
     set_rgb(m.diffuse, 0, 0, 0);
     if (glass) {
         set_rgb(m.transmission, 1, 1, 1);
@@ -148,9 +149,7 @@ static void furnace(bool glass, uint32_t depth, double *lowest, double *highest)
     } else {
         set_rgb(m.reflection, 1, 1, 1);
     }
-    struct scene_mesh sphere = {0};
-    assert_int_equal(shape_sphere(1.2, 48, 24, &sphere), WHIT_OK);
-    add_object(scene, sphere, m, 0, 0, 0);
+    add_object(scene, mesh_sphere(1.2, 48, 24), m, 0, 0, 0);
     struct render_params params = picture_params;
     params.depth = depth;
     params.bailout = -1.0;
@@ -188,18 +187,15 @@ static void furnace_neither_gains_nor_loses(void **state)
 /* A picture of one texel, all channels `value`. */
 static uint32_t add_texel(struct scene *scene, int value)
 {
-    struct scene_texture texture = {.name = string_copy("t"), .width = 1, .height = 1};
-    texture.rgba = array_alloc(1, 4);
-    assert_non_null(texture.rgba);
-    memset(texture.rgba, value, 4);
-    return scene_add_texture(scene, texture);
+    uint8_t texel = (uint8_t)value;
+    return scene_put_texture(scene, 1, 1, (uint8_t[4]){texel, texel, texel, texel});
 }
 
 /* A lit box of metal-rough material that transmits `transmission` times a texture of `texel`. */
 static struct image transmitting_box(float transmission, int texel)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
-    struct scene_material m = material("shell");
+    struct scene_material m = material_plain("shell");
     m.model = SCENE_MODEL_METAL_ROUGH;
     set_rgb(m.diffuse, 0.8f, 0.6f, 0.4f);
     set_rgb(m.specular, 1, 1, 1);
@@ -208,8 +204,8 @@ static struct image transmitting_box(float transmission, int texel)
     m.fresnel = true;
     if (texel >= 0)
         m.textures[SCENE_SLOT_TRANSMISSION].texture = add_texel(scene, texel);
-    add_object(scene, box(4, 4, 0.5), m, 0, 0, 0);
-    add_sun(scene, 0, 0, -1, 1.0f);
+    add_object(scene, mesh_box(4, 4, 0.5), m, 0, 0, 0);
+    scene_put_sun(scene, 0, 0, -1, 1.0f);
     struct fixture f = fixture_open(scene, NULL, &picture_params);
     struct image image = render(&f);
     fixture_close(&f);
@@ -239,7 +235,7 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     set_rgb(scene->environment.zenith, 1, 1, 1);
     set_rgb(scene->environment.horizon, 1, 1, 1);
     set_rgb(scene->environment.ground, 1, 1, 1);
-    struct scene_material m = material("black");
+    struct scene_material m = material_plain("black");
     m.model = SCENE_MODEL_METAL_ROUGH;
     set_rgb(m.diffuse, 0, 0, 0);
     set_rgb(m.specular, tint, tint, tint);
@@ -248,8 +244,8 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     m.metallic = 0.0f;
     m.fresnel = true;
     m.textures[slot].texture = add_texel(scene, texel);
-    add_object(scene, box(4, 4, 0.5), m, 0, 0, 0);
-    add_sun(scene, 0, -1, 0, 0.0f); /* no light of whit's own */
+    add_object(scene, mesh_box(4, 4, 0.5), m, 0, 0, 0);
+    scene_put_sun(scene, 0, -1, 0, 0.0f); /* no light of whit's own */
     struct render_params params = picture_params;
     params.bailout = -1.0;
     struct fixture f = fixture_open(scene, NULL, &params);
@@ -295,8 +291,8 @@ static struct scene *mixed_scene(void)
     struct scene *scene = dark_scene((double[]){1, 2, 7}, (double[]){0, 0.5, 0});
     set_rgb(scene->environment.zenith, 0.2f, 0.4f, 0.9f);
     set_rgb(scene->environment.horizon, 0.8f, 0.9f, 1.0f);
-    struct scene_material floor = material("floor"), mirror = material("mirror"),
-                          glass = material("glass");
+    struct scene_material floor = material_plain("floor"), mirror = material_plain("mirror"),
+                          glass = material_plain("glass");
     set_rgb(floor.diffuse, 0.6f, 0.5f, 0.4f);
     set_rgb(mirror.diffuse, 0.1f, 0.1f, 0.1f);
     set_rgb(mirror.reflection, 0.8f, 0.8f, 0.8f);
@@ -305,24 +301,23 @@ static struct scene *mixed_scene(void)
     set_rgb(glass.diffuse, 0, 0, 0);
     set_rgb(glass.transmission, 0.9f, 1, 0.9f);
     glass.fresnel = true;
-    add_object(scene, plane(12), floor, 0, -1, 0);
-    struct scene_mesh sphere = {0};
-    assert_int_equal(shape_sphere(1.0, 32, 16, &sphere), WHIT_OK);
+    add_object(scene, mesh_plane(12), floor, 0, -1, 0);
+    struct scene_mesh sphere = mesh_sphere(1.0, 32, 16);
     add_object(scene, sphere, mirror, -1.3, 0, 0);
-    assert_int_equal(shape_sphere(1.0, 32, 16, &sphere), WHIT_OK);
+    sphere = mesh_sphere(1.0, 32, 16);
     add_object(scene, sphere, glass, 1.3, 0, 1);
-    add_sun(scene, -1, -2, -1, 0.8f);
-    add_lamp(scene, 3, 4, 3, 6.0f);
+    scene_put_sun(scene, -1, -2, -1, 0.8f);
+    scene_put_lamp(scene, 3, 4, 3, 6.0f);
     return scene;
 }
 
 static struct scene *plain_scene(void)
 {
     struct scene *scene = dark_scene((double[]){1, 2, 7}, (double[]){0, 0.5, 0});
-    struct scene_material clay = material("clay");
+    struct scene_material clay = material_plain("clay");
     set_rgb(clay.diffuse, 0.6f, 0.5f, 0.4f);
-    add_object(scene, box(2, 2, 2), clay, 0.1, 0, 0);
-    add_sun(scene, -1, -2, -1, 0.8f);
+    add_object(scene, mesh_box(2, 2, 2), clay, 0.1, 0, 0);
+    scene_put_sun(scene, -1, -2, -1, 0.8f);
     return scene;
 }
 
@@ -364,7 +359,7 @@ static void cut_loops_are_reported(void **state)
     (void)state;
     struct scene *scene = plain_scene();
     for (int i = 0; i < 40000; ++i)
-        add_lamp(scene, 3 + 0.001 * i, 4, 3, 0.001f);
+        scene_put_lamp(scene, 3 + 0.001 * i, 4, 3, 0.001f);
     struct render_params params = {.width = 32, .height = 32, .depth = 0};
     struct fixture f = fixture_open(scene, NULL, &params);
     whit_result result = renderer_render(f.renderer);

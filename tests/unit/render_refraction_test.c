@@ -28,7 +28,7 @@ static void slab_keeps_directions(void **state)
     (void)state;
     struct scene *scene = lens_scene((double[]){0, 0, 5});
     set_height_sky(scene);
-    add_object(scene, box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
+    add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     const struct render_params params = {.width = 24, .height = 24, .depth = 8, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
@@ -51,7 +51,7 @@ static void slab_moves_rays_aside(void **state)
 {
     (void)state;
     struct scene *scene = lens_scene((double[]){0, 0, 5});
-    add_object(scene, box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
+    add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     add_coordinate_wall(scene, -2, 8);
     const struct render_params params = {.width = 24, .height = 24, .depth = 2, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
@@ -121,8 +121,7 @@ static void ball_bends_rays_to_its_focus(void **state)
     double spread[3] = {0};
     for (int w = 0; w < 3; ++w) {
         struct scene *scene = lens_scene((double[]){0, 0, 5});
-        struct scene_mesh ball = {0};
-        assert_int_equal(shape_balls((double[]){0, 0, 0, 1}, 1, &ball), WHIT_OK);
+        struct scene_mesh ball = mesh_balls((double[]){0, 0, 0, 1}, 1);
         add_object(scene, ball, clear_glass(1.5f, 0), 0, 0, 0);
         add_coordinate_wall(scene, -walls[w], 4);
         const struct render_params params = {
@@ -176,13 +175,13 @@ static void leave_mirrors(double turn)
     affine_point(&turned, after, out);
     struct scene *scene = dark_scene((double[]){0, 0, 0}, target);
     set_height_sky(scene);
-    struct scene_material mirror = material("mirror");
+    struct scene_material mirror = material_plain("mirror");
     set_rgb(mirror.diffuse, 0, 0, 0);
     set_rgb(mirror.reflection, 1, 1, 1);
     for (int i = 0; i < 2; ++i) {
         double at[3];
         affine_point(&turned, (double[]){i ? 1.5 : -1.5, 0, 0}, at);
-        add_object(scene, box(1, 13, 13), mirror, at[0], at[1], at[2]);
+        add_object(scene, mesh_box(1, 13, 13), mirror, at[0], at[1], at[2]);
         memcpy(scene->nodes[scene->node_count - 1].rotation, q, sizeof q);
     }
     const struct render_params params = {.width = 1, .height = 1, .depth = 255, .bailout = -1.0};
@@ -219,7 +218,7 @@ static void beer_from_nothing_to_infinity(void **state)
         set_sky(scene, 1, 1, 1);
         struct scene_material m = clear_glass(1.0f, 0);
         set_rgb(m.absorption, 0, absorptions[i], 1.0f);
-        add_object(scene, box(20, 20, 1), m, 0, 0, 0);
+        add_object(scene, mesh_box(20, 20, 1), m, 0, 0, 0);
         const struct render_params params = {.width = 1, .height = 1, .depth = 4, .bailout = -1.0};
         struct fixture f = fixture_open(scene, NULL, &params);
         struct image image = render(&f);
@@ -246,7 +245,7 @@ static void endless_media_are_dark(void **state)
     set_sky(scene, 1, 1, 1);
     struct scene_material m = clear_glass(1.0f, 0);
     set_rgb(m.absorption, 0, 1e-3f, 1e-9f);
-    struct scene_mesh cube = box(20, 20, 20);
+    struct scene_mesh cube = mesh_box(20, 20, 20);
     /* Without the side that the camera looks at, -z. */
     uint32_t kept = 0;
     for (uint32_t t = 0; t < cube.triangle_count; ++t) {
@@ -284,12 +283,12 @@ static void paths_are_reversible(void **state)
             double eye[3] = {way ? tangent : -slopes[i], way ? -1 : 1, 0};
             struct scene *scene = dark_scene(eye, (double[]){0, 0, 0});
             scene->cameras[0].fov_y = 0.01f;
-            add_object(scene, box(80, 40, 80), clear_glass(1.5f, 0), 0, -20, 0);
-            struct scene_material lamp = material("lamp");
+            add_object(scene, mesh_box(80, 40, 80), clear_glass(1.5f, 0), 0, -20, 0);
+            struct scene_material lamp = material_plain("lamp");
             lamp.model = SCENE_MODEL_UNLIT;
             set_rgb(lamp.diffuse, 1, 1, 1);
             double far = way ? 3 : -3;
-            add_object(scene, box(1, 1, 1), lamp, way ? -slopes[i] * 3 : tangent * 3, far, 0);
+            add_object(scene, mesh_box(1, 1, 1), lamp, way ? -slopes[i] * 3 : tangent * 3, far, 0);
             const struct render_params params = {
                 .width = 1, .height = 1, .depth = 1, .bailout = -1.0};
             struct fixture f = fixture_open(scene, NULL, &params);

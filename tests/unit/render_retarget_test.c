@@ -24,8 +24,7 @@ enum { STEPS = sizeof steps / sizeof *steps };
 static struct scene *load(const char *name)
 {
     char path[512];
-    struct scene *scene = scene_create(&fixture_log, name);
-    assert_non_null(scene);
+    struct scene *scene = scene_begin(&fixture_log, name);
     snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, name);
     assert_int_equal(load_scene_file(scene, path, NULL), WHIT_OK);
     return scene;

@@ -4,30 +4,26 @@
 
 static struct scene_mesh torus(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(0.8, 0.3, 24, 12, &mesh), WHIT_OK);
-    return mesh;
+    return mesh_torus(0.8, 0.3, 24, 12);
 }
 
 /* Shadows, mirror images, glass in glass, smooth normals, analytic balls. */
 static struct scene *still_life(bool lamp)
 {
     struct scene *scene = dark_scene((double[]){0.3, 2.1, 6.2}, (double[]){0.1, 0.2, 0});
-    struct scene_mesh ball = {0};
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_sky(scene, 0.2f, 0.5f, 0.1f);
     set_rgb(m.diffuse, 0.8f, 0.7f, 0.6f);
-    add_object(scene, plane(9), m, 0, -0.9, 0);
+    add_object(scene, mesh_plane(9), m, 0, -0.9, 0);
     add_object(scene, torus(), m, -1.3, 0.1, -0.4);
-    m = material("mirror");
+    m = material_plain("mirror");
     set_rgb(m.reflection, 0.9f, 0.9f, 0.9f);
-    add_object(scene, box(1.1, 1.7, 0.9), m, 1.7, 0.05, -0.8);
-    assert_int_equal(shape_balls((double[]){0, 0, 0, 0.8}, 1, &ball), WHIT_OK);
-    add_object(scene, ball, clear_glass(1.5f, 0), 0.3, 0.1, 0.7);
-    add_object(scene, box(0.5, 0.4, 0.5), clear_glass(1.33f, 1), 0.3, 0.1, 0.7);
-    add_sun(scene, 0.4, -1, -0.3, 0.6f);
+    add_object(scene, mesh_box(1.1, 1.7, 0.9), m, 1.7, 0.05, -0.8);
+    add_object(scene, mesh_balls((double[]){0, 0, 0, 0.8}, 1), clear_glass(1.5f, 0), 0.3, 0.1, 0.7);
+    add_object(scene, mesh_box(0.5, 0.4, 0.5), clear_glass(1.33f, 1), 0.3, 0.1, 0.7);
+    scene_put_sun(scene, 0.4, -1, -0.3, 0.6f);
     if (lamp)
-        add_lamp(scene, -2.2, 3.1, 2.3, 9.0f);
+        scene_put_lamp(scene, -2.2, 3.1, 2.3, 9.0f);
     return scene;
 }
 

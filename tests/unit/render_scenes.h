@@ -7,28 +7,20 @@
 /* One mesh, not moved. */
 static inline struct scene *terrain_scene(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_terrain(10.0, 2.0, 40, 3, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "terrain");
+    scene_put(scene, mesh_terrain(10.0, 2.0, 40, 3), NULL);
     return scene;
 }
 
 /* Forty rings, turned, stretched, some mirrored. */
 static inline struct scene *ring_scene(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
-    uint32_t random = 5;
+    struct scene *scene = scene_begin(&fixture_log, "rings");
+    uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+    uint64_t random = 5;
     for (int i = 0; i < 40; ++i) {
-        double t[3], q[4], s[3] = {i % 3 == 0 ? -1.0 : 1.0, 0.6, 1.4};
-        for (int k = 0; k < 3; ++k)
-            t[k] = 4.0 * (double)fixture_signed(&random);
-        for (int k = 0; k < 4; ++k)
-            q[k] = (double)fixture_signed(&random);
-        struct affine placed = affine_from_trs(t, q, s);
-        fixture_place(scene, &placed);
+        struct affine placed = placement_random(&random, 4.0, i % 3 == 0);
+        scene_put_again(scene, ring, &(struct put){.matrix = &placed});
     }
     return scene;
 }
@@ -37,36 +29,25 @@ static inline struct scene *ring_scene(void)
    and 4 * sides^2 a ring. */
 static inline struct scene *glass_scene_of(uint32_t cells, uint32_t sides)
 {
-    struct scene_mesh ring = {0}, ground = {0};
-    assert_int_equal(shape_torus(1.0, 0.3, 2 * sides, sides, &ring), WHIT_OK);
-    assert_int_equal(shape_terrain(10.0, 1.0, cells, 3, &ground), WHIT_OK);
-    struct scene *scene = fixture_scene(ring);
-    struct scene_material glass;
-    scene_material_init(&glass, "glass");
+    struct scene *scene = scene_begin(&fixture_log, "glass");
+    struct scene_material glass = material_grey("glass");
     for (int k = 0; k < 3; ++k) {
         glass.transmission[k] = 0.9f;
         glass.reflection[k] = 0.3f;
     }
-    uint32_t index = scene_add_material(scene, glass);
-    assert_int_not_equal(index, SCENE_NONE);
-    for (uint32_t i = 0; i < scene->meshes[0].triangle_count; ++i)
-        scene->meshes[0].materials[i] = index;
+    scene_put_material(scene, material_grey("grey"));
+    uint32_t index = scene_put_material(scene, glass);
+    uint32_t ring =
+        scene_put_mesh(scene, mesh_wearing(mesh_torus(1.0, 0.3, 2 * sides, sides), index));
     for (int i = 0; i < 3; ++i) {
         double t[3] = {1.5 * (i - 1), 1.0, 0.4 * i}, q[4] = {0.5, 0.3 * i, 0, 1}, s[3] = {1, 1, 1};
         struct affine placed = affine_from_trs(t, q, s);
-        fixture_place(scene, &placed);
+        scene_put_again(scene, ring, &(struct put){.matrix = &placed});
     }
-    ground.name = string_copy("ground");
-    struct scene_instance instance = {
-        .name = string_copy("ground"), .mesh = scene_add_mesh(scene, ground), .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    scene_put(scene, mesh_terrain(10.0, 1.0, cells, 3), NULL);
     for (int i = 0; i < 2; ++i) {
-        struct scene_light light = {.name = string_copy("lamp"),
-                                    .kind = SCENE_LIGHT_POINT,
-                                    .node = SCENE_NONE,
-                                    .position = {i ? -4 : 5, 6, 3},
-                                    .color = {0.6f, 0.6f, 0.6f}};
-        assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+        scene_put_lamp(scene, i ? -4 : 5, 6, 3, 0.6f);
+        scene->lights[i].falloff = false;
     }
     return scene;
 }

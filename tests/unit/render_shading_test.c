@@ -9,12 +9,7 @@ static const struct render_params all_params = {
 /* A texture of one texel. */
 static uint32_t add_texel(struct scene *scene, uint8_t r, uint8_t g, uint8_t b)
 {
-    struct scene_texture texture = {.name = string_copy("texel"), .width = 1, .height = 1};
-    const uint8_t rgba[4] = {r, g, b, 255};
-    texture.rgba = array_alloc(1, sizeof rgba);
-    assert_non_null(texture.rgba);
-    memcpy(texture.rgba, rgba, sizeof rgba);
-    return scene_add_texture(scene, texture);
+    return scene_put_texture(scene, 1, 1, (uint8_t[4]){r, g, b, 255});
 }
 
 /* All channels of all pixels are `expected`. */
@@ -47,13 +42,13 @@ static struct scene *floor_scene(struct scene_mesh mesh, struct scene_material m
 {
     struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
     add_object(scene, mesh, m, 0, 0, 0);
-    add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+    scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
     return scene;
 }
 
 static struct scene_material white(void)
 {
-    struct scene_material m = material("white");
+    struct scene_material m = material_plain("white");
     set_rgb(m.diffuse, 1, 1, 1);
     return m;
 }
@@ -71,11 +66,11 @@ static void unusable_normals_are_those_of_the_faces(void **state)
                                      {0, INFINITY, 0}, {0, -INFINITY, 1}, {NAN, NAN, NAN},
                                      {0, 1e-44f, 0},   {0, 3.4e38f, 0}}; /* these have one */
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-        struct scene_mesh mesh = plane(10);
+        struct scene_mesh mesh = mesh_plane(10);
         fill_normals(&mesh, wrong[i][0], wrong[i][1], wrong[i][2]);
         assert_even(floor_scene(mesh, white()), COS_SUN, 1e-6);
     }
-    struct scene_mesh flat = plane(10);
+    struct scene_mesh flat = mesh_plane(10);
     free(flat.normals);
     flat.normals = NULL;
     assert_even(floor_scene(flat, white()), COS_SUN, 1e-6);
@@ -86,7 +81,7 @@ static void lengths_of_normals_do_not_matter(void **state)
 {
     (void)state;
     static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
-    struct scene_mesh mesh = plane(10), even = plane(10);
+    struct scene_mesh mesh = mesh_plane(10), even = mesh_plane(10);
     for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
         float x = i % 2 ? 0.6f : 0.0f, y = i % 2 ? 0.8f : 1.0f;
         set_rgb(&even.normals[3 * i], x, y, 0);
@@ -111,7 +106,7 @@ static void turned_normals_shade_the_same(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; ++i) {
-        struct scene_mesh mesh = plane(10);
+        struct scene_mesh mesh = mesh_plane(10);
         if (i & 1)
             fill_normals(&mesh, 0, -1, 0);
         for (uint32_t t = 0; (i & 2) && t < mesh.triangle_count; ++t) {
@@ -127,16 +122,16 @@ static void turned_normals_shade_the_same(void **state)
 static void averted_normals_give_way(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = plane(40);
+    struct scene_mesh mesh = mesh_plane(40);
     fill_normals(&mesh, 0, 0.3f, -1);
     struct scene *scene = dark_scene((double[]){0, 1, 3}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = 0.1f;
     add_object(scene, mesh, white(), 0, 0, 0);
-    add_sun(scene, 0, -1, 0, 1.0f);
+    scene_put_sun(scene, 0, -1, 0, 1.0f);
     assert_even(scene, 1.0, 1e-6);
     /* Mirrors, glass and highlights under such normals: finite, and no more than there is. */
     for (int kind = 0; kind < 3; ++kind) {
-        struct scene_mesh again = plane(40);
+        struct scene_mesh again = mesh_plane(40);
         struct scene_material m = white();
         fill_normals(&again, kind == 1 ? 5.0f : 0.0f, 0.01f, -1);
         set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
@@ -153,14 +148,14 @@ static void averted_normals_give_way(void **state)
         scene = dark_scene((double[]){0, 1, 3}, (double[]){0, 0, 0});
         set_rgb(scene->environment.zenith, 1, 1, 1);
         add_object(scene, again, m, 0, 0, 0);
-        add_sun(scene, 0.3, -1, 0.2, 1.0f);
+        scene_put_sun(scene, 0.3, -1, 0.2, 1.0f);
         assert_sane(scene, 4.0);
     }
 }
 
 static struct scene *textured_floor(const float uvs[4][2], bool bent)
 {
-    struct scene_mesh mesh = plane(10);
+    struct scene_mesh mesh = mesh_plane(10);
     assert_int_equal(mesh.vertex_count, 4);
     if (uvs) {
         memcpy(mesh.uvs[0], uvs, 8 * sizeof(float));
@@ -174,7 +169,7 @@ static struct scene *textured_floor(const float uvs[4][2], bool bent)
     if (bent)
         m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 240, 128, 180);
     add_object(scene, mesh, m, 0, 0, 0);
-    add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+    scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
     return scene;
 }
 
@@ -212,7 +207,7 @@ static void each_texture_has_its_coordinates(void **state)
     (void)state;
     static const uint8_t diffuse[2] = {200, 90}, emission[2] = {60, 140};
     for (uint32_t sets = 0; sets < 4; ++sets) {
-        struct scene_mesh mesh = plane(10);
+        struct scene_mesh mesh = mesh_plane(10);
         mesh.uvs[1] = array_alloc(mesh.vertex_count, 2 * sizeof *mesh.uvs[1]);
         assert_true(mesh.uvs[0] && mesh.uvs[1]);
         for (uint32_t i = 0; i < 2 * mesh.vertex_count; ++i) {
@@ -227,7 +222,7 @@ static void each_texture_has_its_coordinates(void **state)
         m.textures[SCENE_SLOT_DIFFUSE].uv_set = sets & 1;
         m.textures[SCENE_SLOT_EMISSION].uv_set = sets >> 1;
         add_object(scene, mesh, m, 0, 0, 0);
-        add_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
+        scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
         assert_even(scene, linear_of(diffuse[sets & 1]) * COS_SUN + linear_of(emission[sets >> 1]),
                     2e-6);
     }
@@ -240,7 +235,7 @@ static void masks_heed_the_alpha_of_vertices(void **state)
     (void)state;
     static const float alphas[] = {0.6f, 0.4f};
     for (int i = 0; i < 2; ++i) {
-        struct scene_mesh mesh = plane(10);
+        struct scene_mesh mesh = mesh_plane(10);
         mesh.colors = array_alloc(mesh.vertex_count, 4 * sizeof *mesh.colors);
         assert_non_null(mesh.colors);
         for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -264,7 +259,7 @@ static void cross_of(const double a[3], const double b[3], double out[3])
 /* A square across `n`, with texture coordinates along its sides. */
 static struct scene_mesh square_across(const double n[3])
 {
-    struct scene_mesh mesh = plane(10);
+    struct scene_mesh mesh = mesh_plane(10);
     double aside[3], up[3];
     int least = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2)
                                         : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
@@ -311,7 +306,7 @@ static void frames_stand_in_every_direction(void **state)
         struct scene_material m = white();
         m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 204, 128, 230);
         add_object(scene, square_across(n), m, 0, 0, 0);
-        add_sun(scene, -n[0], -n[1], -n[2], 1.0f);
+        scene_put_sun(scene, -n[0], -n[1], -n[2], 1.0f);
         assert_even(scene, expected, 2e-6);
     }
 }

@@ -9,9 +9,9 @@ static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
 static struct scene *white_floor(void)
 {
     struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, plane(40), m, 0, 0, 0);
+    add_object(scene, mesh_plane(40), m, 0, 0, 0);
     return scene;
 }
 
@@ -30,7 +30,7 @@ static float middle_of(struct scene *scene, struct render_params params, int cha
 static struct scene *pane_scene(bool blends)
 {
     struct scene *scene = white_floor();
-    struct scene_material m = material("pane");
+    struct scene_material m = material_plain("pane");
     m.thin_walled = true;
     if (blends) {
         m.alpha = SCENE_ALPHA_BLEND;
@@ -40,8 +40,8 @@ static struct scene *pane_scene(bool blends)
         set_rgb(m.transmission, 1.0f, 0.5f, 0.0f);
         use_texture(&m, SCENE_SLOT_TRANSMISSION, add_two_texels(scene, 255, 64));
     }
-    add_object(scene, plane(2), m, -5, 5, 0);
-    add_sun(scene, 1, -1, 0, 1.0f);
+    add_object(scene, mesh_plane(2), m, -5, 5, 0);
+    scene_put_sun(scene, 1, -1, 0, 1.0f);
     return scene;
 }
 
@@ -91,12 +91,12 @@ static const float sigma[3] = {0.3f, 0.7f, 1.5f};
 /* A block of glass that does not bend, 1 high, its middle at `y`. */
 static void add_block(struct scene *scene, double height, double y)
 {
-    struct scene_material m = material("glass");
+    struct scene_material m = material_plain("glass");
     set_rgb(m.diffuse, 0, 0, 0);
     set_rgb(m.transmission, 1, 1, 1);
     memcpy(m.absorption, sigma, sizeof sigma);
     m.ior = 1.0f;
-    add_object(scene, box(6, height, 6), m, 0, y, 0);
+    add_object(scene, mesh_box(6, height, 6), m, 0, y, 0);
 }
 
 /* What absorbs `length` on the way of the light and `seen` on that of the eye leaves exp(-sigma
@@ -122,34 +122,34 @@ static void bodies_absorb_along_the_way(void **state)
     /* A sun, straight and slanting; a lamp. */
     struct scene *scene = white_floor();
     add_block(scene, 1.0, 2.0);
-    add_sun(scene, 0, -1, 0, 2.0f);
+    scene_put_sun(scene, 0, -1, 0, 2.0f);
     assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
     scene = white_floor();
     add_block(scene, 1.0, 2.0);
-    add_sun(scene, 1, -2, 0, 2.0f);
+    scene_put_sun(scene, 1, -2, 0, 2.0f);
     assert_absorbed(scene, beside, 2.0 / slant, slant, 0.0);
     scene = white_floor();
     add_block(scene, 1.0, 2.0);
-    add_lamp(scene, 0, 5, 0, 50.0f);
+    scene_put_lamp(scene, 0, 5, 0, 50.0f);
     assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
     /* The lamp inside the block. */
     scene = white_floor();
     add_block(scene, 2.0, 2.0);
-    add_lamp(scene, 0, 2, 0, 8.0f);
+    scene_put_lamp(scene, 0, 2, 0, 8.0f);
     assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
     /* The floor inside the block, the sun, the lamp outside and inside. */
     const char *above = "0,8,0,0,0,0,0,0,-1,0.01";
     scene = white_floor();
     add_block(scene, 2.0, 0.0);
-    add_sun(scene, 0, -1, 0, 2.0f);
+    scene_put_sun(scene, 0, -1, 0, 2.0f);
     assert_absorbed(scene, above, 2.0, 1.0, 1.0);
     scene = white_floor();
     add_block(scene, 2.0, 0.0);
-    add_lamp(scene, 0, 2, 0, 8.0f);
+    scene_put_lamp(scene, 0, 2, 0, 8.0f);
     assert_absorbed(scene, above, 2.0, 1.0, 1.0);
     scene = white_floor();
     add_block(scene, 2.0, 0.0);
-    add_lamp(scene, 0, 0.5, 0, 0.5f);
+    scene_put_lamp(scene, 0, 0.5, 0, 0.5f);
     assert_absorbed(scene, above, 2.0, 0.5, 1.0);
 }
 
@@ -181,12 +181,10 @@ static void knobs_make_shadows_opaque(void **state)
 static struct scene *ball_scene(uint32_t segments)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
-    struct scene_material m = material("ball");
-    struct scene_mesh ball = {0};
+    struct scene_material m = material_plain("ball");
     set_rgb(m.diffuse, 1, 1, 1);
-    assert_int_equal(shape_sphere(1.0, segments, segments / 2, &ball), WHIT_OK);
-    add_object(scene, ball, m, 0, 0, 0);
-    add_sun(scene, 1, -0.3, -0.2, 1.0f);
+    add_object(scene, mesh_sphere(1.0, segments, segments / 2), m, 0, 0, 0);
+    scene_put_sun(scene, 1, -0.3, -0.2, 1.0f);
     return scene;
 }
 
@@ -242,8 +240,8 @@ static void coarse_balls_are_shaded_like_fine_ones(void **state)
 static struct scene *flat_scene(bool normals)
 {
     struct scene *scene = white_floor();
-    struct scene_material m = material("box");
-    struct scene_mesh boxes = box(1.3, 0.7, 1.1);
+    struct scene_material m = material_plain("box");
+    struct scene_mesh boxes = mesh_box(1.3, 0.7, 1.1);
     set_rgb(m.diffuse, 1, 1, 1);
     free(boxes.normals);
     boxes.normals = NULL;
@@ -267,8 +265,8 @@ static struct scene *flat_scene(bool normals)
     add_object(scene, boxes, m, 0.1, 0.9, 0.2);
     scene->nodes[scene->node_count - 1].rotation[0] = 0.3;
     scene->nodes[scene->node_count - 1].rotation[3] = 0.95;
-    add_lamp(scene, 2, 3, 1, 9.0f);
-    add_sun(scene, 1, -1, 0.4, 0.3f);
+    scene_put_lamp(scene, 2, 3, 1, 9.0f);
+    scene_put_sun(scene, 1, -1, 0.4, 0.3f);
     return scene;
 }
 
@@ -320,17 +318,12 @@ static void closed_rooms_stay_dark(void **state)
                                       {1.05, 0, 0},  {-2, -3, 0.5},   {0.99, 1.2, 1.2}};
     for (int shape = 0; shape < 2; ++shape) {
         struct scene *scene = dark_scene((double[]){0.3, 0.2, 0.1}, (double[]){0.3, 0.2, -1});
-        struct scene_material m = material("room");
-        struct scene_mesh room = {0};
+        struct scene_material m = material_plain("room");
         set_rgb(m.diffuse, 1, 1, 1);
         scene->cameras[0].fov_y = 2.4f;
-        if (shape == 0)
-            room = round_box();
-        else
-            assert_int_equal(shape_sphere(1.0, 10, 6, &room), WHIT_OK);
-        add_object(scene, room, m, 0, 0, 0);
+        add_object(scene, shape == 0 ? round_box() : mesh_sphere(1.0, 10, 6), m, 0, 0, 0);
         for (size_t i = 0; i < sizeof lamps / sizeof *lamps; ++i)
-            add_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
+            scene_put_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
         struct render_params params = {.width = 100, .height = 100};
         struct fixture f = fixture_open(scene, NULL, &params);
         struct image image = render(&f);
@@ -348,7 +341,7 @@ static void closed_rooms_stay_dark(void **state)
 static struct scene *catcher_scene(bool lit)
 {
     struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material("catcher"), pane = material("pane");
+    struct scene_material m = material_plain("catcher"), pane = material_plain("pane");
     set_rgb(scene->environment.zenith, 0.5f, 0.25f, 0.75f);
     set_rgb(scene->environment.horizon, 0.5f, 0.25f, 0.75f);
     set_rgb(scene->environment.ground, 0.5f, 0.25f, 0.75f);
@@ -356,14 +349,14 @@ static struct scene *catcher_scene(bool lit)
     set_rgb(m.diffuse, 0.1f, 0, 0);
     set_rgb(pane.transmission, 1.0f, 0.25f, 0.25f);
     pane.thin_walled = true;
-    add_object(scene, plane(40), m, 0, 0, 0);
-    add_object(scene, plane(30), m, 0, 7, 0); /* one above casts none */
-    add_object(scene, box(1, 0.1, 4), pane, -4.5, 5, 0);
-    add_object(scene, box(1, 0.1, 4), material("box"), -6, 5, 0);
+    add_object(scene, mesh_plane(40), m, 0, 0, 0);
+    add_object(scene, mesh_plane(30), m, 0, 7, 0); /* one above casts none */
+    add_object(scene, mesh_box(1, 0.1, 4), pane, -4.5, 5, 0);
+    add_object(scene, mesh_box(1, 0.1, 4), material_plain("box"), -6, 5, 0);
     if (lit)
-        add_sun(scene, 1, -1, 0, 3.0f);
+        scene_put_sun(scene, 1, -1, 0, 3.0f);
     else
-        add_lamp(scene, 0, -5, 0, 1.0f); /* below */
+        scene_put_lamp(scene, 0, -5, 0, 1.0f); /* below */
     return scene;
 }
 
@@ -422,14 +415,14 @@ static void cut_walks_through_sheets_are_reported(void **state)
     for (int lit = 0; lit < 2; ++lit) {
         struct scene *scene =
             lit ? white_floor() : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
-        struct scene_material m = material("sheet");
+        struct scene_material m = material_plain("sheet");
         m.alpha = lit ? SCENE_ALPHA_BLEND : SCENE_ALPHA_MASK;
         m.alpha_cutoff = 0.5f;
         m.opacity = lit ? 1e-3f : 0.0f; /* 1/64 stop is more: nothing is lost */
         add_object(scene, sheets(70000, lit ? 10 : -9), m, 0, 0, 0);
         set_rgb(scene->environment.horizon, 0.5f, 0.5f, 0.5f);
         set_rgb(scene->environment.ground, 0.5f, 0.5f, 0.5f);
-        add_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);
+        scene_put_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);
         const struct render_params params = {.width = 1, .height = 1, .depth = 2};
         struct fixture f = fixture_open(scene, NULL, &params);
         whit_result result = renderer_render(f.renderer);
@@ -480,15 +473,14 @@ static uint32_t lit_pixels(double offset, uint32_t ulps)
     for (int k = 0; k < 3; ++k)
         eye[k] = offset + 1.5 * n[k];
     struct scene *scene = dark_scene(eye, middle_of_floor);
-    struct scene_material white = material("floor"), lid = material("lid");
+    struct scene_material white = material_plain("floor"), lid = material_plain("lid");
     set_rgb(white.diffuse, 1, 1, 1);
     lid.one_sided = true;
     add_object(scene, sheets_mesh(offset, ulps), white, 0, 0, 0);
-    lid.name = string_copy("lid");
-    uint32_t index = scene_add_material(scene, lid);
+    uint32_t index = scene_put_material(scene, lid);
     struct scene_mesh *mesh = &scene->meshes[scene->mesh_count - 1];
     mesh->materials[2] = mesh->materials[3] = index;
-    add_sun(scene, -0.6, 0.48, -0.64, 1.0f);
+    scene_put_sun(scene, -0.6, 0.48, -0.64, 1.0f);
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
     uint32_t lit = 0;

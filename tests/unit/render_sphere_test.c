@@ -45,14 +45,14 @@ static void spheres_equal_twin(void **state)
 {
     (void)state;
     random_state = 11;
-    struct scene *scene = fixture_scene(scattered_spheres(300, 1.0, 0.3));
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "spheres");
+    scene_put(scene, scattered_spheres(300, 1.0, 0.3), NULL);
     check_twin(scene, NULL, "one mesh");
-    scene = fixture_scene(scattered_spheres(40, 1.0, 0.3));
-    fixture_place(scene, NULL);
+    scene = scene_begin(&fixture_log, "spheres");
+    scene_put(scene, scattered_spheres(40, 1.0, 0.3), NULL);
     for (int i = 0; i < 12; ++i) {
         struct affine placed = placement_random(&random_state, 1.5, i % 3 == 0);
-        fixture_place(scene, &placed);
+        scene_put_again(scene, 0, &(struct put){.matrix = &placed});
     }
     check_twin(scene, NULL, "instances");
 }
@@ -63,54 +63,33 @@ static void mixed_scene_equals_twin(void **state)
     (void)state;
     random_state = 12;
     const struct accel_params spatial = {.mesh = {.builder = BVH_SPATIAL}};
-    struct scene *scene = fixture_scene(scattered_spheres(60, 1.0, 0.3));
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
-    uint32_t ring = scene_add_mesh(scene, mesh);
-    for (int i = 0; i < 8; ++i) {
+    struct scene *scene = scene_begin(&fixture_log, "spheres");
+    scene_put_mesh(scene, scattered_spheres(60, 1.0, 0.3));
+    scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+    for (uint32_t i = 0; i < 8; ++i) {
         struct affine placed = placement_random(&random_state, 1.0, i % 3 == 0);
-        fixture_place(scene, &placed);
-        scene->instances[i].mesh = i % 2 ? ring : 0;
+        scene_put_again(scene, i % 2, &(struct put){.matrix = &placed});
     }
     check_twin(scene, &spatial, "spheres and rings");
 }
 
 /* ---- Pictures ---- */
 
-static void dress(struct scene *scene, struct scene_mesh mesh, struct scene_material m,
-                  const struct affine *local)
-{
-    m.name = string_copy("material");
-    uint32_t index = scene_add_material(scene, m);
-    assert_int_not_equal(index, SCENE_NONE);
-    for (uint32_t i = 0; i < scene_mesh_primitives(&mesh); ++i)
-        mesh.materials[i] = index;
-    struct scene_instance instance = {
-        .name = string_copy("object"), .mesh = scene_add_mesh(scene, mesh), .node = SCENE_NONE};
-    if (local) {
-        instance.has_local = true;
-        instance.local = *local;
-    }
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
-}
-
 /* A checker with a stripe across it, so that a picture turned or mirrored is another one. */
 static uint32_t add_checker(struct scene *scene)
 {
     enum { SIZE = 64 };
-    struct scene_texture texture = {.name = string_copy("checker"), .width = SIZE, .height = SIZE};
-    texture.rgba = array_alloc((size_t)SIZE * SIZE, 4);
-    assert_non_null(texture.rgba);
+    uint8_t rgba[4 * SIZE * SIZE];
     for (uint32_t i = 0; i < SIZE * SIZE; ++i) {
         uint32_t x = i % SIZE, y = i / SIZE;
         bool light = ((x / 8 + y / 8) & 1) != 0, stripe = x > 16 && x < 24 && y < 40;
-        texture.rgba[4 * i] = stripe ? 255 : light ? 220 : 60;
-        texture.rgba[4 * i + 1] = stripe ? 30 : light ? 210 : 90;
-        texture.rgba[4 * i + 2] = (uint8_t)(4 * y);
+        rgba[4 * i] = stripe ? 255 : light ? 220 : 60;
+        rgba[4 * i + 1] = stripe ? 30 : light ? 210 : 90;
+        rgba[4 * i + 2] = (uint8_t)(4 * y);
         /* Holes of a mask, in every other square. */
-        texture.rgba[4 * i + 3] = light ? 255 : 0;
+        rgba[4 * i + 3] = light ? 255 : 0;
     }
-    return scene_add_texture(scene, texture);
+    return scene_put_texture(scene, SIZE, SIZE, rgba);
 }
 
 enum look { LOOK_TEXTURE, LOOK_MASK, LOOK_BUMP, LOOK_GLASS, LOOK_COUNT };
@@ -120,7 +99,7 @@ static struct scene *ball_scene(enum look look, bool fine, bool stretched)
 {
     const double eye[3] = {0.4, 0.8, 3.6}, target[3] = {0, 0, 0};
     struct scene *scene = dark_scene(eye, target);
-    struct scene_material m = material("ball"), floor = material("floor");
+    struct scene_material m = material_plain("ball"), floor = material_plain("floor");
     struct scene_mesh mesh = {0};
     uint32_t checker = add_checker(scene);
     set_rgb(m.diffuse, 0.8f, 0.8f, 0.8f);
@@ -135,20 +114,18 @@ static struct scene *ball_scene(enum look look, bool fine, bool stretched)
         m.alpha_cutoff = 0.5f;
     }
     if (fine)
-        assert_int_equal(shape_sphere(1.0, 512, 256, &mesh), WHIT_OK);
+        mesh = mesh_sphere(1.0, 512, 256);
     else
-        assert_int_equal(shape_balls((const double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
+        mesh = mesh_balls((const double[]){0, 0, 0, 1}, 1);
     const double t[3] = {0.1, 0.05, 0}, q[4] = {0.2, 0.3, 0.1, 0.9}, s[3] = {1.2, 0.7, 0.9};
     const double one[3] = {1, 1, 1};
     struct affine placed = affine_from_trs(t, q, stretched ? s : one);
-    dress(scene, mesh, m, &placed);
-    const double down[3] = {0, -1.3, 0}, straight[4] = {0, 0, 0, 1};
-    struct affine below = affine_from_trs(down, straight, one);
-    dress(scene, plane(20.0), floor, &below);
+    scene_put(scene, mesh, &(struct put){.material = &m, .matrix = &placed});
+    scene_put(scene, mesh_plane(20.0), &(struct put){.material = &floor, .at = {0, -1.3, 0}});
     set_rgb(scene->environment.zenith, 0.2f, 0.3f, 0.6f);
     set_rgb(scene->environment.horizon, 0.8f, 0.8f, 0.8f);
     set_rgb(scene->environment.ground, 0.2f, 0.2f, 0.2f);
-    add_sun(scene, -0.5, -1.0, -0.6, 1.0f);
+    scene_put_sun(scene, -0.5, -1.0, -0.6, 1.0f);
     return scene;
 }
 
@@ -232,18 +209,16 @@ static void glass_filters_light_twice(void **state)
     float shades[2];
     for (int balls = 0; balls < 2; ++balls) {
         struct scene *scene = dark_scene(eye, target);
-        struct scene_material floor = material("floor"), glass = material("glass");
-        struct scene_mesh mesh = {0};
+        struct scene_material floor = material_plain("floor"), glass = material_plain("glass");
         set_rgb(floor.diffuse, 1, 1, 1);
         set_rgb(glass.diffuse, 0, 0, 0);
         set_rgb(glass.transmission, 0.5f, 0.5f, 0.5f);
-        dress(scene, plane(4.0), floor, NULL);
+        scene_put(scene, mesh_plane(4.0), &(struct put){.material = &floor});
         if (balls) {
             const double sphere[4] = {0, 4, 0, 0.5}; /* above the eye */
-            assert_int_equal(shape_balls(sphere, 1, &mesh), WHIT_OK);
-            dress(scene, mesh, glass, NULL);
+            scene_put(scene, mesh_balls(sphere, 1), &(struct put){.material = &glass});
         }
-        add_sun(scene, 0, -1, 0, 1.0f);
+        scene_put_sun(scene, 0, -1, 0, 1.0f);
         struct image image = picture(scene, NULL, &picture_params);
         shades[balls] = middle(&image)[0];
         image_finish(&image);
@@ -263,17 +238,17 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
 {
     const double eye[3] = {0, 4, 0}, target[3] = {0, 0, 0};
     struct scene *scene = dark_scene(eye, target);
-    struct scene_material floor = material("floor"), leaf = material("leaf");
+    struct scene_material floor = material_plain("floor"), leaf = material_plain("leaf");
     set_rgb(floor.diffuse, 1, 1, 1);
     set_rgb(leaf.diffuse, 1, 0, 0);
     leaf.one_sided = one_sided;
-    dress(scene, plane(8.0), floor, NULL);
+    scene_put(scene, mesh_plane(8.0), &(struct put){.material = &floor});
     const double up[3] = {0, 1, 0}, over[4] = {1, 0, 0, 0}, straight[4] = {0, 0, 0, 1};
     const double mirror[3] = {-1, 1, 1}, one[3] = {1, 1, 1};
     struct affine placed = affine_from_trs(up, how & ONE_SIDED_BEHIND ? over : straight,
                                            how & ONE_SIDED_MIRRORED ? mirror : one);
-    dress(scene, plane(1.0), leaf, &placed);
-    add_sun(scene, 0.6, -1, 0, 1.0f); /* the shadow is 0.6 aside */
+    scene_put(scene, mesh_plane(1.0), &(struct put){.material = &leaf, .matrix = &placed});
+    scene_put_sun(scene, 0.6, -1, 0, 1.0f); /* the shadow is 0.6 aside */
     const struct accel_params flat = {.flatten = true};
     struct render_params params = picture_params;
     params.all_effects = all;
@@ -311,13 +286,12 @@ static void one_sided_balls_hide_their_inside(void **state)
     for (int inside = 0; inside < 2; ++inside) {
         const double eye[3] = {0, 0, inside ? 0.5 : 4}, target[3] = {0, 0, 0};
         struct scene *scene = dark_scene(eye, target);
-        struct scene_material m = material("ball");
-        struct scene_mesh mesh = {0};
+        struct scene_material m = material_plain("ball");
         m.model = SCENE_MODEL_UNLIT;
         set_rgb(m.diffuse, 1, 0, 0);
         m.one_sided = true;
-        assert_int_equal(shape_balls((const double[]){0, 0, 0, 1}, 1, &mesh), WHIT_OK);
-        dress(scene, mesh, m, NULL);
+        scene_put(scene, mesh_balls((const double[]){0, 0, 0, 1}, 1),
+                  &(struct put){.material = &m});
         struct image image = picture(scene, NULL, &picture_params);
         assert_true(middle(&image)[0] == (inside ? 0.0f : 1.0f));
         image_finish(&image);

@@ -37,7 +37,7 @@ static struct scene_mesh make_mesh(const float *positions, uint32_t vertices,
 static struct scene *scene_of(struct scene_mesh mesh)
 {
     struct scene *scene = scene_begin(NULL, "test");
-    scene_put_again(scene, scene_put_mesh(scene, mesh), NULL);
+    scene_put_again(scene, scene_add_mesh(scene, mesh), NULL);
     return scene;
 }
 
@@ -280,9 +280,8 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
     struct scene_mesh panel;
     assert_int_equal(shape_plane(2.0, 1.0, steps, 1.0, &panel), WHIT_OK);
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
-    struct scene_material material = material_grey("plain");
-    scene_put_material(scene, material);
-    scene_material_init(&material, "panel");
+    scene_put_material(scene, material_grey("plain"));
+    struct scene_material material = material_grey("panel");
     material.emission[0] = material.emission[1] = material.emission[2] = radiance;
     struct scene_node node;
     scene_node_init(&node, "up", SCENE_NONE);
