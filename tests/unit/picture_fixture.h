@@ -48,12 +48,6 @@ static inline void use_texture(struct scene_material *m, enum scene_slot slot, u
     use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
 }
 
-#define material(name) material_plain(name)
-#define plane(size)    mesh_plane(size)
-#define box(x, y, z)   mesh_box(x, y, z)
-#define add_sun        scene_put_sun
-#define add_lamp       scene_put_lamp
-
 static inline struct image render(struct fixture *f)
 {
     struct image image = {0};

@@ -170,13 +170,8 @@ static void lens_and_plain_scenes_too(void **state)
 {
     (void)state;
     struct scene *scene = terrain_scene();
-    struct scene_camera camera = {.name = string_copy("lens"),
-                                  .node = SCENE_NONE,
-                                  .eye = {0, 4, 9},
-                                  .up = {0, 1, 0},
-                                  .fov_y = 0.7f,
-                                  .lens_radius = 0.4f};
-    assert_int_not_equal(scene_add_camera(scene, camera), SCENE_NONE);
+    scene_put_camera(scene, (double[]){0, 4, 9}, (double[]){0, 0, 0}, 0.7);
+    scene->cameras[0].lens_radius = 0.4f;
     check_scene(scene, NULL, NULL, contrasts, 1);
 }
 

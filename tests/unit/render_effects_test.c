@@ -12,10 +12,10 @@ static const struct render_params small = {.width = 24, .height = 18, .depth = 5
 static struct scene *plain_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 5, 6}, (double[]){0, 0, 0});
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
-    add_object(scene, plane(10), m, 0.1, 0, 0); /* moved, as something is in all scenes */
-    add_lamp(scene, 2, 4, 1, 9.0f);
+    add_object(scene, mesh_plane(10), m, 0.1, 0, 0); /* moved, as something is in all scenes */
+    scene_put_lamp(scene, 2, 4, 1, 9.0f);
     return scene;
 }
 
@@ -23,16 +23,12 @@ static uint32_t add_chequers(struct scene *scene)
 {
     static const uint8_t texels[] = {255, 200, 90, 255, 10,  40,  90,  0,
                                      90,  90,  90, 120, 255, 255, 255, 255};
-    struct scene_texture texture = {
-        .name = string_copy("chequers"), .width = 2, .height = 2, .rgba = malloc(sizeof texels)};
-    assert_non_null(texture.rgba);
-    memcpy(texture.rgba, texels, sizeof texels);
-    return scene_add_texture(scene, texture);
+    return scene_put_texture(scene, 2, 2, texels);
 }
 
 static struct scene_material textured(uint32_t texture, enum scene_slot slot)
 {
-    struct scene_material m = material("textured");
+    struct scene_material m = material_plain("textured");
     set_rgb(m.diffuse, 0.8f, 0.8f, 0.8f);
     m.textures[slot].texture = texture;
     return m;
@@ -40,14 +36,12 @@ static struct scene_material textured(uint32_t texture, enum scene_slot slot)
 
 static struct scene_mesh ring(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(0.7, 0.25, 16, 8, &mesh), WHIT_OK);
-    return mesh;
+    return mesh_torus(0.7, 0.25, 16, 8);
 }
 
 static struct scene_mesh painted_box(void)
 {
-    struct scene_mesh mesh = box(1, 1, 1);
+    struct scene_mesh mesh = mesh_box(1, 1, 1);
     mesh.colors = malloc(4 * sizeof *mesh.colors * mesh.vertex_count);
     assert_non_null(mesh.colors);
     for (uint32_t i = 0; i < 4 * mesh.vertex_count; ++i)
@@ -57,7 +51,7 @@ static struct scene_mesh painted_box(void)
 
 static void add_glass(struct scene *scene, double x, double y, double z)
 {
-    struct scene_material m = material("glass");
+    struct scene_material m = material_plain("glass");
     set_rgb(m.transmission, 0.9f, 0.9f, 0.9f);
     set_rgb(m.absorption, 0.1f, 0.5f, 0.9f);
     m.ior = 1.5f;
@@ -67,25 +61,23 @@ static void add_glass(struct scene *scene, double x, double y, double z)
 
 static void add_lights(struct scene *scene)
 {
-    add_lamp(scene, 2, 4, 1, 6.0f);
-    add_sun(scene, 0.3, -1, -0.4, 0.4f);
-    struct scene_light spot = {.name = string_copy("spot"),
-                               .kind = SCENE_LIGHT_SPOT,
+    scene_put_lamp(scene, 2, 4, 1, 6.0f);
+    scene_put_sun(scene, 0.3, -1, -0.4, 0.4f);
+    struct scene_light spot = {.kind = SCENE_LIGHT_SPOT,
                                .node = SCENE_NONE,
                                .position = {-3, 4, 2},
                                .direction = {0.6, -0.8, 0},
                                .cos_inner = 0.95f,
                                .cos_outer = 0.7f};
     set_rgb(spot.color, 0.5f, 0.4f, 0.3f);
-    assert_int_not_equal(scene_add_light(scene, spot), SCENE_NONE);
-    struct scene_light area = {.name = string_copy("area"),
-                               .kind = SCENE_LIGHT_AREA_SAMPLE,
+    scene_put_light(scene, spot);
+    struct scene_light area = {.kind = SCENE_LIGHT_AREA_SAMPLE,
                                .node = SCENE_NONE,
                                .position = {0, 6, 0},
                                .direction = {0, -1, 0},
                                .falloff = true};
     set_rgb(area.color, 5, 5, 6);
-    assert_int_not_equal(scene_add_light(scene, area), SCENE_NONE);
+    scene_put_light(scene, area);
 }
 
 static void add_sky(struct scene *scene)
@@ -107,21 +99,21 @@ static struct scene *rich_scene(void)
     uint32_t chequers = add_chequers(scene);
     add_sky(scene);
     add_lights(scene);
-    add_object(scene, plane(10), textured(chequers, SCENE_SLOT_DIFFUSE), 0, 0, 0);
-    struct scene_material m = material("mirror");
+    add_object(scene, mesh_plane(10), textured(chequers, SCENE_SLOT_DIFFUSE), 0, 0, 0);
+    struct scene_material m = material_plain("mirror");
     set_rgb(m.reflection, 0.6f, 0.6f, 0.6f);
     set_rgb(m.specular, 0.4f, 0.4f, 0.4f);
     set_rgb(m.emission, 0.05f, 0.0f, 0.0f);
     m.shininess = 20;
-    add_object(scene, box(1, 1.5, 1), m, -2, 0.75, -1);
+    add_object(scene, mesh_box(1, 1.5, 1), m, -2, 0.75, -1);
     add_glass(scene, 0, 0.9, 0.6);
     m = textured(chequers, SCENE_SLOT_BUMP);
     add_object(scene, painted_box(), m, 1.8, 0.5, -0.5);
     m = textured(chequers, SCENE_SLOT_OPACITY);
     m.alpha = SCENE_ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
-    add_object(scene, box(0.8, 0.8, 0.1), m, -0.9, 0.5, 1.8);
-    m = material("metal");
+    add_object(scene, mesh_box(0.8, 0.8, 0.1), m, -0.9, 0.5, 1.8);
+    m = material_plain("metal");
     m.model = SCENE_MODEL_METAL_ROUGH;
     set_rgb(m.diffuse, 0.9f, 0.7f, 0.4f);
     set_rgb(m.specular, 1, 1, 1);
@@ -129,9 +121,9 @@ static struct scene *rich_scene(void)
     m.roughness = 0.3f;
     m.one_sided = true;
     add_object(scene, ring(), m, 1.2, 0.3, 1.6);
-    m = material("catcher");
+    m = material_plain("catcher");
     m.shadow_catcher = true;
-    add_object(scene, box(1, 0.1, 1), m, -2.4, 0.05, 1.4);
+    add_object(scene, mesh_box(1, 0.1, 1), m, -2.4, 0.05, 1.4);
     return scene;
 }
 
@@ -267,7 +259,7 @@ static enum scene_effect alone;
 
 static struct scene_material alone_material(struct scene *scene)
 {
-    struct scene_material m = material("alone");
+    struct scene_material m = material_plain("alone");
     set_rgb(m.diffuse, 0.5f, 0.4f, 0.3f);
     if (alone == SCENE_EFFECT_TEXTURES)
         m.textures[SCENE_SLOT_DIFFUSE].texture = add_chequers(scene);
@@ -301,13 +293,13 @@ static struct scene *alone_scene(void)
 {
     struct scene *scene = plain_scene();
     struct scene_material m = alone_material(scene);
-    add_object(scene, alone == SCENE_EFFECT_VERTEX_COLORS ? painted_box() : box(1, 1, 1), m, 0, 0.5,
-               0);
+    add_object(scene, alone == SCENE_EFFECT_VERTEX_COLORS ? painted_box() : mesh_box(1, 1, 1), m, 0,
+               0.5, 0);
     add_object(scene, ring(), m, 0.5, 1.5, 0.5);
     if (alone == SCENE_EFFECT_ENVIRONMENT_MAP)
         add_sky(scene);
     if (alone == SCENE_EFFECT_DIRECTIONAL_LIGHTS)
-        add_sun(scene, 0.3, -1, -0.4, 0.4f);
+        scene_put_sun(scene, 0.3, -1, -0.4, 0.4f);
     return scene;
 }
 
@@ -463,7 +455,7 @@ static void plain_scenes_bind_little(void **state)
 static void add_pane(struct scene *scene, struct scene_material m, double width, double height,
                      double x, double y, double z)
 {
-    add_object(scene, box(width, height, 0.2), m, x, y, z);
+    add_object(scene, mesh_box(width, height, 0.2), m, x, y, z);
 }
 
 /* The view is in four quarters around the eye at the origin: upper left a mirror that shows glass
@@ -472,7 +464,7 @@ static void add_pane(struct scene *scene, struct scene_material m, double width,
 static struct scene *quarters_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-    struct scene_material mirror = material("mirror"), glass = material("glass");
+    struct scene_material mirror = material_plain("mirror"), glass = material_plain("glass");
     set_rgb(mirror.reflection, 0.9f, 0.9f, 0.9f);
     set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
     glass.fresnel = true;
@@ -480,7 +472,7 @@ static struct scene *quarters_scene(void)
     add_pane(scene, glass, 10, 10, 5, -5, -4);
     add_pane(scene, glass, 40, 40, -20, 20, 5);
     set_rgb(scene->environment.zenith, 1, 1, 1);
-    add_lamp(scene, 0, 0, 1, 5.0f);
+    scene_put_lamp(scene, 0, 0, 1, 5.0f);
     return scene;
 }
 
@@ -512,20 +504,12 @@ static void only_pixels_that_see_glass_refract(void **state)
 static struct scene *rising_glass_scene(void)
 {
     struct scene *scene = plain_scene();
-    struct scene_material glass = material("glass");
+    struct scene_material glass = material_plain("glass");
     set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
     add_pane(scene, glass, 2, 2, 0, -30, 2);
-    struct scene_channel rise = {.node = scene->node_count - 1,
-                                 .path = SCENE_PATH_TRANSLATION,
-                                 .interpolation = SCENE_STEP,
-                                 .key_count = 2,
-                                 .times_s = malloc(2 * sizeof(float)),
-                                 .values = malloc(6 * sizeof(float))};
-    assert_non_null(rise.times_s);
-    assert_non_null(rise.values);
-    memcpy(rise.times_s, (float[]){0, 1}, 2 * sizeof(float));
-    memcpy(rise.values, (float[]){0, -30, 2, 0, 2, 2}, 6 * sizeof(float));
-    assert_int_not_equal(scene_add_channel(scene, rise), SCENE_NONE);
+    scene_put_channel(scene, scene->node_count - 1, SCENE_PATH_TRANSLATION, 2, (float[]){0, 1},
+                      (float[]){0, -30, 2, 0, 2, 2});
+    scene->channels[0].interpolation = SCENE_STEP;
     return scene;
 }
 

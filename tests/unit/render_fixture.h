@@ -17,7 +17,6 @@
 #include "../scenes.h"
 #include "base/array.h"
 #include "render/render.h"
-#include "scene/shapes.h"
 
 /* Messages of the validation layers since fixture_validate. */
 static int fixture_validation;
@@ -59,32 +58,6 @@ static inline int fixture_end(int failed)
         fixture_shared = NULL;
     }
     return failed + (fixture_validation > 0);
-}
-
-static inline uint32_t fixture_random(uint32_t *state)
-{
-    *state ^= *state << 13;
-    *state ^= *state >> 17;
-    *state ^= *state << 5;
-    return *state;
-}
-
-/* [-1, 1) */
-static inline float fixture_signed(uint32_t *state)
-{
-    return (float)((double)fixture_random(state) / 2147483648.0 - 1.0);
-}
-
-static inline struct scene *fixture_scene(struct scene_mesh mesh)
-{
-    struct scene *scene = scene_begin(&fixture_log, "test");
-    scene_put_mesh(scene, mesh);
-    return scene;
-}
-
-static inline void fixture_place(struct scene *scene, const struct affine *matrix)
-{
-    scene_put_again(scene, 0, &(struct put){.matrix = matrix});
 }
 
 /* Scenes whose trees are of other depths take the same kernels. */

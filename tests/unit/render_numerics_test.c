@@ -107,8 +107,8 @@ static void one_tree_over_instances(void **state)
 static void split_triangles(void **state)
 {
     (void)state;
-    struct scene *scene = fixture_scene(mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3));
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3), NULL);
     check_levels(scene,
                  &(struct accel_params){.mesh = {.builder = BVH_SPATIAL, .spatial_alpha = 1e-9f}});
 }
@@ -117,11 +117,11 @@ static void split_triangles(void **state)
 static void ties(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_terrain(10.0, 2.0, 4, 3, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
+    struct scene_mesh mesh = mesh_terrain(10.0, 2.0, 4, 3);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put_mesh(scene, mesh);
     for (int i = 0; i < 6; ++i)
-        fixture_place(scene, NULL);
+        scene_put_again(scene, 0, NULL);
     check_levels(scene, NULL);
 }
 
@@ -130,10 +130,7 @@ static struct scene *spheres_among_triangles(void)
 {
     struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
     struct scene *scene = terrain_scene();
-    balls.name = string_copy("balls");
-    struct scene_instance instance = {
-        .name = string_copy("balls"), .mesh = scene_add_mesh(scene, balls), .node = SCENE_NONE};
-    assert_int_not_equal(scene_add_instance(scene, instance), SCENE_NONE);
+    scene_put(scene, balls, NULL);
     return scene;
 }
 
@@ -147,24 +144,23 @@ static void spheres(void **state)
 static void only_fast_leaks(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(2.0, 80, 40, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
     struct render_params params = {.width = 16, .height = 16};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     aim_rays(&f, rays, 21);
-    uint32_t state_random = 5;
+    uint64_t state_random = 5;
     for (uint32_t i = 0; i < RAYS; ++i) { /* those that are aimed, from inside */
         rays[i].t_min = 0.0f;
         rays[i].t_max = INFINITY;
         for (int k = 0; k < 3; ++k) {
             float target = rays[i].origin[k] + rays[i].dir[k];
-            rays[i].origin[k] = 0.5f * fixture_signed(&state_random);
-            rays[i].dir[k] = i % 4 % 2 ? target - rays[i].origin[k] : fixture_signed(&state_random);
+            rays[i].origin[k] = 0.5f * random_float_signed(&state_random);
+            rays[i].dir[k] =
+                i % 4 % 2 ? target - rays[i].origin[k] : random_float_signed(&state_random);
         }
     }
     uint32_t leaks[LEVELS] = {0};

@@ -207,46 +207,44 @@ static struct scene *sieve_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 7}, (double[]){0, 0.8, 0});
     uint32_t texture = add_two_texels(scene, 40, 250);
-    struct scene_material m = material("floor");
+    struct scene_material m = material_plain("floor");
     set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
-    add_object(scene, plane(12), m, 0, 0, 0);
+    add_object(scene, mesh_plane(12), m, 0, 0, 0);
     use_texture(&m, SCENE_SLOT_OPACITY, texture);
     m.alpha = SCENE_ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
-    add_object(scene, box(1.5, 1.2, 0.1), m, -0.6, 0.9, 2);
-    m = material("blended");
+    add_object(scene, mesh_box(1.5, 1.2, 0.1), m, -0.6, 0.9, 2);
+    m = material_plain("blended");
     set_rgb(m.diffuse, 0.2f, 0.5f, 0.9f);
     m.alpha = SCENE_ALPHA_BLEND;
     m.opacity = 0.4f;
-    add_object(scene, box(0.8, 1.5, 0.1), m, 0.9, 0.9, 1.5);
-    m = material("one-sided");
+    add_object(scene, mesh_box(0.8, 1.5, 0.1), m, 0.9, 0.9, 1.5);
+    m = material_plain("one-sided");
     set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
     m.one_sided = true;
-    add_object(scene, box(8, 8, 14), m, 0, 3, 1.5); /* around all, seen from inside */
-    m = material("catcher");
+    add_object(scene, mesh_box(8, 8, 14), m, 0, 3, 1.5); /* around all, seen from inside */
+    m = material_plain("catcher");
     m.shadow_catcher = true;
-    add_object(scene, box(1, 0.1, 1), m, 1.2, 0.1, 2.6);
-    m = material("glass");
+    add_object(scene, mesh_box(1, 0.1, 1), m, 1.2, 0.1, 2.6);
+    m = material_plain("glass");
     set_rgb(m.transmission, 0.9f, 0.8f, 0.9f);
     m.ior = 1.5f;
     m.fresnel = true;
-    struct scene_mesh ball = {0};
-    assert_int_equal(shape_balls((const double[]){0, 0, 0, 0.5}, 1, &ball), WHIT_OK);
+    struct scene_mesh ball = mesh_balls((const double[]){0, 0, 0, 0.5}, 1);
     add_object(scene, ball, m, 0.2, 0.6, 0.4);
-    add_object(scene, box(0.5, 0.4, 0.3), m, -1.4, 0.3, 2.8);
-    m = material("mirror");
+    add_object(scene, mesh_box(0.5, 0.4, 0.3), m, -1.4, 0.3, 2.8);
+    m = material_plain("mirror");
     set_rgb(m.reflection, 0.8f, 0.8f, 0.8f);
-    add_object(scene, box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
-    add_lamp(scene, 2, 3.5, 4, 6.0f);
-    struct scene_light light = {.name = string_copy("pane"),
-                                .kind = SCENE_LIGHT_RECTANGLE,
+    add_object(scene, mesh_box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
+    scene_put_lamp(scene, 2, 3.5, 4, 6.0f);
+    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE,
                                 .node = SCENE_NONE,
                                 .position = {-1, 5, 0},
                                 .direction = {0, -1, 0},
                                 .edge_u = {1, 0, 0},
                                 .edge_v = {0, 0, 1}};
     set_rgb(light.color, 3, 3, 3);
-    assert_int_not_equal(scene_add_light(scene, light), SCENE_NONE);
+    scene_put_light(scene, light);
     return scene;
 }
 

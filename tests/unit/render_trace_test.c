@@ -15,9 +15,10 @@ static void check_any_against_closest(struct fixture *f, const char *label)
     for (uint32_t i = 0; i < MANY; ++i)
         rays[i].t_max = INFINITY;
     assert_int_equal(renderer_trace(f->renderer, rays, MANY, false, closest, NULL), WHIT_OK);
-    uint32_t state = 11, blocked = 0, bad = 0;
+    uint32_t blocked = 0, bad = 0;
+    uint64_t state = 11;
     for (uint32_t i = 0; i < MANY; ++i) {
-        rays[i].t_max = 2.0f * fabsf(fixture_signed(&state));
+        rays[i].t_max = 2.0f * fabsf(random_float_signed(&state));
         if (closest[i].primitive != HIT_NONE && i % 3 == 0)
             rays[i].t_max = i & 1 ? closest[i].t : nextafterf(closest[i].t, -INFINITY);
     }
@@ -78,8 +79,8 @@ static void check_rays(struct fixture *f, const char *label)
 
 static void check_mesh(struct scene_mesh mesh, const char *label)
 {
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh, NULL);
     struct fixture f = fixture_open(scene, NULL, NULL);
     assert_true(f.accel->single_identity);
     check_rays(&f, label);
@@ -89,32 +90,25 @@ static void check_mesh(struct scene_mesh mesh, const char *label)
 static void sphere_equals_twin(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(1.0, 40, 20, &mesh), WHIT_OK);
-    check_mesh(mesh, "sphere");
+    check_mesh(mesh_sphere(1.0, 40, 20), "sphere");
 }
 
 static void box_equals_twin(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_box((double[]){2.0, 1.0, 3.0}, &mesh), WHIT_OK);
-    check_mesh(mesh, "box");
+    check_mesh(mesh_box(2.0, 1.0, 3.0), "box");
 }
 
 static void terrain_equals_twin(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_terrain(10.0, 2.0, 24, 3, &mesh), WHIT_OK);
-    check_mesh(mesh, "terrain");
+    check_mesh(mesh_terrain(10.0, 2.0, 24, 3), "terrain");
 }
 
 static void far_sphere_equals_twin(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(2.0, 40, 20, &mesh), WHIT_OK);
+    struct scene_mesh mesh = mesh_sphere(2.0, 40, 20);
     const float offset[3] = {148376.0f, 1234.0f, -223423.0f};
     for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i)
         mesh.positions[i] += offset[i % 3];
@@ -124,17 +118,15 @@ static void far_sphere_equals_twin(void **state)
 static void soup_equals_twin(void **state)
 {
     (void)state;
-    uint32_t count = 500, random = 99;
-    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
-    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
-    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
+    uint32_t count = 500;
+    uint64_t random = 99;
+    struct scene_mesh mesh = mesh_zeroed(3 * count, count);
     for (uint32_t i = 0; i < 3 * count; ++i) {
         /* Every tenth triangle repeats its neighbour: ties. */
         uint32_t source = i / 3 % 10 == 9 ? i - 3 : i;
         for (uint32_t k = 0; k < 3; ++k)
             mesh.positions[3 * i + k] =
-                source == i ? fixture_signed(&random) * 3.0f : mesh.positions[3 * source + k];
+                source == i ? random_float_signed(&random) * 3.0f : mesh.positions[3 * source + k];
         mesh.indices[i] = i;
     }
     check_mesh(mesh, "soup with duplicates");
@@ -143,25 +135,15 @@ static void soup_equals_twin(void **state)
 static void instances_equal_twin(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(1.0, 0.3, 20, 10, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
-    uint32_t random = 5;
+    struct scene *scene = scene_begin(&fixture_log, "rings");
+    scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+    uint64_t random = 5;
     for (int i = 0; i < 40; ++i) {
-        double t[3], q[4], s[3];
-        for (int k = 0; k < 3; ++k) {
-            t[k] = 6.0 * (double)fixture_signed(&random);
-            s[k] = 1.0 + 0.7 * (double)fixture_signed(&random);
-        }
-        for (int k = 0; k < 4; ++k)
-            q[k] = (double)fixture_signed(&random);
-        if (i % 3 == 0)
-            s[0] = -s[0];
-        struct affine placed = affine_from_trs(t, q, s);
-        fixture_place(scene, &placed);
+        struct affine placed = placement_random(&random, 6.0, i % 3 == 0);
+        scene_put_again(scene, 0, &(struct put){.matrix = &placed});
     }
-    fixture_place(scene, NULL);
-    fixture_place(scene, NULL); /* the same place twice: ties between instances */
+    scene_put_again(scene, 0, NULL);
+    scene_put_again(scene, 0, NULL); /* the same place twice: ties between instances */
     struct fixture f = fixture_open(scene, NULL, NULL);
     assert_false(f.accel->single_identity);
     check_rays(&f, "42 instances");
@@ -199,26 +181,25 @@ static uint32_t count_unlike_twin(const struct fixture *f, uint32_t numerics, bo
 /* A ring with vertices of integers; edges and vertices are at multiples of a half. */
 static struct scene *integer_ring(void)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_torus(1.0, 0.45, 40, 20, &mesh), WHIT_OK);
+    struct scene_mesh mesh = mesh_torus(1.0, 0.45, 40, 20);
     for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
         mesh.positions[i] = rintf(18.0f * mesh.positions[i]);
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh, NULL);
     return scene;
 }
 
 /* Along an axis at multiples of a half: from far away; every fifth from a vertex. */
-static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint32_t *state)
+static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint64_t *state)
 {
     const struct scene_mesh *mesh = &scene->meshes[0];
     struct gpu_ray ray = {.t_max = INFINITY};
-    uint32_t axis = i % 3, vertex = fixture_random(state) % mesh->vertex_count;
-    float up = fixture_random(state) & 1 ? 1.0f : -1.0f;
+    uint32_t axis = i % 3, vertex = random_below(state, mesh->vertex_count);
+    float up = random_below(state, 2) ? 1.0f : -1.0f;
     for (uint32_t k = 0; k < 3; ++k) {
-        ray.origin[k] =
-            i % 5 ? rintf(54.0f * fixture_signed(state)) * 0.5f : mesh->positions[3 * vertex + k];
-        ray.dir[k] = fixture_random(state) & 1 ? 0.0f : -0.0f;
+        ray.origin[k] = i % 5 ? rintf(54.0f * random_float_signed(state)) * 0.5f
+                              : mesh->positions[3 * vertex + k];
+        ray.dir[k] = random_below(state, 2) ? 0.0f : -0.0f;
     }
     ray.dir[axis] = up;
     if (i % 5)
@@ -269,7 +250,7 @@ static void integers_equal_twin(void **state)
     for (int l = 0; l < 2; ++l) {
         struct fixture f = open_at(integer_ring(), levels[l]);
         struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-        uint32_t random = 3;
+        uint64_t random = 3;
         assert_non_null(rays);
         for (uint32_t i = 0; i < RAYS; ++i)
             rays[i] = ray_along_axis(f.scene, i, &random);
@@ -281,10 +262,8 @@ static void integers_equal_twin(void **state)
 
 static void check_degenerate_rays(uint32_t numerics)
 {
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh_sphere(1.0, 16, 8), NULL);
     struct fixture f = open_at(scene, numerics);
     const float bad[] = {NAN, INFINITY, -INFINITY};
     struct gpu_ray rays[16];
@@ -319,9 +298,7 @@ static void degenerate_rays_miss(void **state)
 static void empty_scene_misses(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = {0};
-    assert_int_equal(shape_sphere(1.0, 16, 8, &mesh), WHIT_OK);
-    struct fixture f = fixture_open(fixture_scene(mesh), NULL, NULL);
+    struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
@@ -335,10 +312,7 @@ static void cut_traversals_are_reported(void **state)
 {
     (void)state;
     uint32_t count = 70000;
-    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
-    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
-    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
+    struct scene_mesh mesh = mesh_zeroed(3 * count, count);
     for (uint32_t i = 0; i < count; ++i) {
         float z = (float)i * 0.001f;
         const float corners[9] = {0, 0, z, 1, 1, z, 0.99f, 1, z};
@@ -346,8 +320,8 @@ static void cut_traversals_are_reported(void **state)
         for (uint32_t k = 0; k < 3; ++k)
             mesh.indices[3 * i + k] = 3 * i + k;
     }
-    struct scene *scene = fixture_scene(mesh);
-    fixture_place(scene, NULL);
+    struct scene *scene = scene_begin(&fixture_log, "test");
+    scene_put(scene, mesh, NULL);
     struct fixture f = fixture_open(scene, NULL, NULL);
     struct gpu_ray rays[8];
     struct gpu_hit hits[8], twin;
