@@ -3,6 +3,7 @@
 
 #include <jpeglib.h>
 
+#include "../random.h"
 #include "load/picture.h"
 #include "stb_write_fixture.h"
 
@@ -162,14 +163,14 @@ static void changed_jpegs_end(void **state)
 {
     (void)state;
     struct bytes files[] = {write_stb(95), progressive_file()};
-    srand(3);
+    uint64_t random = 3;
     for (size_t i = 0; i < 2; i++) {
         int decoded = 0;
         for (int k = 0; k < FLIPS; k++) {
             const char *reason = "";
-            size_t at = (size_t)rand() % files[i].count;
+            size_t at = random_bits(&random) % files[i].count;
             uint8_t kept = files[i].data[at];
-            files[i].data[at] = (uint8_t)rand();
+            files[i].data[at] = (uint8_t)random_bits(&random);
             decoded += decodes(files[i].data, files[i].count, &reason);
             files[i].data[at] = kept;
         }
