@@ -29,6 +29,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <jansson.h>
+
 #include "fault.h"
 
 enum { OUTPUTS_MOST = 4, FAULTS_MOST = 8, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
@@ -266,48 +268,68 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
     return text;
 }
 
-/* The text of the first `"name":"text"` of a line; NULL: it has none. */
-static const char *field(const char *line, const char *name, size_t *length)
+/* The states of a viewer, which are JSON one behind the other, up to where they no longer are. */
+static json_t *read_states(const struct content *printed)
 {
-    char key[32];
-    snprintf(key, sizeof key, "\"%s\":\"", name);
-    const char *end = line + strcspn(line, "\n"), *at = strstr(line, key);
-    if (!at || at >= end)
-        return NULL;
-    at += strlen(key);
-    *length = strcspn(at, "\"\n");
-    return at;
+    json_t *states = json_array(), *state;
+    json_error_t end = {.position = 0};
+    for (size_t at = 0; at < printed->bytes; at += (size_t)end.position) {
+        state = json_loadb(printed->data + at, printed->bytes - at, JSON_DISABLE_EOF_CHECK, &end);
+        if (!state)
+            break;
+        json_array_append_new(states, state);
+    }
+    return states;
 }
 
-static bool same_field(const char *a, const char *b, const char *name)
+static bool same_field(const json_t *a, const json_t *b, const char *name)
 {
-    size_t a_length = 0, b_length = 0;
-    const char *a_text = field(a, name, &a_length), *b_text = field(b, name, &b_length);
-    return a_text && b_text && a_length == b_length && memcmp(a_text, b_text, a_length) == 0;
+    return json_equal(json_object_get(a, name), json_object_get(b, name));
+}
+
+static bool same_picture(const json_t *a, const json_t *b)
+{
+    a = json_object_get(a, "frame");
+    b = json_object_get(b, "frame");
+    return same_field(a, b, "ids") && same_field(a, b, "pixels");
 }
 
 /* Something is said in the window that is not said without a fault. */
-static bool is_said(const char *whole, const char *now, const char *name)
+static bool is_said(const json_t *whole, const json_t *now, const char *name)
 {
-    size_t length = 0;
-    return field(now, name, &length) && length > 0 && !same_field(whole, now, name);
+    return json_string_length(json_object_get(now, name)) > 0 && !same_field(whole, now, name);
 }
 
 /* Each state has the picture that it has without a fault, or the window says why not. */
-static const char *judge_states(const char *whole, const char *now, bool *said)
+static const char *judge_states(const struct sweep *sweep, const struct content *printed,
+                                bool *said)
 {
-    *said = false;
-    for (; whole && now && whole[0]; whole = strchr(whole, '\n'), now = strchr(now, '\n')) {
-        whole += whole[0] == '\n';
-        now += now[0] == '\n';
-        bool shown = same_field(whole, now, "ids") && same_field(whole, now, "pixels");
-        if (whole[0] && !now[0])
-            return "a state is missing";
-        if (whole[0] && !shown && !is_said(whole, now, "error") && !is_said(whole, now, "toast"))
-            return "it shows something else and does not say why";
-        *said |= whole[0] && !shown;
+    json_t *whole = read_states(&sweep->printed), *now = read_states(printed);
+    size_t count = json_array_size(whole);
+    const char *defect = NULL;
+    if (count == 0 || json_array_size(now) != count)
+        defect = "a state is missing";
+    for (size_t i = 0; i < count && !defect; ++i) {
+        const json_t *a = json_array_get(whole, i), *b = json_array_get(now, i);
+        bool shown = same_picture(a, b);
+        if (!shown && !is_said(a, b, "error") && !is_said(a, b, "toast"))
+            defect = "it shows something else and does not say why";
+        *said |= !shown;
     }
-    return NULL;
+    json_decref(whole);
+    json_decref(now);
+    return defect;
+}
+
+/* Whether it is a report, which says of itself whether it is complete. */
+static bool read_report(const struct content *output, bool *complete)
+{
+    json_t *report = output->data ? json_loadb(output->data, output->bytes, 0, NULL) : NULL;
+    const json_t *says = json_object_get(report, "complete");
+    bool is_report = json_is_boolean(says);
+    *complete = json_is_true(says);
+    json_decref(report);
+    return is_report;
 }
 
 static bool is_of_number(char letter)
@@ -332,15 +354,18 @@ static bool same_words(const struct content *a, const struct content *b)
     return left && right;
 }
 
-/* What an output was without a fault. A report says of itself whether it is complete. */
+/* What an output was without a fault; of reports one that is complete, or `part` of one. */
 static bool is_whole(const struct sweep *sweep, uint32_t output, const struct content *now,
-                     bool fine)
+                     bool *part)
 {
+    bool complete = false;
+    *part = false;
     if (sweep->figures)
         return same_words(now, &sweep->whole[output]);
     if (!sweep->reports)
         return same(now, &sweep->whole[output]);
-    return now->data && strstr(now->data, fine ? "\"complete\": true" : "\"complete\": ");
+    *part = read_report(now, &complete) && !complete;
+    return complete;
 }
 
 /* What it says of how much was written is so; NULL if it is. A program that ends at once may have
@@ -372,11 +397,11 @@ static const char *judge_outputs(struct sweep *sweep, bool fine, const char *err
     text[0] = '\0';
     for (uint32_t i = 0; i < sweep->output_count; ++i) {
         struct content now = read_whole(sweep->outputs[i]);
-        bool whole = is_whole(sweep, i, &now, fine);
-        if (!whole && (fine || !same(&now, &old)))
+        bool part, whole = is_whole(sweep, i, &now, &part);
+        if (!whole && (fine || (!part && !same(&now, &old))))
             snprintf(text, sizeof text, "%s is neither the old one nor whole", sweep->outputs[i]);
-        new_count += whole;
-        kept = kept || (whole && strstr(now.data, "\"complete\": false"));
+        new_count += whole || part;
+        kept = kept || part;
         free(now.data);
     }
     const char *words = judge_words(sweep, errors, new_count);
@@ -391,8 +416,7 @@ static const char *judge_outputs(struct sweep *sweep, bool fine, const char *err
     if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
         snprintf(text, sizeof text, "it printed something else");
     bool said = false;
-    const char *states =
-        fine && sweep->pictures ? judge_states(sweep->printed.data, printed.data, &said) : NULL;
+    const char *states = fine && sweep->pictures ? judge_states(sweep, &printed, &said) : NULL;
     if (states)
         snprintf(text, sizeof text, "%s: %.400s", states, printed.data);
     sweep->said += said;
