@@ -1,0 +1,89 @@
+/* Linked into whit in the place of some calls (--wrap): what takes long without trees takes as long
+   as a test wants, on any machine. WHIT_TEST_SLOW says what:
+   kernel    a kernel without trees is never done: it waits until nobody wants it any more
+   picture   so does a picture of more than 1024 pixels, behind its first part
+   N         each picture without trees takes N ms, and nothing else takes any time */
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "accel/accel.h"
+#include "api/handles.h"
+
+enum { SMALL_PIXELS = 1024, SMALL_TILE = 16 };
+
+whit_result __real_whit_renderer_create(whit_device *device, whit_accel *accel,
+                                        const whit_renderer_params *params, whit_renderer **out);
+whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
+                                        const whit_renderer_params *params, whit_renderer **out);
+whit_result __real_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params);
+whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params);
+whit_result __real_whit_renderer_render(whit_renderer *renderer);
+whit_result __wrap_whit_renderer_render(whit_renderer *renderer);
+double __real_whit_clock_ms(void);
+double __wrap_whit_clock_ms(void);
+
+static whit_renderer_params asked; /* of the renderer without trees */
+static uint64_t pixels;            /* that a window asked of it; 0: none as yet */
+static atomic_uint drawn;          /* pictures without trees */
+
+static const char *slow(void)
+{
+    const char *what = getenv("WHIT_TEST_SLOW");
+    return what ? what : "";
+}
+
+static double step_ms(void)
+{
+    return strtod(slow(), NULL);
+}
+
+static void wait_until_cancelled(void)
+{
+    while (!*asked.cancel)
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+}
+
+static void note_part(void *user, double done)
+{
+    asked.progress(user, done);
+    if (pixels > SMALL_PIXELS)
+        wait_until_cancelled();
+}
+
+whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
+                                        const whit_renderer_params *params, whit_renderer **out)
+{
+    if (!accel->accel->no_trees)
+        return __real_whit_renderer_create(device, accel, params, out);
+    whit_renderer_params own = asked = *params;
+    if (strcmp(slow(), "kernel") == 0)
+        wait_until_cancelled();
+    if (strcmp(slow(), "picture") == 0) {
+        own.tile_size = SMALL_TILE;
+        own.progress = note_part;
+    }
+    return __real_whit_renderer_create(device, accel, &own, out);
+}
+
+whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
+                                          const whit_renderer_params *params)
+{
+    if (renderer->accel->no_trees)
+        pixels = (uint64_t)params->width * params->height;
+    return __real_whit_renderer_set_view(renderer, params);
+}
+
+whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
+{
+    drawn += renderer->accel->no_trees;
+    return __real_whit_renderer_render(renderer);
+}
+
+double __wrap_whit_clock_ms(void)
+{
+    return step_ms() > 0.0 ? drawn * step_ms() : __real_whit_clock_ms();
+}
