@@ -237,21 +237,26 @@ static bool is_done(const struct engine_lane *lane)
     return !lane->wanted || lane->failed || (lane->drawn == lane->asked && best && !lane->stale);
 }
 
-/* Starts the session that a lane lacks, or stops one that nobody wants any more. */
+/* Starts the session that a lane lacks, once what is in the making has ended. */
 static void make_session_for(struct engine *engine, struct engine_lane *lane)
 {
-    const struct engine_job *job = engine->job;
-    if (!job) {
-        lane->failed = !start_job(engine, &lane->settings);
-        wake_window(engine);
+    if (engine->job)
         return;
+    lane->failed = !start_job(engine, &lane->settings);
+    wake_window(engine);
+}
+
+/* A session in the making that nobody wants any more. */
+static void stop_unwanted(struct engine *engine)
+{
+    const struct engine_job *job = engine->job;
+    bool wanted = false;
+    for (int i = 0; job && i < ENGINE_LANES; ++i) {
+        const struct engine_lane *lane = &engine->lanes[i];
+        wanted |= lane->wanted && settings_same_kernel(&lane->settings, &job->settings);
     }
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        const struct engine_lane *other = &engine->lanes[i];
-        if (other->wanted && settings_same_kernel(&other->settings, &job->settings))
-            return;
-    }
-    job->session->cancel = true;
+    if (job && !wanted)
+        job->session->cancel = true;
 }
 
 /* The other side shows what the window's last picture shows, also while that moves: two cameras
@@ -583,6 +588,7 @@ static void ask(struct engine *engine, struct engine_lane *lane,
     lane->wanted = true;
     lane->settings = *settings;
     lane->moving = moving;
+    stop_unwanted(engine);
     pthread_cond_signal(&engine->work);
 }
 
@@ -607,6 +613,7 @@ void engine_ask_other(struct engine *engine, const struct view_settings *setting
         ask(engine, other, settings, engine->lanes[0].moving);
     } else {
         other->wanted = false;
+        stop_unwanted(engine);
         engine_frame_finish(&other->frame);
     }
     pthread_mutex_unlock(&engine->lock);
@@ -677,7 +684,7 @@ static bool is_still(const struct engine_lane *lane)
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool still = !engine->busy && !engine->littered && engine->probe.number == 0 &&
+    bool still = !engine->busy && !engine->job && !engine->littered && engine->probe.number == 0 &&
                  (!engine->probe_wanted || engine->lanes[0].failed);
     for (int i = 0; i < ENGINE_LANES; ++i)
         still = still && is_still(&engine->lanes[i]);

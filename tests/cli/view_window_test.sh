@@ -297,6 +297,7 @@ is working "keys.trees" off
 is stopped toast "stopped: as it was"
 for at in stopped back; do
     is $at "keys.trees" on
+    is $at work ""
     same words start $at
     same frame.number start $at
     same frame.pixels start $at
