@@ -5,15 +5,17 @@
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 BALLS=$SCENES/balls.json
+SIZE=24x16 # whose many pictures are quickly measured
 
-# wished SCENE EVENT TEXT OPTION...: EVENT comes while costs are being measured; looks at what was
-# chosen.
+# wished SCENE EVENT SCENE TEXT OPTION...: EVENT comes while costs of the first scene are being
+# measured; looks at what was chosen for the second.
 wished() {
     scene=$1
     event=$2
-    text=$3
-    shift 3
-    play "$*" "$scene" --size 48x36 --spend 0.1 "$@" <<END
+    measured=$3
+    text=$4
+    shift 4
+    play "$*" "$scene" --size $SIZE --spend 0.1 "$@" <<END
 picture
 state first
 until wish.stage = measures
@@ -30,7 +32,7 @@ still
 state left
 END
     is first wish.predicted_ms 0
-    is chosen scene "$BALLS"
+    is chosen scene "$measured"
     is chosen wish.stage "$text"
     is chosen "keys.traversal order" sign
     is chosen frame.whole true
@@ -43,25 +45,25 @@ chose() {
     text=$(value "$1" wish.text)
     [ "$text" = "what is usual" ] && text=
     check "what is told is what is set ($text)" \
-        test "$(value "$1" words | sed 's/ --traversal sign//')" = "--size 48x36${text:+ $text}"
+        test "$(value "$1" words | sed 's/ --traversal sign//')" = "--size $SIZE${text:+ $text}"
 }
 
 # Another scene is measured anew; what is dropped meanwhile ends what goes on.
-wished "$CUBE" "drop $BALLS" chosen --max-error 0.9
+wished "$CUBE" "drop $BALLS" "$BALLS" chosen --max-error 0.9
 chose chosen
 check "one sample or less will do" awk -v e="$(value chosen wish.predicted_error)" 'BEGIN { exit !(e > 0 && e <= 0.81) }'
 check "its picture was timed" awk -v t="$(value chosen wish.took_ms)" 'BEGIN { exit !(t > 0) }'
 renders chosen -o rendered.pfm
 
-wished "$BALLS" "" chosen --budget-ms 1e6
+wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
 chose chosen
 case $(value chosen words) in *--aa*) more=yes ;; *) more=no ;; esac
 check "time enough gives more samples ($(value chosen words))" test $more = yes
 differs words chosen left
 
-wished "$BALLS" "" "no choice" --budget-ms 0.001
+wished "$CUBE" "" "$CUBE" "no choice" --budget-ms 0.001
 is chosen wish.text "no setting takes so little here"
-is chosen words "--size 48x36 --traversal sign"
+is chosen words "--size $SIZE --traversal sign"
 
 refuse 2 "chosen and given" "chooses --aa" view "$CUBE" --budget-ms 10 --aa 4 --frames 1
 refuse 2 "two wishes" "one of them" view "$CUBE" --budget-ms 10 --max-error 1 --frames 1
