@@ -85,9 +85,7 @@ check "two pictures later at most" test "$(value after frame.number)" -le $(($(v
 
 # ---- Visits of a ray ----
 
-# Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited. Kernels
-# are what users run.
-unset GALLIVM_PERF
+# Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
 for scene in 34k swarm; do
     # shellcheck disable=SC2086
     play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
