@@ -1,5 +1,5 @@
 #!/bin/sh
-# Panels over the picture: all of what they say is in the window, and none covers another one.
+# sh view_panels_test.sh WHIT SCENES WHIT_SLOW [large]: panels over the picture: all of what they say is in the window, and none covers another one.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
@@ -83,10 +83,12 @@ press M
 press Shift+T
 END
 }
-# panels SCALE SIZE...: of windows of these sizes, one after the other, at this scale of text.
+# panels SCALE WIDE SIZE...: of windows of these sizes, one after the other, at this scale of text. From
+# the width WIDE on there is room for all.
 panels() {
     scale=$1
-    shift
+    wide=$2
+    shift 2
     for size in "$@"; do
         opened "${size%x*}" "${size#*x}"
     done >"$OUT/sizes"
@@ -96,14 +98,20 @@ panels() {
             apart "$size-$name" "${size%x*}" "${size#*x}" 1
         done
         uncut "$size" full split settings difference boxes help
-        if [ $((${size%x*} / scale)) -ge 640 ]; then
+        if [ "${size%x*}" -ge "$wide" ]; then
             uncut "$size" effects pixel
             apart "$size-settings" "${size%x*}" "${size#*x}" 6
         fi
     done
 }
 
-# Small and large; at 2 as large as 320x240 is at 1.
-panels 1 320x240 640x480 1280x720
-panels 2 640x480 1280x960
+# Small and large: text of another scale fills smaller windows as it fills larger ones at 1.
+if [ "${4:-}" = large ]; then
+    panels 1 640 320x240 640x480 1280x720
+    panels 2 1280 640x480 1280x960
+else
+    panels 1 640 320x240
+    panels 2 1280 640x480
+    panels 0.5 320 160x120 320x240 640x360
+fi
 finish

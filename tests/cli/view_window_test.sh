@@ -6,6 +6,8 @@ mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 SLOW=$3
 SMALL="--size 96x64"
+WIDE=${WHIT_TEST_SCREEN%x*}
+HIGH=${WHIT_TEST_SCREEN#*x}
 
 # ---- Cameras ----
 
@@ -177,12 +179,13 @@ is tall frame.height 120
 is tall frame.whole true
 same frame.ids start back
 same frame.pixels start back
-is full window_width 1280
-is full frame.height 1024
+is full window_width "$WIDE"
+is full frame.height "$HIGH"
 is full "keys.full screen" on
 is window window_width 200
 same frame.ids start window
-check "a picture of the full screen" test "$(od -An -tu1 -j16 -N8 full.png | tr -s ' ')" = " 0 0 5 0 0 0 4 0"
+check "a picture of the full screen" test "$(od -An -tu1 -j16 -N8 full.png | tr -s ' ')" = \
+    "$(printf ' 0 0 %d %d 0 0 %d %d' $((WIDE / 256)) $((WIDE % 256)) $((HIGH / 256)) $((HIGH % 256)))"
 play "full screen from the start" "$CUBE" --size 200x100 --fullscreen <<END
 still
 state full
@@ -190,7 +193,7 @@ press F11
 still
 state window
 END
-is full window_width 1280
+is full window_width "$WIDE"
 is window window_width 200
 
 # ---- Ways to the screen ----
