@@ -1,6 +1,7 @@
 #!/bin/sh
 # `whit bench`: the list, the report's tables on small pictures, refusals, Ctrl+C.
 . "$(dirname "$0")/common.sh"
+needs jq
 mkdir "$OUT/files" "$OUT/tmp"
 TMPDIR=$OUT/tmp
 export TMPDIR

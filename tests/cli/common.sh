@@ -9,6 +9,13 @@ case $WHIT in */*) WHIT=$(cd "$(dirname "$WHIT")" && pwd)/$(basename "$WHIT") ;;
 SCENES=$(cd "$SCENES" && pwd)
 CUBE=$SCENES/cube.json
 
+# needs PROGRAM: skips the test, by name, where there is no such program.
+needs() {
+    command -v "$1" >/dev/null && return
+    echo "SKIPPED: no $1"
+    exit 77
+}
+
 # check WHAT COMMAND...: the command succeeds.
 check() {
     what=$1

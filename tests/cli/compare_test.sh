@@ -1,6 +1,7 @@
 #!/bin/sh
 # whit compare: metrics by hand on pictures of two pixels, tolerances, formats, difference pictures.
 . "$(dirname "$0")/common.sh"
+needs jq
 VK_DRIVER_FILES=/nonexistent
 VK_ICD_FILENAMES=/nonexistent
 export VK_DRIVER_FILES VK_ICD_FILENAMES

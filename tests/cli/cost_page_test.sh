@@ -2,6 +2,7 @@
 # The page of `whit cost` in a browser without a window: no message on its console, no request. Skipped
 # where there is no Chromium.
 . "$(dirname "$0")/common.sh"
+needs jq
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
 if [ -z "$browser" ]; then
     echo "SKIPPED: no Chromium"

@@ -3,6 +3,7 @@
 # library in which WHIT_TEST_WRONG is wrong, by clocks of its own: nothing here depends on how fast the
 # machine is.
 . "$(dirname "$0")/common.sh"
+needs jq
 . "$(dirname "$0")/cost_common.sh"
 RIGHT=$WHIT
 J=$OUT/files/cost.json

@@ -2,6 +2,7 @@
 # --effects of `whit render` and `whit scene`: names, prices, promises. The third argument is whit over
 # a library whose pictures change with WHIT_TEST_CHANGED_EFFECT.
 . "$(dirname "$0")/common.sh"
+needs jq
 CHANGED=$3
 
 P=$OUT/picture.pfm

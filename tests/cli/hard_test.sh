@@ -1,6 +1,7 @@
 #!/bin/sh
 # `whit hard`: the table, its promises, JSON, options. sh TEST WHIT SCENES LEAKY UNIT_TEST
 . "$(dirname "$0")/common.sh"
+needs jq
 LEAKY=$3
 HASH=$(sed -n 's/^#define HASH UINT64_C(0x\(.*\))$/\1/p' "$4")
 mkdir "$OUT/files"

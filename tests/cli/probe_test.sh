@@ -1,6 +1,7 @@
 #!/bin/sh
 # `whit probe`: what it prints, JSON, exit codes, options. sh TEST WHIT SCENES LEAKY
 . "$(dirname "$0")/common.sh"
+needs jq
 LEAKY=$3
 mkdir "$OUT/files"
 J=$OUT/files/probe.json

@@ -1,6 +1,7 @@
 #!/bin/sh
 # `whit scene`: what is in it, as text, JSON and triangles.
 . "$(dirname "$0")/common.sh"
+needs jq
 mkdir "$OUT/files"
 
 expect 0 "scene" scene "$CUBE"

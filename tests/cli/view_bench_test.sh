@@ -2,6 +2,7 @@
 # sh view_bench_test.sh WHIT SCENES [figures]: `whit bench view`, the table and its JSON, on small
 # pictures; no display. `figures`: also that each is one, which a busy machine may not give.
 . "$(dirname "$0")/common.sh"
+needs jq
 FIGURES=${3:-}
 mkdir "$OUT/files" "$OUT/tmp"
 TMPDIR=$OUT/tmp

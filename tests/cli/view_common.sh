@@ -1,5 +1,7 @@
 # Sourced, behind common.sh, by the tests of the viewer: replays, and what they leave.
 
+needs jq
+
 # Cameras that were remembered are this test's own.
 XDG_STATE_HOME=$OUT/state
 export XDG_STATE_HOME

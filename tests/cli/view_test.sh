@@ -1,6 +1,7 @@
 #!/bin/sh
 # Pictures of what traversals cost: heat maps, raw numbers, the same ones in --stats.
 . "$(dirname "$0")/common.sh"
+needs jq
 mkdir "$OUT/pictures"
 P=$OUT/pictures
 SCENE=$SCENES/balls.json
