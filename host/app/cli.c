@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <sched.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -44,7 +43,7 @@ static void lock_reason(sigset_t *before)
     sigaddset(&alarm, SIGALRM);
     pthread_sigmask(SIG_BLOCK, &alarm, before);
     while (atomic_flag_test_and_set(&reason_lock))
-        sched_yield();
+        ;
 }
 
 static void unlock_reason(const sigset_t *before)

@@ -64,7 +64,7 @@ static whit_result open_renderer(struct measure *measure)
     whit_stats stats;
     uint32_t width, height;
     cost_small_size(report, &width, &height);
-    const whit_renderer_params params = measure_sized(&measure->usual, width, height);
+    const whit_renderer_params params = measure_sized(measure, &measure->usual, width, height);
     measure_say(measure, "the usual settings");
     whit_result result = whit_renderer_create(measure->request->device, measure->request->accel,
                                               &params, &measure->renderer);

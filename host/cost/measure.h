@@ -28,9 +28,9 @@ struct measure {
 whit_result measure_still_wanted(const struct measure *measure);
 /* Tells `what` is being done. */
 void measure_say(const struct measure *measure, const char *what);
-/* The usual settings' picture at another size. */
-whit_renderer_params measure_sized(const struct knob_target *target, uint32_t width,
-                                   uint32_t height);
+/* The target's picture at another size, in what is left of the time limit. */
+whit_renderer_params measure_sized(const struct measure *measure, const struct knob_target *target,
+                                   uint32_t width, uint32_t height);
 
 /* Both references, at the largest size that `seconds` allow (reference.c). */
 WHIT_CHECK whit_result measure_references(struct measure *measure, double seconds);

@@ -10,12 +10,16 @@ enum { SHRINK_MOST = 16, BUILDS = 3, WARM_SIDE = 16, FULL_LEAST = 6 };
 /* Below it what a dispatch costs by itself would count. */
 static const double FRAME_MS_LEAST = 10.0;
 
-whit_renderer_params measure_sized(const struct knob_target *target, uint32_t width,
-                                   uint32_t height)
+whit_renderer_params measure_sized(const struct measure *measure, const struct knob_target *target,
+                                   uint32_t width, uint32_t height)
 {
     whit_renderer_params params = target->picture;
+    double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
     params.width = width;
     params.height = height;
+    /* A renderer counts it from when it is made. */
+    if (params.time_limit_s > 0.0)
+        params.time_limit_s = fmax(params.time_limit_s - spent_s, 1e-6);
     return params;
 }
 
@@ -139,8 +143,8 @@ static whit_result price(struct measure *measure, const struct knob_target *targ
 {
     uint32_t width, height, rounds;
     plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
-    const whit_renderer_params first = measure_sized(&measure->usual, width, height);
-    const whit_renderer_params second = measure_sized(target, width, height);
+    const whit_renderer_params first = measure_sized(measure, &measure->usual, width, height);
+    const whit_renderer_params second = measure_sized(measure, target, width, height);
     whit_result result = cost_price(measure->renderer, &first, renderer, &second,
                                     measure->report->clock, rounds, &row->price);
     if (result == WHIT_OK && scale)
@@ -230,7 +234,7 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
 {
     const struct cost_report *report = measure->report;
     const whit_renderer_params params =
-        measure_sized(target, report->judged_width, report->judged_height);
+        measure_sized(measure, target, report->judged_width, report->judged_height);
     whit_renderer *renderer = NULL;
     double ms = 0.0;
     bool ran;
@@ -258,7 +262,7 @@ static whit_result price_double(struct measure *measure, const struct knob_targe
     uint32_t width, height, rounds;
     whit_reference *reference = NULL;
     plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
-    const whit_renderer_params sized = measure_sized(target, width, height);
+    const whit_renderer_params sized = measure_sized(measure, target, width, height);
     whit_result result = whit_reference_create(measure->request->accel, &sized, 0, &reference);
     if (result == WHIT_OK)
         result = cost_price_double(measure->renderer, &sized, reference, measure->report->clock,
@@ -273,8 +277,8 @@ static whit_result price_double(struct measure *measure, const struct knob_targe
 static whit_result find_out_double(struct measure *measure, const struct knob_target *target,
                                    double end_ms, struct cost_row *row)
 {
-    const whit_renderer_params params =
-        measure_sized(target, measure->report->judged_width, measure->report->judged_height);
+    const whit_renderer_params params = measure_sized(
+        measure, target, measure->report->judged_width, measure->report->judged_height);
     whit_reference *reference = NULL;
     whit_image *color = NULL, *ids = NULL;
     double start_ms = whit_clock_ms();
@@ -333,7 +337,8 @@ static whit_result time_full(struct measure *measure, double seconds)
 {
     struct cost_report *report = measure->report;
     struct cost_row *row = &report->rows[0];
-    const whit_renderer_params full = measure_sized(&measure->usual, report->width, report->height);
+    const whit_renderer_params full =
+        measure_sized(measure, &measure->usual, report->width, report->height);
     double full_ms = measure->usual_pixel_ms * full.width * full.height;
     double fit = seconds * 1e3 / full_ms - 1.0;
     uint32_t rounds = fit < FULL_LEAST         ? FULL_LEAST
@@ -355,7 +360,7 @@ whit_result measure_usual(struct measure *measure, double seconds, struct cost_r
     const struct cost_report *report = measure->report;
     double end_ms = whit_clock_ms() + seconds * 1e3;
     const whit_renderer_params judged =
-        measure_sized(&measure->usual, report->judged_width, report->judged_height);
+        measure_sized(measure, &measure->usual, report->judged_width, report->judged_height);
     whit_accel *again = NULL; /* its trees, as those of other rows are timed */
     double ms;
     whit_result result = build(measure, &measure->usual, &again, &row->build_ms);
