@@ -20,7 +20,8 @@ const char *hard_rays_name(enum hard_rays rays)
 
 /* ---- Numbers ---- */
 
-/* splitmix64 (Steele, Lea and Flood 2014). */
+/* splitmix64 (Steele, Lea and Flood 2014). No expression draws twice: compilers differ in which
+   operand or argument they evaluate first, and rays are the same everywhere. */
 static uint32_t draw(uint64_t *state)
 {
     *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -205,7 +206,9 @@ static void make_axial(const struct hard_scene *hard, uint64_t *state, struct ha
 /* Within the landscape, at its squares' quarters. */
 static void make_lattice(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
-    double dir[3] = {0.0 * draw_sign(state), draw_sign(state), 0.0 * draw_sign(state)}, origin[3];
+    double dir[3], origin[3];
+    for (int k = 0; k < 3; ++k)
+        dir[k] = (k == 1 ? 1.0 : 0.0) * draw_sign(state);
     for (int k = 0; k < 3; ++k)
         origin[k] = k == 1 ? hard->middle[1] - 1024.0 * dir[1]
                            : hard->middle[k] + 0.25 * draw_whole(state, 31);
@@ -223,21 +226,30 @@ static void make_cross(const struct hard_scene *hard, uint64_t *state, struct ha
         bool zero = k != axis && (zeros < 2 || (zeros == 2 && k == (axis + 1) % 3));
         if (zero)
             dir[k] = 0.0 * draw_sign(state);
-        else if (k == axis)
-            dir[k] = draw_sign(state) * (1.0 + draw_unit(state));
+        else if (k == axis) {
+            double sign = draw_sign(state);
+            dir[k] = sign * (1.0 + draw_unit(state));
+        }
     }
     set_origin(out, origin);
     set_dir(out, dir);
 }
 
 /* From one point of the triangle's plane to another; halves of edges are exact where edges are. */
+/* In the triangle's plane, at halves of its edges: up to `halves` of them from its first corner. */
+static void draw_in_plane(struct target *target, uint32_t halves, uint64_t *state, double out[3])
+{
+    double v = 0.5 * draw_whole(state, halves), u = 0.5 * draw_whole(state, halves);
+    mix(target->corner, u, v, out);
+}
+
 static void make_flat(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;
     double from[3], to[3];
     draw_triangle(hard, state, &target);
-    mix(target.corner, 0.5 * draw_whole(state, 8), 0.5 * draw_whole(state, 8), from);
-    mix(target.corner, 0.5 * draw_whole(state, 2), 0.5 * draw_whole(state, 2), to);
+    draw_in_plane(&target, 8, state, from);
+    draw_in_plane(&target, 2, state, to);
     if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2])
         mix(target.corner, 2.5, 1.0, to);
     set_origin(out, from);
@@ -261,12 +273,14 @@ static void make_grazing(const struct hard_scene *hard, uint64_t *state, struct 
     double n[3], beside[3], origin[3];
     draw_target(hard, true, state, &target);
     triangle_normal(target.corner, n);
-    mix(target.corner, 4.0 * draw_signed(state), 4.0 * draw_signed(state), beside);
+    double t = 4.0 * draw_signed(state), s = 4.0 * draw_signed(state);
+    mix(target.corner, s, t, beside);
     double along[3], length;
     for (int k = 0; k < 3; ++k)
         along[k] = beside[k] - target.point[k];
     length = sqrt(double3_dot(along, along));
-    double height = length * draw_sign(state) * power_of_half(4 + draw(state) % 21u);
+    double sign = draw_sign(state);
+    double height = length * sign * power_of_half(4 + draw(state) % 21u);
     for (int k = 0; k < 3; ++k)
         origin[k] = beside[k] + height * n[k];
     set_origin(out, origin);
