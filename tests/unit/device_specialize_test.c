@@ -231,6 +231,12 @@ static void flip_bit(const char *path, long at)
     assert_int_equal(fclose(file), 0);
 }
 
+static void assert_same_info(const struct pipeline_info *a, const struct pipeline_info *b)
+{
+    assert_true(a->specialized == b->specialized && a->instructions == b->instructions);
+    assert_int_equal(a->bindings, b->bindings);
+}
+
 static void kernels_are_kept_and_damage_is_seen(void **state)
 {
     (void)state;
@@ -246,14 +252,14 @@ static void kernels_are_kept_and_damage_is_seen(void **state)
     assert_true(pipeline_count(&params, &first));
     ino_t file = cached_file(folder, path, sizeof path);
     assert_true(pipeline_count(&params, &again));
-    assert_memory_equal(&again, &first, sizeof first);
+    assert_same_info(&again, &first);
     assert_int_equal(cached_file(folder, path, sizeof path), file);
     for (long at = 0; at < 200; at += 20) { /* header and words */
         file = cached_file(folder, path, sizeof path);
         flip_bit(path, at);
         FILE *held = fopen(path, "rb"); /* so that its number is not given to another one */
         assert_true(pipeline_count(&params, &again));
-        assert_memory_equal(&again, &first, sizeof first);
+        assert_same_info(&again, &first);
         assert_int_not_equal(cached_file(folder, path, sizeof path), file);
         fclose(held);
     }
