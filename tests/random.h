@@ -1,5 +1,7 @@
 /* The random numbers of all tests: the same on every machine. A stream is one 64-bit number, its
-   seed at first, which every function takes and moves on; any two seeds give unrelated streams. */
+   seed at first, which every function takes and moves on; any two seeds give unrelated streams.
+   Compilers evaluate arguments and operands in orders of their own: of two numbers that one
+   expression needs, the first is drawn before it. */
 #ifndef TESTS_RANDOM_H
 #define TESTS_RANDOM_H
 

@@ -192,8 +192,8 @@ static void clips_hold_what_is_inside(void **state)
     random_state = 3;
     uint32_t empty = 0;
     for (int round = 0; round < 10000; ++round) {
-        float at =
-            (float)ldexp(random_float(&random_state) - 0.5, (int)random_below(&random_state, 40));
+        int power = (int)random_below(&random_state, 40);
+        float at = (float)ldexp(random_float(&random_state) - 0.5, power);
         float thin =
             round % 4 == 0 ? 0.0f : (float)ldexp(1.0, -(int)random_below(&random_state, 30));
         struct soup soup = soup_hair(1, thin);

@@ -25,7 +25,8 @@ static struct filter_answer answers[CASES];
 
 static float any_coordinate(int power)
 {
-    return ldexpf(random_within(1.0f), power + (int)random_below(&random_state, 5) - 2);
+    int more = (int)random_below(&random_state, 5) - 2;
+    return ldexpf(random_within(1.0f), power + more);
 }
 
 /* A third at the inside, a third at an edge or a vertex, the others at random. */

@@ -369,7 +369,8 @@ static struct gpu_ray integer_ray_at_box(float lo[3], float hi[3])
         lo[k] = (float)random_below(&random_state, 65) - 32.0f;
         hi[k] = lo[k] + (float)random_below(&random_state, 17);
         ray.origin[k] = (float)random_below(&random_state, 129) - 64.0f;
-        ray.dir[k] = pick(0.0f, ldexpf(pick(-1.0f, 1.0f), (int)random_below(&random_state, 3)));
+        int power = (int)random_below(&random_state, 3);
+        ray.dir[k] = pick(0.0f, ldexpf(pick(-1.0f, 1.0f), power));
         if (ray.dir[k] == 0.0f ||
             random_below(&random_state, 4) == 0) /* in the box, or on a face */
             ray.origin[k] =
@@ -536,7 +537,7 @@ static void senseless_rays_cost_nothing(void **state)
         uint32_t rays = 0, hits = 0, most = 0, least = UINT32_MAX;
         random_state = 9;
         for (uint32_t i = 0; i < 300 * SENSELESS; ++i) {
-            struct gpu_ray good = ray_through(random_point(0.5f), random_point(2.0f));
+            struct gpu_ray good = ray_from_cube(0.5f, random_point(2.0f));
             struct gpu_ray ray = spoiled(good, i % SENSELESS, i / SENSELESS % 3);
             struct gpu_hit hit;
             struct gpu_cost cost = {0}, good_cost = {0};

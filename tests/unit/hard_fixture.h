@@ -93,4 +93,10 @@ static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
     return ray;
 }
 
+/* Arguments are evaluated in an order of the compiler's own: the origin is drawn after them. */
+static inline struct gpu_ray ray_from_cube(float most, struct vec3 target)
+{
+    return ray_through(random_point(most), target);
+}
+
 #endif

@@ -38,20 +38,20 @@ static void make_ordinary(struct vec3 v[3], struct gpu_ray *ray)
 static void make_far(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(0.05f, vec3_make(0.0f, 0.0f, 0.0f), v);
-    *ray = ray_through(random_point(1e7f),
-                       point_of(v, random_float(&random_state), random_float(&random_state)));
+    float b = random_float(&random_state), a = random_float(&random_state);
+    *ray = ray_from_cube(1e7f, point_of(v, a, b));
 }
 
 static void make_tiny(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1e-8f, random_point(1e-6f), v);
-    *ray = ray_through(random_point(1e-6f), point_of(v, 0.5f * random_float(&random_state), 0.5f));
+    *ray = ray_from_cube(1e-6f, point_of(v, 0.5f * random_float(&random_state), 0.5f));
 }
 
 static void make_huge(struct vec3 v[3], struct gpu_ray *ray)
 {
     random_triangle(1e6f, random_point(1e7f), v);
-    *ray = ray_through(random_point(1e11f), point_of(v, 0.3f, random_float(&random_state)));
+    *ray = ray_from_cube(1e11f, point_of(v, 0.3f, random_float(&random_state)));
 }
 
 /* Through the middle of an edge exactly, where the edge function is 0 and its terms are of 68 bits.

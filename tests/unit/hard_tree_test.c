@@ -100,7 +100,7 @@ static void try_orders(const struct level *level, const struct accel *accel,
 static struct gpu_ray ray_at_scene(const struct soup *soup, const struct bvh_box *box, uint32_t i)
 {
     if (soup->count == 0)
-        return ray_through(random_point(1.0f), random_point(1.0f));
+        return ray_from_cube(1.0f, random_point(1.0f));
     return soup_ray(soup, box, i);
 }
 
@@ -293,7 +293,7 @@ static void any_bits_have_trees(void **state)
         for (uint32_t m = 0; m < scene->mesh_count; ++m)
             assert_int_equal(count_usable(&scene->meshes[m]), scene->meshes[m].triangle_count);
         for (uint32_t i = 0; i < 40; ++i) {
-            struct gpu_ray ray = ray_through(random_point(2.0f), random_point(1.0f));
+            struct gpu_ray ray = ray_from_cube(2.0f, random_point(1.0f));
             struct traverse_params params = {.numerics = levels[i % LEVELS].numerics,
                                              .brute = true,
                                              .skip_instance = HIT_NONE,

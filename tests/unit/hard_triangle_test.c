@@ -111,7 +111,7 @@ static void make_unit(struct vec3 v[3], struct gpu_ray *ray)
 {
     for (int i = 0; i < 3; ++i)
         v[i] = random_point(1.0f);
-    *ray = ray_through(random_point(3.0f), inner_point(v));
+    *ray = ray_from_cube(3.0f, inner_point(v));
 }
 
 static float any_size(void)
