@@ -131,6 +131,8 @@ refuse 1 "a wrong triangle" "build median: it may change nothing" \
 unset WHIT_TEST_WRONG
 check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
 check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
+check "from when on its trees are dearer" grep -q \
+    "^build median: 1.0 ms to build beside 9.0; dearer from 1 picture on" "$OUT/stdout"
 check "rays find it too ($(value "$D" build median aimed_wrong))" \
     holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
 

@@ -34,6 +34,10 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$OUT/bare.obj"
 expect 0 "a model without camera and light" scene "$OUT/bare.obj"
 check "says that a camera was added" grep -q "no camera in the file" "$OUT/stdout"
 check "says that a light was added" grep -q "no light in the file" "$OUT/stdout"
+expect 0 "notes as JSON" scene "$OUT/bare.obj" --json
+check "the JSON has them with their levels" jq -e '(.notes | length >= 3) and
+    all(.notes[]; .level == "info" or .level == "warning") and
+    any(.notes[]; .text | test("no camera in the file"))' "$OUT/stdout"
 expect 0 "the degenerate triangle is gone" scene "$OUT/bare.obj" --triangles "$T" --quiet
 check "one record is left" test "$(wc -c <"$T")" -eq 44
 rm "$T"

@@ -65,6 +65,16 @@ wished "$CUBE" "" "$CUBE" "no choice" --budget-ms 0.001
 is chosen wish.text "no setting takes so little here"
 is chosen words "--size $SIZE --traversal sign"
 
+# What takes far longer than was predicted is chosen anew; where nothing is nearer it stays.
+patient=$WHIT
+WHIT=$3
+export WHIT_TEST_SLOW=told
+wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
+unset WHIT_TEST_SLOW
+WHIT=$patient
+is chosen wish.took_ms 10000000
+is chosen wish.text "no setting takes so little here"
+
 refuse 2 "chosen and given" "chooses --aa" view "$CUBE" --budget-ms 10 --aa 4 --frames 1
 refuse 2 "two wishes" "one of them" view "$CUBE" --budget-ms 10 --max-error 1 --frames 1
 finish
