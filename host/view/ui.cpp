@@ -298,7 +298,9 @@ static whit_result start(struct ui *ui)
 
 template <typename T> static void shrink(ImVector<T> &list)
 {
-    ImVector<T> copy = list; // of this size, not of that capacity
+    ImVector<T> copy;
+    if (!list.empty()) // else it would copy nothing from a null pointer
+        copy = list;   // of this size, not of that capacity
     list.swap(copy);
 }
 

@@ -187,7 +187,7 @@ VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkGetQueryPoolResults(VkDevice vk, VkQuery
     VkResult result =
         __real_vkGetQueryPoolResults(vk, pool, first, count, bytes, data, stride, flags);
     if (stamps)
-        memcpy(data, stamps, bytes);
+        memcpy(data, stamps, count * sizeof *stamps);
     return result;
 }
 
