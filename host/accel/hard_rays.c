@@ -235,14 +235,15 @@ static void make_cross(const struct hard_scene *hard, uint64_t *state, struct ha
     set_dir(out, dir);
 }
 
-/* From one point of the triangle's plane to another; halves of edges are exact where edges are. */
-/* In the triangle's plane, at halves of its edges: up to `halves` of them from its first corner. */
+/* In the triangle's plane, at halves of its edges, which are exact where edges are: up to `halves`
+   of them from its first corner. */
 static void draw_in_plane(struct target *target, uint32_t halves, uint64_t *state, double out[3])
 {
     double v = 0.5 * draw_whole(state, halves), u = 0.5 * draw_whole(state, halves);
     mix(target->corner, u, v, out);
 }
 
+/* From one point of the triangle's plane to another. */
 static void make_flat(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;

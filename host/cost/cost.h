@@ -126,8 +126,8 @@ struct cost_request {
     const whit_scene *scene;
     whit_accel *accel; /* with the usual settings; goes to the picture's time */
     whit_accel_params accel_params;
-    whit_renderer_params picture; /* size, camera, time, cancel, time limit of all; what
-                                     knobs do not set */
+    whit_renderer_params picture; /* what knobs do not set: size, camera, time, cancel;
+                                     its time limit is that of all measurements */
     uint64_t knobs;               /* bits of knob_table; 0: all */
     double seconds;               /* that it may take, roughly */
     uint32_t samples_most;        /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */

@@ -1,6 +1,7 @@
 #!/bin/sh
 # sh display.sh COMMAND...: runs a command on a display of its own, which nobody sees, and exits as
-# it does. WHIT_TEST_SCREEN: the size of its screen. Without Xvfb it says `SKIPPED`, which CTest reports as such.
+# it does. WHIT_TEST_SCREEN: the size of its screen. Without Xvfb it says `SKIPPED`, which CTest
+# reports as such.
 if ! command -v Xvfb >/dev/null; then
     echo "SKIPPED: no Xvfb"
     exit 77

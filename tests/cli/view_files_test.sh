@@ -74,7 +74,7 @@ until error
 press R
 still
 state broken
-await $OUT/work/larger
+await larger
 press R
 still
 state mended

@@ -1,5 +1,6 @@
 #!/bin/sh
-# sh view_panels_test.sh WHIT SCENES WHIT_SLOW [large]: panels over the picture: all of what they say is in the window, and none covers another one.
+# sh view_panels_test.sh WHIT SCENES WHIT_SLOW [large]: panels over the picture. All of what they say
+# is in the window, and none covers another one.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"

@@ -2,10 +2,12 @@
    `whit cost` to find. WHIT_TEST_WRONG names it:
    slow      pictures of at least 16 bounces take 10 % more time
    schlick   pictures by Schlick's approximation are 5 % too bright
-   triangle  trees by medians have one triangle moved: the 11th, which a camera before the cube
-   sees; their pictures take 10 % more time Clocks move only while a picture is drawn, by the same
-   time for each sample, and trees are built in 9 ms, by medians in 1 ms, so that every figure is
-   known. With WHIT_TEST_CLOCK=real they are those of the machine. */
+   triangle  trees by medians have the 11th triangle moved, which a camera before the cube sees,
+             and pictures over them take 10 % more time
+
+   Clocks move only while a picture is drawn, by the same time for each sample; trees are said to
+   take 9 ms to build, by medians 1 ms. So every figure is known. With WHIT_TEST_CLOCK=real they are
+   those of the machine. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -36,8 +36,8 @@ struct fault_shared {
     char from[128];  /* parts of names of libraries whose calls count besides the program's own */
     _Atomic uint32_t seen, fired;
     uint32_t timer_ms;              /* that the program last set its timer to */
-    _Atomic uint32_t submits_later; /* submissions to a queue since then, that call included; after
-                                       a jump of the clock: if a time limit had begun */
+    _Atomic uint32_t submits_later; /* submissions to a queue since then, that call included; none
+                                       where the clock jumped before a time limit had begun */
     int64_t live;  /* blocks that the program itself took and nobody gave back, at its end; -1: it
                       did not get so far */
     char what[48]; /* the call at which it happened */
