@@ -15,6 +15,13 @@ whit_result measure_still_wanted(const struct measure *measure)
     return cancel && *cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
+double measure_left_s(const struct measure *measure)
+{
+    double limit_s = measure->request->picture.time_limit_s;
+    double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
+    return limit_s > 0.0 ? fmax(limit_s - spent_s, 1e-6) : 0.0;
+}
+
 /* What is left to be done by the time that it was given, or by what the last rows took. */
 static double seconds_left(const struct measure *measure, double spent_s)
 {

@@ -26,6 +26,9 @@ struct measure {
 };
 
 whit_result measure_still_wanted(const struct measure *measure);
+/* Of the time limit, which renderers and references count from when they begin; 0: there is none.
+ */
+double measure_left_s(const struct measure *measure);
 /* Tells `what` is being done. */
 void measure_say(const struct measure *measure, const char *what);
 /* The target's picture at another size, in what is left of the time limit. */

@@ -24,6 +24,7 @@ static whit_renderer_params reference_params(const struct measure *measure, uint
     params.width = measure->report->width / shrink ? measure->report->width / shrink : 1;
     params.height = measure->report->height / shrink ? measure->report->height / shrink : 1;
     params.samples = samples;
+    params.time_limit_s = measure_left_s(measure);
     params.adaptive = 0.0;
     params.depth = MEASURE_DEPTH;
     params.no_bounces = false;

@@ -14,12 +14,9 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct k
                                    uint32_t width, uint32_t height)
 {
     whit_renderer_params params = target->picture;
-    double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
     params.width = width;
     params.height = height;
-    /* A renderer counts it from when it is made. */
-    if (params.time_limit_s > 0.0)
-        params.time_limit_s = fmax(params.time_limit_s - spent_s, 1e-6);
+    params.time_limit_s = measure_left_s(measure);
     return params;
 }
 
