@@ -395,7 +395,7 @@ whit_result bvh_file_read(const struct log *log, const char *path, const struct 
 {
     uint8_t *data;
     size_t size_bytes;
-    whit_result result = file_read(log, path, 0, &data, &size_bytes);
+    whit_result result = file_read(log, NULL, path, 0, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
     result = bvh_file_parse(log, path, data, size_bytes, scene, params, trees);

@@ -25,6 +25,9 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
         .memory_limit_bytes = params->memory_limit_bytes,
         .texture_limit = params->texture_limit,
         .cancel = params->cancel,
+        .allowed_folders = params->allowed_folders,
+        .allowed_count = params->allowed_count,
+        .refused = params->refused,
     };
     whit_result result = load_scene(&inner, path, &load, &scene->scene);
     if (result != WHIT_OK)

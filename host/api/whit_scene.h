@@ -13,6 +13,11 @@ typedef struct whit_load_params {
     uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
     uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */
     const volatile bool *cancel; /* polled; NULL: never */
+    /* A scene may name files below its own folder, links resolved, and below these: others are
+       refused with a note, or an error where the scene cannot do without. */
+    const char *const *allowed_folders;
+    uint32_t allowed_count;
+    whit_refused *refused; /* filled in, on failure too; NULL: not wanted */
 } whit_load_params;
 
 /* .json scene files and .obj .gltf .glb .ply .stl models. */

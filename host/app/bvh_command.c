@@ -38,7 +38,7 @@ static const struct cli_option options[] = {
     JOB_OPTION_WALKING,
     JOB_OPTION_TIME,
     JOB_OPTION_DEVICE,
-    JOB_OPTION_TEXTURES,
+    JOB_OPTION_LOADING,
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
     {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
     {'q', "quiet", NULL, "no notes, no progress, only errors"},

@@ -42,6 +42,7 @@ static const struct cli_option options[] = {
     {ID_KNOBS, "knobs", "NAME,...", "only these (all that the scene calls for)"},
     {ID_COMPARE, "compare", NULL, "two files of --json in place of the scene: what differs"},
     JOB_OPTION_DEVICE,
+    JOB_OPTION_FOREIGN,
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
     {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
     {'q', "quiet", NULL, "no notes, no progress, only errors"},

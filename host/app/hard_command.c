@@ -20,6 +20,7 @@ static const struct cli_option options[] = {
     {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`"},
     JOB_OPTION_TIME,
     JOB_OPTION_DEVICE,
+    JOB_OPTION_FOREIGN,
     {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)"},
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
     {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},

@@ -118,6 +118,14 @@ static bool tree_option(struct job *job, struct cli_reader *reader, int id)
     }
 }
 
+static void read_allowed(struct job *job, struct cli_reader *reader)
+{
+    if (!reader->value[0] || job->allowed_count == JOB_ALLOWED_MOST)
+        cli_misuse(reader, "--allow-path takes a folder, %d times at most", JOB_ALLOWED_MOST);
+    else
+        job->allowed[job->allowed_count++] = reader->value;
+}
+
 bool job_option(struct job *job, struct cli_reader *reader, int id)
 {
     if (tree_option(job, reader, id))
@@ -139,6 +147,9 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
         return true;
     case JOB_TEXTURE_LIMIT:
         cli_unsigned(reader, 1, 16384, &job->texture_limit);
+        return true;
+    case JOB_ALLOW_PATH:
+        read_allowed(job, reader);
         return true;
     case JOB_VALIDATION:
         job->validation = true;
@@ -200,6 +211,8 @@ whit_result job_load(struct job *job)
             job->time_limit_s > 0.0 && job->time_limit_s < 60.0 ? cli_time_left_s() : 0.0,
         .texture_limit = job->texture_limit,
         .cancel = &cli_cancel,
+        .allowed_folders = job->allowed,
+        .allowed_count = job->allowed_count,
     };
     double start_ms = whit_clock_ms();
     whit_result result = whit_scene_load(job->scene_path, &params, &cli_log_errors, &job->scene);

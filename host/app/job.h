@@ -19,6 +19,8 @@ bool job_read_build(struct cli_reader *reader, const char *text, struct job_buil
 /* What reads back as `build`; without a tree it is `none`. */
 void job_build_name(const struct job_build *build, char name[JOB_BUILD_NAME]);
 
+enum { JOB_ALLOWED_MOST = 8 };
+
 struct job {
     const char *scene_path;
     const char *device_name; /* NULL: auto */
@@ -34,6 +36,8 @@ struct job {
     const char *tree_path; /* of saved trees, or NULL */
     uint32_t threads, texture_limit;
     const char *load_path; /* NULL: auto */
+    const char *allowed[JOB_ALLOWED_MOST];
+    uint32_t allowed_count;
     bool validation, quiet;
     double time_limit_s;
     uint32_t stats; /* enum job_stats */
@@ -61,6 +65,7 @@ enum job_id {
     JOB_INSTANCE_UPDATE,
     JOB_THREADS,
     JOB_TEXTURE_LIMIT,
+    JOB_ALLOW_PATH,
     JOB_LOAD_PATH,
     JOB_VALIDATION,
     JOB_TIME_LIMIT,
@@ -117,10 +122,16 @@ enum job_id {
     {                                                                                              \
         JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)"                    \
     }
-#define JOB_OPTION_TEXTURES                                                                        \
+/* What foreign files may do. */
+#define JOB_OPTION_FOREIGN                                                                         \
     {                                                                                              \
-        JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)"        \
+        JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                    \
+            "files of the scene may name files below FOLDER too, not\n"                            \
+            "only below the scene's own; may be given again"                                       \
     }
+#define JOB_OPTION_LOADING                                                                         \
+    {JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)"},         \
+        JOB_OPTION_FOREIGN
 #define JOB_OPTION_RUN                                                                             \
     {JOB_STATS, "stats", "text|json", "print times, rays and figures of the trees"},               \
         {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},          \

@@ -16,7 +16,7 @@ static const struct cli_option options[] = {
     PICTURE_OPTION_SHADING,
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
-    JOB_OPTION_TEXTURES,
+    JOB_OPTION_LOADING,
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
     {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
     {'q', "quiet", NULL, "no notes, no progress, only errors"},

@@ -121,6 +121,10 @@ static char *command_line(const struct job *job, const struct render_request *re
     }
     if (job->texture_limit)
         fprintf(to, " --texture-limit %u", job->texture_limit);
+    for (uint32_t i = 0; i < job->allowed_count; ++i) {
+        fputs(" --allow-path", to);
+        recipe_put_word(to, job->allowed[i]);
+    }
     if (job->flatten)
         fputs(" --instances off", to);
     if (job->numerics)

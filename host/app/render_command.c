@@ -29,7 +29,7 @@ static const struct cli_option options[] = {
     {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
-    JOB_OPTION_TEXTURES,
+    JOB_OPTION_LOADING,
     JOB_OPTION_RUN,
     {0, NULL, NULL, NULL},
 };

@@ -34,7 +34,7 @@ static const struct cli_option options[] = {
     {JOB_TIME, "time", "T", "time of the triangles, or of the picture, in seconds (0)"},
     {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation"},
     {JOB_FPS, "fps", "F", "frames in a second, for --frame (24)"},
-    JOB_OPTION_TEXTURES,
+    JOB_OPTION_LOADING,
     {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
     {'q', "quiet", NULL, "print nothing but errors; useful with --triangles"},
     {0, NULL, NULL, NULL},

@@ -51,7 +51,7 @@ static const struct cli_option options[] = {
     JOB_OPTION_BUILD,
     JOB_OPTION_BUILDING,
     JOB_OPTION_WALKING,
-    JOB_OPTION_TEXTURES,
+    JOB_OPTION_LOADING,
     {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
     {'q', "quiet", NULL, "no notes, only errors"},
     {0, NULL, NULL, NULL},
@@ -70,6 +70,7 @@ struct view_request {
     uint32_t remember; /* REMEMBER_UNSAID: as it suits */
 };
 enum { REMEMBER_UNSAID = 2 };
+_Static_assert(JOB_ALLOWED_MOST <= (int)VIEW_ALLOWED, "what options name fits into settings");
 
 static void request_init(struct view_request *request)
 {
@@ -90,7 +91,8 @@ static bool read_setting(struct view_request *request, struct cli_reader *reader
 
 static void read_state_option(void *user, struct cli_reader *reader, int id)
 {
-    if (!read_setting(user, reader, id))
+    /* What files may reach is not for a file to say. */
+    if (id == JOB_ALLOW_PATH || !read_setting(user, reader, id))
         cli_misuse(reader, "--%s is nothing to be saved", reader->option->name);
 }
 
@@ -185,6 +187,8 @@ static void fill_settings(const struct job *job, const struct render_request *re
         .paint_scale = request->view.scale,
     };
     copy_text(settings->scene, sizeof settings->scene, job->scene_path);
+    for (uint32_t i = 0; i < job->allowed_count; ++i)
+        copy_text(settings->allowed[i], sizeof settings->allowed[i], job->allowed[i]);
     copy_text(settings->device, sizeof settings->device, job->device_name);
     copy_text(settings->camera, sizeof settings->camera, request->picture.camera);
     copy_text(settings->effects, sizeof settings->effects, request->effects);
@@ -215,6 +219,8 @@ static void fill_request(const struct view_settings *settings, struct job *job,
     job->scene_path = settings->scene;
     job->time_s = p->time_s;
     job->texture_limit = settings->texture_limit;
+    for (uint32_t i = 0; i < VIEW_ALLOWED && settings->allowed[i][0]; ++i)
+        job->allowed[job->allowed_count++] = settings->allowed[i];
     job->flatten = settings->trees.flatten;
     job->numerics = p->numerics;
     request->output = path;
@@ -270,6 +276,7 @@ static whit_result load_state(void *user, const char *path, struct view_state *s
         fill_settings(&request.job, &request.picture, &state->settings);
         state->settings.reload = now.reload;
         state->settings.validation = now.validation;
+        memcpy(state->settings.allowed, now.allowed, sizeof now.allowed);
         state->fps_goal = request.view.budget_fps;
     }
     free(file.text);

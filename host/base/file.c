@@ -77,8 +77,7 @@ static whit_result check_readable(const struct log *log, const char *path, int f
         return WHIT_ERROR_INPUT;
     }
     if (!S_ISREG(info.st_mode)) {
-        log_error(log, "%s: %s, not a file", path,
-                  S_ISDIR(info.st_mode) ? "a folder" : "a device or pipe");
+        log_error(log, "%s: %s", path, reach_words(REACH_NOT_A_FILE));
         return WHIT_ERROR_INPUT;
     }
     if (limit_bytes && (uint64_t)info.st_size > limit_bytes) {
@@ -90,15 +89,15 @@ static whit_result check_readable(const struct log *log, const char *path, int f
     return WHIT_OK;
 }
 
-whit_result file_read(const struct log *log, const char *path, uint64_t limit_bytes, uint8_t **data,
-                      size_t *size_bytes)
+whit_result file_read(const struct log *log, const struct roots *roots, const char *path,
+                      uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
 {
     *data = NULL;
     *size_bytes = 0;
-    /* Non-blocking, or opening a pipe without a writer would wait for ever. */
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    enum reach reach;
+    int fd = roots_open(roots, path, &reach);
     if (fd < 0) {
-        log_error(log, "%s: cannot open: %s", path, strerror(errno));
+        log_error(log, "%s: %s", path, reach_words(reach));
         return WHIT_ERROR_INPUT;
     }
     uint8_t *bytes = NULL;

@@ -9,11 +9,14 @@
 #include <stdio.h>
 
 #include "base/log.h"
+#include "base/roots.h"
 
 /* *data is malloc'ed, with one zero byte behind its size; free() it. Errors are logged with the
-   path. Refuses folders, devices and files over `limit_bytes` (0: no limit). */
-WHIT_CHECK whit_result file_read(const struct log *log, const char *path, uint64_t limit_bytes,
-                                 uint8_t **data, size_t *size_bytes);
+   path. Every file that whit did not make is opened here: with the roots that `path` may not lead
+   out of, or NULL for what the user named. Refuses folders, devices and files over `limit_bytes`
+   (0: no limit). */
+WHIT_CHECK whit_result file_read(const struct log *log, const struct roots *roots, const char *path,
+                                 uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
 
 /* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
    `path`; abandon removes it. Exactly one of the two ends it; both accept a zeroed one. Files open

@@ -2,6 +2,8 @@
 #ifndef WHIT_BASE_H
 #define WHIT_BASE_H
 
+#include <stdint.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -44,6 +46,12 @@ typedef enum whit_log_level {
 /* `message` is one line without its newline, valid during the call only. Called from any thread,
    one call at a time. */
 typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
+
+/* Files outside of the scene's folder that its files name, and that were not read. */
+typedef struct whit_refused {
+    uint32_t count;
+    char folder[4096]; /* of the first of them, absolute; "" where there is none */
+} whit_refused;
 
 /* A short name for a result, for messages: "bad input". Never NULL. */
 const char *whit_result_name(whit_result result);

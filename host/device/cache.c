@@ -100,7 +100,7 @@ whit_result cache_open(struct device *device)
     const uint8_t *data = NULL;
     char *path = cache_is_off() ? NULL : cache_path(device, false);
     if (path && file_exists(path) &&
-        file_read(&silent, path, CACHE_LIMIT_BYTES, &file, &file_bytes) == WHIT_OK) {
+        file_read(&silent, NULL, path, CACHE_LIMIT_BYTES, &file, &file_bytes) == WHIT_OK) {
         data = cache_data(device, file, file_bytes, &data_bytes, &device->cache_hash);
         if (!data)
             log_debug(&device->log, "%s: damaged or from another driver, ignored", path);

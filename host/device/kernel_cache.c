@@ -92,9 +92,10 @@ bool kernel_cache_load(const struct pipeline_params *params, struct kernel_words
     size_t file_bytes = 0;
     key_of(params, key);
     char *path = path_of(key, false);
-    bool found = path && file_exists(path) &&
-                 file_read(&silent, path, KERNEL_LIMIT_BYTES, &file, &file_bytes) == WHIT_OK &&
-                 take_over(key, file, file_bytes, out);
+    bool found =
+        path && file_exists(path) &&
+        file_read(&silent, NULL, path, KERNEL_LIMIT_BYTES, &file, &file_bytes) == WHIT_OK &&
+        take_over(key, file, file_bytes, out);
     free(file);
     free(path);
     return found;

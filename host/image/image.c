@@ -229,16 +229,14 @@ static whit_result unknown_format(const struct image_source *source)
     return WHIT_ERROR_INPUT;
 }
 
-whit_result image_load(const struct log *log, const char *path, struct image *image)
+whit_result image_decode(const struct log *log, const char *path, const uint8_t *data,
+                         size_t size_bytes, struct image *image)
 {
     *image = (struct image){0};
-    uint8_t *data;
-    struct image_source source = {.log = log, .path = path};
-    whit_result result = file_read(log, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
-    if (result != WHIT_OK)
-        return result;
-    source.data = data;
-    switch (format_of_data(data, source.size_bytes)) {
+    const struct image_source source = {
+        .log = log, .path = path, .data = data, .size_bytes = size_bytes};
+    whit_result result = WHIT_OK;
+    switch (format_of_data(data, size_bytes)) {
     case FORMAT_PNG:
         result = png_load(&source, image);
         break;
@@ -255,9 +253,20 @@ whit_result image_load(const struct log *log, const char *path, struct image *im
         result = unknown_format(&source);
         break;
     }
-    free(data);
     if (result != WHIT_OK)
         image_finish(image);
+    return result;
+}
+
+whit_result image_load(const struct log *log, const char *path, struct image *image)
+{
+    *image = (struct image){0};
+    uint8_t *data;
+    size_t size_bytes;
+    whit_result result = file_read(log, NULL, path, IMAGE_BYTES_MAX, &data, &size_bytes);
+    if (result == WHIT_OK)
+        result = image_decode(log, path, data, size_bytes, image);
+    free(data);
     return result;
 }
 
@@ -314,7 +323,7 @@ whit_result image_load_texts(const struct log *log, const char *path, struct ima
     uint8_t *data;
     struct text_list list = {0};
     struct image_source source = {.log = log, .path = path};
-    whit_result result = file_read(log, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
+    whit_result result = file_read(log, NULL, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
     if (result != WHIT_OK)
         return result;
     source.data = data;

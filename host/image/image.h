@@ -41,6 +41,9 @@ bool image_format_known(const char *path, bool integers);
    scanlines or tiles), PFM, HDR; told apart by content. At most 65535 pixels a side and 1 GiB. A
    damaged file is one logged error; *image is then empty. */
 WHIT_CHECK whit_result image_load(const struct log *log, const char *path, struct image *image);
+/* The same of a file's bytes; `path` is its name in errors. */
+WHIT_CHECK whit_result image_decode(const struct log *log, const char *path, const uint8_t *data,
+                                    size_t size_bytes, struct image *image);
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
 WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
                                         struct image_text **texts, uint32_t *text_count);

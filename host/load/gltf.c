@@ -75,8 +75,8 @@ static whit_result read_json(struct gltf *gltf)
     size_t size;
     json_error_t error;
     const char *path = gltf->request->path;
-    whit_result result =
-        file_read(&gltf->scene->log, path, GLTF_LIMIT, &gltf->file, &gltf->file_bytes);
+    whit_result result = file_read(&gltf->scene->log, &gltf->scene->roots, path, GLTF_LIMIT,
+                                   &gltf->file, &gltf->file_bytes);
     if (result != WHIT_OK)
         return result;
     gltf->scene->file_bytes += gltf->file_bytes;

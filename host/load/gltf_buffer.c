@@ -23,14 +23,15 @@ char *gltf_uri_path(const struct gltf *gltf, const char *uri)
     for (const char *at = uri; decoded && *at; at++) {
         int high = at[0] == '%' ? hex_digit(at[1]) : -1;
         int low = high >= 0 ? hex_digit(at[2]) : -1;
-        bool escape = low >= 0 && (high || low);
-        *to++ = escape ? (char)(high * 16 + low) : *at;
+        int byte = low >= 0 ? high * 16 + low : 0;
+        bool escape = byte >= ' ' && byte != 0x7f && !strchr("./\\", byte);
+        *to++ = escape ? (char)byte : *at;
         at += escape ? 2 : 0;
     }
     if (!decoded)
         return NULL;
     *to = 0;
-    char *path = path_beside(gltf->request->path, decoded);
+    char *path = roots_join(gltf->request->path, decoded);
     free(decoded);
     return path;
 }
@@ -85,25 +86,19 @@ static whit_result read_external(struct gltf *gltf, const struct gltf_place *at,
     char *path = gltf_uri_path(gltf, uri);
     if (!path)
         return WHIT_ERROR_MEMORY;
-    if (!file_exists(path)) {
-        gltf_fail(gltf, at, "its file `%.150s` is missing", uri);
+    const char *why_not = roots_why_not(&gltf->scene->roots, path);
+    if (why_not) {
+        gltf_fail(gltf, at, "its file `%.40s`: %s", uri, why_not);
         free(path);
         return WHIT_ERROR_INPUT;
     }
-    whit_result result =
-        file_read(&gltf->scene->log, path, BUFFER_LIMIT, &out->owned, &out->size_bytes);
+    whit_result result = file_read(&gltf->scene->log, &gltf->scene->roots, path, BUFFER_LIMIT,
+                                   &out->owned, &out->size_bytes);
     if (result == WHIT_OK)
         gltf->scene->file_bytes += out->size_bytes;
     out->data = out->owned;
     free(path);
     return result;
-}
-
-/* A scheme like http: that is neither data: nor a letter of a drive. */
-static bool has_scheme(const char *uri)
-{
-    size_t length = strcspn(uri, ":/?#");
-    return length > 1 && uri[length] == ':';
 }
 
 static whit_result load_buffer(struct gltf *gltf, uint32_t index, struct gltf_bytes *out)
@@ -124,9 +119,6 @@ static whit_result load_buffer(struct gltf *gltf, uint32_t index, struct gltf_by
         if (result == WHIT_ERROR_INPUT)
             gltf_fail(gltf, &at, "its data: URI cannot be read");
         out->data = out->owned;
-    } else if (uri && has_scheme(uri)) {
-        gltf_fail(gltf, &at, "`%.80s` is not a file beside the model", uri);
-        return WHIT_ERROR_INPUT;
     } else if (uri) {
         result = read_external(gltf, &at, uri, out);
     }

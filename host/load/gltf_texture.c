@@ -21,9 +21,10 @@ static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visi
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
-    if (!visible && !file_exists(path))
-        scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%.200s` is missing",
-                   path_name(gltf->request->path), uri);
+    const char *why_not = visible ? NULL : roots_why_not(&gltf->scene->roots, path);
+    if (why_not)
+        scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%.200s`: %s",
+                   path_name(gltf->request->path), uri, why_not);
     else
         result = load_texture(gltf->scene, path, NULL, 0, gltf->request->params, texture, NULL);
     free(path);

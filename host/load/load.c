@@ -1,5 +1,6 @@
 #include "load/load.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -31,6 +32,15 @@ static whit_result read_into(struct scene *scene, const char *path,
     return WHIT_ERROR_INPUT;
 }
 
+static void tell_refused(const struct roots *roots, const struct load_params *params)
+{
+    if (!params || !params->refused)
+        return;
+    const char *folder = roots->refused_folder ? roots->refused_folder : "";
+    params->refused->count = roots->refused_count;
+    snprintf(params->refused->folder, sizeof params->refused->folder, "%s", folder);
+}
+
 whit_result load_scene(const struct log *log, const char *path, const struct load_params *params,
                        struct scene **out)
 {
@@ -49,7 +59,12 @@ whit_result load_scene(const struct log *log, const char *path, const struct loa
         log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = read_into(scene, path, params);
+    whit_result result = roots_init(&scene->roots, path);
+    for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
+        result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
+    if (result == WHIT_OK)
+        result = read_into(scene, path, params);
+    tell_refused(&scene->roots, params);
     if (result == WHIT_OK)
         result = scene_freeze(scene);
     if (result == WHIT_OK && params && params->cancel && *params->cancel)

@@ -11,6 +11,10 @@ struct load_params {
     uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
     uint32_t texture_limit;      /* longest side of a texture, larger ones are halved; 0: 4096 */
     const volatile bool *cancel; /* polled; may be NULL */
+    /* Folders that the files of a scene may name files in, besides the scene's own. */
+    const char *const *allowed_folders;
+    uint32_t allowed_count;
+    whit_refused *refused; /* filled in, on failure too; may be NULL */
 };
 
 /* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl

@@ -144,7 +144,8 @@ whit_result model_load_obj(struct scene *scene, const struct model_request *requ
     size_t size = 0;
     struct mtl_library library = {0};
     struct import_block block = {0};
-    whit_result result = file_read(&scene->log, request->path, MODEL_LIMIT, &data, &size);
+    whit_result result =
+        file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size;
@@ -174,7 +175,8 @@ static whit_result load_plain(struct scene *scene, const struct model_request *r
     size_t size = 0;
     const struct mtl_library no_library = {0};
     struct import_block block = {0};
-    whit_result result = file_read(&scene->log, request->path, MODEL_LIMIT, &data, &size);
+    whit_result result =
+        file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size;

@@ -29,10 +29,10 @@ enum { ALPHA_HALF = 128 };
 
 /* The path of a texture named in an MTL: as written, with slashes for backslashes, or the bare name
    beside the MTL (paths of the exporter's machine). The first that exists; else the second. */
-static char *find_texture(const char *mtl_path, const char *name)
+static char *find_texture(const struct roots *roots, const char *mtl_path, const char *name)
 {
-    char *written = path_beside(mtl_path, name);
-    if (!written || file_exists(written))
+    char *written = roots_join(mtl_path, name);
+    if (!written || roots_reach(roots, written) == REACH_FILE)
         return written;
     free(written);
     char *slashed = string_copy(name);
@@ -40,10 +40,11 @@ static char *find_texture(const char *mtl_path, const char *name)
         *c = *c == '\\' ? '/' : *c;
     if (!slashed)
         return NULL;
-    char *path = path_beside(mtl_path, slashed);
+    char *path = roots_join(mtl_path, slashed);
     char *bare = path_beside(mtl_path, path_name(slashed));
     free(slashed);
-    if (path && bare && !file_exists(path) && file_exists(bare)) {
+    if (path && bare && roots_reach(roots, path) != REACH_FILE &&
+        roots_reach(roots, bare) == REACH_FILE) {
         free(path);
         return bare;
     }
@@ -119,14 +120,15 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
     const struct mtl_texture *map = &entry->maps[kind];
     if (!map->file)
         return WHIT_OK;
-    char *path = find_texture(entry->file, map->file);
+    char *path = find_texture(&scene->roots, entry->file, map->file);
     if (!path)
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
-    if (slot != SCENE_SLOT_DIFFUSE && !file_exists(path)) {
-        scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: texture `%s` is missing",
-                   path_name(entry->file), map->line, map->file);
+    const char *why_not = slot == SCENE_SLOT_DIFFUSE ? NULL : roots_why_not(&scene->roots, path);
+    if (why_not) {
+        scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: texture `%s`: %s", path_name(entry->file),
+                   map->line, map->file, why_not);
     } else {
         struct scene_texture_use *use = &out->textures[slot];
         set_transform(map, use);

@@ -145,22 +145,23 @@ struct names {
     uint32_t count, capacity;
 };
 
-/* `found` tells whether the file was there; one that was read before is not read again. */
+/* *why_not: NULL, or why the file is not read; one that was read before is not read again. */
 static whit_result read_library(struct scene *scene, const char *obj_path, const char *name,
-                                struct mtl_library *library, struct names *read, bool *found)
+                                struct mtl_library *library, struct names *read,
+                                const char **why_not)
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    char *path = path_beside(obj_path, name);
+    char *path = roots_join(obj_path, name);
     if (!path)
         return WHIT_ERROR_MEMORY;
-    *found = *name && file_exists(path);
-    for (uint32_t i = 0; *found && i < read->count; i++)
+    *why_not = roots_why_not(&scene->roots, path);
+    for (uint32_t i = 0; !*why_not && i < read->count; i++)
         if (strcmp(read->paths[i], path) == 0)
             goto done;
-    if (!*found)
+    if (*why_not)
         goto done;
-    if (file_read(&scene->log, path, LIBRARY_LIMIT, &data, &size) != WHIT_OK) {
+    if (file_read(&scene->log, &scene->roots, path, LIBRARY_LIMIT, &data, &size) != WHIT_OK) {
         free(path);
         return WHIT_ERROR_INPUT;
     }
@@ -201,19 +202,19 @@ static char *copy_word(const char *at, const char *end)
 static whit_result read_named(struct scene *scene, const char *obj_path, const char *line,
                               struct mtl_library *library, struct names *read)
 {
-    bool found = false;
-    whit_result result = read_library(scene, obj_path, line, library, read, &found);
+    const char *why_not = NULL;
+    whit_result result = read_library(scene, obj_path, line, library, read, &why_not);
     const char *at = line;
+    bool found = !why_not;
     while (result == WHIT_OK && !found && *at) {
         const char *end = word_end(at);
         char *name = copy_word(at, end);
         if (!name)
             return WHIT_ERROR_MEMORY;
-        bool here = false;
-        result = read_library(scene, obj_path, name, library, read, &here);
-        if (result == WHIT_OK && !here)
-            scene_note(scene, SCENE_NOTE_WARNING, "%s: material library `%s` is missing",
-                       path_name(obj_path), name);
+        result = read_library(scene, obj_path, name, library, read, &why_not);
+        if (result == WHIT_OK && why_not)
+            scene_note(scene, SCENE_NOTE_WARNING, "%s: material library `%s`: %s",
+                       path_name(obj_path), name, why_not);
         free(name);
         for (at = end; *at == ' ' || *at == '\t'; at++)
             continue;
@@ -247,11 +248,11 @@ static whit_result read_sibling(struct scene *scene, const char *path, struct mt
     const char *name = path_name(path), *dot = strrchr(name, '.');
     int length = dot ? (int)(dot - name) : (int)strlen(name);
     char *sibling = string_format("%.*s.mtl", length, name);
-    bool found;
+    const char *why_not;
     if (!sibling)
         return WHIT_ERROR_MEMORY;
-    whit_result result = read_library(scene, path, sibling, library, read, &found);
-    if (result == WHIT_OK && found)
+    whit_result result = read_library(scene, path, sibling, library, read, &why_not);
+    if (result == WHIT_OK && !why_not)
         scene_note(scene, SCENE_NOTE_INFO,
                    "%s: no material library was found by its name, `%s` is used", name, sibling);
     free(sibling);

@@ -188,8 +188,9 @@ void picture_finish(struct picture *picture)
     *picture = (struct picture){0};
 }
 
-/* Replaces the part of `path` in [start, end) by the folder's entry that equals it but for case. */
-static bool match_part(char *path, size_t start, size_t end)
+/* Replaces the part of `path` in [start, end) by the folder's entry that equals it but for case.
+   Folders outside of the roots are not listed. */
+static bool match_part(const struct roots *roots, char *path, size_t start, size_t end)
 {
     char kept_end = path[end], kept_start = path[start];
     char part[NAME_MAX + 1];
@@ -198,7 +199,8 @@ static bool match_part(char *path, size_t start, size_t end)
     memcpy(part, path + start, end - start);
     part[end - start] = '\0';
     path[start] = '\0';
-    DIR *folder = opendir(start ? path : ".");
+    const char *name = start ? path : ".";
+    DIR *folder = roots_reach(roots, name) == REACH_NOT_A_FILE ? opendir(name) : NULL;
     path[start] = kept_start;
     if (!folder)
         return false;
@@ -223,23 +225,23 @@ static bool exists_up_to(char *path, size_t end)
     return exists;
 }
 
-char *picture_find(const char *path)
+char *picture_find(const struct roots *roots, const char *path)
 {
     char *found = string_copy(path);
-    if (!found || file_exists(found))
+    if (!found || roots_reach(roots, found) != REACH_MISSING)
         return found;
     for (char *c = found; *c; ++c) {
         if (*c == '\\')
             *c = '/';
     }
     char *plain = string_copy(found);
-    if (!plain || file_exists(found)) {
+    if (!plain || roots_reach(roots, found) != REACH_MISSING) {
         free(plain);
         return found;
     }
     for (size_t start = 0; found[start];) {
         size_t end = start + strcspn(found + start, "/");
-        if (end > start && !exists_up_to(found, end) && !match_part(found, start, end)) {
+        if (end > start && !exists_up_to(found, end) && !match_part(roots, found, start, end)) {
             free(found);
             return plain;
         }

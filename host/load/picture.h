@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/log.h"
+#include "base/roots.h"
 
 /* `rgba` or `rgb` is malloc'ed; picture_finish() it. Row 0 is the top. */
 struct picture {
@@ -28,7 +29,8 @@ bool picture_shrink(struct picture *picture, uint32_t side_most);
 void picture_finish(struct picture *picture);
 
 /* `path`, or the one file that differs from it by case and by \ for /. Release with free(); NULL
-   when memory runs out. A path that leads nowhere is given back with its slashes turned. */
-char *picture_find(const char *path);
+   when memory runs out. A path that leads nowhere is given back with its slashes turned; one that
+   leads out of the roots is not looked for. */
+char *picture_find(const struct roots *roots, const char *path);
 
 #endif

@@ -273,11 +273,12 @@ static bool read_map(struct reader *reader, const struct place *place, const jso
         !reader_string(reader, place, value, "map", &name) ||
         !reader_color(reader, place, value, "scale", scale))
         return false;
-    char *path = path_beside(reader->path, name);
+    char *path = roots_join(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
-    if (!file_exists(path)) {
-        reader_fail(reader, &here, "there is no file `%s`", path);
+    const char *why_not = roots_why_not(&reader->scene->roots, path);
+    if (why_not) {
+        reader_fail(reader, &here, "`%s`: %s", name, why_not);
         free(path);
         return false;
     }
@@ -368,7 +369,8 @@ whit_result load_scene_file(struct scene *scene, const char *path, const struct 
     uint8_t *text = NULL;
     size_t size_bytes = 0;
     json_error_t error;
-    whit_result result = file_read(&scene->log, path, FILE_BYTES_MOST, &text, &size_bytes);
+    whit_result result =
+        file_read(&scene->log, &scene->roots, path, FILE_BYTES_MOST, &text, &size_bytes);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;

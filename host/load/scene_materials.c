@@ -153,13 +153,13 @@ static bool file_texture(struct reader *reader, const struct place *place, const
                          struct scene_texture_use *use)
 {
     const char *reason = NULL;
-    char *path = path_beside(reader->path, name);
+    char *path = roots_join(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
     whit_result result =
         load_texture(reader->scene, path, NULL, 0, reader->params, &use->texture, &reason);
     if (result == WHIT_ERROR_INPUT)
-        reader_fail(reader, place, "texture `%s`: %s", path, reason);
+        reader_fail(reader, place, "texture `%s`: %s", name, reason);
     else if (result != WHIT_OK)
         reader->result = result;
     free(path);

@@ -6,14 +6,11 @@
 #include "base/file.h"
 #include "load/scene_objects.h"
 
-static bool load_new_model(struct reader *reader, const struct place *place, const char *path,
-                           uint32_t node, uint32_t material, bool lights, bool cameras)
+static bool load_new_model(struct reader *reader, const char *path, uint32_t node,
+                           uint32_t material, bool lights, bool cameras)
 {
     struct scene *scene = reader->scene;
     uint32_t first_mesh = scene->mesh_count;
-    struct place here = {place, "model", 0};
-    if (!file_exists(path))
-        return reader_fail(reader, &here, "there is no file `%s`", path);
     whit_result result = load_model(scene, path, node, lights, cameras, reader->params);
     if (result != WHIT_OK) {
         reader->result = result;
@@ -41,7 +38,7 @@ static bool place_model(struct reader *reader, const struct place *place, const 
         }
     }
     struct scene_range range = range_begin(reader->scene, node);
-    if (!load_new_model(reader, place, path, node, material, lights, cameras)) {
+    if (!load_new_model(reader, path, node, material, lights, cameras)) {
         free(key);
         return false;
     }
@@ -80,10 +77,12 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
     if (!has_extension_of_model(name))
         return reader_fail(reader, &here, "`%s` is no model; whit reads .obj .gltf .glb .ply .stl",
                            name);
-    char *path = path_beside(reader->path, name);
+    char *path = roots_join(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
-    bool placed = place_model(reader, place, path, node, material, lights, cameras);
+    const char *why_not = roots_why_not(&reader->scene->roots, path);
+    bool placed = why_not ? reader_fail(reader, &here, "`%s`: %s", name, why_not)
+                          : place_model(reader, place, path, node, material, lights, cameras);
     free(path);
     return placed;
 }

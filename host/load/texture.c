@@ -27,8 +27,12 @@ static whit_result decode_file(struct scene *scene, const char *path, struct pic
     uint8_t *data = NULL;
     size_t size_bytes = 0;
     const struct log silent = {0};
-    whit_result result = file_read(&silent, path, FILE_BYTES_MOST, &data, &size_bytes);
-    *reason = file_exists(path) ? "it cannot be read" : "there is no such file";
+    *reason = roots_why_not(&scene->roots, path);
+    if (*reason)
+        return WHIT_ERROR_INPUT;
+    *reason = "it cannot be read";
+    whit_result result =
+        file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;
@@ -65,12 +69,12 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
 {
     struct picture picture = {0};
     const char *why = "";
-    char *name = data ? string_copy(path) : picture_find(path);
+    char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     *index = SCENE_NONE;
     if (!name)
         goto fail;
     /* A model's stand-in for a missing file does not make it less missing. */
-    bool missing = reason && !data && !file_exists(name);
+    bool missing = reason && !data && roots_reach(&scene->roots, name) != REACH_FILE;
     if (!missing && known(scene, name, index)) {
         free(name);
         return WHIT_OK;

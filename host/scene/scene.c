@@ -84,6 +84,7 @@ void scene_destroy(struct scene *scene)
 {
     if (!scene)
         return;
+    roots_finish(&scene->roots);
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         scene_mesh_finish(&scene->meshes[i]);
     for (uint32_t i = 0; i < scene->node_count; ++i)

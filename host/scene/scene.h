@@ -9,6 +9,7 @@
 
 #include "base/affine.h"
 #include "base/log.h"
+#include "base/roots.h"
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
 
@@ -258,6 +259,7 @@ struct scene {
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
     float time_end_s;                      /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;                   /* of all files read */
+    struct roots roots;                    /* what the files that it is loaded from may name */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool lacks_memory;                     /* for a name or a note: scene_freeze fails */
     bool frozen;

@@ -340,7 +340,7 @@ whit_result events_load(const struct log *log, const char *path, struct view_eve
     size_t bytes = 0;
     *events = NULL;
     *count = 0;
-    whit_result result = file_read(log, path, REPLAY_BYTES_MOST, &text, &bytes);
+    whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MOST, &text, &bytes);
     if (result == WHIT_OK)
         result = read_lines(log, path, (char *)text, &list);
     if (result == WHIT_OK && !join(&list, (const char *)text, bytes)) {

@@ -40,8 +40,14 @@ static void tell(struct session_progress *progress, enum session_stage stage)
 static whit_result load(struct session *session)
 {
     const struct view_settings *settings = &session->settings;
+    const char *allowed[VIEW_ALLOWED];
     whit_load_params params = {.texture_limit = settings->texture_limit,
-                               .cancel = &session->cancel};
+                               .cancel = &session->cancel,
+                               .allowed_folders = allowed};
+    while (params.allowed_count < VIEW_ALLOWED && settings->allowed[params.allowed_count][0]) {
+        allowed[params.allowed_count] = settings->allowed[params.allowed_count];
+        ++params.allowed_count;
+    }
     struct scene_ref *ref = calloc(1, sizeof *ref);
     if (!ref)
         return WHIT_ERROR_MEMORY;

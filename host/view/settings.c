@@ -15,10 +15,19 @@ static bool same_trees(const whit_accel_params *a, const whit_accel_params *b)
            a->instance_refit == b->instance_refit && a->flatten == b->flatten;
 }
 
+static bool same_allowed(const struct view_settings *a, const struct view_settings *b)
+{
+    for (uint32_t i = 0; i < VIEW_ALLOWED; ++i) {
+        if (strcmp(a->allowed[i], b->allowed[i]) != 0)
+            return false;
+    }
+    return true;
+}
+
 bool settings_same_scene(const struct view_settings *a, const struct view_settings *b)
 {
     return strcmp(a->scene, b->scene) == 0 && a->reload == b->reload &&
-           a->texture_limit == b->texture_limit;
+           a->texture_limit == b->texture_limit && same_allowed(a, b);
 }
 
 bool settings_same_kernel(const struct view_settings *a, const struct view_settings *b)
@@ -244,6 +253,8 @@ size_t settings_render_line(const struct view_settings *settings, char *text, si
     struct words words = {.text = text, .bytes = text_bytes, .separator = " "};
     put(&words, "whit render ");
     put_quoted(&words, settings->scene);
+    for (uint32_t i = 0; i < VIEW_ALLOWED && settings->allowed[i][0]; ++i)
+        option(&words, "--allow-path", "%s", settings->allowed[i]);
     all_words(&words, settings);
     put(&words, " -o picture.png");
     return finish(&words);

@@ -5,7 +5,7 @@
 
 #include "api/whit.h"
 
-enum { VIEW_PATH = 1024, VIEW_TEXT = 256 };
+enum { VIEW_PATH = 1024, VIEW_TEXT = 256, VIEW_ALLOWED = 8 };
 
 /* What is painted. Costs are heat maps, of what whit_view tells. */
 enum view_paint {
@@ -22,9 +22,10 @@ enum view_boxes { VIEW_BOXES_OFF, VIEW_BOXES_MESHES, VIEW_BOXES_INSTANCES, VIEW_
 
 struct view_settings {
     char scene[VIEW_PATH];
-    uint32_t reload;        /* another number: the scene is read again */
-    char device[VIEW_TEXT]; /* "": auto */
-    uint32_t texture_limit; /* 0: the default */
+    uint32_t reload;                       /* another number: the scene is read again */
+    char device[VIEW_TEXT];                /* "": auto */
+    uint32_t texture_limit;                /* 0: the default */
+    char allowed[VIEW_ALLOWED][VIEW_PATH]; /* folders of --allow-path; "" behind the last */
     bool validation;
 
     whit_accel_params trees; /* without pointers */

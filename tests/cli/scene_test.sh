@@ -42,6 +42,20 @@ expect 0 "the degenerate triangle is gone" scene "$OUT/bare.obj" --triangles "$T
 check "one record is left" test "$(wc -c <"$T")" -eq 44
 rm "$T"
 
+mkdir "$OUT/model" "$OUT/maps"
+printf 'mtllib ../maps/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >"$OUT/model/a.obj"
+printf 'newmtl red\nKd 1 0 0\n' >"$OUT/maps/a.mtl"
+expect 0 "a model that names a file outside of its folder" scene "$OUT/model/a.obj"
+check "names the reference and what allows it" grep -q \
+    "\`../maps/a.mtl\`: it lies outside .*--allow-path $(realpath "$OUT/maps") lets" "$OUT/stdout"
+expect 0 "as JSON" scene "$OUT/model/a.obj" --json
+check "has not read it" jq -e '.materials[0].diffuse != [1, 0, 0]' "$OUT/stdout"
+expect 0 "--allow-path" scene "$OUT/model/a.obj" --json --allow-path "$OUT" --allow-path "$OUT/maps"
+check "has read it" jq -e '.materials[0].diffuse == [1, 0, 0]' "$OUT/stdout"
+refuse 2 "a folder that is not there" "nowhere: cannot be allowed: No such file" \
+    scene "$OUT/model/a.obj" --allow-path "$OUT/nowhere"
+refuse 2 "an empty folder name" "--allow-path takes a folder" scene "$CUBE" --allow-path ""
+
 refuse 2 "triangles into no folder" "nowhere/t" scene "$CUBE" --triangles "$OUT/nowhere/t"
 refuse 2 "missing scene" "missing.obj" scene "$OUT/missing.obj"
 check "no file was left" is_empty "$OUT/files"

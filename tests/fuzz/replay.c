@@ -14,8 +14,8 @@ static void run_file(const char *path)
     uint8_t *data;
     size_t size_bytes;
     fuzz_log_clear();
-    fuzz_check(file_read(&fuzz_log, path, 0, &data, &size_bytes) == WHIT_OK, "%s: cannot be read",
-               path);
+    fuzz_check(file_read(&fuzz_log, NULL, path, 0, &data, &size_bytes) == WHIT_OK,
+               "%s: cannot be read", path);
     uint8_t *exact = malloc(size_bytes ? size_bytes : 1);
     fuzz_check(exact, "out of memory");
     memcpy(exact, data, size_bytes);

@@ -208,7 +208,7 @@ static void write_tree(const struct scene *scene, int kind, uint32_t build)
     fuzz_check(bvh_file_write(accel, path) == WHIT_OK, "a tree that cannot be saved");
     uint8_t *data;
     size_t size_bytes;
-    fuzz_check(file_read(&fuzz_log, path, 0, &data, &size_bytes) == WHIT_OK, "no tree");
+    fuzz_check(file_read(&fuzz_log, NULL, path, 0, &data, &size_bytes) == WHIT_OK, "no tree");
     uint8_t *seed = malloc(size_bytes + 1);
     fuzz_check(seed, "out of memory");
     seed[0] = (uint8_t)kind;

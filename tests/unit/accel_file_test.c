@@ -104,7 +104,7 @@ static void save(const struct scene *scene, const struct bvh_params *mesh, const
 static uint8_t *bytes_of(const char *file, size_t *size)
 {
     uint8_t *bytes;
-    assert_int_equal(file_read(&heard, file, 0, &bytes, size), WHIT_OK);
+    assert_int_equal(file_read(&heard, NULL, file, 0, &bytes, size), WHIT_OK);
     return bytes;
 }
 
@@ -440,7 +440,7 @@ static void files_that_are_none_are_refused(void **state)
     write_bytes(text, sizeof text);
     assert_refused(scene, "no file of trees");
     unlink(path);
-    assert_refused(scene, "No such file");
+    assert_refused(scene, "no such file");
     scene_destroy(scene);
 }
 

@@ -87,7 +87,7 @@ static void assert_content(const char *path, const char *text)
 {
     uint8_t *data;
     size_t size_bytes;
-    assert_int_equal(file_read(NULL, path, 0, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
     assert_int_equal(size_bytes, strlen(text));
     assert_string_equal((char *)data, text);
     free(data);
@@ -223,17 +223,18 @@ static void read_refuses_with_one_message(void **state)
                  {folder, 0, "folder"},
                  {pipe_path, 0, "pipe"},
                  {"/dev/zero", 0, "device"},
-                 {missing, 0, "No such file"}};
+                 {missing, 0, "no such file"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         messages = (struct messages){0};
-        assert_int_equal(file_read(&log, cases[i].path, cases[i].limit_bytes, &data, &size_bytes),
-                         WHIT_ERROR_INPUT);
+        assert_int_equal(
+            file_read(&log, NULL, cases[i].path, cases[i].limit_bytes, &data, &size_bytes),
+            WHIT_ERROR_INPUT);
         assert_null(data);
         assert_int_equal(messages.count, 1);
         assert_non_null(strstr(messages.last, cases[i].path));
         assert_non_null(strstr(messages.last, cases[i].reason));
     }
-    assert_int_equal(file_read(&log, path, 10, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(file_read(&log, NULL, path, 10, &data, &size_bytes), WHIT_OK);
     assert_int_equal(data[size_bytes], 0);
     free(data), free(path), free(pipe_path), free(missing);
 }

@@ -16,7 +16,8 @@ static struct sample sample_of(struct fixture *fixture, const char *name, const 
     struct sample sample = {.name = name};
     char *path = fixture_path(fixture, name);
     assert_int_equal(image_save(&fixture->log, image, path, &text, 1), WHIT_OK);
-    assert_int_equal(file_read(&fixture->log, path, 0, &sample.data, &sample.size_bytes), WHIT_OK);
+    assert_int_equal(file_read(&fixture->log, NULL, path, 0, &sample.data, &sample.size_bytes),
+                     WHIT_OK);
     free(path);
     return sample;
 }

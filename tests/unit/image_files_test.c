@@ -66,7 +66,7 @@ static void pfm_is_bottom_up_little_endian(void **state)
     uint8_t *data;
     size_t size_bytes;
     char *path = fixture_path(fixture, "a.pfm");
-    assert_int_equal(file_read(NULL, path, 0, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
     assert_int_equal(size_bytes, 20);
     assert_memory_equal(data, "Pf\n1 2\n-1.0\n\0\0\0\xc0\0\0\x80\x3f", 20);
     free(data);

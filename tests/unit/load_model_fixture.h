@@ -45,7 +45,9 @@ static inline int fixture_begin(void **state)
     fixture->log = (struct log){.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_INFO};
     fixture->scene = scene_create(&fixture->log, "test");
     *state = fixture;
-    return mkdtemp(fixture->folder) && fixture->scene ? 0 : -1;
+    if (!mkdtemp(fixture->folder) || !fixture->scene)
+        return -1;
+    return roots_allow(&fixture->log, &fixture->scene->roots, fixture->folder) == WHIT_OK ? 0 : -1;
 }
 
 static inline int fixture_end(void **state)

@@ -380,7 +380,7 @@ static void missing_buffers_are_named(void **state)
                     fixture_text(*state, "q.gltf",
                                  "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,"
                                  "\"uri\":\"gone.bin\"}]}"),
-                    "buffers[0]: its file `gone.bin` is missing");
+                    "buffers[0]: its file `gone.bin`: there is no such file");
 }
 
 /* --- animation ------------------------------------------------------------------------------ */

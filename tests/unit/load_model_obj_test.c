@@ -82,7 +82,7 @@ static void several_libraries_and_missing_ones(void **state)
     assert_float_equal(material(fixture, "b")->diffuse[1], 1, 0);
     assert_float_equal(material(fixture, "c")->diffuse[2], 1, 0);
     assert_int_equal(material(fixture, "nobody")->illum, -1);
-    assert_true(fixture_noted(fixture, "`gone.mtl` is missing"));
+    assert_true(fixture_noted(fixture, "`gone.mtl`: there is no such file"));
     assert_true(fixture_noted(fixture, "`nobody` is not defined"));
     assert_int_equal(only_mesh(fixture)->group_count, 3);
 }
@@ -304,7 +304,7 @@ static void maps_with_options(void **state)
     assert_int_equal(m->textures[SCENE_SLOT_BUMP].texture, 1);
     assert_float_equal(m->normal_scale, 1.5, 0);
     assert_int_equal(m->textures[SCENE_SLOT_SPECULAR].texture, SCENE_NONE);
-    assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png` is missing"));
+    assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png`: there is no such file"));
 }
 
 /* The code of a map's first texel, red. */

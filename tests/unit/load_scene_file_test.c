@@ -141,7 +141,7 @@ static void senseless_content_is_refused(void **state)
                  "\"scale\":2}]}",
                  "test.json:1:28: objects[0].matrix: `matrix` and `scale` exclude each other");
     assert_error(state, "{\"objects\":[{\"model\":\"nowhere.obj\"}]}",
-                 "test.json:1:14: objects[0].model: there is no file");
+                 "test.json:1:14: objects[0].model: `nowhere.obj`: there is no such file");
     assert_error(state, "{\"objects\":[{\"model\":\"other.json\"}]}",
                  "test.json:1:14: objects[0].model: `other.json` is no model");
     assert_error(state, "{\"lights\":[{\"kind\":\"spot\",\"position\":[0,1,0]}]}",
@@ -149,7 +149,7 @@ static void senseless_content_is_refused(void **state)
     assert_error(state, "{\"camera\":{\"eye\":[1,2,3],\"target\":[1,2,3]}}",
                  "test.json:1:2: camera: `eye` and `target` are the same point");
     assert_error(state, "{\"environment\":{\"map\":\"no.hdr\"}}",
-                 "test.json:1:17: environment.map: there is no file");
+                 "test.json:1:17: environment.map: `no.hdr`: there is no such file");
     assert_error(state, "{\"environment\":\"#12345\"}",
                  "test.json:1:2: environment: `#12345` is no colour");
     assert_error(state, "{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",

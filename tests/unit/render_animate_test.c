@@ -11,6 +11,7 @@ static const struct render_params animate_params = {.width = 40, .height = 32, .
 static struct scene *spin(void)
 {
     struct scene *scene = scene_begin(&fixture_log, "animation");
+    assert_int_equal(roots_init(&scene->roots, WHIT_SCENES_DIR "/spin.json"), WHIT_OK);
     assert_int_equal(load_scene_file(scene, WHIT_SCENES_DIR "/spin.json", NULL), WHIT_OK);
     return scene;
 }

@@ -183,6 +183,7 @@ static struct scene *load_strips(void)
     write_picture(folder, "half.png", 128);
     struct scene *scene = scene_begin(&fixture_log, "classes");
     char *path = string_format("%s/a.obj", folder);
+    assert_int_equal(roots_init(&scene->roots, path), WHIT_OK);
     assert_int_equal(load_model(scene, path, SCENE_NONE, false, false, NULL), WHIT_OK);
     free(path);
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {

@@ -26,6 +26,7 @@ static struct scene *load(const char *name)
     char path[512];
     struct scene *scene = scene_begin(&fixture_log, name);
     snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, name);
+    assert_int_equal(roots_init(&scene->roots, path), WHIT_OK);
     assert_int_equal(load_scene_file(scene, path, NULL), WHIT_OK);
     return scene;
 }
