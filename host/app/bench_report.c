@@ -386,7 +386,8 @@ static void print_head(const struct bench *bench)
         "%u x %u pixels, one sample, no bounces, with shadows; fps is 1000 over the median of\n"
         "renders in ms; ± is half the width of the middle half. %u runs of each case, in turns.\n"
         "The report's figures are from another machine: only ratios compare.\n",
-        device->name, device->driver, bench->width, bench->height, bench->runs);
+        cli_shown(device->name), cli_shown(device->driver), bench->width, bench->height,
+        bench->runs);
     if (bench->quick)
         printf("\n**Quick run: small pictures, few runs and counters on: not for figures to be "
                "quoted.**\n");

@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <jansson.h>
+#include "app/document.h"
 
 /* Time that interrupted work has to stop by itself; Ctrl+C takes 0.2 s at most. */
 enum { GRACE_MS = 80 };
@@ -54,14 +54,9 @@ static void unlock_reason(const sigset_t *before)
 
 static void say(const char *kind, const char *format, va_list args)
 {
-    char text[4096];
+    char text[8192], shown[2 * sizeof text];
     vsnprintf(text, sizeof text, format, args);
-    /* Names come from files: nothing in them may steer the terminal. */
-    for (char *c = text; *c; ++c) {
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    }
-    fprintf(stderr, "whit: %s: %s\n", kind, text);
+    fprintf(stderr, "whit: %s: %s\n", kind, whit_text_show(text, shown, sizeof shown));
 }
 
 void cli_error(const char *format, ...)
@@ -285,10 +280,12 @@ bool cli_can_write(const char *path)
     return true;
 }
 
-void cli_print_clean(const char *text)
+const char *cli_shown(const char *text)
 {
-    for (; *text; ++text)
-        putchar((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text);
+    static char kept[4][16384];
+    static unsigned turn;
+    char *out = kept[turn++ % 4];
+    return whit_text_show(text ? text : "", out, sizeof kept[0]);
 }
 
 int cli_finish_stdout(int status)
@@ -306,15 +303,10 @@ int cli_print_json(json_t *value)
         cli_error("out of memory");
         return EXIT_USAGE;
     }
-    bool whole = json_dumpf(value, stdout,
-                            JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15)) == 0;
-    json_decref(value);
-    putchar('\n');
-    int status = cli_finish_stdout(EXIT_FINE);
-    if (whole || status != EXIT_FINE)
-        return status;
-    cli_error("out of memory");
-    return EXIT_USAGE;
+    char *text = document_lines(value);
+    puts(text);
+    free(text);
+    return cli_finish_stdout(EXIT_FINE);
 }
 
 /* ---- Progress ---- */

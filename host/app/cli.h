@@ -120,8 +120,9 @@ bool cli_time_over(void);
 
 /* Says so and returns false when `path` cannot be written; leaves pipes and devices alone. */
 bool cli_can_write(const char *path);
-/* On standard output. Names come from files: what would steer the terminal is replaced. */
-void cli_print_clean(const char *text);
+/* As whit_text_show, for names and all else that is not whit's own. Valid until the fourth call
+   from here, of one thread at a time. NULL is as "". */
+const char *cli_shown(const char *text);
 /* Flushes standard output; a failure is an error, for `whit ... > /dev/full`. */
 int cli_finish_stdout(int status);
 /* Prints a jansson value, keys in the order they were added. Takes over the reference; NULL means

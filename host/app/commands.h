@@ -133,7 +133,7 @@ enum { RECIPE_TEXTS = 9 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];
     uint32_t count;
-    char *command, *options, *counters, *view; /* owned */
+    char *command, *options, *counters, *view, *scene, *name, *driver; /* owned */
     char hash[17];
     whit_device_info device;
 };

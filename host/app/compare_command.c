@@ -102,11 +102,8 @@ static void print_metric(const struct compare *compare, uint32_t metric)
 static void print_head(const struct compare *compare)
 {
     const whit_image_info *info = &compare->info;
-    printf("A ");
-    cli_print_clean(compare->paths[0]);
-    printf("\nB ");
-    cli_print_clean(compare->paths[1]);
-    printf("\n  %u x %u pixels%s\n", info->width, info->height,
+    printf("A %s\nB %s\n", cli_shown(compare->paths[0]), cli_shown(compare->paths[1]));
+    printf("  %u x %u pixels%s\n", info->width, info->height,
            info->integers ? ", hit identities" : "");
 }
 

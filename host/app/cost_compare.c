@@ -44,7 +44,7 @@ static void print_row(const struct cost_report *a, const struct cost_row *x,
 {
     bool is_usual = x == &a->rows[0];
     char wrong[32] = "";
-    printf("%-15s %-14s", x->knob, x->setting);
+    printf("%-15s %-14s", cli_shown(x->knob), cli_shown(x->setting));
     printf(" %10.4g %10.4g", x->ms[a->clock], y->ms[b->clock]);
     printf("   x %6.3f x %6.3f", is_usual ? 1.0 : x->price.ratio[a->clock].median,
            is_usual ? 1.0 : y->price.ratio[b->clock].median);
@@ -59,16 +59,10 @@ static void print_row(const struct cost_report *a, const struct cost_row *x,
 static void print_head(char letter, const char *path, const struct cost_report *report,
                        const char *scene)
 {
-    printf("%c  ", letter);
-    cli_print_clean(path);
-    printf(": ");
-    cli_print_clean(scene ? scene : "");
-    printf(", %u x %u on ", report->width, report->height);
-    cli_print_clean(report->device);
-    printf(" (");
-    cli_print_clean(report->driver);
-    printf("), %s clock%s\n", cost_clock_name(report->clock),
-           report->complete ? "" : ", NOT COMPLETE");
+    printf("%c  %s: %s, %u x %u on ", letter, cli_shown(path), cli_shown(scene), report->width,
+           report->height);
+    printf("%s (%s), %s clock%s\n", cli_shown(report->device), cli_shown(report->driver),
+           cost_clock_name(report->clock), report->complete ? "" : ", NOT COMPLETE");
 }
 
 static void print(const struct cost_report *a, const struct cost_report *b)
@@ -80,11 +74,12 @@ static void print(const struct cost_report *a, const struct cost_report *b)
         if (row->measured && other)
             print_row(a, row, b, other);
         else if (row->measured)
-            printf("%-15s %-14s only in A\n", row->knob, row->setting);
+            printf("%-15s %-14s only in A\n", cli_shown(row->knob), cli_shown(row->setting));
     }
     for (uint32_t i = 0; i < b->row_count; ++i)
         if (b->rows[i].measured && !find(a, &b->rows[i]))
-            printf("%-15s %-14s only in B\n", b->rows[i].knob, b->rows[i].setting);
+            printf("%-15s %-14s only in B\n", cli_shown(b->rows[i].knob),
+                   cli_shown(b->rows[i].setting));
 }
 
 int cost_compare_files(const char *path_a, const char *path_b)

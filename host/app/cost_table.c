@@ -345,9 +345,8 @@ static void say_item(void *user, const char *sentence)
 int cost_print_text(const struct cost *cost)
 {
     const struct cost_report *report = cost->report;
-    printf("scene      ");
-    cli_print_clean(cost->job.scene_path);
-    printf("\ndevice     %s (%s)\n\n", report->device, report->driver);
+    printf("scene      %s\n", cli_shown(cost->job.scene_path));
+    printf("device     %s (%s)\n\n", cli_shown(report->device), cli_shown(report->driver));
     put_tables(report, stdout, put_text_row);
     cost_say_method(report, say_plain, stdout);
     putchar('\n');
@@ -377,8 +376,8 @@ static whit_result save(const struct cost *cost, const char *path,
 static void write_markdown(const struct cost *cost, FILE *to)
 {
     const struct cost_report *report = cost->report;
-    fprintf(to, "    %s\n\nOn %s (%s), %.0f s.\n\n", cost->command, report->device, report->driver,
-            report->spent_ms * 1e-3);
+    fprintf(to, "    %s\n\nOn %s (%s), %.0f s.\n\n", cost->command, cli_shown(report->device),
+            cli_shown(report->driver), report->spent_ms * 1e-3);
     put_tables(report, to, put_markdown_row);
     cost_say_method(report, say_item, to);
     cost_say_answers(report, say_item, to);
@@ -392,10 +391,10 @@ whit_result cost_save_markdown(const struct cost *cost)
 /* ---- CSV ---- */
 
 /* In quotes, which are doubled inside (RFC 4180). */
-static void put_quoted(FILE *to, const char *text)
+static void put_quoted(FILE *to, const char *name)
 {
     fputc('"', to);
-    for (; *text; ++text) {
+    for (const char *text = cli_shown(name); *text; ++text) {
         if (*text == '"')
             fputc('"', to);
         fputc(*text, to);

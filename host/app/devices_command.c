@@ -32,9 +32,9 @@ static json_t *device_document(const whit_device_info *info)
 
 static void print_device(const whit_device_info *info)
 {
-    printf("%c %u  %s\n", info->automatic ? '*' : ' ', info->index, info->name);
+    printf("%c %u  %s\n", info->automatic ? '*' : ' ', info->index, cli_shown(info->name));
     printf("     kind      %s, Vulkan %s\n", info->kind, info->api_version);
-    printf("     driver    %s\n", info->driver);
+    printf("     driver    %s\n", cli_shown(info->driver));
     printf("     memory    %.1f GiB, storage buffers to %.0f MiB\n",
            (double)info->memory_bytes / 1073741824.0,
            (double)info->max_storage_range_bytes / 1048576.0);
@@ -42,7 +42,7 @@ static void print_device(const whit_device_info *info)
     printf("     has       %s%s%s\n", info->timestamps ? "timestamps" : "no timestamps",
            info->float64 ? ", float64" : "", info->int64 ? ", int64" : "");
     if (!info->usable)
-        printf("     not usable: %s\n", info->why_not);
+        printf("     not usable: %s\n", cli_shown(info->why_not));
 }
 
 static int print_json(const whit_device_info *infos, uint32_t count)

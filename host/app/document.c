@@ -48,18 +48,23 @@ static json_t *from_text(const char *text)
 {
     if (!text)
         return json_null();
-    json_t *value = json_string(text);
+    json_t *value = strstr(text, "\\x") ? NULL : json_string(text);
     if (value)
         return value;
-    char *ascii = strdup(text);
-    if (!ascii)
+    char *kept = malloc(4 * strlen(text) + 1), *to = kept;
+    if (!kept)
         out_of_memory();
-    for (char *c = ascii; c && *c; ++c) {
-        if ((unsigned char)*c >= 0x80)
-            *c = '?';
+    char shown[WHIT_SHOWN_BYTES];
+    for (size_t length; (length = whit_text_next(text, shown)) != 0; text += length) {
+        bool is_byte = shown[0] == '\\' && shown[1] == 'x';
+        bool is_escape = text[0] == '\\' && text[1] == 'x';
+        if (is_byte || is_escape)
+            to += sprintf(to, "%s", is_byte ? shown : "\\x5c");
+        else
+            to += sprintf(to, "%.*s", (int)length, text);
     }
-    value = json_string(ascii);
-    free(ascii);
+    value = json_stringn(kept, (size_t)(to - kept));
+    free(kept);
     return value;
 }
 
@@ -134,12 +139,32 @@ void document_numbers(json_t *object, const char *key, const double *values, uin
     document_put(object, key, array);
 }
 
-whit_result document_save(json_t *value, const char *path)
+/* JSON has the characters that steer a terminal in strings alone, where an escape says the same. */
+static char *dump(json_t *value, size_t flags)
 {
-    char *text = json_dumps(value, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
-    if (!text)
+    char *text = json_dumps(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    char *shown = text ? malloc(6 * strlen(text) + WHIT_SHOWN_BYTES) : NULL, *to = shown;
+    if (!shown)
         out_of_memory();
     json_decref(value);
+    for (const char *from = text; *from; to += strlen(to)) {
+        if (*from == '\n')
+            from += sprintf(to, "\n");
+        else
+            from += whit_text_next(from, to);
+    }
+    free(text);
+    return shown;
+}
+
+char *document_lines(json_t *value)
+{
+    return dump(value, JSON_INDENT(2));
+}
+
+whit_result document_save(json_t *value, const char *path)
+{
+    char *text = document_lines(value);
     cli_set_saving();
     whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
     free(text);
@@ -148,9 +173,5 @@ whit_result document_save(json_t *value, const char *path)
 
 char *document_line(json_t *value)
 {
-    char *text = json_dumps(value, JSON_COMPACT | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
-    if (!text)
-        out_of_memory();
-    json_decref(value);
-    return text;
+    return dump(value, JSON_COMPACT);
 }

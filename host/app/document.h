@@ -1,5 +1,7 @@
-/* JSON documents. Values that JSON cannot hold become null, text that is not UTF-8 loses what is
-   not; when memory runs out the program ends. */
+/* JSON documents. Values that JSON cannot hold become null. Text keeps all that it has: a byte that
+   is not UTF-8 is the characters `\xff` in it, a backslash before an x is `\x5c`, so that
+   putting a byte where `\x` and two digits are gives back what it was. What would steer a terminal
+   is written as JSON's escapes. When memory runs out the program ends. */
 #ifndef APP_DOCUMENT_H
 #define APP_DOCUMENT_H
 
@@ -26,7 +28,8 @@ void document_floats(json_t *object, const char *key, const float *values, uint3
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
 /* Writes it to a file, indented. Takes over `value`. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
-/* In one line; free() it. Takes over `value`. */
+/* In one line, and as what is saved; free() it. Takes over `value`. */
 char *document_line(json_t *value);
+char *document_lines(json_t *value);
 
 #endif

@@ -37,10 +37,10 @@ static void print_heading(const struct hard *hard, struct widths widths)
 {
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
-    printf("device     %s (%s)\n", device.name, stats_driver(&device));
-    printf("scene      ");
-    cli_print_clean(hard->job.scene_path ? hard->job.scene_path : "the built-in cases");
-    printf("\n\n%-*s%-*s%-12s%9s%8s%7s%8s%8s%7s%8s%6s%10s%11s%10s%8s  %s\n", widths.name, "case",
+    printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
+    printf("scene      %s\n\n",
+           hard->job.scene_path ? cli_shown(hard->job.scene_path) : "the built-in cases");
+    printf("%-*s%-*s%-12s%9s%8s%7s%8s%8s%7s%8s%6s%10s%11s%10s%8s  %s\n", widths.name, "case",
            widths.place, "at", "numerics", "rays", "misses", "leaks", "false", "other", "wrong",
            "double", "self", "ulp", "device ms", "twin ms", "differ", "kept");
 }

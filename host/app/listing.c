@@ -7,11 +7,7 @@ enum { ITEMS_SHOWN = 12 };
 
 static void print_name(uint32_t index, const char *name)
 {
-    printf("  %4u  ", index);
-    cli_print_clean(name[0] ? name : "(no name)");
-    for (size_t i = strlen(name[0] ? name : "(no name)"); i < 24; ++i)
-        putchar(' ');
-    fputs("  ", stdout);
+    printf("  %4u  %-24s  ", index, name[0] ? cli_shown(name) : "(no name)");
 }
 
 static void print_mesh(const whit_scene *scene, uint32_t index)
@@ -71,11 +67,10 @@ static void print_material(const whit_scene *scene, uint32_t index)
         printf(", opacity %.3g", (double)material.opacity);
     if (material.texture_count)
         printf(", %u texture%s", material.texture_count, material.texture_count > 1 ? "s" : "");
-    if (material.file) {
-        fputs("  (", stdout);
-        cli_print_clean(material.file);
+    if (material.file)
+        printf("  (%s", cli_shown(material.file));
+    if (material.file)
         printf(material.line ? ":%u)" : ")", material.line);
-    }
     putchar('\n');
 }
 
@@ -117,8 +112,7 @@ static void print_note(const whit_scene *scene, uint32_t index)
     whit_note_info note;
     whit_scene_get_note(scene, index, &note);
     fputs(note.warning ? "  warning  " : "  info     ", stdout);
-    cli_print_clean(note.text);
-    putchar('\n');
+    puts(cli_shown(note.text));
 }
 
 static void print_list(const char *title, const whit_scene *scene, uint32_t count, bool all,
@@ -140,9 +134,8 @@ static void print_effects(const whit_scene *scene, uint32_t count)
     for (uint32_t i = 0; i < count; ++i) {
         whit_effect_info effect;
         whit_scene_get_effect(scene, i, &effect);
-        printf("  %-20s %-7s ", effect.name, effect.called ? "yes" : "-");
-        cli_print_clean(effect.reason);
-        putchar('\n');
+        printf("  %-20s %-7s %s\n", effect.name, effect.called ? "yes" : "-",
+               cli_shown(effect.reason));
     }
 }
 
@@ -153,8 +146,8 @@ static void print_count(const char *before, uint32_t count, const char *one, con
 
 static void print_summary(const struct job *job, const whit_scene_info *info)
 {
-    cli_print_clean(job->scene_path);
-    printf("\n  triangles    %llu (%llu in the meshes)\n", (unsigned long long)info->triangle_count,
+    printf("%s\n", cli_shown(job->scene_path));
+    printf("  triangles    %llu (%llu in the meshes)\n", (unsigned long long)info->triangle_count,
            (unsigned long long)info->mesh_triangle_count);
     if (info->sphere_count)
         printf("  spheres      %llu\n", (unsigned long long)info->sphere_count);

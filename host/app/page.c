@@ -63,27 +63,6 @@ void page_markup(struct page *page, const char *format, ...)
     free(text);
 }
 
-/* Bytes of the character of UTF-8 that `text` starts with, 0 when it is none, is longer than it
-   needs to be, or is not allowed in XML. */
-static size_t character_length(const unsigned char *text)
-{
-    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-    if (text[0] < 0x80)
-        return text[0] >= 0x20 || text[0] == '\n' || text[0] == '\t' ? text[0] != 0x7f : 0;
-    size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
-    if (text[0] < 0xc2 || text[0] > 0xf4)
-        return 0;
-    uint32_t code = text[0] & (0x7fu >> length);
-    for (size_t i = 1; i < length; ++i) {
-        if ((text[i] & 0xc0) != 0x80)
-            return 0;
-        code = code << 6 | (text[i] & 0x3fu);
-    }
-    bool surrogate = code >= 0xd800 && code < 0xe000;
-    bool no_character = (code & 0xfffe) == 0xfffe || (code >= 0x80 && code < 0xa0);
-    return code < least[length] || code > 0x10ffff || surrogate || no_character ? 0 : length;
-}
-
 static const char *entity_of(char c)
 {
     switch (c) {
@@ -104,16 +83,10 @@ static const char *entity_of(char c)
 
 void page_text(struct page *page, const char *text)
 {
-    while (*text) {
+    char shown[WHIT_SHOWN_BYTES];
+    for (size_t length; (length = whit_text_next(text, shown)) != 0; text += length) {
         const char *entity = entity_of(*text);
-        size_t length = character_length((const unsigned char *)text);
-        if (entity)
-            append_markup(page, entity);
-        else if (length)
-            append(page, text, length);
-        else
-            append_markup(page, "\xef\xbf\xbd");
-        text += length ? length : 1;
+        append_markup(page, entity ? entity : shown);
     }
 }
 

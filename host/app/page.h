@@ -21,8 +21,8 @@ WHIT_CHECK whit_result page_save(const struct page *page, const char *path, cons
 
 /* Markup as it is. Numbers are in the C locale. */
 void page_markup(struct page *page, const char *format, ...) WHIT_PRINTF(2, 3);
-/* Text, in elements and in quoted attributes: markup in it is shown, not obeyed. What is not UTF-8,
-   or not allowed in XML, becomes U+FFFD. */
+/* Text, in elements and in quoted attributes: markup in it is shown, not obeyed; else as
+   whit_text_next shows it, which leaves nothing that XML has not. */
 void page_text(struct page *page, const char *text);
 
 /* Bytes as base64 (RFC 4648), for URIs of data. */

@@ -75,15 +75,12 @@ static void print_first(const struct probe *probe)
         printf("instance   none: the environment\n");
         return;
     }
-    printf("instance   %u ", first->device.instance);
-    cli_print_clean(instance_of(probe, first->device.instance).name);
-    printf("\nprimitive  %u\nmaterial   %u ", first->device.primitive, first->material);
-    cli_print_clean(material.name);
-    if (material.file) {
-        printf(", ");
-        cli_print_clean(material.file);
-        printf(":%u", material.line);
-    }
+    printf("instance   %u %s\n", first->device.instance,
+           cli_shown(instance_of(probe, first->device.instance).name));
+    printf("primitive  %u\nmaterial   %u %s", first->device.primitive, first->material,
+           cli_shown(material.name));
+    if (material.file)
+        printf(", %s:%u", cli_shown(material.file), material.line);
     printf("\n");
     put_vector("position", first->point);
     put_vector("normal", first->normal);
@@ -120,9 +117,11 @@ static void print_head(const struct probe *probe)
 static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char text[TEXT_MOST])
 {
     int indent = (int)(ray->generation < 20 ? ray->generation : 20) * 2;
+    char name[34];
     if (ray->kind == WHIT_RAY_SHADOW)
-        snprintf(text, TEXT_MOST, "%*sshadow, %.30s, point %u", indent, "",
-                 light_of(probe, ray->light).name, ray->light_sample);
+        snprintf(text, TEXT_MOST, "%*sshadow, %s, point %u", indent, "",
+                 whit_text_show(light_of(probe, ray->light).name, name, sizeof name),
+                 ray->light_sample);
     else
         snprintf(text, TEXT_MOST, "%*s%s%s", indent, "", kinds[ray->kind],
                  ray->straight ? ", straight on" : "");
@@ -174,18 +173,13 @@ static void print_row_end(const struct probe *probe, const whit_probe_ray *ray)
     printf("%.4g %.4g %.4g", (double)ray->weight[0], (double)ray->weight[1],
            (double)ray->weight[2]);
     printf("  %.4g %.4g %.4g", (double)ray->added[0], (double)ray->added[1], (double)ray->added[2]);
-    if (ray->material != WHIT_NONE) {
-        printf("  ");
-        cli_print_clean(instance_of(probe, ray->device.instance).name);
-        printf(", ");
-        cli_print_clean(material_of(probe, ray->material).name);
-        printf("%s", ray->inside ? " from inside" : "");
-    }
-    if (ray->medium != WHIT_NONE) {
-        printf(" (through ");
-        cli_print_clean(material_of(probe, ray->medium).name);
-        printf(", ior %g)", (double)ray->ior);
-    }
+    if (ray->material != WHIT_NONE)
+        printf("  %s, %s%s", cli_shown(instance_of(probe, ray->device.instance).name),
+               cli_shown(material_of(probe, ray->material).name),
+               ray->inside ? " from inside" : "");
+    if (ray->medium != WHIT_NONE)
+        printf(" (through %s, ior %g)", cli_shown(material_of(probe, ray->medium).name),
+               (double)ray->ior);
     putchar('\n');
 }
 
@@ -210,8 +204,7 @@ int probe_print(const struct probe *probe)
     for (uint32_t i = 0; i < report->ray_count; ++i) {
         for (int c = 0; c < COLUMNS; ++c) {
             cell_text(probe, &report->rays[i], c, text);
-            cli_print_clean(text);
-            printf("%*s", widths[c] - (int)strlen(text) + 2, "");
+            printf("%-*s  ", widths[c], text);
         }
         print_row_end(probe, &report->rays[i]);
     }

@@ -6,14 +6,14 @@ static void print_head(const struct receipt *receipt)
     const struct picture *picture = receipt->picture;
     whit_device_info device;
     whit_device_get_info(receipt->job->device, &device);
-    cli_print_clean(receipt->job->scene_path);
-    printf("\n  picture   %u x %u, ", picture->width, picture->height);
+    printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->scene_path), picture->width,
+           picture->height);
     if (picture->adaptive > 0.0)
         printf("adaptive samples, ");
     else
         printf("%u sample%s a pixel, ", picture->samples, picture->samples == 1 ? "" : "s");
     printf("depth %u\n", picture->depth);
-    printf("  device    %s (%s)\n", device.name, stats_driver(&device));
+    printf("  device    %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
            receipt->kernel.general_instructions, receipt->kernel.bindings,
            receipt->kernel.general_bindings);
@@ -48,8 +48,7 @@ int receipt_print_text(const struct receipt *receipt)
         const struct receipt_row *row = &receipt->rows[i];
         printf("  %-19s%-8s", row->name, row->compiled ? "yes" : "-");
         print_price(row);
-        cli_print_clean(row->reason);
-        putchar('\n');
+        puts(cli_shown(row->reason));
     }
     puts("\n  ms of one frame, with the effect less without it, measured in turns; of what is not"
          "\n  compiled: what it would cost if it were on.");

@@ -197,16 +197,20 @@ bool recipe_init(struct recipe *recipe, const struct job *job, const struct rend
     recipe->command = command_line(job, request);
     recipe->options = options_line(job, request);
     recipe->counters = counters_line(stats);
-    if (!recipe->command) {
+    /* Other programs print what pictures hold, as it is. */
+    recipe->scene = strdup(cli_shown(job->scene_path));
+    recipe->name = strdup(cli_shown(recipe->device.name));
+    recipe->driver = strdup(cli_shown(recipe->device.driver));
+    if (!recipe->command || !recipe->scene || !recipe->name || !recipe->driver) {
         cli_error("out of memory");
         recipe_finish(recipe);
         return false;
     }
     add(recipe, "Software", "whit " WHIT_VERSION);
     add(recipe, "whit:command", recipe->command);
-    add(recipe, "whit:device", recipe->device.name);
-    add(recipe, "whit:driver", recipe->device.driver);
-    add(recipe, "whit:scene", job->scene_path);
+    add(recipe, "whit:device", recipe->name);
+    add(recipe, "whit:driver", recipe->driver);
+    add(recipe, "whit:scene", recipe->scene);
     add(recipe, "whit:scene_hash", recipe->hash);
     add(recipe, "whit:options", recipe->options);
     add(recipe, "whit:counters", recipe->counters);
@@ -229,6 +233,9 @@ bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
 
 void recipe_finish(struct recipe *recipe)
 {
+    free(recipe->scene);
+    free(recipe->name);
+    free(recipe->driver);
     free(recipe->view);
     free(recipe->command);
     free(recipe->options);

@@ -258,8 +258,8 @@ static void say_done(const struct job *job, const struct render_request *request
         snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
     if (!job->quiet && job->stats == JOB_STATS_NONE)
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
-                request->output, about, request->picture.width, request->picture.height,
-                stats->render_ms * 1e-3, stats->mrays_per_s, device.name);
+                cli_shown(request->output), about, request->picture.width, request->picture.height,
+                stats->render_ms * 1e-3, stats->mrays_per_s, cli_shown(device.name));
     if (request->budget_ms > 0.0)
         cli_note("it took %.1f of %.6g ms%s", stats->render_ms, request->budget_ms,
                  stats->render_ms > request->budget_ms ? ": more than predicted" : "");

@@ -31,9 +31,18 @@ bool state_file_open(struct state_file *file, const char *path, char *said, size
     return false;
 }
 
+/* The bytes of $'\x1b\x5b' at *from, behind its first quote, up to its last; gives their end. */
+static char *read_bytes(char **from, char *to)
+{
+    unsigned byte;
+    for (int length = 0; sscanf(*from, "\\x%2x%n", &byte, &length) == 1 && byte; *from += length)
+        *to++ = (char)byte;
+    return to;
+}
+
 /* The next word of a line, in its place; what stands in single quotes is taken as it is, and a
-   backslash keeps the next letter, as a shell does it. NULL at the end; *whole: false where a quote
-   has no end. */
+   backslash keeps the next letter, as a shell does it; in $'' only what words_quote writes. NULL at
+   the end; *whole: false where a quote has no end. */
 static char *next_word(char **at, bool *whole)
 {
     char *from = *at + strspn(*at, " \t\r"), *to = from, *word = from;
@@ -41,6 +50,14 @@ static char *next_word(char **at, bool *whole)
     if (!*from)
         return NULL;
     for (; *from && (quoted || !strchr(" \t\r", *from)); ++from) {
+        if (*from == '$' && from[1] == '\'' && !quoted) {
+            from += 2;
+            to = read_bytes(&from, to);
+            *whole = *from == '\'';
+            if (!*whole)
+                return word;
+            continue;
+        }
         if (*from == '\'') {
             quoted = !quoted;
             continue;

@@ -297,15 +297,16 @@ static int print_text(const struct job *job, const struct render_request *reques
                       const struct figures *figures)
 {
     const whit_accel_info *tree = &figures->tree;
-    printf("scene      %s: %llu triangles in %u instance%s\n", job->scene_path,
+    printf("scene      %s: %llu triangles in %u instance%s\n", cli_shown(job->scene_path),
            (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count,
            figures->scene.instance_count == 1 ? "" : "s");
     char samples[32] = "adaptive";
     if (!(request->picture.adaptive > 0.0))
         snprintf(samples, sizeof samples, "%u", request->picture.samples);
-    printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", request->output,
+    printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", cli_shown(request->output),
            request->picture.width, request->picture.height, samples, request->picture.depth);
-    printf("device     %s (%s)\n", figures->device.name, stats_driver(&figures->device));
+    printf("device     %s (%s)\n", cli_shown(figures->device.name),
+           cli_shown(stats_driver(&figures->device)));
     print_times(job, figures);
     print_rays(figures);
     if (request->picture.adaptive > 0.0)

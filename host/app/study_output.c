@@ -18,7 +18,7 @@ static void print_heading(const struct study *study)
 {
     whit_scene_info scene;
     whit_scene_get_info(study->job.scene, &scene);
-    printf("scene      %s: ", study->job.scene_path);
+    printf("scene      %s: ", cli_shown(study->job.scene_path));
     print_primitives(scene.triangle_count, scene.sphere_count);
     printf(" in %u instance%s of %u mesh%s\n", scene.instance_count,
            scene.instance_count == 1 ? "" : "s", scene.mesh_count,
@@ -26,7 +26,7 @@ static void print_heading(const struct study *study)
     if (study->traced) {
         whit_device_info device;
         whit_device_get_info(study->job.device, &device);
-        printf("device     %s (%s)\n", device.name, stats_driver(&device));
+        printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
     }
     printf("measured   %u run%s of each, in turns: medians\n\n", study->run_count,
            study->run_count == 1 ? "" : "s");
@@ -105,7 +105,7 @@ static void print_details(const struct study *study, const struct study_row *row
 {
     const whit_accel_info *info = &row->info;
     const whit_accel_report *report = &row->report;
-    printf("\n%s%s%s\n", row->name, row->path ? " in " : "", row->path ? row->path : "");
+    printf("\n%s%s%s\n", row->name, row->path ? " in " : "", cli_shown(row->path));
     for (uint32_t i = 0; i < study->thread_count; ++i)
         printf("  %-9s%.2f ms (%.2f to %.2f) by %u thread%s\n", row->path ? "read" : "build",
                row->build_ms[i].median, row->build_ms[i].least, row->build_ms[i].most,

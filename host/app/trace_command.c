@@ -111,7 +111,7 @@ static void say_done(const struct job *job, const struct trace *trace)
 {
     if (job->quiet)
         return;
-    fprintf(stderr, "whit: %s: %llu rays in %.3f s (%.2f Mray/s)\n", trace->output,
+    fprintf(stderr, "whit: %s: %llu rays in %.3f s (%.2f Mray/s)\n", cli_shown(trace->output),
             (unsigned long long)trace->done_count, trace->trace_ms * 1e-3,
             trace->trace_ms > 0.0 ? (double)trace->done_count / trace->trace_ms * 1e-3 : 0.0);
 }

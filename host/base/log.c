@@ -10,13 +10,14 @@ void log_message(const struct log *log, whit_log_level level, const char *format
 {
     if (!log || !log->fn || level > log->level)
         return;
-    char text[2048];
+    char text[2048], shown[4 * sizeof text];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    whit_text_show(text, shown, sizeof shown);
     pthread_mutex_lock(&log_mutex);
-    log->fn(log->user, level, text);
+    log->fn(log->user, level, shown);
     pthread_mutex_unlock(&log_mutex);
 }
 

@@ -2,6 +2,7 @@
 #ifndef WHIT_BASE_H
 #define WHIT_BASE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -43,8 +44,8 @@ typedef enum whit_log_level {
     WHIT_LOG_DEBUG,
 } whit_log_level;
 
-/* `message` is one line without its newline, valid during the call only. Called from any thread,
-   one call at a time. */
+/* `message` is one line without its newline, as whit_text_show shows it, valid during the call
+   only. Called from any thread, one call at a time. */
 typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
 
 /* Files outside of the scene's folder that its files name, and that were not read. */
@@ -55,6 +56,27 @@ typedef struct whit_refused {
 
 /* A short name for a result, for messages: "bad input". Never NULL. */
 const char *whit_result_name(whit_result result);
+
+/* ---- Text that others wrote ---- */
+
+/* Names of files, materials and devices, and words of damaged files, may hold what steers a
+   terminal, or hides or turns round what they say. Libwhit hands them out as they are; whoever
+   prints them shows them by these functions, as libwhit does in its messages: UTF-8 as it is, but
+       \u001b  a control character (also U+0080 to U+009F, newlines and tabs), one that sets the
+               direction or is not seen, a separator of lines, or none at all (U+FFFE); as in JSON,
+               so past 16 bits as a pair, \udb40\udc41
+       \xff    a byte that is not UTF-8
+   A backslash stays as it is, and with it what was shown before: showing it again changes nothing,
+   so that it is done wherever text leaves the program, and nowhere else. */
+
+/* With the 0 at its end. */
+#define WHIT_SHOWN_BYTES 13
+/* The first character of `text`, as it is shown. Gives how many bytes of `text` it takes: 0 at its
+   end. */
+size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES]);
+/* As much of `text` as has room in `out` with a 0 at its end, in whole characters and escapes;
+   where there is more, with `...` at the end. `out_bytes` > 16. Gives `out`. */
+char *whit_text_show(const char *text, char *out, size_t out_bytes);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,10 @@
 #include "cost/words.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "api/whit.h"
 
 static bool is_plain(const char *word)
 {
@@ -10,16 +13,32 @@ static bool is_plain(const char *word)
     return word[0] && word[strspn(word, plain)] == '\0';
 }
 
+/* Between quotes: ends these, and begins them again. */
+static void put_bytes(const char *bytes, size_t count, void (*put)(void *user, const char *part),
+                      void *user)
+{
+    put(user, "'$'");
+    for (size_t i = 0; i < count; ++i) {
+        char one[5];
+        snprintf(one, sizeof one, "\\x%02x", (unsigned)(unsigned char)bytes[i]);
+        put(user, one);
+    }
+    put(user, "''");
+}
+
 void words_quote(const char *word, void (*put)(void *user, const char *part), void *user)
 {
     if (is_plain(word)) {
         put(user, word);
         return;
     }
+    char shown[WHIT_SHOWN_BYTES];
     put(user, "'");
-    for (; *word; ++word) {
-        const char one[2] = {*word, '\0'};
-        put(user, *word == '\'' ? "'\\''" : one);
+    for (size_t length; (length = whit_text_next(word, shown)) != 0; word += length) {
+        if (strncmp(shown, word, length) == 0)
+            put(user, *word == '\'' ? "'\\''" : shown);
+        else
+            put_bytes(word, length, put, user);
     }
     put(user, "'");
 }

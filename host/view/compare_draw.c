@@ -71,10 +71,13 @@ static void draw_figures(const struct view *view)
     bool fresh = compare->figures.pair.numbers[0] == a->number &&
                  compare->figures.pair.numbers[1] == b->number;
     if (ui_panel_begin("A and B", 1.0f, 0.0f, UI_PANEL_PLAIN)) {
-        if (b->rgba && costs[0] != costs[1])
-            ui_text("one shows costs,\none colours: there\nis no difference");
-        else if (compare->figures.known)
+        if (b->rgba && costs[0] != costs[1]) {
+            ui_text("one shows costs,");
+            ui_text("one colours: there");
+            ui_text("is no difference");
+        } else if (compare->figures.known) {
             draw_difference(&compare->figures);
+        }
         if (!fresh && costs[0] == costs[1])
             ui_text_dim(compare->figures.known ? "of the last whole pictures"
                                                : "figures once both are whole");

@@ -51,7 +51,10 @@ static whit_result write_state(const struct view *view, const char *path)
     whit_result result = file_write_begin(&view->log, path, &file);
     if (result != WHIT_OK)
         return result;
-    fprintf(file.stream, "# whit view %s --state %s\n%s\n", view->settings.scene, path, words);
+    char scene[WORDS_BYTES], own[WORDS_BYTES];
+    fprintf(file.stream, "# whit view %s --state %s\n%s\n",
+            whit_text_show(view->settings.scene, scene, sizeof scene),
+            whit_text_show(path, own, sizeof own), words);
     if (view->panels.fps_goal > 0.0)
         fprintf(file.stream, "--fps-goal %.9g\n", view->panels.fps_goal);
     return file_write_commit(&view->log, &file);

@@ -13,7 +13,11 @@
 
 static void put_text(json_t *object, const char *name, const char *text)
 {
-    json_object_set_new(object, name, json_string(text ? text : ""));
+    char shown[4096];
+    json_t *value = json_string(text ? text : "");
+    if (!value) /* no UTF-8 */
+        value = json_string(whit_text_show(text, shown, sizeof shown));
+    json_object_set_new(object, name, value);
 }
 
 static void put_count(json_t *object, const char *name, uint64_t count)
@@ -340,8 +344,12 @@ bool state_has(struct view *view, const char *condition)
 void state_print(struct view *view, const char *name, FILE *to)
 {
     json_t *root = state_json(view, name);
-    json_dumpf(root, to, JSON_COMPACT);
+    char *text = json_dumps(root, JSON_COMPACT), shown[WHIT_SHOWN_BYTES];
+    size_t length;
+    for (const char *at = text; at && (length = whit_text_next(at, shown)) != 0; at += length)
+        fputs(shown, to);
     fputc('\n', to);
+    free(text);
     fflush(to);
     json_decref(root);
     measure_begin(view);

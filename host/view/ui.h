@@ -76,6 +76,8 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
 bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open);
 void ui_panel_end(void);
 
+/* What these say is shown by whit_text_show, and so is one line; labels and titles are whit's own.
+ */
 void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_color(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
@@ -86,8 +88,8 @@ void ui_same_line(float x); /* 0: right behind; else from the panel's left, in c
 bool ui_button(const char *label);
 bool ui_selectable(const char *label, bool selected);
 bool ui_checkbox(const char *label, bool *value);
-/* `shown`: what it says closed. */
-bool ui_choice(const char *label, const char *shown, const char *const *names, int count,
+/* `preview`: what it says closed. */
+bool ui_choice(const char *label, const char *preview, const char *const *names, int count,
                int *value);
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
@@ -105,7 +107,7 @@ void ui_table_header(const char *const *names, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);
 
-/* Over the picture, under the panels. */
+/* Over the picture, under the panels. Text as above. */
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width);
 void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled);
 void ui_text_at(float x, float y, uint32_t color, const char *text);

@@ -6,13 +6,29 @@
 
 #include <imgui.h>
 
+// Names of files, materials and cameras are in what the window says.
+enum { SHOWN_BYTES = 4096 };
+
+static const char *shown(const char *text)
+{
+    static char out[SHOWN_BYTES];
+    return whit_text_show(text, out, sizeof out);
+}
+
+static const char *shown_format(const char *format, va_list args)
+{
+    static char text[SHOWN_BYTES];
+    std::vsnprintf(text, sizeof text, format, args);
+    return shown(text);
+}
+
 extern "C" {
 
 void ui_text(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    ImGui::TextV(format, args);
+    ImGui::TextUnformatted(shown_format(format, args));
     va_end(args);
 }
 
@@ -20,7 +36,7 @@ void ui_text_dim(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    ImGui::TextDisabledV(format, args);
+    ImGui::TextDisabled("%s", shown_format(format, args));
     va_end(args);
 }
 
@@ -29,23 +45,24 @@ void ui_text_color(uint32_t color, const char *format, ...)
     va_list args;
     va_start(args, format);
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextV(format, args);
+    ImGui::TextUnformatted(shown_format(format, args));
     ImGui::PopStyleColor();
     va_end(args);
 }
 
 void ui_text_beside(uint32_t color, const char *format, ...)
 {
-    char text[256];
     va_list args;
     va_start(args, format);
-    std::vsnprintf(text, sizeof text, format, args);
+    const char *text = shown_format(format, args);
     va_end(args);
     float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x +
                 ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(text).x;
     if (end <= panel_width() - ImGui::GetStyle().WindowPadding.x)
         ImGui::SameLine();
-    ui_text_color(color, "%s", text);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
 }
 
 void ui_cell(uint32_t color, const char *text)
@@ -53,7 +70,7 @@ void ui_cell(uint32_t color, const char *text)
     ImGui::TableNextColumn();
     ImGui::PushStyleColor(ImGuiCol_Text, color);
     ImGui::PushTextWrapPos(0.0f); // the cell's right side
-    ImGui::TextUnformatted(text);
+    ImGui::TextUnformatted(shown(text));
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
 }
@@ -90,11 +107,11 @@ static float field_width()
     return 9.0f * ImGui::GetFontSize();
 }
 
-bool ui_choice(const char *label, const char *shown, const char *const *names, int count,
+bool ui_choice(const char *label, const char *preview, const char *const *names, int count,
                int *value)
 {
     ImGui::SetNextItemWidth(field_width());
-    bool open = ImGui::BeginCombo(label, shown), chosen = false;
+    bool open = ImGui::BeginCombo(label, shown(preview)), chosen = false;
     note_item(label);
     for (int i = 0; open && i < count; ++i) {
         if (ui_selectable(names[i], i == *value)) {
@@ -159,8 +176,8 @@ void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int l
 
 void ui_progress(float part, const char *text)
 {
-    float shown = part < 0.0f ? 0.0f : part;
-    ImGui::ProgressBar(shown, ImVec2(18.0f * ImGui::GetFontSize(), 0.0f), text);
+    ImGui::ProgressBar(part < 0.0f ? 0.0f : part, ImVec2(18.0f * ImGui::GetFontSize(), 0.0f),
+                       shown(text));
 }
 
 bool ui_table_begin(const char *id, int columns)
@@ -224,13 +241,14 @@ void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool f
 void ui_text_at(float x, float y, uint32_t color, const char *text)
 {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
+    text = shown(text);
     list->AddText(ImVec2(x + line_scale, y + line_scale), 0xC0000000u, text);
     list->AddText(ImVec2(x, y), color, text);
 }
 
 void ui_text_size(const char *text, float *width, float *height)
 {
-    ImVec2 size = ImGui::CalcTextSize(text);
+    ImVec2 size = ImGui::CalcTextSize(shown(text));
     *width = size.x;
     *height = size.y;
 }

@@ -306,7 +306,8 @@ float window_scale(const struct window *window)
 
 void window_set_title(struct window *window, const char *title)
 {
-    glfwSetWindowTitle(window->glfw, title);
+    char shown[1024];
+    glfwSetWindowTitle(window->glfw, whit_text_show(title, shown, sizeof shown));
 }
 
 static void want_size(struct window *window, int width, int height)

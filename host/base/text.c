@@ -1,0 +1,105 @@
+#include "base/text.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Bytes of the character that `text` starts with; 0: it is no UTF-8, or has more bytes than it
+   needs. */
+static size_t decode(const unsigned char *text, uint32_t *code)
+{
+    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    *code = text[0];
+    if (text[0] < 0x80)
+        return 1;
+    if (text[0] < 0xc2 || text[0] > 0xf4)
+        return 0;
+    size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
+    *code = text[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; ++i) {
+        if ((text[i] & 0xc0) != 0x80) /* the 0 at the end too */
+            return 0;
+        *code = *code << 6 | (text[i] & 0x3fu);
+    }
+    bool surrogate = *code >= 0xd800 && *code < 0xe000;
+    return *code < least[length] || *code > 0x10ffff || surrogate ? 0 : length;
+}
+
+/* What steers a terminal, or is itself not seen and changes how what is seen reads. */
+static bool is_hidden(uint32_t code)
+{
+    static const struct {
+        uint32_t first, last;
+    } hidden[] = {
+        {0x00, 0x1f},       {0x7f, 0x9f},       /* C0, DEL, C1 */
+        {0xad, 0xad},       {0x34f, 0x34f},     /* a hyphen at line ends only, a joiner */
+        {0x61c, 0x61c},     {0x115f, 0x1160},   /* a direction, fillers of Hangul */
+        {0x17b4, 0x17b5},   {0x180b, 0x180f},   /* vowels and variants that are not seen */
+        {0x200b, 0x200f},   {0x2028, 0x202e},   /* no width; ends of lines, directions */
+        {0x2060, 0x206f},   {0x3164, 0x3164},   /* joiners, directions; a filler */
+        {0xfeff, 0xfeff},   {0xffa0, 0xffa0},   /* a byte order mark, a filler */
+        {0xfff0, 0xfffb},   {0x1bca0, 0x1bca3}, /* marks of annotations and of shorthand */
+        {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, /* marks of music, tags */
+    };
+    for (size_t i = 0; i < sizeof hidden / sizeof *hidden; ++i) {
+        if (code >= hidden[i].first && code <= hidden[i].last)
+            return true;
+    }
+    return (code & 0xfffe) == 0xfffe || (code >= 0xfdd0 && code <= 0xfdef); /* no characters */
+}
+
+size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES])
+{
+    uint32_t code;
+    size_t length = decode((const unsigned char *)text, &code);
+    shown[0] = 0;
+    if (!text[0])
+        return 0;
+    if (length && !is_hidden(code)) {
+        memcpy(shown, text, length);
+        shown[length] = 0;
+    } else if (!length) {
+        snprintf(shown, WHIT_SHOWN_BYTES, "\\x%02x", (unsigned)(unsigned char)text[0]);
+        length = 1;
+    } else if (code < 0x10000) {
+        snprintf(shown, WHIT_SHOWN_BYTES, "\\u%04x", code & 0xffffu);
+    } else {
+        code -= 0x10000;
+        snprintf(shown, WHIT_SHOWN_BYTES, "\\u%04x\\u%04x", 0xd800u + (code >> 10 & 0x3ffu),
+                 0xdc00u + (code & 0x3ffu));
+    }
+    return length;
+}
+
+char *whit_text_show(const char *text, char *out, size_t out_bytes)
+{
+    char shown[WHIT_SHOWN_BYTES];
+    size_t used = 0, whole = 0; /* `...` has room at `whole` */
+    out[0] = 0;
+    for (size_t length; (length = whit_text_next(text, shown)) != 0; text += length) {
+        size_t more = strlen(shown);
+        if (used + more >= out_bytes) {
+            strcpy(out + whole, "...");
+            break;
+        }
+        memcpy(out + used, shown, more + 1);
+        used += more;
+        whole = used + sizeof "..." <= out_bytes ? used : whole;
+    }
+    return out;
+}
+
+struct text_token text_token(const char *text)
+{
+    struct text_token token;
+    char shown[WHIT_SHOWN_BYTES];
+    size_t used = 0, length = 1;
+    for (int i = 0; text && i < TEXT_TOKEN_CHARACTERS && length; ++i) {
+        length = whit_text_next(text + used, shown);
+        used += length;
+    }
+    memcpy(token.text, text ? text : "", used);
+    strcpy(token.text + used, text && text[used] ? "..." : "");
+    return token;
+}
