@@ -10,6 +10,7 @@
 #include "accel/accel_inside.h"
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/text.h"
 #include "base/threads.h"
 
 enum {
@@ -245,7 +246,7 @@ static whit_result refuse_range(const struct flattening *f)
         uint32_t instance = accel->world->spans[i].instance;
         const char *name = accel->scene->instances[instance].name;
         log_error(&accel->log, "%s: instance %u `%s`: its triangles are out of range at %g s",
-                  accel->scene->name, instance, name ? name : "", f->pose->time_s);
+                  accel->scene->name, instance, text_token(name).text, f->pose->time_s);
         return WHIT_ERROR_INPUT;
     }
     return WHIT_OK;
@@ -268,7 +269,7 @@ static whit_result refuse_spheres(const struct flattening *f)
         log_error(&accel->log,
                   "%s: instance %u `%s`: spheres that are turned, mirrored or stretched need "
                   "instances",
-                  accel->scene->name, i, name ? name : "");
+                  accel->scene->name, i, text_token(name).text);
         return WHIT_ERROR_INPUT;
     }
     return WHIT_OK;

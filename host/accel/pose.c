@@ -6,6 +6,7 @@
 #include "accel/accel_inside.h"
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/text.h"
 #include "base/threads.h"
 
 enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
@@ -218,7 +219,7 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
             continue;
         const char *name = accel->scene->instances[i].name;
         log_error(&accel->log, "%s: instance %u `%s`: its matrix has no inverse in range at %g s",
-                  accel->scene->name, i, name ? name : "", pose->time_s);
+                  accel->scene->name, i, text_token(name).text, pose->time_s);
         return WHIT_ERROR_INPUT;
     }
     return WHIT_OK;

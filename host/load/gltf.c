@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 #define GLTF_LIMIT (UINT64_C(4) << 30)
 
@@ -108,9 +109,9 @@ static bool check_version(const struct gltf *gltf)
         !gltf_string(gltf, asset, &at, "minVersion", &least))
         return false;
     if (!version || strncmp(version, "2.", 2) != 0)
-        return gltf_fail(gltf, &at, "version `%.20s` is not 2.x", version ? version : "");
+        return gltf_fail(gltf, &at, "version `%s` is not 2.x", text_token(version).text);
     return !least || strcmp(least, "2.0") == 0 ||
-           gltf_fail(gltf, &at, "minVersion `%.20s` is more than 2.0", least);
+           gltf_fail(gltf, &at, "minVersion `%s` is more than 2.0", text_token(least).text);
 }
 
 static bool is_known(const char *extension)
@@ -154,8 +155,8 @@ static bool check_extensions(const struct gltf *gltf)
         if (!name)
             return gltf_fail(gltf, &at, "extensionsRequired[%zu] is not a string", i);
         if (!is_known(name))
-            return gltf_fail(gltf, &at, "requires the extension `%.80s`, which whit does not know",
-                             name);
+            return gltf_fail(gltf, &at, "requires the extension `%s`, which whit does not know",
+                             text_token(name).text);
     }
     return true;
 }

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/gltf.h"
 
 struct target {
@@ -42,7 +43,7 @@ static bool read_interpolation(const struct gltf *gltf, const json_t *sampler,
         return true;
     *out = strcmp(name, "STEP") == 0 ? SCENE_STEP : SCENE_CUBIC;
     return *out == SCENE_STEP || strcmp(name, "CUBICSPLINE") == 0 ||
-           gltf_fail(gltf, at, "the interpolation `%.40s` is unknown", name);
+           gltf_fail(gltf, at, "the interpolation `%s` is unknown", text_token(name).text);
 }
 
 static bool check_times(const struct gltf *gltf, const struct gltf_place *at, const float *times,

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/gltf.h"
 
 /* One material while it is read. */
@@ -93,7 +94,7 @@ static whit_result read_alpha(struct reading *r)
     else if (mode && strcmp(mode, "BLEND") == 0)
         r->out->alpha = SCENE_ALPHA_BLEND;
     else if (mode && strcmp(mode, "OPAQUE") != 0) {
-        gltf_fail(r->gltf, &r->at, "the alphaMode `%.40s` is unknown", mode);
+        gltf_fail(r->gltf, &r->at, "the alphaMode `%s` is unknown", text_token(mode).text);
         return WHIT_ERROR_INPUT;
     }
     return WHIT_OK;
@@ -233,8 +234,9 @@ static void note_ignored(const struct reading *r, uint32_t index)
         }
         if (!is_read(name) && before == 0)
             scene_note(r->gltf->scene, SCENE_NOTE_INFO,
-                       "%s: %.60s is not drawn: %u materials, the first is `%s`",
-                       path_name(r->gltf->request->path), name, all, r->out->name);
+                       "%s: %s is not drawn: %u materials, the first is `%s`",
+                       path_name(r->gltf->request->path), text_token(name).text, all,
+                       text_token(r->out->name).text);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/gltf.h"
 
 /* --- images --------------------------------------------------------------------------------- */
@@ -23,8 +24,8 @@ static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visi
     /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
     const char *why_not = visible ? NULL : roots_why_not(&gltf->scene->roots, path);
     if (why_not)
-        scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%.200s`: %s",
-                   path_name(gltf->request->path), uri, why_not);
+        scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%s`: %s",
+                   path_name(gltf->request->path), text_token(uri).text, why_not);
     else
         result = load_texture(gltf->scene, path, NULL, 0, gltf->request->params, texture, NULL);
     free(path);

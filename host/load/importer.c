@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 /* A reply holds at most this many times the size of the files, plus a constant: a vertex of an OBJ
    face needs 4 characters at least and comes back as 48 bytes and its index. */
@@ -83,11 +84,15 @@ static bool check_record(const uint8_t *data, size_t size_bytes, const struct im
            check_indices(part->indices, part->triangle_count, part->vertex_count);
 }
 
+/* On one line; of what it quotes, only as much as a message may. */
 static void copy_error(const uint8_t *text, size_t bytes, char *reason, size_t reason_bytes)
 {
-    size_t used = 0;
-    for (size_t i = 0; i < bytes && used + 1 < reason_bytes && text[i]; i++)
-        reason[used++] = (char)(text[i] < 32 ? ' ' : text[i]);
+    size_t used = 0, quoted = 0;
+    for (size_t i = 0; i < bytes && used + 1 < reason_bytes && text[i]; i++) {
+        quoted = text[i] == '"' ? !quoted : quoted + (quoted > 0);
+        if (quoted <= TEXT_TOKEN_CHARACTERS + 1)
+            reason[used++] = (char)(text[i] == '\n' || text[i] == '\r' ? ' ' : text[i]);
+    }
     while (used && reason[used - 1] == ' ')
         used--;
     reason[used] = 0;

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/obj.h"
 #include "load/ply.h"
 
@@ -71,7 +72,7 @@ static whit_result make_material(struct scene *scene, const struct model_request
     make_default(named ? part->material : "default", part->colors, out);
     if (named && palette->library->count)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: material `%s` is not defined, it is drawn grey",
-                   path_name(request->path), part->material);
+                   path_name(request->path), text_token(part->material).text);
     return out->name ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
@@ -207,6 +208,6 @@ whit_result load_model(struct scene *scene, const char *path, uint32_t parent, b
     if (strcmp(extension, "stl") == 0)
         return load_plain(scene, &request, IMPORT_STL);
     log_error(&scene->log, "%s: unknown kind of model `.%s` (known: .obj .gltf .glb .ply .stl)",
-              path, extension);
+              path, text_token(extension).text);
     return WHIT_ERROR_INPUT;
 }

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "image/image.h"
 #include "load/model.h"
 
@@ -106,7 +107,8 @@ whit_result model_add_mesh(struct scene *scene, const char *name, const struct m
     struct scene_mesh mesh = {.name = string_copy(name)};
     if (totals.vertices >= UINT32_MAX || totals.triangles >= UINT32_MAX / 3) {
         log_error(&scene->log, "%s: mesh `%s` is too large: %llu triangles",
-                  scene->name ? scene->name : "", name, (unsigned long long)totals.triangles);
+                  scene->name ? scene->name : "", text_token(name).text,
+                  (unsigned long long)totals.triangles);
         scene_mesh_finish(&mesh);
         return WHIT_ERROR_INPUT;
     }

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 /* --- words and numbers, in any locale ------------------------------------------------------- */
 
@@ -105,8 +106,8 @@ static bool note_keyword(struct reader *reader, const char *keyword, const char 
         free(copy);
         return false;
     }
-    scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%.40s` %s", path_name(reader->path),
-               reader->line, keyword, what);
+    scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%s` %s", path_name(reader->path),
+               reader->line, text_token(keyword).text, what);
     return true;
 }
 

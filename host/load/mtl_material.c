@@ -21,6 +21,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/mtl.h"
 
 enum { ALPHA_HALF = 128 };
@@ -128,7 +129,7 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
     const char *why_not = slot == SCENE_SLOT_DIFFUSE ? NULL : roots_why_not(&scene->roots, path);
     if (why_not) {
         scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: texture `%s`: %s", path_name(entry->file),
-                   map->line, map->file, why_not);
+                   map->line, text_token(map->file).text, why_not);
     } else {
         struct scene_texture_use *use = &out->textures[slot];
         set_transform(map, use);
@@ -196,7 +197,8 @@ static void set_cutouts(struct scene *scene, const struct mtl_entry *entry,
     } else if (color && has_cutouts(color)) {
         out->alpha = SCENE_ALPHA_MASK;
         scene_note(scene, SCENE_NOTE_INFO, "%s: material `%s` is cut out by the alpha of `%s`",
-                   path_name(entry->file), entry->name, path_name(color->name));
+                   path_name(entry->file), text_token(entry->name).text,
+                   text_token(path_name(color->name)).text);
     }
 }
 
@@ -253,8 +255,8 @@ static void set_transmission(struct scene *scene, const struct mtl_entry *entry,
     if (inverted)
         scene_note(scene, SCENE_NOTE_INFO,
                    "%s:%u: material `%s`: Tf %g %g %g is read as the share held back",
-                   path_name(entry->file), entry->line, entry->name, (double)tf[0], (double)tf[1],
-                   (double)tf[2]);
+                   path_name(entry->file), entry->line, text_token(entry->name).text, (double)tf[0],
+                   (double)tf[1], (double)tf[2]);
 }
 
 /* --- the rest ------------------------------------------------------------------------------- */
@@ -292,7 +294,7 @@ static int32_t class_of(struct scene *scene, const struct mtl_entry *entry)
     if (illum >= 0 && illum <= 10 && illum == floorf(illum))
         return (int32_t)illum;
     scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: material `%s`: illum %g is taken as 2",
-               path_name(entry->file), entry->line, entry->name, (double)illum);
+               path_name(entry->file), entry->line, text_token(entry->name).text, (double)illum);
     return 2;
 }
 
@@ -325,7 +327,7 @@ static void set_class(struct scene *scene, const struct mtl_entry *entry,
     if (out->illum == 8)
         scene_note(scene, SCENE_NOTE_INFO,
                    "%s:%u: material `%s`: illum 8 reflects without rays, drawn as illum 2",
-                   path_name(entry->file), entry->line, entry->name);
+                   path_name(entry->file), entry->line, text_token(entry->name).text);
 }
 
 /* Pr and Pm are the metallic-roughness extension; they say nothing new beside mirrors and glass. */
@@ -349,7 +351,7 @@ static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
     if (ambient->file && (!diffuse || strcmp(ambient->file, diffuse) != 0))
         scene_note(scene, SCENE_NOTE_WARNING,
                    "%s:%u: `%s` of map_Ka was ignored: ambient light takes map_Kd",
-                   path_name(entry->file), ambient->line, ambient->file);
+                   path_name(entry->file), ambient->line, text_token(ambient->file).text);
 }
 
 whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, bool ambient_known,

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "image/image.h"
 #include "load/scene_reader.h"
 
@@ -431,8 +432,8 @@ static bool named_material(struct reader *reader, const struct place *place, con
     for (uint32_t i = 0; i < reader->material_end; ++i)
         names[i] = scene->materials[i].name;
     const char *nearest = reader_nearest(name, names);
-    reader_fail(reader, place, "there is no material `%s`%s%s%s", name,
-                nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
+    reader_fail(reader, place, "there is no material `%s`%s%s%s", text_token(name).text,
+                nearest ? "; did you mean `" : "", text_token(nearest).text, nearest ? "`?" : "");
     free(names);
     return false;
 }

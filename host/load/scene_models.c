@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/scene_objects.h"
 
 static bool load_new_model(struct reader *reader, const char *path, uint32_t node,
@@ -76,12 +77,12 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
         return false;
     if (!has_extension_of_model(name))
         return reader_fail(reader, &here, "`%s` is no model; whit reads .obj .gltf .glb .ply .stl",
-                           name);
+                           text_token(name).text);
     char *path = roots_join(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
     const char *why_not = roots_why_not(&reader->scene->roots, path);
-    bool placed = why_not ? reader_fail(reader, &here, "`%s`: %s", name, why_not)
+    bool placed = why_not ? reader_fail(reader, &here, "`%s`: %s", text_token(name).text, why_not)
                           : place_model(reader, place, path, node, material, lights, cameras);
     free(path);
     return placed;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "image/image.h"
 
 /* The scanners below walk text that jansson has accepted: it is valid JSON. */
@@ -127,9 +128,9 @@ static size_t place_text(const struct place *place, char *out, size_t out_bytes)
     size_t used = place_text(place->parent, out, out_bytes);
     if (used >= out_bytes)
         return used;
-    int more = place->key
-                   ? snprintf(out + used, out_bytes - used, "%s%s", used ? "." : "", place->key)
-                   : snprintf(out + used, out_bytes - used, "[%zu]", place->index);
+    int more = place->key ? snprintf(out + used, out_bytes - used, "%s%s", used ? "." : "",
+                                     text_token(place->key).text)
+                          : snprintf(out + used, out_bytes - used, "[%zu]", place->index);
     return more < 0 ? used : used + (size_t)more;
 }
 
@@ -347,7 +348,7 @@ bool reader_choice(struct reader *reader, const struct place *place, const json_
         if (more > 0 && used + (size_t)more < sizeof all)
             used += (size_t)more;
     }
-    return reader_fail(reader, &here, "`%s` is not one of: %s", word, all);
+    return reader_fail(reader, &here, "`%s` is not one of: %s", text_token(word).text, all);
 }
 
 bool reader_vector(struct reader *reader, const struct place *place, const json_t *value,
@@ -391,7 +392,7 @@ bool reader_color_value(struct reader *reader, const struct place *place, const 
         return reader_fail(reader, place,
                            "`%s` is no colour; write \"#rrggbb\", a grey level or "
                            "[r, g, b]",
-                           json_string_value(value));
+                           text_token(json_string_value(value)).text);
     }
     if (json_is_number(value)) {
         if (!check_number(reader, place, value, 0.0, 1e12, &rgb[0]))

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/load.h"
 #include "load/picture.h"
 
@@ -59,7 +60,8 @@ static bool shrink(struct scene *scene, const char *name, const struct load_para
         return false;
     if (picture->width != width || picture->height != height)
         scene_note(scene, SCENE_NOTE_INFO, "texture `%s`: shrunk from %ux%u to %ux%u",
-                   path_name(name), width, height, picture->width, picture->height);
+                   text_token(path_name(name)).text, width, height, picture->width,
+                   picture->height);
     return true;
 }
 

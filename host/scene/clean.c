@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "scene/freeze.h"
 
 #define LARGEST_COORDINATE 1e18f
@@ -302,7 +303,7 @@ static void report(struct scene *scene, const struct scene_mesh *mesh, uint32_t 
                    const char *what)
 {
     if (count)
-        scene_note(scene, SCENE_NOTE_WARNING, "mesh `%s`: %u %s", mesh->name ? mesh->name : "",
+        scene_note(scene, SCENE_NOTE_WARNING, "mesh `%s`: %u %s", text_token(mesh->name).text,
                    count, what);
 }
 
@@ -314,9 +315,8 @@ static void report_dropped(struct scene *scene, const struct scene_mesh *mesh,
             scene, SCENE_NOTE_WARNING,
             "mesh `%s`: dropped %u triangles (%u with indices out of range, %u with vertices "
             "not finite or beyond 1e18, %u without area)",
-            mesh->name ? mesh->name : "",
-            count->out_of_range + count->not_finite + count->zero_area, count->out_of_range,
-            count->not_finite, count->zero_area);
+            text_token(mesh->name).text, count->out_of_range + count->not_finite + count->zero_area,
+            count->out_of_range, count->not_finite, count->zero_area);
     report(scene, mesh, count->spheres,
            "spheres dropped: centre or radius not finite or beyond 1e18, or no radius over 0");
 }

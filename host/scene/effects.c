@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "scene/scene.h"
 
 static const char *const names[SCENE_EFFECT_COUNT] = {
@@ -81,7 +82,7 @@ static void call_by_material(struct scene_effects *out, enum scene_effect effect
     place_of(&material->origin, place, sizeof place);
     if (material->illum >= 0)
         snprintf(illum, sizeof illum, ", illum %d", (int)material->illum);
-    call(out, effect, "material `%.60s`%s%s%s%s", material->name ? material->name : "", illum,
+    call(out, effect, "material `%s`%s%s%s%s", text_token(material->name).text, illum,
          what[0] ? ", " : "", what, place);
 }
 
@@ -189,26 +190,26 @@ static void scan_light(struct scene_effects *out, const struct scene_light *ligh
     char place[64];
     place_of(&light->origin, place, sizeof place);
     const char *by = light->made_by_whit ? ", added by whit" : "";
-    const char *name = light->name ? light->name : "";
-    call(out, effects[light->kind], "light `%.60s`%s%s", name, by, place);
+    const struct text_token name = text_token(light->name);
+    call(out, effects[light->kind], "light `%s`%s%s", name.text, by, place);
     if (any(light->color))
-        call(out, SCENE_EFFECT_SHADOWS, "light `%.60s`%s%s", name, by, place);
+        call(out, SCENE_EFFECT_SHADOWS, "light `%s`%s%s", name.text, by, place);
 }
 
 static void scan_geometry(const struct scene *scene, struct scene_effects *out)
 {
     for (uint32_t i = 0; i < scene->mesh_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[i];
-        const char *name = mesh->name ? mesh->name : "";
+        const struct text_token name = text_token(mesh->name);
         if (mesh->normals)
-            call(out, SCENE_EFFECT_SMOOTH_NORMALS, "mesh `%.60s`", name);
+            call(out, SCENE_EFFECT_SMOOTH_NORMALS, "mesh `%s`", name.text);
         if (mesh->normals && out->called[SCENE_EFFECT_SHADOWS])
-            call(out, SCENE_EFFECT_TERMINATOR, "mesh `%.60s` in shadows", name);
+            call(out, SCENE_EFFECT_TERMINATOR, "mesh `%s` in shadows", name.text);
         if (mesh->sphere_count)
-            call(out, SCENE_EFFECT_SPHERES, "%u sphere%s of mesh `%.60s`", mesh->sphere_count,
-                 mesh->sphere_count == 1 ? "" : "s", name);
+            call(out, SCENE_EFFECT_SPHERES, "%u sphere%s of mesh `%s`", mesh->sphere_count,
+                 mesh->sphere_count == 1 ? "" : "s", name.text);
         if (mesh->colors)
-            call(out, SCENE_EFFECT_VERTEX_COLORS, "mesh `%.60s`", name);
+            call(out, SCENE_EFFECT_VERTEX_COLORS, "mesh `%s`", name.text);
     }
     if (scene->instance_count > 1)
         call(out, SCENE_EFFECT_INSTANCES, "%u instances of %u meshes", scene->instance_count,
@@ -216,20 +217,20 @@ static void scan_geometry(const struct scene *scene, struct scene_effects *out)
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_instance *instance = &scene->instances[i];
         if (instance->node != SCENE_NONE || instance->has_local)
-            call(out, SCENE_EFFECT_INSTANCES, "instance `%.60s` has a transform",
-                 instance->name ? instance->name : "");
+            call(out, SCENE_EFFECT_INSTANCES, "instance `%s` has a transform",
+                 text_token(instance->name).text);
     }
 }
 
 static void scan_camera(struct scene_effects *out, const struct scene_camera *camera)
 {
-    const char *name = camera->name ? camera->name : "";
+    const struct text_token name = text_token(camera->name);
     if (camera->kind == SCENE_CAMERA_ORTHOGRAPHIC)
-        call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%.60s`", name);
+        call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%s`", name.text);
     else if (camera->kind == SCENE_CAMERA_PANORAMA)
-        call(out, SCENE_EFFECT_PANORAMA, "camera `%.60s`", name);
+        call(out, SCENE_EFFECT_PANORAMA, "camera `%s`", name.text);
     else if (camera->lens_radius > 0.0f)
-        call(out, SCENE_EFFECT_LENS, "camera `%.60s`, radius %g", name,
+        call(out, SCENE_EFFECT_LENS, "camera `%s`, radius %g", name.text,
              (double)camera->lens_radius);
 }
 
@@ -260,8 +261,8 @@ void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
     scan_geometry(scene, out);
     const struct scene_environment *sky = &scene->environment;
     if (sky->kind == SCENE_ENVIRONMENT_MAP && sky->rgb)
-        call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%.80s`",
-             sky->name ? file_name(sky->name) : "");
+        call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%s`",
+             text_token(sky->name ? file_name(sky->name) : "").text);
     for (uint32_t i = 0; i < scene->camera_count; ++i)
         scan_camera(out, &scene->cameras[i]);
 }

@@ -5,16 +5,12 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 
 /* Transforms end in floats on the device, so must their inverses. */
 #define LARGEST_ENTRY 1e30
 /* That of shaders/bind/light.glsl, which takes no more of what arrives. */
 #define LIGHT_MOST    1e24f
-
-static const char *text_of(const char *name)
-{
-    return name ? name : "";
-}
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
 {
@@ -35,7 +31,7 @@ static whit_result check_nodes(struct scene *scene)
         if (!finite) {
             scene_note(scene, SCENE_NOTE_WARNING,
                        "node %u `%s`: its transform is not finite and is ignored", i,
-                       text_of(node->name));
+                       text_token(node->name).text);
             char *name = node->name;
             uint32_t parent = node->parent;
             *node = (struct scene_node){.name = name,
@@ -161,7 +157,7 @@ static whit_result check_materials(struct scene *scene)
         if (count)
             scene_note(scene, SCENE_NOTE_WARNING,
                        "material `%s`: %u values not finite or out of range were mended",
-                       text_of(material->name), count);
+                       text_token(material->name).text, count);
     }
     return WHIT_OK;
 }
@@ -259,7 +255,7 @@ static bool keep_instance(struct scene *scene, uint32_t index, const struct stil
     if (usable_matrix(&matrix))
         return true;
     scene_note(scene, SCENE_NOTE_WARNING, "instance %u `%s` dropped: its transform has no inverse",
-               index, text_of(instance->name));
+               index, text_token(instance->name).text);
     return false;
 }
 
@@ -379,13 +375,13 @@ static whit_result check_lights(struct scene *scene)
             if (count)
                 scene_note(scene, SCENE_NOTE_WARNING,
                            "light %u `%s`: %u values of its colour out of range were mended", i,
-                           text_of(light->name), count);
+                           text_token(light->name).text, count);
             scene->lights[kept++] = *light;
             continue;
         }
         scene_note(scene, SCENE_NOTE_WARNING,
                    "light %u `%s` dropped: its values are not finite, or it has no area", i,
-                   text_of(light->name));
+                   text_token(light->name).text);
         free(light->name);
         free(light->origin.file);
     }
@@ -453,7 +449,7 @@ static whit_result check_cameras(struct scene *scene)
             continue;
         }
         scene_note(scene, SCENE_NOTE_WARNING, "camera %u `%s` dropped: it looks nowhere", i,
-                   text_of(camera->name));
+                   text_token(camera->name).text);
         free(camera->name);
     }
     scene->camera_count = kept;

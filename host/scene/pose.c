@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "scene/scene.h"
 
 /* An animated scale of zero (things that pop up or vanish) counts as this, so that the matrix keeps
@@ -279,7 +280,7 @@ static whit_result pose_instances(const struct scene *scene, const struct affine
         struct affine matrix = instance_matrix(instance, nodes), inverse;
         if (!affine_is_finite(&matrix) || !affine_invert(&matrix, &inverse)) {
             log_error(&scene->log, "%s: instance %u `%s` has no invertible transform at %g s",
-                      scene->name, i, instance->name ? instance->name : "", pose->time_s);
+                      scene->name, i, text_token(instance->name).text, pose->time_s);
             return WHIT_ERROR_INPUT;
         }
         pose->instances[i] = matrix;
