@@ -52,6 +52,15 @@ done
 cp "$CUBE" "it's a cube.json"
 expect 0 "a name with a quote" render "it's a cube.json" -o q.exr --size 8x8 --quiet
 check "is quoted for the shell" has_text q.exr "whit render 'it'\\''s a cube.json' -o whit.exr"
+HOSTILE=$(printf "it's \033]0;t\007\342\200\256\377.json")
+cp "$CUBE" "$HOSTILE"
+expect 0 "a name that steers terminals" render "$HOSTILE" -o q.exr --size 8x8 --quiet
+check "is shown" has_text q.exr 'it'\''s \u001b]0;t\u0007\u202e\xff.json'
+quoted="'it'\\''s '\$'\\x1b'']0;t'\$'\\x07'''\$'\\xe2\\x80\\xae'''\$'\\xff''.json'"
+check "is in the command without what steers" has_text q.exr "whit render $quoted -o whit.exr"
+if command -v bash >/dev/null; then
+    check "and the same word to bash" test "$(bash -c "printf %s $quoted")" = "$HOSTILE"
+fi
 expect 0 "a PFM" render "$CUBE" -o a.pfm --size 8x8 --quiet
 check "has its header" test "$(head -n 1 a.pfm)" = PF
 
