@@ -45,7 +45,7 @@ typedef struct whit_scene_info {
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
 
 /* Item `index` of a kind, described; zeroed when there is no such item. Strings live as long as
-   the scene. */
+   the scene; names and notes are as the files have them, so show them by whit_text_show. */
 typedef struct whit_mesh_info {
     const char *name;
     uint32_t vertex_count, triangle_count, group_count, sphere_count;

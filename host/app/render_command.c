@@ -131,7 +131,8 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
         names[i] = camera.name;
         size_t used = strlen(list);
         if (i < 8)
-            snprintf(list + used, sizeof list - used, "%s%u `%.40s`", i ? ", " : "", i, camera.name);
+            snprintf(list + used, sizeof list - used, "%s%u `%.40s`", i ? ", " : "", i,
+                     camera.name);
         else if (i == 8)
             snprintf(list + used, sizeof list - used, ", ...");
     }

@@ -120,4 +120,13 @@ says 2 "no folder for it" "$SHOWN_EVIL" render "$CUBE" -o "$EVIL/x.png"
 printf 'PF\n1 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0\0' >"$EVIL.pfm"
 says 0 "pictures" "$SHOWN_EVIL.pfm" compare "$EVIL.pfm" "$EVIL.pfm"
 says 2 "a scene for a picture" "$SHOWN_EVIL.ply" compare "$EVIL.ply" "$EVIL.pfm"
+# As whit writes words to settings that hold what steers.
+if "$WHIT" view --help >/dev/null 2>&1; then
+    printf '%s\n' "--build 'a'\$'\\x1b\\x5b'\\0" >x.view
+    says 2 "settings" 'x.view:1: --build `a\u001b[0`' view "$CUBE" --state x.view
+    for end in '' '\x0' "\\x00'" '\x1'; do
+        printf '%s\n' "--build \$'\\x1b$end" >x.view
+        says 2 "settings cut at \`$end\`" 'x.view:1: a quote has no end' view "$CUBE" --state x.view
+    done
+fi
 finish

@@ -105,7 +105,7 @@ rest
 is shown ui_scale 1
 
 # What somebody does is recorded; the replay ends where he did. Each order waits for what it needs: the
-# first picture, or what was recorded before.
+# first picture, or what was recorded before. The window's title shows what would steer.
 # recorded LINE: until the viewer has taken and recorded this.
 recorded() {
     while read -r line <&5; do
@@ -113,12 +113,14 @@ recorded() {
         [ "$line" != "$1" ] || break
     done
 }
+NAMED=$OUT/$(printf 'c\033\302\233\377.json')
+cp "$CUBE" "$NAMED"
 hand
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 96x64 --quiet \
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$NAMED" --size 96x64 --quiet \
     --record "$OUT/recorded" >"$OUT/stdout" 2>"$OUT/stderr" &
 viewer=$!
 exec 5<"$OUT/recorded"
-printf 'title cube.json\nkey t\nkey k\nmove 40 30\nbutton 1 down\nmove 50 34\n' >&4
+printf 'title c\\u001b\\u009b\\xff.json\nkey t\nkey k\nmove 40 30\nbutton 1 down\nmove 50 34\n' >&4
 recorded "move 50 34"
 printf 'move 60 38\nbutton 1 up\nbutton 4 down\nbutton 4 up\nclose\n' >&4
 recorded close
