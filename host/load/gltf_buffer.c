@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/gltf.h"
 
 #define BUFFER_LIMIT (UINT64_C(4) << 30)
@@ -88,7 +89,7 @@ static whit_result read_external(struct gltf *gltf, const struct gltf_place *at,
         return WHIT_ERROR_MEMORY;
     const char *why_not = roots_why_not(&gltf->scene->roots, path);
     if (why_not) {
-        gltf_fail(gltf, at, "its file `%.40s`: %s", uri, why_not);
+        gltf_fail(gltf, at, "its file `%s`: %s", text_token(uri).text, why_not);
         free(path);
         return WHIT_ERROR_INPUT;
     }

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 #define LIBRARY_LIMIT (UINT64_C(256) << 20)
 
@@ -214,7 +215,7 @@ static whit_result read_named(struct scene *scene, const char *obj_path, const c
         result = read_library(scene, obj_path, name, library, read, &why_not);
         if (result == WHIT_OK && why_not)
             scene_note(scene, SCENE_NOTE_WARNING, "%s: material library `%s`: %s",
-                       path_name(obj_path), name, why_not);
+                       path_name(obj_path), text_token(name).text, why_not);
         free(name);
         for (at = end; *at == ' ' || *at == '\t'; at++)
             continue;

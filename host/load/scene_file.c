@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load/scene_reader.h"
 
 #define FILE_BYTES_MOST ((uint64_t)64 << 20)
@@ -278,7 +279,7 @@ static bool read_map(struct reader *reader, const struct place *place, const jso
         return reader_no_memory(reader);
     const char *why_not = roots_why_not(&reader->scene->roots, path);
     if (why_not) {
-        reader_fail(reader, &here, "`%s`: %s", name, why_not);
+        reader_fail(reader, &here, "`%s`: %s", text_token(name).text, why_not);
         free(path);
         return false;
     }

@@ -160,7 +160,7 @@ static bool file_texture(struct reader *reader, const struct place *place, const
     whit_result result =
         load_texture(reader->scene, path, NULL, 0, reader->params, &use->texture, &reason);
     if (result == WHIT_ERROR_INPUT)
-        reader_fail(reader, place, "texture `%s`: %s", name, reason);
+        reader_fail(reader, place, "texture `%s`: %s", text_token(name).text, reason);
     else if (result != WHIT_OK)
         reader->result = result;
     free(path);
