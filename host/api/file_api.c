@@ -5,6 +5,7 @@
 #include "api/handles.h"
 #include "base/clock.h"
 #include "base/platform.h"
+#include "base/store.h"
 
 whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out)
 {
@@ -63,11 +64,6 @@ whit_result whit_file_write(const char *path, const void *data, size_t size_byte
     return result;
 }
 
-char *whit_cache_folder(void)
-{
-    return cache_is_off() ? NULL : cache_folder(true);
-}
-
 void whit_file_abandon_all(void)
 {
     file_abandon_all();
@@ -86,4 +82,33 @@ double whit_clock_ms(void)
 double whit_clock_cpu_ms(void)
 {
     return clock_cpu_ms();
+}
+
+/* ---- What can be made again ---- */
+
+bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes)
+{
+    const struct log inner = log_from_public(log);
+    return store_read(&inner, name, data, size_bytes);
+}
+
+void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log)
+{
+    const struct log inner = log_from_public(log);
+    store_write(&inner, name, data, size_bytes);
+}
+
+char *whit_cache_folder(void)
+{
+    const struct log silent = {0};
+    return store_folder(&silent);
+}
+
+void whit_cache_get_info(whit_cache_info *info)
+{
+    struct store_info inner;
+    store_get_info(&inner);
+    *info = (whit_cache_info){.used_bytes = inner.used_bytes, .limit_bytes = inner.limit_bytes};
+    memcpy(info->folder, inner.folder, sizeof info->folder);
+    memcpy(info->why_not, inner.why_not, sizeof info->why_not);
 }

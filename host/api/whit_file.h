@@ -19,14 +19,33 @@ void whit_file_abandon(whit_file *file);
 /* Writes a whole file beside `path` and renames it. */
 WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,
                                        const whit_log *log);
-/* Where whit keeps what it can make again: $XDG_CACHE_HOME/whit or ~/.cache/whit, made when it is
-   not there; free() it. NULL: there is none, or WHIT_NO_CACHE is set. */
-char *whit_cache_folder(void);
 /* Removes unfinished output; safe in a signal handler. */
 void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);
 double whit_clock_ms(void);
 double whit_clock_cpu_ms(void); /* used by all threads of this process */
+
+/* ---- What can be made again, kept from one run to the next ---- */
+
+/* In $XDG_CACHE_HOME/whit or ~/.cache/whit, which is closed to others; nothing where that folder
+   cannot be had, belongs to somebody else or may be written by others (a warning, once), and where
+   WHIT_NO_CACHE is set. What is kept has a checksum; files used longest ago are removed beyond
+   512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines and kernels there. */
+
+/* What was kept under `name`, with one zero byte behind its size: free() it. False: nothing, or
+   what was there was damaged, and is thrown away. */
+bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
+/* `name`: of what and in which version it is; no slash, at most 200 bytes. What cannot be kept is
+   not. */
+void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log);
+/* The folder, made when it is not there: free() it. NULL: nothing is kept. */
+char *whit_cache_folder(void);
+typedef struct whit_cache_info {
+    char folder[4096]; /* "": there is no such place */
+    char why_not[128]; /* nothing is kept; "" when it is */
+    uint64_t used_bytes, limit_bytes;
+} whit_cache_info;
+void whit_cache_get_info(whit_cache_info *info);
 
 #ifdef __cplusplus
 }

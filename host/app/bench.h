@@ -13,7 +13,7 @@ struct bench {
     const char *scenes; /* the folder, or NULL: where whit finds it */
     const char *json;   /* NULL: text only */
     const char *device_name;
-    bool quick, quiet;
+    bool quick, quiet, no_cache;
     uint32_t runs;
     uint32_t width, height;
     double naive_limit_s;

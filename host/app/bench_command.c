@@ -2,9 +2,10 @@
 #include <string.h>
 
 #include "app/bench.h"
+#include "app/cache.h"
 #include "app/commands.h"
 
-enum bench_id { ID_QUICK = 256, ID_RUNS, ID_JSON, ID_SCENES, ID_NAIVE, ID_DEVICE };
+enum bench_id { ID_QUICK = 256, ID_RUNS, ID_JSON, ID_SCENES, ID_NAIVE, ID_DEVICE, ID_NO_CACHE };
 
 static const struct cli_option options[] = {
     {ID_QUICK, "quick", NULL, "tiny pictures and few runs: shows that it works, no more"},
@@ -15,6 +16,7 @@ static const struct cli_option options[] = {
      "seconds for sweep-naive, which is estimated beyond (60;\n"
      "quick: 0.2)"},
     {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},
+    {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP},
     {'q', "quiet", NULL, "no progress"},
     {0, NULL, NULL, NULL},
 };
@@ -51,6 +53,9 @@ static void read_option(struct cli_reader *reader, int id, struct bench *bench)
         break;
     case ID_DEVICE:
         bench->device_name = reader->value;
+        break;
+    case ID_NO_CACHE:
+        bench->no_cache = true;
         break;
     case 'q':
         bench->quiet = true;
@@ -153,6 +158,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (bench.json && !cli_can_write(bench.json))
         return EXIT_USAGE;
     complete(&bench);
+    cache_prepare(bench.no_cache);
     return work(&bench, index);
 }
 

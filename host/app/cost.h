@@ -50,9 +50,12 @@ whit_result cost_save_csv(const struct cost *cost);
 
 whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
                            const char *path);
-/* What cost_save_json wrote, for comparisons and choices: no pictures. `scene` (may be NULL) gets
-   the name of its scene, which the caller frees. False, said unless `quiet`: another file. */
-bool cost_load_json(const char *path, bool quiet, struct cost_report *report, char **scene);
+/* What cost_save_json wrote, for comparisons: no pictures. `scene` gets the name of its scene,
+   which the caller frees. False, said: another file. */
+bool cost_load_json(const char *path, struct cost_report *report, char **scene);
+/* The same in whit's cache, for choices: complete reports alone. */
+void cost_keep(const struct cost_report *report, const char *name);
+bool cost_load_kept(const char *name, struct cost_report *report);
 
 /* ---- The page (cost_page.c) ---- */
 

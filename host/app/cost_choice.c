@@ -1,20 +1,19 @@
 /* --budget-ms and --max-error: settings by what `whit cost` measures of this scene, size and
-   device, once; figures are kept in the user's cache folder. */
+   device, once; figures are kept. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/cost.h"
 
-enum { KEPT_VERSION = 2, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
+enum { KEPT_VERSION = 3, KEPT_NAME = 32, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
 /* What takes less tells more of who else had the processor. */
 static const double TRIAL_MS_LEAST = 20.0;
 
-/* Of the figures; false: there is no such folder. */
-static bool kept_path(const struct job *job, const struct render_request *request, char *path,
-                      size_t path_bytes)
+/* Of the figures. */
+static void kept_name(const struct job *job, const struct render_request *request,
+                      char name[KEPT_NAME])
 {
     char key[1024];
     const struct picture *picture = &request->picture;
@@ -25,11 +24,7 @@ static bool kept_path(const struct job *job, const struct render_request *reques
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
              WHIT_VERSION, scene.hash, picture->width, picture->height, job->time_s,
              picture->camera ? picture->camera : "", device.name, device.driver);
-    char *folder = whit_cache_folder();
-    if (folder)
-        snprintf(path, path_bytes, "%s/cost-%016" PRIx64 ".json", folder, cost_hash(key));
-    free(folder);
-    return folder != NULL;
+    snprintf(name, KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
 }
 
 /* All that changes a picture: orders and builders are the user's. */
@@ -48,7 +43,6 @@ static whit_result measure(struct job *job, const struct render_request *request
                            struct cost_report **report)
 {
     struct cli_progress progress;
-    char *cache = whit_cache_folder();
     const struct cost_request wanted = {
         .device = job->device,
         .scene = job->scene,
@@ -58,7 +52,6 @@ static whit_result measure(struct job *job, const struct render_request *request
         .knobs = shading_knobs(),
         .seconds = COST_SECONDS_QUICK,
         .samples_most = SAMPLES,
-        .cache = cache,
         .progress = cost_on_progress,
         .progress_user = &progress,
         .hush = cli_hush,
@@ -69,7 +62,6 @@ static whit_result measure(struct job *job, const struct render_request *request
     cli_progress_init(&progress, job->quiet);
     whit_result result = cost_measure(&wanted, report);
     cli_progress_finish(&progress);
-    free(cache);
     return result;
 }
 
@@ -77,17 +69,15 @@ static whit_result measure(struct job *job, const struct render_request *request
 static whit_result find_figures(struct job *job, const struct render_request *request,
                                 struct cost_report *out)
 {
-    char path[4200];
-    bool has_path = kept_path(job, request, path, sizeof path);
+    char name[KEPT_NAME];
     struct cost_report *measured = NULL;
-    if (has_path && access(path, R_OK) == 0 && cost_load_json(path, true, out, NULL) &&
-        out->complete)
+    kept_name(job, request, name);
+    if (cost_load_kept(name, out))
         return WHIT_OK;
     whit_result result = measure(job, request, &measured);
     if (result == WHIT_OK) {
         *out = *measured;
-        if (has_path)
-            result = cost_save_json(measured, job->scene_path, "whit render", path);
+        cost_keep(measured, name);
     }
     cost_report_destroy(measured);
     return result;

@@ -210,7 +210,6 @@ static whit_result find_out(struct cost *cost)
         result = job_open_device(job);
     if (result != WHIT_OK)
         return result;
-    char *cache = whit_cache_folder();
     cli_progress_init(&cost->progress, job->quiet);
     request->device = job->device;
     request->scene = job->scene;
@@ -218,7 +217,6 @@ static whit_result find_out(struct cost *cost)
     request->accel_params = job_accel_params(job);
     request->picture = picture_params(&cost->picture, job);
     request->keep_pictures = cost->html != NULL;
-    request->cache = cache;
     request->progress = cost_on_progress;
     request->progress_user = &cost->progress;
     request->hush = cli_hush;
@@ -226,7 +224,6 @@ static whit_result find_out(struct cost *cost)
     cli_keep_what_is_done(GRACE_MS);
     result = cost_measure(request, &cost->report);
     cli_progress_finish(&cost->progress);
-    free(cache);
     return result;
 }
 

@@ -91,8 +91,8 @@ int cost_compare_files(const char *path_a, const char *path_b)
         cli_error("out of memory");
         return status;
     }
-    if (cost_load_json(path_a, false, &reports[0], &scenes[0]) &&
-        cost_load_json(path_b, false, &reports[1], &scenes[1])) {
+    if (cost_load_json(path_a, &reports[0], &scenes[0]) &&
+        cost_load_json(path_b, &reports[1], &scenes[1])) {
         print_head('A', path_a, &reports[0], scenes[0]);
         print_head('B', path_b, &reports[1], scenes[1]);
         if (reports[0].scene_hash != reports[1].scene_hash)

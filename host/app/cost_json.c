@@ -162,8 +162,8 @@ static json_t *reference_document(const struct cost_report *report)
     return out;
 }
 
-whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
-                           const char *path)
+static json_t *report_document(const struct cost_report *report, const char *scene,
+                               const char *command)
 {
     json_t *out = document_object(), *rows = document_array(), *answers = document_array();
     json_t *absent = document_array();
@@ -182,7 +182,21 @@ whit_result cost_save_json(const struct cost_report *report, const char *scene, 
     document_put(out, "rows", rows);
     document_put(out, "answers", answers);
     document_put(out, "not_here", absent);
-    return document_save(out, path);
+    return out;
+}
+
+whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
+                           const char *path)
+{
+    return document_save(report_document(report, scene, command), path);
+}
+
+void cost_keep(const struct cost_report *report, const char *name)
+{
+    char *text = document_line(report_document(report, NULL, NULL));
+    if (report->complete)
+        whit_cache_write(name, text, strlen(text), &cli_log);
+    free(text);
 }
 
 /* ---- Reading ---- */
@@ -327,20 +341,38 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
         *scene = name ? strdup(name) : NULL;
 }
 
-bool cost_load_json(const char *path, bool quiet, struct cost_report *report, char **scene)
+/* Takes over `root`. */
+static bool read_known(json_t *root, struct cost_report *report, char **scene)
 {
-    json_error_t error;
-    json_t *root = json_load_file(path, 0, &error);
     bool known = root && number(root, "format", 0.0) == FORMAT &&
                  json_is_array(json_object_get(root, "rows")) &&
                  json_array_size(json_object_get(root, "rows")) > 0;
     *report = (struct cost_report){0};
     if (known)
         read_report(root, report, scene);
-    else if (!quiet && !root)
-        cli_error("%s:%d: %s", path, error.line, error.text);
-    else if (!quiet)
-        cli_error("%s: this is no report of `whit cost --json`", path);
     json_decref(root);
     return known;
+}
+
+bool cost_load_json(const char *path, struct cost_report *report, char **scene)
+{
+    json_error_t error;
+    json_t *root = json_load_file(path, 0, &error);
+    if (!root)
+        cli_error("%s:%d: %s", path, error.line, error.text);
+    else if (!read_known(root, report, scene))
+        cli_error("%s: this is no report of `whit cost --json`", path);
+    else
+        return true;
+    return false;
+}
+
+bool cost_load_kept(const char *name, struct cost_report *report)
+{
+    uint8_t *data;
+    size_t bytes;
+    bool known = whit_cache_read(name, &cli_log, &data, &bytes) &&
+                 read_known(json_loadb((const char *)data, bytes, 0, NULL), report, NULL);
+    free(data);
+    return known && report->complete;
 }

@@ -1,5 +1,6 @@
 #include <stdlib.h>
 
+#include "app/cache.h"
 #include "app/commands.h"
 #include "app/document.h"
 
@@ -53,6 +54,7 @@ static int print_json(const whit_device_info *infos, uint32_t count)
     json_t *root = document_object();
     document_text(root, "whit", WHIT_VERSION);
     document_put(root, "devices", list);
+    document_put(root, "cache", cache_document());
     return cli_print_json(root);
 }
 
@@ -61,6 +63,7 @@ static int print_text(const whit_device_info *infos, uint32_t count)
     for (uint32_t i = 0; i < count; ++i)
         print_device(&infos[i]);
     puts("\n* is what `--device auto` takes.");
+    cache_print();
     return cli_finish_stdout(EXIT_FINE);
 }
 
@@ -102,6 +105,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         cli_misuse(&reader, "`%s` is one argument too many", reader.positional);
         return reader.status;
     }
+    cache_prepare(false);
     return list(json);
 }
 

@@ -1,3 +1,4 @@
+#include "app/cache.h"
 #include "app/commands.h"
 #include "app/hard.h"
 
@@ -174,6 +175,7 @@ static bool check_request(struct cli_reader *reader, struct hard *hard)
         return cli_misuse(reader, "--case is of the built-in cases, not of a scene");
     if (reader->positional)
         return job_options_done(&hard->job, reader);
+    cache_prepare(hard->job.no_cache);
     cli_limit_time(hard->job.time_limit_s);
     return true;
 }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "app/cache.h"
+
 enum { NOTES_SHOWN = 20, FRAMES_MAX = 1000000000 };
 
 void job_init(struct job *job)
@@ -136,6 +138,9 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
             cli_misuse(reader, "--device needs a name or a number");
         job->device_name = reader->value;
         return true;
+    case JOB_NO_CACHE:
+        job->no_cache = true;
+        return true;
     case JOB_TIME:
         job->has_time = cli_number(reader, -1e6, 1e6, &job->time_s);
         return true;
@@ -200,6 +205,8 @@ bool job_options_done(struct job *job, struct cli_reader *reader)
     if (job->has_frame)
         job->time_s = (double)job->frame / job->fps;
     job->scene_path = reader->positional;
+    if (!reader->where) /* else there are threads already */
+        cache_prepare(job->no_cache);
     cli_limit_time(job->time_limit_s);
     return true;
 }

@@ -38,7 +38,7 @@ struct job {
     const char *load_path; /* NULL: auto */
     const char *allowed[JOB_ALLOWED_MOST];
     uint32_t allowed_count;
-    bool validation, quiet;
+    bool validation, quiet, no_cache;
     double time_limit_s;
     uint32_t stats; /* enum job_stats */
 
@@ -51,6 +51,7 @@ struct job {
 
 enum job_id {
     JOB_DEVICE = 256,
+    JOB_NO_CACHE,
     JOB_TIME,
     JOB_FRAME,
     JOB_FPS,
@@ -80,9 +81,11 @@ enum job_id {
     {                                                                                              \
         JOB_FPS, "fps", "F", "frames in a second, for --frame (24)"                                \
     }
+#define JOB_NO_CACHE_HELP "keep nothing for the next run, and use nothing that was kept"
 #define JOB_OPTION_DEVICE                                                                          \
+    {JOB_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},             \
     {                                                                                              \
-        JOB_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"            \
+        JOB_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP                                          \
     }
 /* How trees are built and walked. A command that has its own --build takes JOB_OPTION_BUILDING
    and JOB_OPTION_WALKING alone. */
@@ -145,7 +148,8 @@ const char *job_numerics_name(whit_numerics numerics);
 void job_init(struct job *job);
 /* False when `id` is not one of the shared options. */
 bool job_option(struct job *job, struct cli_reader *reader, int id);
-/* Checks options against each other, and starts the clock of --time-limit. */
+/* Checks options against each other, prepares the caches unless they come from a file, and starts
+   the clock of --time-limit. */
 bool job_options_done(struct job *job, struct cli_reader *reader);
 
 /* Starts to open the device in a thread, for job_open_device to wait for; what fails is said

@@ -135,7 +135,6 @@ struct cost_request {
     uint32_t goal_count;
     struct cost_goal goals[COST_GOALS_MOST]; /* each gets a row that measures the choice */
     bool keep_pictures;
-    const char *cache; /* folder of references, or NULL */
     void (*progress)(void *user, double done, double seconds_left, const char *what);
     void (*hush)(bool on); /* while a setting is tried that devices may refuse; or NULL */
     void *progress_user;
@@ -148,7 +147,7 @@ WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct c
 void cost_report_destroy(struct cost_report *report);
 /* Of a picture that tells how fast the device is at this moment. */
 void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height);
-/* Of a text (FNV-1a), for names of files in a cache. */
+/* Of a text (FNV-1a), for names of what is kept. */
 uint64_t cost_hash(const char *text);
 
 /* ---- Answers (choose.c) ---- */

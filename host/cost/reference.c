@@ -1,14 +1,13 @@
-/* Pictures of the reference in double, made once and kept in a folder. */
+/* Pictures of the reference in double, made once and kept. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cost/measure.h"
 
 /* Raised when pictures of the reference change: then those that are kept are of no use. */
-enum { KEPT_VERSION = 2, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
+enum { KEPT_VERSION = 3, KEPT_CHANNELS = 4, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
 enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
 
 static bool calls_for_area_lights(const whit_scene *scene)
@@ -41,22 +40,47 @@ uint64_t cost_hash(const char *text)
     return hash;
 }
 
-/* free() it; NULL: nowhere. */
-static char *kept_path(const struct measure *measure, const whit_renderer_params *params)
+enum { KEPT_NAME = 48 };
+static void kept_name(const struct measure *measure, const whit_renderer_params *params,
+                      char name[KEPT_NAME])
 {
-    char key[512], *path;
-    const char *folder = measure->request->cache;
-    if (!folder)
-        return NULL;
+    char key[512];
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %u %u %u %.17g %s", KEPT_VERSION,
              WHIT_VERSION, measure->report->scene_hash, params->width, params->height,
              params->samples, params->depth, params->light_samples, params->time_s,
              params->camera ? params->camera : "");
-    size_t bytes = strlen(folder) + 64;
-    path = malloc(bytes);
-    if (path)
-        snprintf(path, bytes, "%s/reference-%016" PRIx64 ".pfm", folder, cost_hash(key));
-    return path;
+    snprintf(name, KEPT_NAME, "reference-%016" PRIx64, cost_hash(key));
+}
+
+/* NULL: it is to be made. */
+static whit_image *read_kept(const struct measure *measure, const whit_renderer_params *params)
+{
+    char name[KEPT_NAME];
+    whit_image *image = NULL;
+    uint8_t *data;
+    size_t bytes;
+    size_t pixels = (size_t)params->width * params->height;
+    kept_name(measure, params, name);
+    if (whit_cache_read(name, measure->request->log, &data, &bytes) &&
+        bytes == pixels * KEPT_CHANNELS * sizeof(float) &&
+        whit_image_create(params->width, params->height, KEPT_CHANNELS, (const float *)data,
+                          &image) != WHIT_OK)
+        image = NULL;
+    free(data);
+    return image;
+}
+
+static void keep(const struct measure *measure, const whit_renderer_params *params,
+                 const whit_image *image)
+{
+    char name[KEPT_NAME];
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    kept_name(measure, params, name);
+    if (info.channels == KEPT_CHANNELS && !info.integers)
+        whit_cache_write(name, whit_image_floats(image),
+                         (size_t)info.width * info.height * KEPT_CHANNELS * sizeof(float),
+                         measure->request->log);
 }
 
 static bool is_kept(const struct measure *measure, uint32_t shrink)
@@ -65,24 +89,11 @@ static bool is_kept(const struct measure *measure, uint32_t shrink)
     for (uint32_t i = 0; i < 2; ++i) {
         const whit_renderer_params params =
             reference_params(measure, shrink, i ? measure->report->reference_samples : 1);
-        char *path = kept_path(measure, &params);
-        all = all && path && access(path, R_OK) == 0;
-        free(path);
+        whit_image *image = read_kept(measure, &params);
+        all = all && image;
+        whit_image_destroy(image);
     }
     return all;
-}
-
-static whit_image *read_kept(const char *path, const whit_renderer_params *params)
-{
-    whit_image *image = NULL;
-    whit_image_info info = {0};
-    if (!path || access(path, R_OK) != 0 || whit_image_load(path, NULL, &image) != WHIT_OK)
-        return NULL;
-    whit_image_get_info(image, &info);
-    if (info.width == params->width && info.height == params->height && !info.integers)
-        return image;
-    whit_image_destroy(image);
-    return NULL;
 }
 
 static whit_result render(const struct measure *measure, const whit_renderer_params *params,
@@ -103,19 +114,15 @@ static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index
     struct cost_report *report = measure->report;
     const whit_renderer_params params =
         reference_params(measure, shrink, index ? report->reference_samples : 1);
-    char *path = kept_path(measure, &params);
-    measure->references[index] = read_kept(path, &params);
+    measure->references[index] = read_kept(measure, &params);
     report->reference_cached[index] = measure->references[index] != NULL;
     whit_result result = WHIT_OK;
     if (!measure->references[index]) {
         result =
             render(measure, &params, &measure->references[index], &report->reference_ms[index]);
-        /* What cannot be kept is made again. */
-        if (result == WHIT_OK && path &&
-            whit_image_save(measure->references[index], path, NULL, 0, NULL) != WHIT_OK)
-            result = WHIT_OK;
+        if (result == WHIT_OK)
+            keep(measure, &params, measure->references[index]);
     }
-    free(path);
     return result;
 }
 

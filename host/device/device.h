@@ -71,8 +71,8 @@ struct device_params {
 };
 
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
-   Compiled pipelines, and kernels with their constants filled in, are kept in $XDG_CACHE_HOME/whit
-   or ~/.cache/whit from one run to the next, unless WHIT_NO_CACHE=1 is in the environment. */
+   Compiled pipelines, and kernels with their constants filled in, are kept from one run to the next
+   (base/store.h), unless WHIT_NO_CACHE=1 is in the environment. */
 WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);
@@ -165,10 +165,5 @@ WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_m
 /* Device time of span i of the last finished submission; < 0 without timestamps. */
 double commands_span_ms(const struct commands *commands, uint32_t span);
 uint32_t commands_span_count(const struct commands *commands);
-
-/* $XDG_CACHE_HOME/whit or ~/.cache/whit, made if asked for; NULL when there is no such place. The
-   caller's to free. */
-char *cache_folder(bool make);
-bool cache_is_off(void); /* WHIT_NO_CACHE is set */
 
 #endif

@@ -211,7 +211,7 @@ static ino_t cached_file(const char *folder, char *path, size_t size)
     glob_t found;
     struct stat about;
     char pattern[128];
-    snprintf(pattern, sizeof pattern, "%s/whit/kernel-*.bin", folder);
+    snprintf(pattern, sizeof pattern, "%s/whit/kernel-*", folder);
     assert_int_equal(glob(pattern, 0, NULL, &found), 0);
     assert_int_equal(found.gl_pathc, 1);
     snprintf(path, size, "%s", found.gl_pathv[0]);

@@ -1,0 +1,568 @@
+/* What is kept from one run to the next, and what is found in its place. */
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/array.h"
+#include "base/store.h"
+
+static char home[64], folder[80];
+static uid_t owner_of_next; /* what fstat says from call `foreign_from` on; 0: the truth */
+static int foreign_from;
+static int64_t disk_bytes = -1; /* that are left; < 0: enough */
+static pid_t dies_at_write;     /* this process */
+static int opened;              /* files named "a", to be read */
+
+int __real_openat(int at, const char *name, int flags, ...);
+int __wrap_openat(int at, const char *name, int flags, ...);
+int __real_fstat(int fd, struct stat *info);
+int __wrap_fstat(int fd, struct stat *info);
+ssize_t __real_write(int fd, const void *data, size_t bytes);
+ssize_t __wrap_write(int fd, const void *data, size_t bytes);
+
+int __wrap_openat(int at, const char *name, int flags, ...)
+{
+    va_list args;
+    va_start(args, flags);
+    mode_t mode = flags & O_CREAT ? va_arg(args, mode_t) : 0;
+    va_end(args);
+    opened += strcmp(name, "a") == 0;
+    return __real_openat(at, name, flags, mode);
+}
+
+int __wrap_fstat(int fd, struct stat *info)
+{
+    int result = __real_fstat(fd, info);
+    if (foreign_from && --foreign_from == 0) {
+        info->st_uid = owner_of_next;
+        foreign_from = 1;
+    }
+    return result;
+}
+
+ssize_t __wrap_write(int fd, const void *data, size_t bytes)
+{
+    if (dies_at_write == getpid() && bytes > 100) {
+        (void)!__real_write(fd, data, bytes / 2);
+        _exit(9);
+    }
+    if (disk_bytes < 0)
+        return __real_write(fd, data, bytes);
+    if (disk_bytes == 0) {
+        errno = ENOSPC;
+        return -1;
+    }
+    size_t now = bytes < (size_t)disk_bytes ? bytes : (size_t)disk_bytes;
+    disk_bytes -= (int64_t)now;
+    return __real_write(fd, data, now);
+}
+
+struct messages {
+    int count, warnings;
+    char last[512];
+};
+
+static void collect(void *user, whit_log_level level, const char *message)
+{
+    struct messages *messages = user;
+    ++messages->count;
+    messages->warnings += level == WHIT_LOG_WARNING;
+    snprintf(messages->last, sizeof messages->last, "%s", message);
+}
+
+static struct log log_to(struct messages *messages)
+{
+    *messages = (struct messages){0};
+    return (struct log){.fn = collect, .user = messages, .level = WHIT_LOG_WARNING};
+}
+
+static char *path_of(const char *name)
+{
+    static char paths[4][512];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static bool exists(const char *name)
+{
+    struct stat info;
+    return lstat(path_of(name), &info) == 0;
+}
+
+/* Silent; each test looks at messages where there may be some. */
+static const struct log silent;
+enum { BYTES = 1000 };
+
+static void keep(const char *name, int seed)
+{
+    uint8_t data[BYTES];
+    for (int i = 0; i < BYTES; ++i)
+        data[i] = (uint8_t)(seed + i);
+    store_write(&silent, name, data, BYTES);
+}
+
+/* What is read is right or nothing. */
+static bool is_kept(const char *name, int seed)
+{
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    bool found = store_read(&silent, name, &data, &bytes);
+    assert_true(found == (data != NULL));
+    if (found) {
+        assert_int_equal(bytes, BYTES);
+        for (int i = 0; i < BYTES; ++i)
+            assert_int_equal(data[i], (uint8_t)(seed + i));
+        assert_int_equal(data[BYTES], 0);
+    }
+    free(data);
+    return found;
+}
+
+static void set_age(const char *name, time_t days)
+{
+    const struct timespec times[2] = {{.tv_nsec = UTIME_OMIT}, {.tv_sec = 86400 * (9999 - days)}};
+    assert_int_equal(utimensat(AT_FDCWD, path_of(name), times, AT_SYMLINK_NOFOLLOW), 0);
+}
+
+static int make_home(void **state)
+{
+    (void)state;
+    strcpy(home, "/tmp/whit-store-XXXXXX");
+    assert_non_null(mkdtemp(home));
+    snprintf(folder, sizeof folder, "%s/whit", home);
+    setenv("XDG_CACHE_HOME", home, 1);
+    unsetenv("WHIT_NO_CACHE");
+    unsetenv("WHIT_CACHE_LIMIT");
+    return 0;
+}
+
+static int remove_home(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", home);
+    foreign_from = 0;
+    disk_bytes = -1;
+    return system(command);
+}
+
+static void what_is_kept_is_read(void **state)
+{
+    (void)state;
+    struct stat info;
+    assert_false(is_kept("a", 1));
+    keep("a", 1);
+    keep("b", 2);
+    assert_true(is_kept("a", 1) && is_kept("b", 2));
+    keep("a", 3);
+    assert_true(is_kept("a", 3));
+    assert_int_equal(stat(folder, &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0700);
+    assert_int_equal(stat(path_of("a"), &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0600);
+    store_write(&silent, "empty", "", 0);
+    uint8_t *data;
+    size_t bytes;
+    assert_true(store_read(&silent, "empty", &data, &bytes));
+    assert_int_equal(bytes, 0);
+    free(data);
+}
+
+static void write_file(const char *name, const void *data, size_t bytes)
+{
+    FILE *file = fopen(path_of(name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, bytes, file), bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Any byte flipped, any length, payload of zeros, another version, another file in its place. */
+static void damage_is_thrown_away(void **state)
+{
+    (void)state;
+    uint8_t good[2 * BYTES], bad[2 * BYTES] = {0};
+    keep("a", 1);
+    FILE *file = fopen(path_of("a"), "rb");
+    assert_non_null(file);
+    size_t bytes = fread(good, 1, sizeof good, file);
+    fclose(file);
+    assert_int_equal(bytes, BYTES + 24);
+    for (size_t i = 0; i < bytes; i += i < 40 ? 1 : 97) {
+        memcpy(bad, good, bytes);
+        bad[i] ^= (uint8_t)(1 << i % 8);
+        write_file("a", bad, bytes);
+        assert_false(is_kept("a", 1));
+        assert_false(exists("a"));
+    }
+    memcpy(bad, good, bytes);
+    for (size_t i = 0; i <= bytes + 8; i += i < 40 ? 1 : 8) {
+        write_file("a", bad, i);
+        assert_true(is_kept("a", 1) == (i == bytes));
+    }
+    memset(bad + 24, 0, BYTES);
+    write_file("a", bad, bytes);
+    assert_false(is_kept("a", 1));
+    memcpy(bad, good, bytes);
+    bad[7] = '0';
+    write_file("a", bad, bytes);
+    assert_false(is_kept("a", 1));
+    write_file("b", good, bytes);
+    assert_false(is_kept("b", 1));
+    write_file("a", good, bytes);
+    assert_true(is_kept("a", 1));
+}
+
+static void put_link(const char *name)
+{
+    char target[128];
+    snprintf(target, sizeof target, "%s/target", home);
+    assert_int_equal(symlink(target, path_of(name)), 0);
+}
+
+static void put_nowhere(const char *name)
+{
+    assert_int_equal(symlink("/nowhere/at-all", path_of(name)), 0);
+}
+
+static void put_second_name(const char *name)
+{
+    char target[128];
+    snprintf(target, sizeof target, "%s/target", home);
+    assert_int_equal(link(target, path_of(name)), 0);
+}
+
+static void put_pipe(const char *name)
+{
+    assert_int_equal(mkfifo(path_of(name), 0600), 0);
+}
+
+static void put_folder(const char *name)
+{
+    assert_int_equal(mkdir(path_of(name), 0700), 0);
+}
+
+static void put_socket(const char *name)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    snprintf(address.sun_path, sizeof address.sun_path, "%.100s", path_of(name));
+    int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+    assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
+    close(fd);
+}
+
+static void put_device(const char *name)
+{
+    put_nowhere(name); /* only root makes devices */
+    assert_int_equal(unlink(path_of(name)), 0);
+    if (mknod(path_of(name), S_IFCHR | 0600, (1 << 8) | 5) != 0) /* /dev/zero */
+        assert_int_equal(symlink("/dev/zero", path_of(name)), 0);
+}
+
+static void put_writable(const char *name)
+{
+    keep(name, 1);
+    assert_int_equal(chmod(path_of(name), 0622), 0);
+}
+
+/* None is opened, none is followed; each is gone after it, and what is kept then is a file. */
+static void what_is_no_file_of_ours_is_thrown_away(void **state)
+{
+    (void)state;
+    static void (*const puts[])(const char *) = {put_link,   put_nowhere, put_second_name,
+                                                 put_pipe,   put_folder,  put_socket,
+                                                 put_device, put_writable};
+    char target[128], text[2 * BYTES];
+    struct stat info;
+    keep("a", 1); /* what links lead to is whole, and would be taken */
+    snprintf(target, sizeof target, "%s/target", home);
+    assert_int_equal(rename(path_of("a"), target), 0);
+    for (size_t i = 0; i < sizeof puts / sizeof *puts; ++i) {
+        puts[i]("a");
+        opened = 0;
+        assert_false(is_kept("a", 1));
+        assert_int_equal(opened, 0);
+        assert_false(exists("a"));
+        if (puts[i] != put_folder) {
+            puts[i]("a");
+            keep("a", 2);
+            assert_true(is_kept("a", 2));
+            assert_int_equal(lstat(path_of("a"), &info), 0);
+            assert_true(S_ISREG(info.st_mode));
+            assert_int_equal(unlink(path_of("a")), 0);
+        }
+    }
+    FILE *file = fopen(target, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(text, 1, sizeof text, file), BYTES + 24);
+    assert_int_equal((uint8_t)text[24], 1);
+    fclose(file);
+}
+
+static void files_of_others_are_thrown_away(void **state)
+{
+    (void)state;
+    keep("a", 1);
+    owner_of_next = geteuid() + 1;
+    foreign_from = 2; /* the first call is about the folder */
+    assert_false(is_kept("a", 1));
+    foreign_from = 0;
+    assert_false(exists("a"));
+}
+
+static bool store_is_used(struct messages *messages)
+{
+    uint8_t *data;
+    size_t bytes;
+    struct log log = log_to(messages);
+    store_write(&log, "used", "x", 1);
+    bool found = store_read(&log, "used", &data, &bytes);
+    free(data);
+    return found;
+}
+
+/* The first to be said is the only one of this process. */
+static void folders_of_others_are_not_used(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct store_info info;
+    struct stat about;
+    owner_of_next = geteuid() + 1;
+    assert_true(store_is_used(&messages));
+    foreign_from = 1;
+    assert_false(is_kept("used", 0));
+    foreign_from = 1;
+    assert_false(store_is_used(&messages));
+    assert_int_equal(messages.warnings, 1);
+    assert_non_null(strstr(messages.last, "belongs to somebody else"));
+    assert_non_null(strstr(messages.last, folder));
+    foreign_from = 0;
+    for (mode_t write = 020; write; write = write == 020 ? 002 : 0) {
+        assert_int_equal(chmod(folder, 0700 | write), 0);
+        assert_false(store_is_used(&messages));
+        assert_int_equal(messages.count, 0);
+        store_get_info(&info);
+        assert_string_equal(info.why_not, "others may write to it");
+        assert_string_equal(info.folder, folder);
+        assert_null(store_folder(&silent));
+    }
+    assert_int_equal(chmod(folder, 0755), 0); /* others may look: they may not any more */
+    assert_true(store_is_used(&messages));
+    assert_int_equal(messages.count, 0);
+    assert_int_equal(stat(folder, &about), 0);
+    assert_int_equal(about.st_mode & 0777, 0700);
+}
+
+/* No place, a file or a link in place of the folder, a parent that is not there, WHIT_NO_CACHE:
+   whit goes on without, quietly. */
+static void without_a_folder_nothing_is_kept(void **state)
+{
+    (void)state;
+    struct messages messages;
+    char other[128];
+    snprintf(other, sizeof other, "%s/other", home);
+    assert_int_equal(mkdir(other, 0700), 0);
+    for (int i = 0; i < 5; ++i) {
+        if (i == 0)
+            assert_int_equal(symlink(other, folder), 0);
+        if (i == 1)
+            assert_int_equal(close(open(folder, O_WRONLY | O_CREAT, 0600)), 0);
+        if (i == 2)
+            setenv("XDG_CACHE_HOME", "/proc/nowhere", 1);
+        if (i == 3)
+            setenv("XDG_CACHE_HOME", "relative", 1);
+        if (i == 4)
+            unsetenv("XDG_CACHE_HOME");
+        if (i >= 3)
+            unsetenv("HOME");
+        assert_false(store_is_used(&messages));
+        assert_int_equal(messages.count, 0);
+        assert_null(store_folder(&silent));
+        struct store_info info;
+        store_get_info(&info);
+        assert_true(info.why_not[0] != '\0');
+        if (i < 2)
+            assert_int_equal(unlink(folder), 0);
+    }
+    assert_int_equal(rmdir(other), 0); /* nothing came into it */
+    setenv("HOME", home, 1);
+    assert_true(store_is_used(&messages)); /* below ~/.cache */
+    snprintf(other, sizeof other, "%s/.cache/whit/used", home);
+    assert_int_equal(access(other, R_OK), 0);
+    setenv("XDG_CACHE_HOME", home, 1);
+    setenv("WHIT_NO_CACHE", "1", 1);
+    assert_false(store_is_used(&messages));
+    assert_int_not_equal(access(folder, F_OK), 0);
+    setenv("WHIT_NO_CACHE", "0", 1);
+    assert_true(store_is_used(&messages));
+    setenv("WHIT_NO_CACHE", "1", 1);
+    assert_false(is_kept("used", 0));
+    keep("a", 1);
+    assert_false(exists("a"));
+}
+
+static int file_count(void)
+{
+    struct store_info info;
+    store_get_info(&info);
+    assert_int_equal(info.used_bytes % (BYTES + 24), 0);
+    return (int)(info.used_bytes / (BYTES + 24));
+}
+
+/* At each length that fits on the disk. */
+static void full_disks_leave_nothing_half(void **state)
+{
+    (void)state;
+    keep("a", 1);
+    for (int64_t left = 0; left < BYTES + 24; left += left < 30 ? 1 : 100) {
+        disk_bytes = left;
+        keep("a", 2);
+        disk_bytes = left;
+        keep("b", 2);
+        disk_bytes = -1;
+        assert_true(is_kept("a", 1));
+        assert_false(is_kept("b", 2));
+        assert_int_equal(file_count(), 1);
+    }
+}
+
+static pid_t run_apart(void (*work)(void))
+{
+    pid_t pid = fork();
+    assert_true(pid >= 0);
+    if (pid == 0) {
+        work();
+        _exit(0);
+    }
+    return pid;
+}
+
+static void die_writing(void)
+{
+    dies_at_write = getpid();
+    keep("a", 2);
+}
+
+static uint64_t used_bytes(void)
+{
+    struct store_info info;
+    store_get_info(&info);
+    return info.used_bytes;
+}
+
+/* What a killed writer leaves is swept by the next one; what a live one writes is not. */
+static void killed_writers_leave_nothing_half(void **state)
+{
+    (void)state;
+    int status;
+    char name[64];
+    keep("a", 1);
+    pid_t pid = run_apart(die_writing);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_int_equal(WEXITSTATUS(status), 9);
+    snprintf(name, sizeof name, ".a.%ld.tmp", (long)pid); /* as whit once named it */
+    write_file(name, "x", 1);
+    snprintf(name, sizeof name, ".a.%ld.99999999.tmp", (long)getpid());
+    write_file(name, "x", 1);
+    assert_true(is_kept("a", 1));
+    keep("b", 2);
+    assert_int_equal(used_bytes(), 2 * (BYTES + 24) + 1);
+    assert_true(exists(name));
+    assert_true(is_kept("a", 1) && is_kept("b", 2));
+}
+
+static void write_often(void)
+{
+    for (int i = 0; i < 50; ++i)
+        keep("a", i);
+}
+
+static void two_writers_do_no_harm(void **state)
+{
+    (void)state;
+    int status;
+    pid_t pid = run_apart(write_often);
+    uint8_t *data;
+    size_t bytes;
+    for (int i = 0; i < 50; ++i) {
+        keep("a", 100 + i);
+        assert_true(store_read(&silent, "a", &data, &bytes)); /* some writer's, and whole */
+        assert_int_equal(bytes, BYTES);
+        free(data);
+    }
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_int_equal(status, 0);
+    assert_int_equal(file_count(), 1);
+}
+
+/* Files as large as it takes, with nothing in them. */
+static void put_large(const char *name, off_t bytes, time_t days)
+{
+    assert_int_equal(close(open(path_of(name), O_WRONLY | O_CREAT, 0600)), 0);
+    assert_int_equal(truncate(path_of(name), bytes), 0);
+    set_age(name, days);
+}
+
+static void the_oldest_go_first(void **state)
+{
+    (void)state;
+    const off_t mib = 1 << 20;
+    keep("used", 1);
+    keep("idle", 2);
+    set_age("used", 4);
+    set_age("idle", 3);
+    put_large("large", 511 * mib, 2);
+    keep("a", 3);
+    assert_true(exists("used") && exists("idle") && exists("large"));
+    assert_true(is_kept("used", 1)); /* counts as new from now on */
+    put_large("half", mib - 2 * BYTES, 1);
+    keep("b", 4);
+    assert_true(exists("used") && exists("a") && exists("b"));
+    assert_false(exists("idle"));
+    assert_false(exists("large"));
+    setenv("WHIT_CACHE_LIMIT", "1", 1);
+    put_large("half", mib - BYTES, 1);
+    keep("c", 5);
+    assert_false(exists("half"));
+    assert_true(is_kept("c", 5));
+    uint8_t *much = array_alloc_zeroed(2 << 20, 1);
+    store_write(&silent, "much", much, 2 << 20);
+    free(much);
+    assert_false(exists("much"));
+    assert_true(is_kept("c", 5));
+    setenv("WHIT_CACHE_LIMIT", "all", 1);
+    struct store_info info;
+    store_get_info(&info);
+    assert_int_equal(info.limit_bytes, 512 * mib);
+}
+
+int main(void)
+{
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_home, remove_home)
+    const struct CMUnitTest tests[] = {
+        STORE_TEST(what_is_kept_is_read),
+        STORE_TEST(damage_is_thrown_away),
+        STORE_TEST(what_is_no_file_of_ours_is_thrown_away),
+        STORE_TEST(files_of_others_are_thrown_away),
+        STORE_TEST(folders_of_others_are_not_used),
+        STORE_TEST(without_a_folder_nothing_is_kept),
+        STORE_TEST(full_disks_leave_nothing_half),
+        STORE_TEST(killed_writers_leave_nothing_half),
+        STORE_TEST(two_writers_do_no_harm),
+        STORE_TEST(the_oldest_go_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
