@@ -27,7 +27,7 @@ static volatile sig_atomic_t grace_ms = GRACE_MS;
 /* Read in signal handlers: the one of two that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
-static const char saving_text[] = "while saving: each file is whole or as it was";
+static const char saving_text[] = "each file is whole or as it was";
 static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */

@@ -71,6 +71,8 @@ struct view_request {
 };
 enum { REMEMBER_UNSAID = 2 };
 _Static_assert(JOB_ALLOWED_MOST <= (int)VIEW_ALLOWED, "what options name fits into settings");
+/* After a signal: the window looks for it four times a second, and keeps the camera. */
+enum { GRACE_MS = 1000 };
 
 static void request_init(struct view_request *request)
 {
@@ -389,8 +391,12 @@ static int work(struct job *job, const struct render_request *request, struct vi
     view->cancel = &cli_cancel;
     view->save = save_shot;
     view->load_state = load_state;
+    cli_keep_what_is_done(GRACE_MS);
+    cli_set_saving();
     whit_result result = view_run(view, &cli_log, &validation);
     list_finish(&scenes);
+    if (result == WHIT_OK && cli_cancel)
+        result = WHIT_ERROR_CANCELLED;
     if (result != WHIT_OK)
         return cli_exit_of(result);
     if (validation > 0)
@@ -445,6 +451,7 @@ const struct cli_command command_view = {
     .details =
         "Defaults are in brackets. H in the window lists its keys. Without a display there is\n"
         "`whit render`.\n"
+        "A SCENE that cannot be shown is an error at once; one that is dropped later is not.\n"
         "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device or display,\n"
         "130 interrupted.\n",
     .options = options,

@@ -108,6 +108,7 @@ static bool start_job(struct engine *engine, const struct view_settings *setting
     free(job);
     free(session);
     snprintf(engine->error, sizeof engine->error, "out of memory");
+    engine->result = WHIT_ERROR_MEMORY;
     return false;
 }
 
@@ -212,6 +213,7 @@ static void reap_job(struct engine *engine)
         forget_error(engine);
     } else if (job->result != WHIT_ERROR_CANCELLED) {
         memcpy(engine->error, job->session->error, sizeof engine->error);
+        engine->result = job->result;
         if (!engine->error[0])
             snprintf(engine->error, sizeof engine->error, "out of memory");
         for (int i = 0; i < ENGINE_LANES; ++i) {
@@ -385,6 +387,7 @@ static void lose_device(struct engine *engine, struct session *session)
 /* With the lock. Where memory ran out often nobody said a word. */
 static void say_failure(struct engine *engine, whit_result result)
 {
+    engine->result = result;
     if (!engine->error[0])
         snprintf(engine->error, sizeof engine->error, "%s",
                  result == WHIT_ERROR_MEMORY ? "out of memory" : whit_result_name(result));
@@ -627,6 +630,8 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         .stage = job ? (enum session_stage)atomic_load(&job->progress.stage) : SESSION_DONE,
         .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
         .drawing = !is_done(&engine->lanes[0]) || !is_done(&engine->lanes[1]),
+        .failed = engine->lanes[0].failed,
+        .result = engine->result,
         .device_lost = engine->device_lost,
         .change = engine->change,
     };

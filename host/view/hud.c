@@ -254,13 +254,13 @@ static void draw_work(const struct view *view)
 
 static void draw_messages(const struct view *view)
 {
-    bool toast = view->toast[0] != '\0', error = view->status.error[0] != '\0';
+    bool toast = view->toast[0] != '\0', error = view_error(view)[0] != '\0';
     bool hint = view->hint && view->params->hint;
     if (!toast && !error && !hint)
         return;
     if (ui_panel_begin("messages", 0.0f, 1.0f, UI_PANEL_STAYS)) {
         if (error)
-            ui_text_color(COLOR_ERROR, "%s", view->status.error);
+            ui_text_color(COLOR_ERROR, "%s", view_error(view));
         if (toast)
             ui_text_color(COLOR_TEXT, "%s", view->toast);
         if (hint)

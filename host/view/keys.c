@@ -347,12 +347,6 @@ static void say_scene(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, "%s", path_name(view->settings.scene));
 }
 
-static void reload_scene(struct view *view)
-{
-    ++view->settings.reload;
-    view_say(view, "reading %s again", path_name(view->settings.scene));
-}
-
 /* whit-0001.png and on, in the folder where whit was started. */
 static void save_picture(struct view *view)
 {
@@ -378,7 +372,7 @@ static void save_picture(struct view *view)
 static void copy_line(struct view *view)
 {
     char line[2048];
-    settings_render_line(&view->settings, line, sizeof line);
+    settings_render_line(scenes_shown(view), line, sizeof line);
     window_copy(view->window, line);
     view_say(view, "copied: %s", line);
 }
@@ -415,8 +409,10 @@ static void say_fullscreen(const struct view *view, char *text, size_t bytes)
 static void escape(struct view *view)
 {
     double now_ms = view_now_ms(view);
-    if (view->help || view->picked || view->panels.settings || view->panels.effects) {
+    if (view->help || view->picked || view->panels.settings || view->panels.effects ||
+        view->refused[0]) {
         view->help = view->picked = false;
+        scenes_forget(view);
         view->panels.settings = false;
         if (view->panels.effects)
             panels_switch_effects(view);
@@ -479,7 +475,7 @@ static const struct key_binding bindings[] = {
     {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, say_speed},
     {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, say_scene},
     {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, say_scene},
-    {'R', 0, "R", "read it again", "read the scene again", reload_scene, NULL},
+    {'R', 0, "R", "read it again", "read the scene again", scenes_read_again, NULL},
     {KEY_F12, 0, "F12", NULL, "save the picture", save_picture, NULL},
     {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", copy_line, NULL},
     {'H', 0, "H F1", NULL, "this list", switch_help, NULL},

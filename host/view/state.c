@@ -272,7 +272,7 @@ static json_t *state_json(struct view *view, const char *name)
     json_t *root = json_object();
     put_text(root, "at", name);
     settings_words(&view->settings, " ", words, sizeof words);
-    settings_render_line(&view->settings, line, sizeof line);
+    settings_render_line(scenes_shown(view), line, sizeof line);
     swapchain_get_info(view->swapchain, &chain);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);
@@ -286,7 +286,7 @@ static json_t *state_json(struct view *view, const char *name)
     put_bool(root, "help", view->help);
     put_bool(root, "playing", view->clock.playing);
     put_text(root, "toast", view->toast);
-    put_text(root, "error", view->status.error);
+    put_text(root, "error", view_error(view));
     put_text(root, "work", session_stage_name(view->status.stage));
     put_number(root, "part", (double)view->status.part);
     put_count(root, "shown", view->shown);

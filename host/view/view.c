@@ -6,11 +6,8 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/file.h"
 #include "base/platform.h"
-#include "base/watch.h"
 #include "kernels.h"
-#include "view/memory.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
@@ -34,6 +31,11 @@ void view_say(struct view *view, const char *format, ...)
     va_end(args);
     view->toast_until_ms = view_now_ms(view) + TOAST_MS;
     view->dirty = true;
+}
+
+const char *view_error(const struct view *view)
+{
+    return view->refused[0] ? view->refused : view->status.error;
 }
 
 void view_changed(struct view *view)
@@ -64,138 +66,7 @@ double view_aspect(const struct view *view)
     return p->height > 0 ? (double)p->width / p->height : 1.0;
 }
 
-/* ---- Scenes and cameras ---- */
-
-/* The numbers of a camera of the scene, for the hand to begin with. */
-static void read_camera(struct view *view, uint32_t index)
-{
-    whit_camera_info info;
-    whit_scene_get_camera(view->scene->scene, index, &info);
-    view->camera = (struct view_camera){.fov_y_degrees = info.fov_y_degrees};
-    memcpy(view->camera.eye, info.eye, sizeof info.eye);
-    memcpy(view->camera.target, info.target, sizeof info.target);
-    memcpy(view->camera.up, info.up, sizeof info.up);
-    if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: the angle is not its own */
-        double distance = 0.0;
-        for (int i = 0; i < 3; ++i)
-            distance += (info.target[i] - info.eye[i]) * (info.target[i] - info.eye[i]);
-        distance = sqrt(distance);
-        view->camera.fov_y_degrees =
-            info.height > 0.0 && distance > 0.0
-                ? 2.0 * atan(0.5 * info.height / distance) * 57.29577951308232
-                : 60.0;
-    }
-}
-
-void view_use_camera(struct view *view, int index)
-{
-    if (!view->scene || index < 0 || (uint32_t)index >= view->scene->info.camera_count)
-        return;
-    read_camera(view, (uint32_t)index);
-    view->file_camera = index;
-    snprintf(view->settings.camera, sizeof view->settings.camera, "%d", index);
-    if (index == 0)
-        view->settings.camera[0] = '\0'; /* the default */
-    view->dirty = true;
-}
-
-/* What the settings' text says. */
-void view_learn_camera(struct view *view)
-{
-    const char *text = view->settings.camera;
-    if (!view->scene)
-        return;
-    view->camera_known = true;
-    if (camera_from_text(text, &view->camera)) {
-        view->file_camera = -1;
-        return;
-    }
-    view->file_camera = 0;
-    for (uint32_t i = 0; text[0] && i < view->scene->info.camera_count; ++i) {
-        whit_camera_info info;
-        char number[16];
-        whit_scene_get_camera(view->scene->scene, i, &info);
-        snprintf(number, sizeof number, "%u", i);
-        if (strcmp(text, info.name) == 0 || strcmp(text, number) == 0)
-            view->file_camera = (int)i;
-    }
-    if (view->scene->info.camera_count > 0)
-        read_camera(view, (uint32_t)view->file_camera);
-}
-
-/* What the user made of the scene's camera, for the next time. */
-static void remember_camera(const struct view *view)
-{
-    bool by_hand = view->file_camera < 0;
-    if (view->params->remember && view->camera_known)
-        memory_keep(&view->log, view->settings.scene, by_hand ? view->settings.camera : "");
-}
-
-static void recall_camera(struct view *view)
-{
-    struct view_camera camera;
-    char text[VIEW_TEXT];
-    if (view->params->remember && !view->settings.camera[0] &&
-        memory_find(view->settings.scene, text, sizeof text) && camera_from_text(text, &camera))
-        memcpy(view->settings.camera, text, sizeof text);
-}
-
-/* Its own file, and those of its materials. */
-static void watch_scene(struct view *view)
-{
-    const struct scene_ref *ref = view->scene;
-    const char *last = NULL;
-    watch_clear(view->watch);
-    watch_add(view->watch, ref->settings.scene);
-    for (uint32_t i = 0; i < ref->info.material_count; ++i) {
-        whit_material_info info;
-        whit_scene_get_material(ref->scene, i, &info);
-        if (info.file && (!last || strcmp(last, info.file) != 0))
-            watch_add(view->watch, info.file);
-        last = info.file;
-    }
-}
-
-static bool is_state(const char *path)
-{
-    char extension[8];
-    path_extension(path, extension, sizeof extension);
-    return strcmp(extension, "view") == 0;
-}
-
-void view_open(struct view *view, const char *path)
-{
-    char old[VIEW_PATH];
-    if (is_state(path)) {
-        panels_load(view, path);
-        return;
-    }
-    if (strlen(path) >= sizeof view->settings.scene) {
-        view_say(view, "the path is too long");
-        return;
-    }
-    remember_camera(view);
-    memcpy(old, view->settings.scene, sizeof old);
-    snprintf(view->settings.scene, sizeof view->settings.scene, "%s", path);
-    if (strcmp(old, path) == 0)
-        ++view->settings.reload;
-    view->settings.camera[0] = '\0';
-    view->settings.picture.time_s = 0.0;
-    view->clock.playing = false;
-    view->camera_known = false;
-    view->hint = false;
-    recall_camera(view);
-    view->dirty = true;
-}
-
 /* ---- Pictures ---- */
-
-static void set_title(struct view *view)
-{
-    char title[300];
-    snprintf(title, sizeof title, "%s - whit", path_name(view->settings.scene));
-    window_set_title(view->window, title);
-}
 
 static void count_picture(struct view *view)
 {
@@ -222,10 +93,8 @@ static void take_frame(struct view *view)
     scene_ref_drop(view->scene);
     view->scene = scene_ref_take(frame->scene);
     view->fallback = frame->settings;
-    if (other_scene) {
-        set_title(view);
-        watch_scene(view);
-    }
+    if (other_scene)
+        scenes_show(view);
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
         view_learn_camera(view);
     count_picture(view);
@@ -235,7 +104,7 @@ static void take_frame(struct view *view)
 bool view_go_back(struct view *view)
 {
     struct view_settings back = view->fallback;
-    if (view->frame.number == 0 || !settings_same_scene(&view->settings, &view->fallback))
+    if (!settings_same_scene(&view->settings, &view->fallback))
         return false;
     settings_set_camera(&back, &view->settings);
     if (settings_same_kernel(&back, &view->settings))
@@ -245,15 +114,31 @@ bool view_go_back(struct view *view)
     return true;
 }
 
-/* A switch that cannot be made goes back to what the picture shows; a scene that cannot be read
-   stays asked for, so that mending the file is enough. */
-static void take_failure(struct view *view)
+/* What cannot be made goes back to what the picture shows. Where there is none there is nothing to
+   go on with. */
+static whit_result take_failure(struct view *view)
 {
-    if (view->status.error[0] && view_go_back(view))
+    if (scenes_refuse(view))
+        return WHIT_OK;
+    if (view_go_back(view)) {
         view_say(view, "%s", view->status.error);
+        return WHIT_OK;
+    }
+    if (view->frame.number > 0)
+        return WHIT_OK;
+    log_error(&view->log, "%s", view->status.error);
+    return view->status.result;
 }
 
-static void take_status(struct view *view)
+/* Minimised: nobody sees what would be drawn. */
+static bool is_hidden(const struct view *view)
+{
+    struct swapchain_info info;
+    swapchain_get_info(view->swapchain, &info);
+    return info.width == 0 && view->frame.number > 0;
+}
+
+static whit_result take_status(struct view *view)
 {
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
@@ -261,8 +146,8 @@ static void take_status(struct view *view)
         old.change.number != view->status.change.number || old.drawing != view->status.drawing ||
         view->status.stage != SESSION_DONE || view->status.drawing_ms > SLOW_MS)
         view->dirty = true;
-    if (view->status.error[0] && !view->status.drawing)
-        take_failure(view);
+    /* Hidden, it is asked for nothing: the failure is that of something older. */
+    return view->status.failed && !is_hidden(view) ? take_failure(view) : WHIT_OK;
 }
 
 /* ---- The window ---- */
@@ -376,7 +261,7 @@ static double wait_seconds(struct view *view, bool goes_on)
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
-    if (view->watch)
+    if (view->watch || view->watch_asked)
         wait = fmin(wait, WATCH_S);
     wait = fmin(wait, replay_wait_s(view));
     return wait > 0.0 ? wait + 1e-3 : 0.0;
@@ -399,14 +284,6 @@ static void take_events(struct view *view)
     }
 }
 
-/* Minimised: nobody sees what would be drawn. */
-static bool is_hidden(const struct view *view)
-{
-    struct swapchain_info info;
-    swapchain_get_info(view->swapchain, &info);
-    return info.width == 0 && view->frame.number > 0;
-}
-
 static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
@@ -419,10 +296,7 @@ static whit_result step(struct view *view)
     window_wait(view->window, wait_seconds(view, goes_on));
     take_events(view);
     replay_step(view);
-    if (watch_changed(view->watch)) {
-        ++view->settings.reload;
-        view_say(view, "%s was written: reading it again", path_name(view->settings.scene));
-    }
+    scenes_watch(view);
     if (view->toast[0] && view_now_ms(view) >= view->toast_until_ms) {
         view->toast[0] = '\0';
         view->dirty = true;
@@ -432,7 +306,8 @@ static whit_result step(struct view *view)
         engine_wait(view->engine, 50.0);
     take_frame(view);
     whit_result result = compare_step(view);
-    take_status(view);
+    if (result == WHIT_OK)
+        result = take_status(view);
     pick_take(view);
     view->dirty |= view->prices && prices_have_news(view->prices);
     view->dirty |= view->panels.measured && prices_have_news(view->panels.measured);
@@ -503,9 +378,8 @@ static whit_result open_all(struct view *view)
 
 static void close_all(struct view *view, uint32_t *validation)
 {
-    remember_camera(view);
+    scenes_end(view);
     replay_close(view);
-    watch_destroy(view->watch);
     prices_stop(view->prices);
     prices_stop(view->panels.measured);
     for (uint32_t i = 0; i < LEAVING_MOST; ++i)
@@ -541,12 +415,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     measure_begin(view);
     wish_begin(view);
     view->dirty = true;
-    for (uint32_t i = 0; i < params->scene_count; ++i) {
-        if (strcmp(params->scenes[i], params->settings.scene) == 0)
-            view->scene_index = i;
-    }
-    view->watch = watch_create();
-    recall_camera(view);
+    scenes_begin(view);
     whit_result result = open_all(view);
     while (result == WHIT_OK && !is_over(view))
         result = step(view);

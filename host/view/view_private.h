@@ -79,11 +79,12 @@ struct view {
     struct engine *engine;
 
     struct view_settings settings; /* wanted */
-    struct view_settings fallback; /* of the last picture: where a switch fails, it goes back */
-    struct view_camera camera;     /* of settings.camera, as numbers */
-    bool camera_known;             /* else the scene's first camera, not read as yet */
-    int file_camera;               /* of the scene's, or -1 */
-    uint32_t scene_index;          /* in params->scenes */
+    /* Of the last picture, or what it began with: where a switch fails, it goes back. */
+    struct view_settings fallback;
+    struct view_camera camera; /* of settings.camera, as numbers */
+    bool camera_known;         /* else the scene's first camera, not read as yet */
+    int file_camera;           /* of the scene's, or -1 */
+    uint32_t scene_index;      /* in params->scenes */
 
     struct engine_frame frame;
     struct engine_status status;
@@ -120,7 +121,12 @@ struct view {
     uint32_t shown; /* pictures */
     bool picture_set;
 
-    struct watch *watch; /* on the scene's files; NULL: not possible */
+    struct watch *watch;          /* on the shown scene's files; NULL: not possible */
+    struct watch *watch_asked;    /* on `asked`, until that is shown; likewise */
+    char asked[VIEW_PATH];        /* what was opened, or read again, last */
+    char refused[ENGINE_MESSAGE]; /* why that is not shown; "": it is, or may be yet */
+    uint32_t reloads;             /* that there were, of any scene */
+    bool played;                  /* the shown scene, before another one was asked for */
     struct replay *replay;
     FILE *record;
     double record_ms;
@@ -147,6 +153,24 @@ bool view_go_back(struct view *view);
 bool view_plays(const struct view *view);
 /* Another scene, as the file dropped on the window. Keeps all but camera and time, which stands. */
 void view_open(struct view *view, const char *path);
+/* scenes.c: the scene that is shown, and the one that is asked for. */
+void scenes_begin(struct view *view);
+void scenes_end(struct view *view);
+/* The new picture is of another scene. */
+void scenes_show(struct view *view);
+/* What is asked for failed: says so, once for one error, and goes back to what is shown. False
+   where it is the shown scene that failed. */
+bool scenes_refuse(struct view *view);
+/* What was refused is no longer of interest. */
+void scenes_forget(struct view *view);
+/* Reads what was written. */
+void scenes_watch(struct view *view);
+/* Reads what was refused, else what is shown, again. */
+void scenes_read_again(struct view *view);
+/* The settings, unless they are of a scene that is not shown yet: then the last picture's. */
+const struct view_settings *scenes_shown(const struct view *view);
+/* What went wrong; "": nothing. */
+const char *view_error(const struct view *view);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */
 void view_use_camera(struct view *view, int index);
 /* The world's bounds of the scene; false where none is loaded, or it is empty. */

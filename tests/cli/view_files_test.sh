@@ -13,6 +13,9 @@ cp "$CUBE" list/a.json
 cp "$SCENES/8k.json" list/b.json
 cp "$SCENES/spin.json" list/c.json
 echo no scene >list/notes.txt
+echo "--size 96x64" >start.view
+echo "--size 96x64 --effects -highlights" >plain.view
+EXPECTED="^whit: error: $OUT/nowhere"
 # shellcheck disable=SC2086
 play "scenes by arrows" list/a.json $SMALL <<END
 still
@@ -29,12 +32,42 @@ state around
 press Left
 still
 state back
+press Period
+still
+state stepped
+press Space
+drop $OUT/nowhere.json
+until error
+state plays
+press Space
+still
+state stood
 drop $SCENES/cube.json
 still
 state dropped
-drop $OUT/nowhere.json
+drop $OUT/nowhere.obj
 still
 state nowhere
+press C
+move 40 30
+button left down
+move 49 33
+button left up
+still
+state turned
+click 24 32
+still
+state picked
+press Escape
+state closed
+drop plain.view
+still
+state plain
+press Ctrl+C
+state copied
+press F12
+press C
+drop start.view
 drop list/b.json
 still
 state mended
@@ -50,8 +83,31 @@ same frame.ids a around
 same frame.ids c back
 same frame.ids a dropped
 same frame.ids dropped nowhere
-check "a scene that is not there is said" test "$(value nowhere error | grep -c nowhere.json)" -eq 1
+check "a scene that is not there is said" test "$(value nowhere error | grep -c nowhere.obj)" -eq 1
+check "each once on standard error" test "$(sort "$OUT/stderr" | tr '\n' ' ')" = \
+    "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
+# What is shown goes on beside what was refused.
+is plays playing true
+same frame.pixels stepped stood
+same render stepped stood
+differs frame.pixels back stood
+same render dropped nowhere
+is turned scene "$SCENES/cube.json"
+differs frame.ids nowhere turned
+same error nowhere turned
+is turned compare.count 6144
+is turned compare.other_colors 0
+is picked picked true
+check "a pixel is explained" test "$(value picked probe.rays)" -gt 0
+is closed error ""
+is plain compare.other_ids 0
+check "A and B: highlights are gone" test "$(value plain compare.other_colors)" -gt 0
+check "Ctrl+C copies what is shown" \
+    test "$(value copied toast | grep -c "^copied: whit render $SCENES/cube.json .*-highlights")" -eq 1
+check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png
+rm whit-0001.png
 is mended error ""
+EXPECTED=
 same frame.ids b mended
 
 # Read again: an error with file and line, the old picture stays; then its mend.
@@ -60,6 +116,7 @@ sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
 sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
 line=$(grep -n boxx broken.json | cut -d : -f 1)
 mkfifo "$OUT/pipe"
+NONE=""
 cat >"$OUT/replay" <<END
 still
 state start
@@ -74,10 +131,26 @@ until error
 press R
 still
 state broken
-await larger
-press R
+move 40 30
+button left down
+move 45 34
+button left up
+still
+click 48 32
+still
+state alive
+drop own.json
+still
+state again
+until error = $NONE
 still
 state mended
+drop late.json
+until error
+state missing
+until scene = late.json
+still
+state came
 END
 timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
@@ -86,20 +159,55 @@ while read -r state; do
     echo "$state" >>"$OUT/read"
     case $state in
     *'"at":"turned"'*) mv broken.json own.json ;;
-    *'"at":"broken"'*) mv larger.json own.json && touch larger ;;
+    *'"at":"again"'*) mv larger.json own.json ;;
+    *'"at":"missing"'*) mv own.json late.json ;;
     esac
 done <"$OUT/pipe"
 wait $viewer
 check "read again: exit code 0" test $? -eq 0
-check "read again: nothing to complain of" test ! -s "$OUT/stderr"
+check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
+    " own.json:$line  own.json:$line  late.json: there is no such file "
 mv "$OUT/read" "$OUT/states"
 read_states
 check "the error has file and line" test "$(value broken error | grep -c "own.json:$line:")" -eq 1
 same frame.ids turned broken
 same frame.pixels turned broken
+same error broken alive
+differs frame.ids broken alive
+same frame.pixels alive again
+same words alive again
+check "a pixel is explained beside it" test "$(value alive probe.rays)" -gt 0
 is mended error ""
-differs frame.ids turned mended
-same words turned mended
+is mended scene own.json
+differs frame.ids alive mended
+same words alive mended
+is missing scene own.json
+is came error ""
+is came scene late.json
+
+# Nothing is shown beside a scene that cannot be read at the start.
+printf '{ "asset": { "version": "2.0" }, ' >broken.gltf
+printf 'v 0 0 0\nf 1 2 3\n' >broken.obj
+sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
+echo still >still.replay
+refuse 2 "a missing scene" "$OUT/nowhere.json: there is no such file" view "$OUT/nowhere.json"
+refuse 2 "a broken scene" "broken.json:$line:" view broken.json --frames 3
+refuse 2 "a broken glTF" "broken.gltf:" view broken.gltf --replay still.replay
+refuse 2 "a broken OBJ" "broken.obj: " view broken.obj --frames 3
+DISPLAY='' refuse 3 "no display" "no display .*whit render" view "$CUBE" --frames 3
+
+# Signals end the viewer with their code.
+printf 'state ready\nuntil playing\n' >for-ever.replay
+for signal in HUP=129 INT=130 TERM=143; do
+    "$WHIT" view "$CUBE" --size 96x64 --replay for-ever.replay >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    read -r state <"$OUT/pipe"
+    kill "-${signal%=*}" $viewer
+    wait $viewer
+    check "SIG${signal%=*}: exit code ${signal#*=}" test $? -eq "${signal#*=}"
+    check "SIG${signal%=*}: says so" test "$(cat "$OUT/stderr")" = \
+        "whit: interrupted, each file is whole or as it was"
+done
 
 # ---- Out: the picture, and the line that makes it ----
 

@@ -77,6 +77,7 @@ if [ "$SECONDS_LONG" -gt 120 ]; then
 fi
 events "$SECONDS_LONG" "$SEED" $long >events
 echo "$(wc -l <events) events, seed $SEED"
+EXPECTED="^whit: error: /nowhere/.*: there is no such file$"
 play "random events" "$CUBE" --size 240x160 <events
 jq -r '"\(.at): \(.memory_kb.all) kB, \(.memory_kb.own) its own"' "$OUT/states"
 marks=$(wc -l <"$OUT/states")

@@ -1,0 +1,250 @@
+/* The scene: which one is shown, asked for and refused; its files, and its cameras.
+
+   Whatever goes wrong with what is asked for, the one that is shown stays, and everything that is
+   asked of the viewer is about that one. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/watch.h"
+#include "view/memory.h"
+#include "view/view_private.h"
+
+/* ---- Cameras ---- */
+
+/* The numbers of a camera of the scene, for the hand to begin with. */
+static void read_camera(struct view *view, uint32_t index)
+{
+    whit_camera_info info;
+    whit_scene_get_camera(view->scene->scene, index, &info);
+    view->camera = (struct view_camera){.fov_y_degrees = info.fov_y_degrees};
+    memcpy(view->camera.eye, info.eye, sizeof info.eye);
+    memcpy(view->camera.target, info.target, sizeof info.target);
+    memcpy(view->camera.up, info.up, sizeof info.up);
+    if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: the angle is not its own */
+        double distance = 0.0;
+        for (int i = 0; i < 3; ++i)
+            distance += (info.target[i] - info.eye[i]) * (info.target[i] - info.eye[i]);
+        distance = sqrt(distance);
+        view->camera.fov_y_degrees =
+            info.height > 0.0 && distance > 0.0
+                ? 2.0 * atan(0.5 * info.height / distance) * 57.29577951308232
+                : 60.0;
+    }
+}
+
+void view_use_camera(struct view *view, int index)
+{
+    if (!view->scene || index < 0 || (uint32_t)index >= view->scene->info.camera_count)
+        return;
+    read_camera(view, (uint32_t)index);
+    view->file_camera = index;
+    snprintf(view->settings.camera, sizeof view->settings.camera, "%d", index);
+    if (index == 0)
+        view->settings.camera[0] = '\0'; /* the default */
+    view->dirty = true;
+}
+
+/* What the settings' text says. */
+void view_learn_camera(struct view *view)
+{
+    const char *text = view->settings.camera;
+    if (!view->scene)
+        return;
+    view->camera_known = true;
+    if (camera_from_text(text, &view->camera)) {
+        view->file_camera = -1;
+        return;
+    }
+    view->file_camera = 0;
+    for (uint32_t i = 0; text[0] && i < view->scene->info.camera_count; ++i) {
+        whit_camera_info info;
+        char number[16];
+        whit_scene_get_camera(view->scene->scene, i, &info);
+        snprintf(number, sizeof number, "%u", i);
+        if (strcmp(text, info.name) == 0 || strcmp(text, number) == 0)
+            view->file_camera = (int)i;
+    }
+    if (view->scene->info.camera_count > 0)
+        read_camera(view, (uint32_t)view->file_camera);
+}
+
+/* What the user made of the scene's camera, for the next time. */
+static void remember_camera(const struct view *view)
+{
+    bool by_hand = view->file_camera < 0;
+    if (view->params->remember && view->camera_known)
+        memory_keep(&view->log, view->settings.scene, by_hand ? view->settings.camera : "");
+}
+
+static void recall_camera(struct view *view)
+{
+    struct view_camera camera;
+    char text[VIEW_TEXT];
+    if (view->params->remember && !view->settings.camera[0] &&
+        memory_find(view->settings.scene, text, sizeof text) && camera_from_text(text, &camera))
+        memcpy(view->settings.camera, text, sizeof text);
+}
+
+/* ---- Scenes that are asked for ---- */
+
+static bool is_state(const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    return strcmp(extension, "view") == 0;
+}
+
+/* The shown scene's own file is watched with it. */
+static void set_asked(struct view *view, const char *path)
+{
+    snprintf(view->asked, sizeof view->asked, "%s", path);
+    watch_clear(view->watch_asked);
+    if (strcmp(path, view->fallback.scene) != 0)
+        watch_add(view->watch_asked, path);
+}
+
+static void open_scene(struct view *view, const char *path)
+{
+    struct view_settings *settings = &view->settings;
+    remember_camera(view);
+    if (settings_same_scene(settings, &view->fallback))
+        view->played = view->clock.playing;
+    if (strcmp(settings->scene, path) == 0)
+        settings->reload = ++view->reloads;
+    snprintf(settings->scene, sizeof settings->scene, "%s", path);
+    settings->camera[0] = '\0';
+    settings->picture.time_s = 0.0;
+    view->clock.playing = false;
+    view->camera_known = false;
+    view->hint = false;
+    recall_camera(view);
+    view->dirty = true;
+}
+
+void view_open(struct view *view, const char *path)
+{
+    if (is_state(path)) {
+        panels_load(view, path);
+        return;
+    }
+    if (strlen(path) >= sizeof view->settings.scene) {
+        view_say(view, "the path is too long");
+        return;
+    }
+    view->refused[0] = '\0';
+    set_asked(view, path);
+    open_scene(view, path);
+}
+
+/* Whatever is known of this file. */
+static void read_again(struct view *view, bool asked)
+{
+    char path[VIEW_PATH];
+    memcpy(path, asked ? view->asked : view->settings.scene, sizeof path);
+    set_asked(view, path);
+    if (strcmp(view->settings.scene, path) != 0)
+        open_scene(view, path);
+    view->settings.reload = ++view->reloads;
+    view->dirty = true;
+}
+
+void scenes_read_again(struct view *view)
+{
+    read_again(view, view->refused[0] != '\0');
+    view_say(view, "reading %s again", path_name(view->asked));
+}
+
+bool scenes_refuse(struct view *view)
+{
+    struct view_settings *settings = &view->settings;
+    const struct view_settings *back = &view->fallback;
+    if (settings_same_scene(settings, back))
+        return false;
+    if (strcmp(view->refused, view->status.error) != 0) {
+        memcpy(view->refused, view->status.error, sizeof view->refused);
+        log_error(&view->log, "%s", view->refused);
+    }
+    settings->reload = back->reload;
+    view->dirty = true;
+    if (view->camera_known) /* it was read again, and kept its place */
+        return true;
+    memcpy(settings->scene, back->scene, sizeof settings->scene);
+    memcpy(settings->camera, back->camera, sizeof settings->camera);
+    settings->picture.time_s = back->picture.time_s;
+    view->clock.playing = view->played;
+    view->clock.last_ms = view_now_ms(view);
+    view_learn_camera(view);
+    return true;
+}
+
+void scenes_forget(struct view *view)
+{
+    view->refused[0] = '\0';
+    watch_clear(view->watch_asked);
+}
+
+const struct view_settings *scenes_shown(const struct view *view)
+{
+    return settings_same_scene(&view->settings, &view->fallback) ? &view->settings
+                                                                 : &view->fallback;
+}
+
+/* ---- Files ---- */
+
+/* Its own file, and those of its materials. */
+static void watch_scene(struct view *view)
+{
+    const struct scene_ref *ref = view->scene;
+    const char *last = NULL;
+    watch_clear(view->watch);
+    watch_add(view->watch, ref->settings.scene);
+    for (uint32_t i = 0; i < ref->info.material_count; ++i) {
+        whit_material_info info;
+        whit_scene_get_material(ref->scene, i, &info);
+        if (info.file && (!last || strcmp(last, info.file) != 0))
+            watch_add(view->watch, info.file);
+        last = info.file;
+    }
+}
+
+void scenes_watch(struct view *view)
+{
+    bool asked = watch_changed(view->watch_asked), shown = watch_changed(view->watch);
+    if (!asked && !shown)
+        return;
+    read_again(view, asked);
+    view_say(view, "%s was written: reading it again", path_name(view->asked));
+}
+
+void scenes_show(struct view *view)
+{
+    const struct view_settings *shown = &view->frame.settings;
+    char title[300];
+    snprintf(title, sizeof title, "%s - whit", path_name(shown->scene));
+    window_set_title(view->window, title);
+    watch_scene(view);
+    if (settings_same_scene(shown, &view->settings))
+        scenes_forget(view);
+}
+
+void scenes_begin(struct view *view)
+{
+    const struct view_params *params = view->params;
+    for (uint32_t i = 0; i < params->scene_count; ++i) {
+        if (strcmp(params->scenes[i], params->settings.scene) == 0)
+            view->scene_index = i;
+    }
+    view->watch = watch_create();
+    view->watch_asked = watch_create();
+    recall_camera(view);
+    view->fallback = view->settings;
+}
+
+void scenes_end(struct view *view)
+{
+    remember_camera(view);
+    watch_destroy(view->watch);
+    watch_destroy(view->watch_asked);
+}
