@@ -207,6 +207,8 @@ static void reap_job(struct engine *engine)
     if (!job || !job->done)
         return;
     engine->job = NULL;
+    if (!job->scene)
+        memcpy(engine->refused, job->session->refused, sizeof engine->refused);
     if (job->result == WHIT_OK) {
         job->session->ready = true;
         keep_session(engine, job->session);
@@ -640,6 +642,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         status->part = atomic_load(&engine->drawing->part);
     }
     memcpy(status->error, engine->error, sizeof status->error);
+    memcpy(status->refused, engine->refused, sizeof status->refused);
     pthread_mutex_unlock(&engine->lock);
 }
 

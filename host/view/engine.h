@@ -81,6 +81,7 @@ struct engine_status {
     double drawing_ms;          /* that the drawing thread is at one; 0: it is at none */
     float part;                 /* of it, 0..1 */
     char error[ENGINE_MESSAGE]; /* the last failure, until something succeeds; "": none */
+    char refused[VIEW_PATH];    /* as session.refused, of the scene that was loaded last */
     bool failed;                /* what was asked for last cannot be drawn: `error` says why */
     whit_result result;         /* of `error`; once there is none any more, of the last one */
     bool device_lost;

@@ -82,7 +82,8 @@ struct engine {
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
-    whit_result result; /* that failed last */
+    char refused[VIEW_PATH]; /* as session.refused, of the last job that loaded a scene */
+    whit_result result;      /* that failed last */
     bool device_lost;
     struct engine_change change;
     bool probe_wanted;

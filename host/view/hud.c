@@ -269,6 +269,24 @@ static void draw_messages(const struct view *view)
     ui_panel_end();
 }
 
+/* Once for a folder; the picture goes on without it meanwhile. */
+static void draw_question(struct view *view)
+{
+    const char *folder = scenes_question(view);
+    if (!folder)
+        return;
+    if (ui_panel_begin("Files elsewhere", 0.5f, 0.0f, UI_PANEL_HOLD)) {
+        ui_text("The scene names files outside of its folder, in");
+        ui_text_color(COLOR_WARNING, "%s", folder);
+        ui_text("May it read what is there?");
+        bool allow = ui_button("allow");
+        ui_same_line(0);
+        if (ui_button("go on without") || allow)
+            scenes_answer(view, allow);
+    }
+    ui_panel_end();
+}
+
 static void draw_boxes(const struct view *view)
 {
     static const char *const trees[] = {"", "mesh trees", "instance tree"};
@@ -319,6 +337,7 @@ void hud_draw(struct view *view)
         draw_help(view);
         return;
     }
+    draw_question(view);
     pick_draw(view);
     draw_messages(view);
     if (is_low(view))

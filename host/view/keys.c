@@ -409,6 +409,10 @@ static void say_fullscreen(const struct view *view, char *text, size_t bytes)
 static void escape(struct view *view)
 {
     double now_ms = view_now_ms(view);
+    if (scenes_question(view)) {
+        scenes_answer(view, false);
+        return;
+    }
     if (view->help || view->picked || view->panels.settings || view->panels.effects ||
         view->refused[0]) {
         view->help = view->picked = false;

@@ -185,6 +185,27 @@ void scenes_forget(struct view *view)
     watch_clear(view->watch_asked);
 }
 
+const char *scenes_question(const struct view *view)
+{
+    const char *folder = view->status.refused;
+    return folder[0] && strcmp(folder, view->answered) != 0 ? folder : NULL;
+}
+
+void scenes_answer(struct view *view, bool allow)
+{
+    uint32_t count = 0;
+    memcpy(view->answered, view->status.refused, sizeof view->answered);
+    view->dirty = true;
+    while (count < VIEW_ALLOWED && view->settings.allowed[count][0])
+        ++count;
+    if (allow && count == VIEW_ALLOWED)
+        view_say(view, "%d folders are the most that can be allowed", VIEW_ALLOWED);
+    if (!allow || count == VIEW_ALLOWED)
+        return;
+    memcpy(view->settings.allowed[count], view->answered, sizeof view->answered);
+    scenes_read_again(view);
+}
+
 const struct view_settings *scenes_shown(const struct view *view)
 {
     return settings_same_scene(&view->settings, &view->fallback) ? &view->settings

@@ -41,9 +41,11 @@ static whit_result load(struct session *session)
 {
     const struct view_settings *settings = &session->settings;
     const char *allowed[VIEW_ALLOWED];
+    whit_refused refused = {0};
     whit_load_params params = {.texture_limit = settings->texture_limit,
                                .cancel = &session->cancel,
-                               .allowed_folders = allowed};
+                               .allowed_folders = allowed,
+                               .refused = &refused};
     while (params.allowed_count < VIEW_ALLOWED && settings->allowed[params.allowed_count][0]) {
         allowed[params.allowed_count] = settings->allowed[params.allowed_count];
         ++params.allowed_count;
@@ -56,6 +58,8 @@ static whit_result load(struct session *session)
     double start_ms = whit_clock_ms();
     whit_result result = whit_scene_load(settings->scene, &params, &session->log, &ref->scene);
     ref->load_ms = whit_clock_ms() - start_ms;
+    if (strlen(refused.folder) < sizeof session->refused)
+        memcpy(session->refused, refused.folder, strlen(refused.folder) + 1);
     if (result != WHIT_OK) {
         free(ref);
         return result;

@@ -37,6 +37,7 @@ struct session {
     whit_log log;         /* of all that the session is made of */
     void *owner;          /* of who made it, as is `error` */
     char error[512];
+    char refused[VIEW_PATH]; /* folder of a file that the scene names and may not read; "": none */
     bool ready;
     whit_accel_info accel_info;
     whit_device_info device_info;

@@ -287,6 +287,7 @@ static json_t *state_json(struct view *view, const char *name)
     put_bool(root, "playing", view->clock.playing);
     put_text(root, "toast", view->toast);
     put_text(root, "error", view_error(view));
+    put_text(root, "question", scenes_question(view));
     put_text(root, "work", session_stage_name(view->status.stage));
     put_number(root, "part", (double)view->status.part);
     put_count(root, "shown", view->shown);

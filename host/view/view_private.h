@@ -125,8 +125,9 @@ struct view {
     struct watch *watch_asked;    /* on `asked`, until that is shown; likewise */
     char asked[VIEW_PATH];        /* what was opened, or read again, last */
     char refused[ENGINE_MESSAGE]; /* why that is not shown; "": it is, or may be yet */
-    uint32_t reloads;             /* that there were, of any scene */
-    bool played;                  /* the shown scene, before another one was asked for */
+    char answered[VIEW_PATH]; /* the last folder of status.refused that the user was asked about */
+    uint32_t reloads;         /* that there were, of any scene */
+    bool played;              /* the shown scene, before another one was asked for */
     struct replay *replay;
     FILE *record;
     double record_ms;
@@ -163,6 +164,10 @@ void scenes_show(struct view *view);
 bool scenes_refuse(struct view *view);
 /* What was refused is no longer of interest. */
 void scenes_forget(struct view *view);
+/* The folder that the scene may read if the user says so; NULL: there is nothing to ask. */
+const char *scenes_question(const struct view *view);
+/* Ends the question; where `allow`, reads the scene again with that folder. */
+void scenes_answer(struct view *view, bool allow);
 /* Reads what was written. */
 void scenes_watch(struct view *view);
 /* Reads what was refused, else what is shown, again. */

@@ -110,6 +110,42 @@ is mended error ""
 EXPECTED=
 same frame.ids b mended
 
+# A scene that names a file outside of its folder: asked once, read where the answer is yes.
+mkdir model maps
+printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >model/a.obj
+printf 'newmtl red\nKd 1 0 0\n' >maps/a.mtl
+maps=$(realpath maps)
+play "files elsewhere" model/a.obj --size 400x160 <<END
+until question
+still
+state asked
+choose go on without
+still
+state without
+press R
+still
+state again
+drop $CUBE
+still
+state other
+END
+is asked question "$maps"
+is without question ""
+is again question ""
+same frame.pixels asked again
+is other question ""
+ids=$(value without frame.ids) pixels=$(value without frame.pixels)
+play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
+until question
+choose allow
+still
+state allowed
+END
+is allowed question ""
+is allowed frame.ids "$ids"
+check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
+check "the render line allows it too" test "$(value allowed render | grep -c -- "--allow-path $maps")" -eq 1
+
 # Read again: an error with file and line, the old picture stays; then its mend.
 cp "$CUBE" own.json
 sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
