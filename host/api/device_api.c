@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "api/handles.h"
-#include "base/platform.h"
+#include "base/child.h"
 #include "base/threads.h"
 
 static void describe(const struct device_info *from, whit_device_info *to)
@@ -177,9 +177,9 @@ struct whit_device_opening {
 static void open_in_thread(void *context)
 {
     whit_device_opening *opening = context;
-    platform_hold_forks();
+    child_hold_forks();
     opening->result = open_device(&opening->params, &opening->log, &opening->device);
-    platform_release_forks();
+    child_release_forks();
 }
 
 whit_device_opening *whit_device_open_begin(const whit_device_params *params, const whit_log *log)

@@ -13,7 +13,8 @@ add_library(whit::whit ALIAS whit)
 set_target_properties(whit PROPERTIES LINKER_LANGUAGE C)
 target_link_libraries(whit
   PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
-  PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP Vulkan::Vulkan
+  PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP
+    PkgConfig::SECCOMP Vulkan::Vulkan
     SPIRV-Tools-opt stdc++ Threads::Threads m)
 
 set(public_headers api/whit.h api/whit_accel.h api/whit_compare.h api/whit_device.h api/whit_file.h

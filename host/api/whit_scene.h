@@ -9,9 +9,12 @@ extern "C" {
 #endif
 
 typedef struct whit_load_params {
-    double time_limit_s;         /* for a foreign importer; 0: 60 */
-    uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
-    uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */
+    /* For each importer and decoder of pictures that is not whit's own: */
+    double import_limit_s;       /* of the processor; 0: 8, and 4 for each 10 MB, at most 60 */
+    double time_limit_s;         /* by the clock; 0: ten times that */
+    uint64_t memory_limit_bytes; /* 0: 4 GiB */
+    bool require_sandbox;   /* WHIT_ERROR_USAGE where these cannot be locked in; else a warning */
+    uint32_t texture_limit; /* longest side, larger ones are halved; 0: 4096 */
     const volatile bool *cancel; /* polled; NULL: never */
     /* A scene may name files below its own folder, links resolved, and below these: others are
        refused with a note, or an error where the scene cannot do without. */

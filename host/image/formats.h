@@ -35,8 +35,14 @@ struct text_list {
     uint32_t count, capacity;
 };
 
+/* Of a file in memory, by whatever decodes it, in this process. Errors are logged. */
+WHIT_CHECK whit_result image_decode(const struct image_source *source, struct image *image);
+WHIT_CHECK whit_result image_decode_texts(const struct image_source *source,
+                                          struct text_list *list);
+
 /* False when memory runs out. */
 bool text_list_add(struct text_list *list, const char *key, const char *value);
+void text_list_finish(struct text_list *list);
 
 /* image_init with the limits above; logs. */
 WHIT_CHECK whit_result image_init_loaded(const struct image_source *source, struct image *image,

@@ -229,28 +229,26 @@ static whit_result unknown_format(const struct image_source *source)
     return WHIT_ERROR_INPUT;
 }
 
-whit_result image_decode(const struct log *log, const char *path, const uint8_t *data,
-                         size_t size_bytes, struct image *image)
+/* Runs in a child of image_reply.c. */
+whit_result image_decode(const struct image_source *source, struct image *image)
 {
     *image = (struct image){0};
-    const struct image_source source = {
-        .log = log, .path = path, .data = data, .size_bytes = size_bytes};
     whit_result result = WHIT_OK;
-    switch (format_of_data(data, size_bytes)) {
+    switch (format_of_data(source->data, source->size_bytes)) {
     case FORMAT_PNG:
-        result = png_load(&source, image);
+        result = png_load(source, image);
         break;
     case FORMAT_EXR:
-        result = exr_load(&source, image);
+        result = exr_load(source, image);
         break;
     case FORMAT_PFM:
-        result = pfm_load(&source, image);
+        result = pfm_load(source, image);
         break;
     case FORMAT_HDR:
-        result = hdr_load(&source, image);
+        result = hdr_load(source, image);
         break;
     case FORMAT_UNKNOWN:
-        result = unknown_format(&source);
+        result = unknown_format(source);
         break;
     }
     if (result != WHIT_OK)
@@ -258,16 +256,20 @@ whit_result image_decode(const struct log *log, const char *path, const uint8_t 
     return result;
 }
 
-whit_result image_load(const struct log *log, const char *path, struct image *image)
+whit_result image_decode_texts(const struct image_source *source, struct text_list *list)
 {
-    *image = (struct image){0};
-    uint8_t *data;
-    size_t size_bytes;
-    whit_result result = file_read(log, NULL, path, IMAGE_BYTES_MAX, &data, &size_bytes);
-    if (result == WHIT_OK)
-        result = image_decode(log, path, data, size_bytes, image);
-    free(data);
-    return result;
+    switch (format_of_data(source->data, source->size_bytes)) {
+    case FORMAT_PNG:
+        return png_load_texts(source, list);
+    case FORMAT_EXR:
+        return exr_load_texts(source, list);
+    case FORMAT_PFM:
+    case FORMAT_HDR:
+        return WHIT_OK;
+    case FORMAT_UNKNOWN:
+        break;
+    }
+    return unknown_format(source);
 }
 
 bool text_list_add(struct text_list *list, const char *key, const char *value)
@@ -280,7 +282,7 @@ bool text_list_add(struct text_list *list, const char *key, const char *value)
     return false;
 }
 
-static void text_list_finish(struct text_list *list)
+void text_list_finish(struct text_list *list)
 {
     for (uint32_t i = 0; i < list->count; ++i) {
         free((void *)(uintptr_t)list->texts[i].key);
@@ -288,68 +290,4 @@ static void text_list_finish(struct text_list *list)
     }
     free(list->texts);
     *list = (struct text_list){0};
-}
-
-static const char *pack_string(char **end, const char *text)
-{
-    size_t bytes = strlen(text) + 1;
-    char *copy = memcpy(*end, text, bytes);
-    *end += bytes;
-    return copy;
-}
-
-/* The whole list in one block; NULL when memory runs out. */
-static struct image_text *pack_texts(const struct text_list *list)
-{
-    size_t bytes = sizeof(struct image_text) * list->count + 1;
-    for (uint32_t i = 0; i < list->count; ++i)
-        bytes += strlen(list->texts[i].key) + strlen(list->texts[i].value) + 2;
-    struct image_text *packed = malloc(bytes);
-    if (!packed)
-        return NULL;
-    char *end = (char *)(packed + list->count);
-    for (uint32_t i = 0; i < list->count; ++i) {
-        packed[i].key = pack_string(&end, list->texts[i].key);
-        packed[i].value = pack_string(&end, list->texts[i].value);
-    }
-    return packed;
-}
-
-whit_result image_load_texts(const struct log *log, const char *path, struct image_text **texts,
-                             uint32_t *text_count)
-{
-    *texts = NULL;
-    *text_count = 0;
-    uint8_t *data;
-    struct text_list list = {0};
-    struct image_source source = {.log = log, .path = path};
-    whit_result result = file_read(log, NULL, path, IMAGE_BYTES_MAX, &data, &source.size_bytes);
-    if (result != WHIT_OK)
-        return result;
-    source.data = data;
-    switch (format_of_data(data, source.size_bytes)) {
-    case FORMAT_PNG:
-        result = png_load_texts(&source, &list);
-        break;
-    case FORMAT_EXR:
-        result = exr_load_texts(&source, &list);
-        break;
-    case FORMAT_PFM:
-    case FORMAT_HDR:
-        break;
-    case FORMAT_UNKNOWN:
-        result = unknown_format(&source);
-        break;
-    }
-    if (result == WHIT_OK) {
-        *texts = pack_texts(&list);
-        *text_count = *texts ? list.count : 0;
-        if (!*texts) {
-            log_error(log, "%s: no memory for its texts", path);
-            result = WHIT_ERROR_MEMORY;
-        }
-    }
-    text_list_finish(&list);
-    free(data);
-    return result;
 }

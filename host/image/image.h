@@ -6,7 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/log.h"
+#include "base/foreign.h"
+#include "base/roots.h"
 
 /* Row 0 is the top. `channels` is 1, 3 or 4 floats, linear; or, for hit identities, 1 to 4 uint32
    (1: `id`, 2: `instance`, `primitive`); up to 8 of them in memory. */
@@ -41,9 +42,11 @@ bool image_format_known(const char *path, bool integers);
    scanlines or tiles), PFM, HDR; told apart by content. At most 65535 pixels a side and 1 GiB. A
    damaged file is one logged error; *image is then empty. */
 WHIT_CHECK whit_result image_load(const struct log *log, const char *path, struct image *image);
-/* The same of a file's bytes; `path` is its name in errors. */
-WHIT_CHECK whit_result image_decode(const struct log *log, const char *path, const uint8_t *data,
-                                    size_t size_bytes, struct image *image);
+/* `roots` that the path may not lead out of, or NULL, as for file_read. Decoders run in a child
+   process; `params` are for that, and may be NULL. */
+WHIT_CHECK whit_result image_load_by(const struct log *log, const struct roots *roots,
+                                     const char *path, const struct foreign_params *params,
+                                     struct image *image);
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
 WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
                                         struct image_text **texts, uint32_t *text_count);

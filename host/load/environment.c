@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/array.h"
 #include "base/file.h"
@@ -11,11 +12,12 @@
 #define SIDE_MOST       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
 
 /* .hdr, .exr and .pfm: grey spreads to RGB, alpha is dropped. */
-static whit_result decode_floats(const struct log *log, const char *path, const uint8_t *data,
-                                 size_t size_bytes, struct picture *out)
+static whit_result read_image(const struct scene *scene, const char *path,
+                              const struct foreign_params *foreign, struct picture *out)
 {
+    const struct log *log = &scene->log;
     struct image image = {0};
-    whit_result result = image_decode(log, path, data, size_bytes, &image);
+    whit_result result = image_load_by(log, &scene->roots, path, foreign, &image);
     if (result != WHIT_OK)
         return result;
     size_t pixels = (size_t)image.width * image.height;
@@ -55,51 +57,57 @@ static whit_result linearize(const struct log *log, const char *path, struct pic
         for (size_t k = 0; k < 3; ++k)
             picture->rgb[3 * i + k] = table[picture->rgba[4 * i + k]];
     }
-    free(picture->rgba);
+    struct picture bytes = {.rgba = picture->rgba, .mapped_bytes = picture->mapped_bytes};
+    picture_finish(&bytes);
     picture->rgba = NULL;
+    picture->mapped_bytes = 0;
     return WHIT_OK;
 }
 
-static whit_result decode_bytes(const struct log *log, const char *path, const uint8_t *data,
-                                size_t size_bytes, struct picture *out)
-{
-    const char *reason = "";
-    whit_result result = picture_decode(data, size_bytes, out, &reason);
-    if (result == WHIT_OK)
-        return linearize(log, path, out);
-    log_error(log, "%s: %s", path, reason);
-    return result;
-}
-
-static whit_result read_picture(struct scene *scene, const char *path, struct picture *out)
+static whit_result read_picture(const struct scene *scene, const char *path,
+                                const struct foreign_params *foreign, struct picture *out)
 {
     const struct log *log = &scene->log;
     uint8_t *data = NULL;
     size_t size_bytes = 0;
-    char extension[16];
+    char reason[FOREIGN_REASON_BYTES];
     whit_result result = file_read(log, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    scene->file_bytes += size_bytes;
-    path_extension(path, extension, sizeof extension);
-    bool floats = strcmp(extension, "hdr") == 0 || strcmp(extension, "exr") == 0 ||
-                  strcmp(extension, "pfm") == 0;
-    result = floats ? decode_floats(log, path, data, size_bytes, out)
-                    : decode_bytes(log, path, data, size_bytes, out);
+    result = picture_read(log, foreign, data, size_bytes, out, reason);
     free(data);
+    if (result != WHIT_OK)
+        log_error(log, "%s: %s", path, reason);
+    else
+        result = linearize(log, path, out);
     return result;
 }
 
-whit_result load_environment(struct scene *scene, const char *path)
+static uint64_t bytes_of(const char *path)
 {
+    struct stat info;
+    return stat(path, &info) == 0 ? (uint64_t)info.st_size : 0;
+}
+
+whit_result load_environment(struct scene *scene, const char *path,
+                             const struct load_params *params)
+{
+    const struct foreign_params foreign = load_foreign(params);
     const struct log *log = &scene->log;
+    char extension[16];
     struct picture picture = {0};
+    whit_result result = WHIT_ERROR_MEMORY;
     char *found = picture_find(&scene->roots, path);
     if (!found) {
         log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
+        return result;
     }
-    whit_result result = read_picture(scene, found, &picture);
+    path_extension(found, extension, sizeof extension);
+    if (strcmp(extension, "hdr") == 0 || strcmp(extension, "exr") == 0 ||
+        strcmp(extension, "pfm") == 0)
+        result = read_image(scene, found, &foreign, &picture);
+    else
+        result = read_picture(scene, found, &foreign, &picture);
     if (result != WHIT_OK)
         goto fail;
     if (!picture_shrink(&picture, SIDE_MOST)) {
@@ -119,6 +127,7 @@ whit_result load_environment(struct scene *scene, const char *path)
         .name = found,
     };
     scene->has_environment = true;
+    scene->file_bytes += bytes_of(sky->name);
     return WHIT_OK;
 fail:
     picture_finish(&picture);

@@ -10,11 +10,8 @@
 
 /* A reply holds at most this many times the size of the files, plus a constant: a vertex of an OBJ
    face needs 4 characters at least and comes back as 48 bytes and its index. */
-#define REPLY_PER_BYTE       64
-#define REPLY_BASE           (UINT64_C(64) << 20)
-
-#define DEFAULT_TIME_S       60.0
-#define DEFAULT_MEMORY_BYTES (UINT64_C(4) << 30)
+#define REPLY_PER_BYTE 64
+#define REPLY_BASE     (UINT64_C(64) << 20)
 
 uint32_t importer_array_words(enum import_array array)
 {
@@ -84,20 +81,6 @@ static bool check_record(const uint8_t *data, size_t size_bytes, const struct im
            check_indices(part->indices, part->triangle_count, part->vertex_count);
 }
 
-/* On one line; of what it quotes, only as much as a message may. */
-static void copy_error(const uint8_t *text, size_t bytes, char *reason, size_t reason_bytes)
-{
-    size_t used = 0, quoted = 0;
-    for (size_t i = 0; i < bytes && used + 1 < reason_bytes && text[i]; i++) {
-        quoted = text[i] == '"' ? !quoted : quoted + (quoted > 0);
-        if (quoted <= TEXT_TOKEN_CHARACTERS + 1)
-            reason[used++] = (char)(text[i] == '\n' || text[i] == '\r' ? ' ' : text[i]);
-    }
-    while (used && reason[used - 1] == ' ')
-        used--;
-    reason[used] = 0;
-}
-
 bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block *block,
                     char *reason, size_t reason_bytes)
 {
@@ -106,7 +89,7 @@ bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block 
     if (size_bytes >= sizeof magic)
         memcpy(&magic, data, sizeof magic);
     if (magic == IMPORT_ERROR_MAGIC) {
-        copy_error(data + sizeof magic, size_bytes - sizeof magic, reason, reason_bytes);
+        foreign_text(data + sizeof magic, size_bytes - sizeof magic, reason, reason_bytes);
         return false;
     }
     snprintf(reason, reason_bytes, "the importer's reply is damaged");
@@ -133,51 +116,6 @@ bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block 
     return true;
 }
 
-static struct child_limits limits_for(const struct import_request *request,
-                                      const struct load_params *params)
-{
-    uint64_t bytes = 0;
-    for (uint32_t i = 0; i < request->file_count; i++)
-        bytes += request->files[i].size_bytes;
-    double time_s = 8.0 + 4.0 * (double)bytes / 10e6;
-    double limit_s = params && params->time_limit_s > 0 ? params->time_limit_s : DEFAULT_TIME_S;
-    uint64_t memory =
-        params && params->memory_limit_bytes ? params->memory_limit_bytes : DEFAULT_MEMORY_BYTES;
-    return (struct child_limits){
-        .time_s = time_s < limit_s ? time_s : limit_s,
-        .memory_bytes = memory,
-        .reply_bytes = bytes * REPLY_PER_BYTE + REPLY_BASE,
-        .cancel = params ? params->cancel : NULL,
-    };
-}
-
-static whit_result report(const struct log *log, const char *path, enum child_end end,
-                          const struct child_limits *limits, const struct child_reply *reply)
-{
-    switch (end) {
-    case CHILD_CRASHED:
-        log_error(log, "%s: the importer crashed on this file (signal %d)", path, reply->signal);
-        return WHIT_ERROR_INPUT;
-    case CHILD_TIME:
-        log_error(log, "%s: the importer did not finish within %.3g s", path, limits->time_s);
-        return WHIT_ERROR_INPUT;
-    case CHILD_MEMORY:
-        log_error(log, "%s: the importer asked for more than %.0f MiB of memory", path,
-                  (double)limits->memory_bytes / 1048576.0);
-        return WHIT_ERROR_INPUT;
-    case CHILD_CANCELLED:
-        log_error(log, "%s: loading was cancelled", path);
-        return WHIT_ERROR_CANCELLED;
-    case CHILD_NOT_STARTED:
-        log_error(log, "%s: the importer's process could not be started", path);
-        return WHIT_ERROR_MEMORY;
-    case CHILD_REPLY:
-    default:
-        log_error(log, "%s: the importer gave no usable reply", path);
-        return WHIT_ERROR_INPUT;
-    }
-}
-
 /* assimp knows the file by the name that it was handed under. */
 static void log_reason(const struct log *log, const char *path, const char *handed_name,
                        const char *reason)
@@ -195,15 +133,21 @@ whit_result importer_run(const struct log *log, const char *path,
                          struct import_block *block)
 {
     *block = (struct import_block){0};
-    struct child_limits limits = limits_for(request, params);
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < request->file_count; i++)
+        bytes += request->files[i].size_bytes;
+    const struct foreign_params foreign = load_foreign(params);
+    struct child_limits limits =
+        foreign_limits(&foreign, "importer", bytes, bytes * REPLY_PER_BYTE + REPLY_BASE);
     struct import_request copy = *request;
-    enum child_end end = child_run(&limits, importer_assimp_run, &copy, &block->reply);
-    if (end != CHILD_DONE) {
-        whit_result result = report(log, path, end, &limits, &block->reply);
+    char reason[FOREIGN_REASON_BYTES];
+    whit_result result =
+        foreign_run(log, &limits, importer_assimp_run, &copy, &block->reply, reason);
+    if (result != WHIT_OK) {
+        log_error(log, "%s: %s", path, reason);
         importer_finish(block);
         return result;
     }
-    char reason[512];
     if (!importer_parse(block->reply.data, block->reply.size_bytes, block, reason, sizeof reason)) {
         log_reason(log, path, request->files[0].name, reason);
         importer_finish(block);

@@ -4,8 +4,8 @@
 #ifndef LOAD_IMPORTER_H
 #define LOAD_IMPORTER_H
 
+#include "base/child.h"
 #include "base/log.h"
-#include "base/platform.h"
 #include "load/load.h"
 
 enum import_kind { IMPORT_OBJ, IMPORT_GLTF, IMPORT_PLY, IMPORT_STL };
@@ -48,8 +48,8 @@ struct import_block {
     struct import_counts counts;
 };
 
-/* Runs the importer on `request`. Errors are logged as `path: reason`. Time is limited by the
-   params, and further by the size of the files, so that a small damaged file fails soon. */
+/* Runs the importer on `request`, with the limits of base/foreign.h. Errors are logged as
+   `path: reason`. */
 WHIT_CHECK whit_result importer_run(const struct log *log, const char *path,
                                     const struct import_request *request,
                                     const struct load_params *params, struct import_block *block);

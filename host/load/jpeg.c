@@ -9,6 +9,7 @@
 #include <jerror.h>
 
 #include "base/array.h"
+#include "base/platform.h"
 
 /* Of a progressive file each scan is work for all of the picture, however few bytes it has. */
 enum { SCANS_MOST = 200 };
@@ -22,7 +23,6 @@ struct job {
     jmp_buf leave;
     const uint8_t *data;
     size_t size_bytes;
-    uint8_t *row;
     struct picture picture;
     const char *reason;
     whit_result result;
@@ -96,7 +96,7 @@ static void read_header(struct job *job)
     if (refused)
         leave(job, WHIT_ERROR_INPUT, refused);
     bool inks = info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK;
-    info->out_color_space = inks ? JCS_CMYK : JCS_RGB;
+    info->out_color_space = inks ? JCS_CMYK : JCS_EXT_RGBA;
 }
 
 static uint8_t product(uint8_t a, uint8_t b)
@@ -104,13 +104,12 @@ static uint8_t product(uint8_t a, uint8_t b)
     return (uint8_t)((a * b + 127) / 255);
 }
 
-static void copy_row(const uint8_t *from, bool inks, uint32_t width, uint8_t *to)
+static void mix_inks(uint8_t *row, uint32_t width)
 {
-    for (uint32_t x = 0; x < width; ++x, to += 4) {
+    for (uint32_t x = 0; x < width; ++x, row += 4) {
         for (int i = 0; i < 3; ++i)
-            to[i] = inks ? product(from[i], from[3]) : from[i];
-        to[3] = 255;
-        from += inks ? 4 : 3;
+            row[i] = product(row[i], row[3]);
+        row[3] = 255;
     }
 }
 
@@ -121,14 +120,15 @@ static void read_rows(struct job *job)
     (void)jpeg_start_decompress(info);
     picture->width = info->output_width;
     picture->height = info->output_height;
-    picture->rgba = array_alloc((size_t)picture->width * picture->height, 4);
-    job->row = array_alloc(picture->width, 4);
-    if (!picture->rgba || !job->row)
+    size_t row_bytes = 4 * (size_t)picture->width;
+    picture->rgba = array_alloc(picture->height, row_bytes);
+    if (!picture->rgba)
         leave(job, WHIT_ERROR_MEMORY, "out of memory");
+    platform_expect_much(picture->rgba, picture->height * row_bytes);
     while (info->output_scanline < info->output_height) {
-        uint8_t *to = picture->rgba + 4 * (size_t)info->output_scanline * picture->width;
-        if (jpeg_read_scanlines(info, &job->row, 1) == 1)
-            copy_row(job->row, info->out_color_space == JCS_CMYK, picture->width, to);
+        JSAMPROW row = picture->rgba + info->output_scanline * row_bytes;
+        if (jpeg_read_scanlines(info, &row, 1) == 1 && info->out_color_space == JCS_CMYK)
+            mix_inks(row, picture->width);
     }
     (void)jpeg_finish_decompress(info);
 }
@@ -155,7 +155,6 @@ whit_result jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *
         picture_finish(&job->picture);
     *reason = job->reason;
     jpeg_destroy_decompress(&job->info);
-    free(job->row);
     free(job);
     return result;
 }

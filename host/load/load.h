@@ -4,18 +4,29 @@
 
 #include <stddef.h>
 
+#include "base/foreign.h"
 #include "scene/scene.h"
 
 struct load_params {
-    double time_limit_s;         /* for a foreign importer; 0: 60 */
-    uint64_t memory_limit_bytes; /* for a foreign importer; 0: 4 GiB */
-    uint32_t texture_limit;      /* longest side of a texture, larger ones are halved; 0: 4096 */
-    const volatile bool *cancel; /* polled; may be NULL */
+    struct foreign_params foreign; /* for what is not whit's own: importers, decoders of pictures */
+    uint32_t texture_limit;        /* longest side of a texture, larger ones are halved; 0: 4096 */
+    const volatile bool *cancel;   /* polled; may be NULL */
     /* Folders that the files of a scene may name files in, besides the scene's own. */
     const char *const *allowed_folders;
     uint32_t allowed_count;
     whit_refused *refused; /* filled in, on failure too; may be NULL */
 };
+
+/* What foreign code gets by these params, which may be NULL. */
+static inline struct foreign_params load_foreign(const struct load_params *params)
+{
+    struct foreign_params foreign = {0};
+    if (params)
+        foreign = params->foreign;
+    if (params)
+        foreign.cancel = params->cancel;
+    return foreign;
+}
 
 /* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl
    models. On failure *out is NULL and one error naming the file and the reason (and the line, where
@@ -40,6 +51,7 @@ WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const
                                     size_t size_bytes, const struct load_params *params,
                                     uint32_t *index, const char **reason);
 /* Radiance .hdr, .exr, .pfm or an 8-bit picture (sRGB) into scene->environment. */
-WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path);
+WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path,
+                                        const struct load_params *params);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -124,6 +125,57 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
     return WHIT_OK;
 }
 
+/* --- in a child ----------------------------------------------------------------------------- */
+
+struct file {
+    const uint8_t *data;
+    size_t size_bytes;
+};
+
+static whit_result decode_file(void *user, void *to, child_write write,
+                               struct foreign_answer *answer)
+{
+    const struct file *file = user;
+    struct picture picture;
+    const char *reason = "";
+    whit_result result = picture_decode(file->data, file->size_bytes, &picture, &reason);
+    snprintf(answer->reason, sizeof answer->reason, "%s", reason);
+    answer->numbers[0] = picture.width;
+    answer->numbers[1] = picture.height;
+    if (result == WHIT_OK)
+        (void)write(to, picture.rgba, (size_t)picture.width * picture.height * 4);
+    picture_finish(&picture);
+    return result;
+}
+
+whit_result picture_read(const struct log *log, const struct foreign_params *params,
+                         const uint8_t *data, size_t size_bytes, struct picture *out,
+                         char reason[FOREIGN_REASON_BYTES])
+{
+    struct file file = {data, size_bytes};
+    struct child_reply reply;
+    struct foreign_answer answer;
+    struct child_limits limits = foreign_limits(params, "decoder", size_bytes, 4 * PIXELS_MOST);
+    *out = (struct picture){0};
+    whit_result result = foreign_ask(log, &limits, decode_file, &file, &reply, &answer);
+    memcpy(reason, answer.reason, sizeof answer.reason);
+    if (result != WHIT_OK)
+        return result;
+    uint64_t pixels = (uint64_t)answer.numbers[0] * answer.numbers[1];
+    if (pixels == 0 || pixels > PIXELS_MOST || reply.size_bytes != 4 * pixels + sizeof answer) {
+        snprintf(reason, FOREIGN_REASON_BYTES, "the decoder's reply is damaged");
+        child_reply_free(&reply);
+        return WHIT_ERROR_INPUT;
+    }
+    *out = (struct picture){.width = answer.numbers[0],
+                            .height = answer.numbers[1],
+                            .rgba = reply.data,
+                            .mapped_bytes = reply.size_bytes};
+    return WHIT_OK;
+}
+
+/* --- what becomes of it --------------------------------------------------------------------- */
+
 static void halve_bytes(const struct picture *from, struct picture *to)
 {
     for (uint32_t y = 0; y < to->height; ++y) {
@@ -183,7 +235,11 @@ bool picture_shrink(struct picture *picture, uint32_t side_most)
 
 void picture_finish(struct picture *picture)
 {
-    free(picture->rgba);
+    struct child_reply held = {.data = picture->rgba, .size_bytes = picture->mapped_bytes};
+    if (picture->mapped_bytes)
+        child_reply_free(&held);
+    else
+        free(picture->rgba);
     free(picture->rgb);
     *picture = (struct picture){0};
 }

@@ -7,15 +7,23 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/foreign.h"
 #include "base/log.h"
 #include "base/roots.h"
 
-/* `rgba` or `rgb` is malloc'ed; picture_finish() it. Row 0 is the top. */
+/* picture_finish() it. Row 0 is the top. */
 struct picture {
     uint32_t width, height;
-    uint8_t *rgba; /* 4 a pixel as stored, or NULL */
-    float *rgb;    /* 3 a pixel, linear, or NULL */
+    uint8_t *rgba;       /* 4 a pixel as stored, or NULL */
+    size_t mapped_bytes; /* `rgba` is the reply of a child, so long; 0: from malloc() */
+    float *rgb;          /* 3 a pixel, linear, from malloc(), or NULL */
 };
+
+/* picture_decode() in a child process, whose reply becomes `rgba`. Not WHIT_OK: `reason` is filled
+   and nothing is logged; as of foreign_ask(). */
+WHIT_CHECK whit_result picture_read(const struct log *log, const struct foreign_params *params,
+                                    const uint8_t *data, size_t size_bytes, struct picture *out,
+                                    char reason[FOREIGN_REASON_BYTES]);
 
 /* `rgba` from the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame). A file whose header
    tells of more pixels than its bytes could hold in any of these formats is refused before memory

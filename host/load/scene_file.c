@@ -283,7 +283,7 @@ static bool read_map(struct reader *reader, const struct place *place, const jso
         free(path);
         return false;
     }
-    whit_result result = load_environment(reader->scene, path);
+    whit_result result = load_environment(reader->scene, path, reader->params);
     free(path);
     if (result != WHIT_OK) {
         reader->result = result;

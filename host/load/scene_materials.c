@@ -65,7 +65,7 @@ static bool add_picture(struct reader *reader, char *name, uint32_t width, uint3
             return true;
         }
     }
-    *index = scene_add_texture(scene, (struct scene_texture){name, width, height, rgba});
+    *index = scene_add_texture(scene, (struct scene_texture){name, width, height, rgba, 0});
     return *index != SCENE_NONE || reader_no_memory(reader);
 }
 

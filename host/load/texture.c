@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,22 +23,25 @@ static bool known(const struct scene *scene, const char *name, uint32_t *index)
 }
 
 /* Silent: a missing texture is a warning of the scene, not an error. */
-static whit_result decode_file(struct scene *scene, const char *path, struct picture *picture,
-                               const char **reason)
+static whit_result decode_file(struct scene *scene, const char *path,
+                               const struct foreign_params *foreign, struct picture *picture,
+                               char reason[FOREIGN_REASON_BYTES])
 {
     uint8_t *data = NULL;
     size_t size_bytes = 0;
     const struct log silent = {0};
-    *reason = roots_why_not(&scene->roots, path);
-    if (*reason)
-        return WHIT_ERROR_INPUT;
-    *reason = "it cannot be read";
+    const char *why_not = roots_why_not(&scene->roots, path);
     whit_result result =
-        file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
+        why_not ? WHIT_ERROR_INPUT
+                : file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
+    snprintf(reason, FOREIGN_REASON_BYTES, "%s",
+             why_not                       ? why_not
+             : result == WHIT_ERROR_MEMORY ? "out of memory for a texture"
+                                           : "it cannot be read");
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;
-    result = picture_decode(data, size_bytes, picture, reason);
+    result = picture_read(&scene->log, foreign, data, size_bytes, picture, reason);
     free(data);
     return result;
 }
@@ -70,7 +74,10 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
                          const char **reason)
 {
     struct picture picture = {0};
-    const char *why = "";
+    static _Thread_local char why[FOREIGN_REASON_BYTES]; /* outlives the call */
+    const struct foreign_params foreign = load_foreign(params);
+    whit_result result = WHIT_ERROR_MEMORY;
+    snprintf(why, sizeof why, "out of memory for a texture");
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     *index = SCENE_NONE;
     if (!name)
@@ -81,9 +88,9 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
         free(name);
         return WHIT_OK;
     }
-    whit_result result = data ? picture_decode(data, size_bytes, &picture, &why)
-                              : decode_file(scene, name, &picture, &why);
-    if (result == WHIT_ERROR_MEMORY)
+    result = data ? picture_read(&scene->log, &foreign, data, size_bytes, &picture, why)
+                  : decode_file(scene, name, &foreign, &picture, why);
+    if (result != WHIT_OK && result != WHIT_ERROR_INPUT)
         goto fail;
     if (result != WHIT_OK && reason) {
         free(name);
@@ -94,19 +101,22 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
         scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place", name,
                    why);
         if (!make_magenta(&picture))
-            goto fail;
+            goto no_memory;
     }
     if (!shrink(scene, name, params, &picture))
-        goto fail;
-    *index = scene_add_texture(
-        scene, (struct scene_texture){name, picture.width, picture.height, picture.rgba});
+        goto no_memory;
+    *index = scene_add_texture(scene, (struct scene_texture){name, picture.width, picture.height,
+                                                             picture.rgba, picture.mapped_bytes});
     if (*index != SCENE_NONE)
         return WHIT_OK;
     name = NULL;
-    picture.rgba = NULL;
+    picture = (struct picture){0};
+no_memory:
+    result = WHIT_ERROR_MEMORY;
+    snprintf(why, sizeof why, "out of memory for a texture");
 fail:
-    log_error(&scene->log, "%s: out of memory for a texture", path);
+    log_error(&scene->log, "%s: %s", path, why);
     free(name);
     picture_finish(&picture);
-    return WHIT_ERROR_MEMORY;
+    return result;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/child.h"
 
 struct scene *scene_create(const struct log *log, const char *name)
 {
@@ -63,18 +64,26 @@ static void finish_channel(struct scene_channel *channel)
     free(channel->values);
 }
 
+static void drop_texels(struct scene_texture *texture)
+{
+    struct child_reply held = {.data = texture->rgba, .size_bytes = texture->mapped_bytes};
+    if (texture->mapped_bytes)
+        child_reply_free(&held);
+    else
+        free(texture->rgba);
+    texture->rgba = NULL;
+}
+
 static void finish_texture(struct scene_texture *texture)
 {
     free(texture->name);
-    free(texture->rgba);
+    drop_texels(texture);
 }
 
 void scene_drop_pictures(struct scene *scene)
 {
-    for (uint32_t i = 0; i < scene->texture_count; ++i) {
-        free(scene->textures[i].rgba);
-        scene->textures[i].rgba = NULL;
-    }
+    for (uint32_t i = 0; i < scene->texture_count; ++i)
+        drop_texels(&scene->textures[i]);
     free(scene->environment.rgb);
     scene->environment.rgb = NULL;
     scene->pictures_dropped = true;

@@ -5,6 +5,7 @@
 #define SCENE_SCENE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/affine.h"
@@ -23,7 +24,8 @@ struct scene_origin {
 struct scene_texture {
     char *name;
     uint32_t width, height;
-    uint8_t *rgba; /* width * height * 4 */
+    uint8_t *rgba;       /* width * height * 4 */
+    size_t mapped_bytes; /* `rgba` is the reply of a child, so long; 0: from malloc() */
 };
 
 enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP, SCENE_WRAP_MIRROR };

@@ -13,13 +13,10 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/platform.h"
 #include "fuzz.h"
 
-enum child_end __wrap_child_run(const struct child_limits *limits,
-                                int (*fn)(void *user, void *to, child_write write), void *user,
-                                struct child_reply *reply);
-void __wrap_child_reply_free(struct child_reply *reply);
+#include "../child_in_place.h"
+
 const struct aiScene *__wrap_aiImportFileEx(const char *name, unsigned flags, struct aiFileIO *io);
 void __wrap_aiReleaseImport(const struct aiScene *scene);
 const char *__wrap_aiGetErrorString(void);
@@ -208,24 +205,8 @@ const struct aiScene *__wrap_aiImportFileEx(const char *name, unsigned flags, st
 
 /* --- the child process ---------------------------------------------------------------------- */
 
-struct written {
-    uint8_t *data;
-    size_t size_bytes;
-};
-
-static bool write_reply(void *to, const void *data, size_t size_bytes)
-{
-    struct written *written = to;
-    uint8_t *moved = realloc(written->data, written->size_bytes + size_bytes + 1);
-    fuzz_check(moved, "out of memory");
-    memcpy(moved + written->size_bytes, data, size_bytes);
-    written->data = moved;
-    written->size_bytes += size_bytes;
-    return true;
-}
-
 /* Writes over some words of the reply, as a child that assimp has overrun might. */
-static void damage(struct written *written)
+static void damage(struct child_reply *written)
 {
     for (int i = take() % 4; i > 0 && written->size_bytes >= 4; i--) {
         uint32_t at = take(), word = 0;
@@ -243,29 +224,10 @@ enum child_end __wrap_child_run(const struct child_limits *limits,
                                 struct child_reply *reply)
 {
     (void)limits;
-    struct written written = {0};
-    *reply = (struct child_reply){0};
-    reply->exit_code = fn(user, &written, write_reply);
-    damage(&written);
+    enum child_end end = child_in_place(fn, user, reply, damage);
     free(stream.data);
     stream.data = NULL;
     stream.left = 0;
-    fuzz_check(reply->exit_code != CHILD_EXIT_MEMORY, "the child's memory ran out");
-    if (written.size_bytes == 0) {
-        free(written.data);
-        return CHILD_REPLY;
-    }
-    /* Exactly as long as it says, for sanitizers; and aligned, as a mapping is. */
-    reply->data = malloc(written.size_bytes);
-    fuzz_check(reply->data, "out of memory");
-    memcpy(reply->data, written.data, written.size_bytes);
-    reply->size_bytes = written.size_bytes;
-    free(written.data);
-    return CHILD_DONE;
-}
-
-void __wrap_child_reply_free(struct child_reply *reply)
-{
-    free(reply->data);
-    *reply = (struct child_reply){0};
+    fuzz_check(end != CHILD_MEMORY, "the child's memory ran out");
+    return end;
 }

@@ -1,4 +1,5 @@
 /* The importer's process and its reply: nothing in it is believed. */
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "load/importer.h"
@@ -11,7 +12,7 @@ double __wrap_clock_ms(void);
 int __real_importer_assimp_run(void *user, void *to, child_write write);
 int __wrap_importer_assimp_run(void *user, void *to, child_write write);
 
-static bool importer_hangs;
+static bool importer_hangs, importer_opens;
 
 double __wrap_clock_ms(void)
 {
@@ -22,7 +23,10 @@ double __wrap_clock_ms(void)
 int __wrap_importer_assimp_run(void *user, void *to, child_write write)
 {
     while (importer_hangs)
-        pause();
+        for (volatile unsigned i = 0; i < 1000; ++i)
+            ;
+    if (importer_opens && open("/etc/passwd", O_RDONLY) >= 0)
+        return 0;
     return __real_importer_assimp_run(user, to, write);
 }
 
@@ -259,14 +263,24 @@ static void crashes_stay_in_the_child(void **state)
 static void time_limits_are_kept(void **state)
 {
     struct fixture *fixture = *state;
-    const struct load_params params = {.time_limit_s = 2.5e-3};
+    const struct load_params params = {.foreign.clock_s = 2.5e-3};
     const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_hangs = true;
     whit_result result = load_model(fixture->scene, path, SCENE_NONE, true, true, &params);
     importer_hangs = false;
     assert_int_equal(result, WHIT_ERROR_INPUT);
     assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, "did not finish within 0.0025 s"));
+    assert_non_null(strstr(fixture->last_error, "or 0.0025 s by the clock"));
+}
+
+static void importers_that_reach_out_are_stopped(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    importer_opens = true;
+    fixture_refused(fixture, path, "the importer tried on this file what it may not");
+    importer_opens = false;
+    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
 }
 
 static void cancelling_is_not_the_files_fault(void **state)
@@ -308,6 +322,7 @@ int main(void)
         TEST(claims_of_endless_memory_are_refused),
         TEST(crashes_stay_in_the_child),
         TEST(time_limits_are_kept),
+        TEST(importers_that_reach_out_are_stopped),
         TEST(cancelling_is_not_the_files_fault),
         TEST(unknown_kinds_are_named),
         TEST(missing_files_are_named),

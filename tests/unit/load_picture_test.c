@@ -1,9 +1,14 @@
 /* JPEG: pixels of files by two encoders, and what becomes of damaged ones. */
 #include "load_model_fixture.h"
 
+#include <errno.h>
 #include <jpeglib.h>
+#include <sys/socket.h>
 
 #include "../random.h"
+#include "base/sandbox.h"
+#include "image/formats.h"
+#include "load/jpeg.h"
 #include "load/picture.h"
 #include "stb_write_fixture.h"
 
@@ -237,9 +242,88 @@ static void damaged_textures_are_named(void **state)
     assert_true(fixture_noted(fixture, path));
     assert_true(fixture_noted(fixture, "magenta takes its place"));
     assert_int_equal(fixture->errors, 0);
-    assert_int_equal(load_environment(fixture->scene, path), WHIT_ERROR_INPUT);
+    assert_int_equal(load_environment(fixture->scene, path, NULL), WHIT_ERROR_INPUT);
     assert_int_equal(fixture->errors, 1);
     assert_non_null(strstr(fixture->last_error, path));
+    free(file.data);
+}
+
+/* --- decoders that reach out ---------------------------------------------------------------- */
+
+/* Wrapped at link time: stand-ins for what decodes, and a system that refuses the sandbox. */
+whit_result __real_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
+                               const char **reason);
+whit_result __wrap_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
+                               const char **reason);
+whit_result __real_image_decode(const struct image_source *source, struct image *image);
+whit_result __wrap_image_decode(const struct image_source *source, struct image *image);
+int __real_sandbox_enter(void);
+int __wrap_sandbox_enter(void);
+
+static bool decoders_connect, sandbox_is_refused;
+
+whit_result __wrap_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
+                               const char **reason)
+{
+    if (decoders_connect && socket(AF_INET, SOCK_STREAM, 0) >= 0)
+        *reason = "it is out";
+    return __real_jpeg_decode(data, size_bytes, out, reason);
+}
+
+whit_result __wrap_image_decode(const struct image_source *source, struct image *image)
+{
+    if (decoders_connect)
+        (void)socket(AF_INET, SOCK_STREAM, 0);
+    return __real_image_decode(source, image);
+}
+
+int __wrap_sandbox_enter(void)
+{
+    return sandbox_is_refused ? EPERM : __real_sandbox_enter();
+}
+
+static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
+
+static void decoders_that_reach_out_are_stopped(void **state)
+{
+    struct fixture *fixture = *state;
+    static const char why[] = "the decoder tried on this file what it may not, and was stopped";
+    struct bytes file = write_stb(95);
+    const char *jpeg = fixture_write(fixture, "a.jpg", file.data, file.count);
+    const char *sky = fixture_write(fixture, "a.hdr", hdr, sizeof hdr - 1);
+    uint32_t index;
+    decoders_connect = true;
+    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_memory_equal(fixture->scene->textures[index].rgba, "\377\0\377\377", 4);
+    assert_true(fixture_noted(fixture, why));
+    assert_int_equal(load_environment(fixture->scene, jpeg, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 2);
+    assert_non_null(strstr(fixture->last_error, sky));
+    assert_non_null(strstr(fixture->last_error, why));
+    decoders_connect = false;
+    assert_int_equal(load_environment(fixture->scene, jpeg, NULL), WHIT_OK);
+    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_OK);
+    free(file.data);
+}
+
+/* A texture that cannot be had is magenta; one that whit was told not to read that way is not. */
+static void a_sandbox_that_is_required_is_an_error(void **state)
+{
+    struct fixture *fixture = *state;
+    const struct load_params params = {.foreign.require_sandbox = true};
+    struct bytes file = write_stb(95);
+    const char *jpeg = fixture_write(fixture, "a.jpg", file.data, file.count);
+    const char *sky = fixture_write(fixture, "a.hdr", hdr, sizeof hdr - 1);
+    uint32_t index;
+    sandbox_is_refused = true;
+    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, &params, &index, NULL),
+                     WHIT_ERROR_USAGE);
+    assert_int_equal(load_environment(fixture->scene, sky, &params), WHIT_ERROR_USAGE);
+    assert_int_equal(fixture->errors, 2);
+    assert_non_null(strstr(fixture->last_error, "the decoder cannot be locked in"));
+    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    sandbox_is_refused = false;
     free(file.data);
 }
 
@@ -251,6 +335,10 @@ int main(void)
         cmocka_unit_test(changed_jpegs_end),
         cmocka_unit_test(greedy_jpegs_are_refused),
         cmocka_unit_test_setup_teardown(damaged_textures_are_named, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(decoders_that_reach_out_are_stopped, fixture_begin,
+                                        fixture_end),
+        cmocka_unit_test_setup_teardown(a_sandbox_that_is_required_is_an_error, fixture_begin,
+                                        fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

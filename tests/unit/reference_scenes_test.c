@@ -156,7 +156,7 @@ static bool is_wanted(const char *name)
 static void default_scenes_agree(void **state)
 {
     (void)state;
-    const struct load_params load = {.time_limit_s = 60.0};
+    const struct load_params load = {.foreign.cpu_s = 60.0};
     glob_t paths;
     struct device *device = NULL;
     size_t compared = 0;

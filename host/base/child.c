@@ -1,0 +1,363 @@
+/* pipe2 and PR_SET_PDEATHSIG are Linux's own. */
+#define _GNU_SOURCE
+#include "base/child.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/platform.h"
+#include "base/sandbox.h"
+
+/* AddressSanitizer reserves terabytes of address space for its shadow. */
+#if defined(__SANITIZE_ADDRESS__)
+#define LIMIT_ADDRESS_SPACE 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define LIMIT_ADDRESS_SPACE 0
+#endif
+#endif
+#ifndef LIMIT_ADDRESS_SPACE
+#define LIMIT_ADDRESS_SPACE 1
+#endif
+
+enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_LEAST = 1 << 20 };
+
+struct child {
+    pid_t pid;
+    int read_fd, write_fd; /* the pipe: why there is no sandbox (errno, one byte), then the reply */
+    uint8_t *data;         /* what came so far, at the start of `room` bytes of address space */
+    size_t size_bytes, room_bytes;
+    uint8_t open_because;
+    bool heard, over; /* the first byte came; more came than there is room for */
+};
+
+static bool write_all(int fd, const uint8_t *from, size_t size_bytes)
+{
+    for (size_t done = 0; done < size_bytes;) {
+        ssize_t got = write(fd, from + done, size_bytes - done);
+        if (got <= 0 && errno != EINTR)
+            return false;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return true;
+}
+
+/* `to` is whether all that was written before arrived. */
+static bool write_reply(void *to, const void *data, size_t size_bytes)
+{
+    bool *whole = to;
+    *whole = *whole && write_all(SANDBOX_REPLY_FD, data, size_bytes);
+    return *whole;
+}
+
+static void limit(__rlimit_resource_t resource, uint64_t value)
+{
+    struct rlimit limits;
+    if (getrlimit(resource, &limits) != 0)
+        return;
+    if (limits.rlim_max == RLIM_INFINITY || value < limits.rlim_max)
+        limits.rlim_max = (rlim_t)value;
+    limits.rlim_cur = limits.rlim_max;
+    setrlimit(resource, &limits);
+}
+
+/* What is mapped already, by this process and the libraries and drivers in it, does not count
+   against the child. */
+static uint64_t mapped_bytes(void)
+{
+    unsigned long pages = 0;
+    FILE *stream = fopen("/proc/self/statm", "re");
+    if (!stream)
+        return 0;
+    if (fscanf(stream, "%lu", &pages) != 1)
+        pages = 0;
+    fclose(stream);
+    return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Puts the descriptors where the sandbox wants them; none need be free. */
+static bool place_descriptors(const struct child *child)
+{
+    close(child->read_fd);
+    bool placed = dup2(child->write_fd, SANDBOX_REPLY_FD) == SANDBOX_REPLY_FD;
+    int nowhere = open("/dev/null", O_RDWR);
+    for (int i = 0; i < SANDBOX_REPLY_FD; ++i) {
+        if (nowhere < 0 || dup2(nowhere, i) != i)
+            close(i);
+    }
+    return placed;
+}
+
+static void confine(const struct child *child, const struct child_limits *limits,
+                    uint64_t already_bytes, pid_t parent)
+{
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent || !place_descriptors(child))
+        _exit(EXIT_FAILURE);
+    for (int i = 1; i < NSIG; ++i)
+        signal(i, SIG_DFL);
+    /* Ctrl+C reaches the whole group; the parent decides what becomes of the child. */
+    signal(SIGINT, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    /* A backstop for when the parent is stopped. */
+    limit(RLIMIT_CPU, 1 + (uint64_t)fmin(ceil(fmax(limits->cpu_s, 0.0)), 1e6));
+    if (LIMIT_ADDRESS_SPACE && limits->memory_bytes)
+        limit(RLIMIT_AS, already_bytes + limits->memory_bytes);
+}
+
+/* In the sandbox, or, where that is not to be had and not required, without it. */
+static int run_inside(const struct child_limits *limits,
+                      int (*fn)(void *user, void *to, child_write write), void *user)
+{
+    bool whole = true;
+    uint8_t error = (uint8_t)sandbox_enter();
+    if (!write_all(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))
+        return EXIT_OPEN;
+    int code = fn(user, &whole, write_reply);
+    return whole ? code : EXIT_REPLY;
+}
+
+static void close_fd(int *fd)
+{
+    if (*fd >= 0)
+        close(*fd);
+    *fd = -1;
+}
+
+/* Address space for a reply; no memory is taken before it comes. Under limits on address space it
+   may be less than what is allowed. */
+static bool make_room(struct child *child, uint64_t reply_bytes)
+{
+    size_t room = (size_t)(reply_bytes > ROOM_LEAST ? reply_bytes : ROOM_LEAST);
+    for (; room >= ROOM_LEAST; room /= 2) {
+        void *data = mmap(NULL, room, PROT_READ | PROT_WRITE,
+                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (data == MAP_FAILED)
+            continue;
+        child->data = data;
+        child->room_bytes = room;
+        return true;
+    }
+    return false;
+}
+
+static bool open_channels(struct child *child, const struct child_limits *limits)
+{
+    int ends[2];
+    *child = (struct child){.pid = -1, .read_fd = -1, .write_fd = -1};
+    if (!make_room(child, limits->reply_bytes) || pipe2(ends, O_CLOEXEC) != 0)
+        return false;
+    child->read_fd = ends[0];
+    child->write_fd = ends[1];
+    (void)fcntl(child->read_fd, F_SETPIPE_SZ, PIPE_BYTES); /* a smaller one is slower */
+    return fcntl(child->read_fd, F_SETFL, O_NONBLOCK) == 0;
+}
+
+static void close_channels(struct child *child)
+{
+    close_fd(&child->read_fd);
+    close_fd(&child->write_fd);
+    if (child->data)
+        munmap(child->data, child->room_bytes);
+}
+
+static pthread_rwlock_t fork_lock = PTHREAD_RWLOCK_INITIALIZER;
+
+void child_hold_forks(void)
+{
+    pthread_rwlock_rdlock(&fork_lock);
+}
+
+void child_release_forks(void)
+{
+    pthread_rwlock_unlock(&fork_lock);
+}
+
+static bool start(struct child *child, const struct child_limits *limits,
+                  int (*fn)(void *user, void *to, child_write write), void *user)
+{
+    if (!open_channels(child, limits))
+        return false;
+    pthread_rwlock_wrlock(&fork_lock);
+    uint64_t already_bytes = mapped_bytes();
+    pid_t parent = getpid();
+    /* No handler of the parent may run in the child: it would remove the parent's files. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    child->pid = fork();
+    if (child->pid == 0) {
+        confine(child, limits, already_bytes, parent);
+        pthread_sigmask(SIG_SETMASK, &before, NULL);
+        _exit(run_inside(limits, fn, user));
+    }
+    pthread_rwlock_unlock(&fork_lock);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    close_fd(&child->write_fd);
+    return child->pid > 0;
+}
+
+/* Takes what came through the pipe; false: nothing did. */
+static bool hear(struct child *child)
+{
+    uint8_t more;
+    size_t room = child->room_bytes - child->size_bytes;
+    bool direct = child->heard && room > 0;
+    if (child->read_fd < 0)
+        return false;
+    ssize_t got =
+        read(child->read_fd, direct ? child->data + child->size_bytes : &more, direct ? room : 1);
+    if (got == 0)
+        close_fd(&child->read_fd);
+    if (got <= 0)
+        return false;
+    if (direct) {
+        bool was_little = child->size_bytes < PIPE_BYTES;
+        child->size_bytes += (size_t)got;
+        if (was_little && child->size_bytes >= PIPE_BYTES)
+            platform_expect_much(child->data + child->size_bytes,
+                                 child->room_bytes - child->size_bytes);
+    } else if (child->heard) {
+        child->over = true;
+    } else {
+        child->heard = true;
+        child->open_because = more;
+    }
+    return !child->over;
+}
+
+/* Returns when the child said something or is about to end, or after a moment. */
+static void wait_a_moment(struct child *child)
+{
+    struct pollfd watched = {.fd = child->read_fd, .events = POLLIN};
+    if (child->read_fd < 0)
+        nanosleep(&(struct timespec){.tv_nsec = 50000}, NULL);
+    else if (poll(&watched, 1, POLL_MS) > 0)
+        while (hear(child))
+            ;
+}
+
+static bool reap(pid_t pid, int flags, int *status)
+{
+    pid_t ended;
+    do
+        ended = waitpid(pid, status, flags);
+    while (ended < 0 && errno == EINTR);
+    if (ended < 0)
+        *status = SIGABRT; /* somebody else waited for it: its end is unknown */
+    return ended != 0;
+}
+
+double child_clock_limit_s(const struct child_limits *limits)
+{
+    return limits->clock_s > 0.0 ? limits->clock_s : 10.0 * limits->cpu_s;
+}
+
+/* CHILD_DONE when it ended by itself. */
+static enum child_end wait_for_end(struct child *child, const struct child_limits *limits,
+                                   int *status)
+{
+    double start_ms = clock_ms(), clock_s = child_clock_limit_s(limits);
+    enum child_end why = CHILD_DONE;
+    while (!reap(child->pid, WNOHANG, status)) {
+        if (limits->cancel && *limits->cancel)
+            why = CHILD_CANCELLED;
+        else if (limits->cpu_s > 0.0 && clock_of_process_ms(child->pid) > limits->cpu_s * 1e3)
+            why = CHILD_TIME;
+        else if (clock_s > 0.0 && clock_ms() - start_ms > clock_s * 1e3)
+            why = CHILD_TIME;
+        else if (child->over)
+            why = CHILD_REPLY;
+        if (why != CHILD_DONE) {
+            kill(child->pid, SIGKILL);
+            reap(child->pid, 0, status);
+            return why;
+        }
+        wait_a_moment(child);
+    }
+    while (hear(child))
+        ;
+    return CHILD_DONE;
+}
+
+static enum child_end end_of_signal(int number)
+{
+    if (number == SIGXCPU)
+        return CHILD_TIME;
+    if (number == SIGSYS)
+        return CHILD_FORBIDDEN;
+    /* Nobody here sent it: the kernel kills when the machine runs out of memory. */
+    if (number == SIGKILL)
+        return CHILD_MEMORY;
+    return CHILD_CRASHED;
+}
+
+/* Hands the room over to the reply, without what is left of it. */
+static enum child_end take_reply(struct child *child, const struct child_limits *limits,
+                                 struct child_reply *reply)
+{
+    if (child->size_bytes == 0 || child->over || child->size_bytes > limits->reply_bytes)
+        return CHILD_REPLY;
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    size_t used = (child->size_bytes + page - 1) / page * page;
+    if (used < child->room_bytes)
+        munmap(child->data + used, child->room_bytes - used);
+    reply->data = child->data;
+    reply->size_bytes = child->size_bytes;
+    child->data = NULL;
+    return CHILD_DONE;
+}
+
+enum child_end child_run(const struct child_limits *limits,
+                         int (*fn)(void *user, void *to, child_write write), void *user,
+                         struct child_reply *reply)
+{
+    struct child child;
+    int status = 0;
+    *reply = (struct child_reply){0};
+    enum child_end end = CHILD_NOT_STARTED;
+    if (!start(&child, limits, fn, user))
+        goto done;
+    end = wait_for_end(&child, limits, &status);
+    reply->open_because = child.open_because;
+    if (end != CHILD_DONE)
+        goto done;
+    if (WIFSIGNALED(status)) {
+        reply->signal = WTERMSIG(status);
+        end = limits->cancel && *limits->cancel ? CHILD_CANCELLED : end_of_signal(reply->signal);
+        goto done;
+    }
+    reply->exit_code = WEXITSTATUS(status);
+    if (reply->exit_code == CHILD_EXIT_MEMORY)
+        end = CHILD_MEMORY;
+    else if (reply->exit_code == EXIT_OPEN)
+        end = CHILD_OPEN;
+    else if (reply->exit_code == EXIT_REPLY)
+        end = CHILD_REPLY;
+    else
+        end = take_reply(&child, limits, reply);
+done:
+    close_channels(&child);
+    return end;
+}
+
+void child_reply_free(struct child_reply *reply)
+{
+    if (reply && reply->data)
+        munmap(reply->data, reply->size_bytes);
+    if (reply)
+        *reply = (struct child_reply){0};
+}

@@ -1,0 +1,61 @@
+/* Child processes that run one function, on foreign files, and answer. */
+#ifndef BASE_CHILD_H
+#define BASE_CHILD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Exit code of a child whose memory ran out. */
+enum { CHILD_EXIT_MEMORY = 120 };
+
+/* How a child process ended. */
+enum child_end {
+    CHILD_DONE,      /* returned; its whole reply was received */
+    CHILD_CRASHED,   /* died of a signal */
+    CHILD_FORBIDDEN, /* killed at a system call that the sandbox does not allow */
+    CHILD_TIME,      /* ran past its time limit and was killed */
+    CHILD_MEMORY,    /* asked for more memory than allowed */
+    CHILD_REPLY,     /* replied with more than the limit, or not at all */
+    CHILD_NOT_STARTED,
+    CHILD_OPEN,      /* the sandbox could not be set, and was required: nothing ran */
+    CHILD_CANCELLED, /* *cancel became true while it ran */
+};
+
+struct child_limits {
+    const char *who;             /* "importer": what runs, for messages */
+    double cpu_s;                /* of the processor, so that a busy machine counts for nothing */
+    double clock_s;              /* by the clock; 0: ten times cpu_s */
+    uint64_t memory_bytes;       /* address space, beyond what is mapped at the fork; 0: no limit */
+    uint64_t reply_bytes;        /* largest reply */
+    bool require_sandbox;        /* nothing runs where it cannot be set */
+    const volatile bool *cancel; /* polled, may be NULL */
+};
+
+struct child_reply {
+    uint8_t *data; /* mapped by the call; give back with child_reply_free */
+    size_t size_bytes;
+    int signal; /* with CHILD_CRASHED */
+    int exit_code;
+    int open_because; /* errno: it ran without the sandbox; 0: it ran in it */
+};
+
+/* Writes bytes of the child's reply; false when there is no room for them. */
+typedef bool (*child_write)(void *to, const void *data, size_t size_bytes);
+
+/* Forks and runs fn(user, to, write) in the child, in the sandbox (sandbox.h): it must not touch
+   Vulkan, threads or files; its standard output and error go nowhere. fn's return value is the exit
+   code, 0 to 119, or CHILD_EXIT_MEMORY when its memory ran out. A child that wrote nothing ends as
+   CHILD_REPLY, with its exit code. */
+enum child_end child_run(const struct child_limits *limits,
+                         int (*fn)(void *user, void *to, child_write write), void *user,
+                         struct child_reply *reply);
+void child_reply_free(struct child_reply *reply);
+/* What these limits allow by the clock; 0: for ever. */
+double child_clock_limit_s(const struct child_limits *limits);
+/* Between these two, child_run of other threads waits with its fork: around foreign code that holds
+   locks, such as loading a library, which a child would find held for ever. */
+void child_hold_forks(void);
+void child_release_forks(void);
+
+#endif

@@ -1,0 +1,91 @@
+/* The library in a program of somebody else: what it does to foreign files is done to its children.
+ */
+#include <dirent.h>
+#include <errno.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "whit.h"
+
+/* All that a sandbox or a handler would change of this process. */
+struct host {
+    char confinement[512];
+    void (*handlers[NSIG])(int);
+    sigset_t blocked;
+    int descriptors;
+};
+
+static void look_at_host(struct host *host)
+{
+    char line[128];
+    struct sigaction action;
+    memset(host, 0, sizeof *host);
+    FILE *status = fopen("/proc/self/status", "r");
+    while (status && fgets(line, sizeof line, status))
+        if (strstr(line, "NoNewPrivs") || strstr(line, "Seccomp"))
+            strcat(host->confinement, line);
+    if (status)
+        (void)fclose(status);
+    for (int i = 1; i < NSIG; ++i)
+        if (sigaction(i, NULL, &action) == 0)
+            host->handlers[i] = action.sa_handler;
+    assert_int_equal(sigprocmask(SIG_BLOCK, NULL, &host->blocked), 0);
+    DIR *folder = opendir("/proc/self/fd");
+    while (folder && readdir(folder))
+        host->descriptors++;
+    closedir(folder);
+}
+
+static void put(const char *path, const char *text, size_t bytes)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A model by the importer, and a picture by a decoder. */
+static void the_host_is_left_as_it_was(void **state)
+{
+    (void)state;
+    static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char sky[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
+    static const char scene_text[] =
+        "{\"objects\": [{\"model\": \"a.obj\"}], \"environment\": {\"map\": \"a.hdr\"}}";
+    char folder[] = "/tmp/whit-load-XXXXXX";
+    static struct host before, after;
+    whit_scene *scene = NULL;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chdir(folder), 0);
+    put("a.obj", model, sizeof model - 1);
+    put("a.hdr", sky, sizeof sky - 1);
+    put("a.json", scene_text, sizeof scene_text - 1);
+    look_at_host(&before);
+    assert_non_null(strstr(before.confinement, "NoNewPrivs:\t0"));
+    assert_int_equal(whit_scene_load("a.json", NULL, NULL, &scene), WHIT_OK);
+    look_at_host(&after);
+    assert_string_equal(before.confinement, after.confinement);
+    assert_memory_equal(before.handlers, after.handlers, sizeof before.handlers);
+    assert_memory_equal(&before.blocked, &after.blocked, sizeof before.blocked);
+    assert_int_equal(before.descriptors, after.descriptors);
+    assert_true(waitpid(-1, NULL, WNOHANG) == -1 && errno == ECHILD);
+    whit_scene_destroy(scene);
+    assert_true(remove("a.obj") == 0 && remove("a.hdr") == 0 && remove("a.json") == 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_host_is_left_as_it_was)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

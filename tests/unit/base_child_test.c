@@ -1,0 +1,409 @@
+/* __rlimit_resource_t is an enumeration only there. */
+#define _GNU_SOURCE
+#include <pthread.h>
+#include <sched.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/child.h"
+#include "base/threads.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define HAS_ASAN 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HAS_ASAN 1
+#endif
+#endif
+
+static const struct child_limits ordinary = {
+    .who = "test", .cpu_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 64u << 20};
+
+/* What is wrapped at link time: the clocks that a child's time is measured by, which these tests
+   turn, and what tells whether a child is started while forks are held. */
+double __wrap_clock_ms(void);
+double __real_clock_of_process_ms(pid_t pid);
+double __wrap_clock_of_process_ms(pid_t pid);
+pid_t __real_fork(void);
+pid_t __wrap_fork(void);
+int __real_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit);
+int __wrap_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit);
+int __real_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
+int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
+
+static double now_ms, step_ms;       /* Each reading turns the clock by a step, */
+static double used_ms, used_step_ms; /* and so the child's. */
+static uint32_t reading_count, cancel_at;
+static volatile uint32_t *seen_readings; /* shared with the child that waits for them */
+static volatile bool cancelled;          /* at the reading `cancel_at` */
+static atomic_bool forks_are_held, child_is_wanted, forked_while_held;
+
+static void set_clock(double step)
+{
+    now_ms = used_ms = used_step_ms = 0.0;
+    step_ms = step;
+    reading_count = cancel_at = 0;
+    cancelled = false;
+}
+
+double __wrap_clock_ms(void)
+{
+    if (++reading_count == cancel_at)
+        cancelled = true;
+    if (seen_readings)
+        *seen_readings = reading_count;
+    now_ms += reading_count <= 3 || !seen_readings ? step_ms : 0.0;
+    return now_ms;
+}
+
+double __wrap_clock_of_process_ms(pid_t pid)
+{
+    (void)pid;
+    return used_ms += used_step_ms;
+}
+
+pid_t __wrap_fork(void)
+{
+    if (atomic_load(&forks_are_held))
+        atomic_store(&forked_while_held, true);
+    atomic_store(&child_is_wanted, true);
+    return __real_fork();
+}
+
+int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock)
+{
+    atomic_store(&child_is_wanted, true);
+    return __real_pthread_rwlock_wrlock(lock);
+}
+
+static int reply_words(void *user, void *to, child_write write)
+{
+    uint32_t count = *(uint32_t *)user;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!write(to, &i, sizeof i))
+            return 3;
+    }
+    return 0;
+}
+
+static void reply_arrives_whole(void **state)
+{
+    (void)state;
+    for (uint32_t count = 1; count <= 100000; count *= 10) {
+        struct child_reply reply;
+        assert_int_equal(child_run(&ordinary, reply_words, &count, &reply), CHILD_DONE);
+        assert_int_equal(reply.exit_code, 0);
+        assert_int_equal(reply.size_bytes, count * sizeof(uint32_t));
+        for (uint32_t i = 0; i < count; ++i)
+            assert_int_equal(((uint32_t *)(void *)reply.data)[i], i);
+        child_reply_free(&reply);
+        assert_null(reply.data);
+    }
+}
+
+/* Until somebody asks for the lock of children, or starts one without it. */
+static void hold_forks(void *context)
+{
+    atomic_bool *holds = context;
+    child_hold_forks();
+    atomic_store(&forks_are_held, true);
+    atomic_store(holds, true);
+    while (!atomic_load(&child_is_wanted))
+        sched_yield();
+    atomic_store(&forks_are_held, false);
+    child_release_forks();
+}
+
+/* The child tells what it saw at its start. */
+static int reply_held(void *user, void *to, child_write write)
+{
+    (void)user;
+    uint8_t held = atomic_load(&forks_are_held);
+    return write(to, &held, sizeof held) ? 0 : 3;
+}
+
+static void no_child_while_forks_are_held(void **state)
+{
+    (void)state;
+    atomic_bool holds = false;
+    struct child_reply reply;
+    atomic_store(&child_is_wanted, false);
+    struct thread *thread = thread_start(hold_forks, &holds);
+    assert_non_null(thread);
+    while (!atomic_load(&holds))
+        sched_yield();
+    assert_int_equal(child_run(&ordinary, reply_held, NULL, &reply), CHILD_DONE);
+    thread_join(thread);
+    assert_false(atomic_load(&forked_while_held));
+    assert_int_equal(reply.size_bytes, 1);
+    assert_int_equal(reply.data[0], 0);
+    child_reply_free(&reply);
+}
+
+static void reply_limit_is_exact(void **state)
+{
+    (void)state;
+    uint32_t count = 1000;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.reply_bytes = count * sizeof(uint32_t);
+    assert_int_equal(child_run(&limits, reply_words, &count, &reply), CHILD_DONE);
+    child_reply_free(&reply);
+    --limits.reply_bytes;
+    assert_int_equal(child_run(&limits, reply_words, &count, &reply), CHILD_REPLY);
+    assert_null(reply.data);
+}
+
+static int silent(void *user, void *to, child_write write)
+{
+    (void)to, (void)write;
+    return *(int *)user;
+}
+
+static void exit_codes_arrive(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    int code = 7;
+    assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_REPLY);
+    assert_int_equal(reply.exit_code, 7);
+    code = CHILD_EXIT_MEMORY;
+    assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_MEMORY);
+}
+
+static int die(void *user, void *to, child_write write)
+{
+    write(to, "some", 4);
+    raise(*(int *)user);
+    return 0;
+}
+
+static void crashes_are_told_apart(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    int number = SIGABRT;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
+    assert_int_equal(reply.signal, SIGABRT);
+    assert_null(reply.data);
+    number = SIGSEGV; /* a sanitizer's handler must not get it */
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
+    assert_int_equal(reply.signal, SIGSEGV);
+    number = SIGXCPU;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_TIME);
+    number = SIGKILL;
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_MEMORY);
+}
+
+static int spin(void *user, void *to, child_write write)
+{
+    (void)user, (void)to, (void)write;
+    for (volatile unsigned i = 0;; ++i)
+        ;
+    return 0;
+}
+
+static void hangs_end_at_the_limit(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.clock_s = 0.2;
+    set_clock(50.0);
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_TIME);
+    assert_int_equal(reading_count, 6); /* 0 ms after the start, 50, 100, 150, 200, 250 */
+    set_clock(0.0);
+}
+
+/* On a busy machine the clock runs on while a child waits for the processor. */
+static void time_of_the_processor_counts(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.cpu_s = 0.2;
+    set_clock(150.0);
+    used_step_ms = 50.0;
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_TIME);
+    assert_float_equal(used_ms, 250.0, 0.0); /* by the clock, 600 ms */
+    set_clock(150.0);
+    used_step_ms = 1e-3;
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_TIME);
+    assert_float_equal(now_ms, 150.0 + 2100.0, 0.0); /* ten times as much */
+    set_clock(0.0);
+}
+
+static int wait_for_readings(void *user, void *to, child_write write)
+{
+    while (*(volatile uint32_t *)user < 3)
+        sched_yield();
+    return write(to, "k", 1) ? 0 : 1;
+}
+
+/* Valid files were refused where other programs had the processor. */
+static void a_busy_machine_refuses_nothing(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.cpu_s = 0.2;
+    seen_readings = mmap(NULL, sizeof *seen_readings, PROT_READ | PROT_WRITE,
+                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(seen_readings != MAP_FAILED);
+    set_clock(600.0); /* 600 ms at the start, 1800 at the third reading */
+    enum child_end end =
+        child_run(&limits, wait_for_readings, (void *)(uintptr_t)seen_readings, &reply);
+    set_clock(0.0);
+    assert_int_equal(end, CHILD_DONE);
+    child_reply_free(&reply);
+    munmap((void *)(uintptr_t)seen_readings, sizeof *seen_readings);
+    seen_readings = NULL;
+}
+
+static void time_of_the_processor_is_the_childs(void **state)
+{
+    (void)state;
+    int ends[2];
+    char none;
+    assert_int_equal(pipe(ends), 0);
+    pid_t pid = __real_fork();
+    if (pid == 0) {
+        const clock_t second = CLOCKS_PER_SEC;
+        while (clock() < second / 20)
+            ;
+        (void)!write(ends[1], "x", 1);
+        for (;;)
+            pause();
+    }
+    assert_int_equal(read(ends[0], &none, 1), 1);
+    assert_true(__real_clock_of_process_ms(pid) >= 49.0);
+    kill(pid, SIGKILL);
+    assert_int_equal(waitpid(pid, NULL, 0), pid);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+static void cancel_ends_it_soon(void **state)
+{
+    (void)state;
+    struct child_limits limits = ordinary;
+    struct child_reply reply;
+    limits.cancel = &cancelled;
+    set_clock(1000.0);
+    cancel_at = 3;
+    assert_int_equal(child_run(&limits, spin, NULL, &reply), CHILD_CANCELLED);
+    assert_int_equal(reading_count, cancel_at);
+    set_clock(0.0);
+}
+
+static uint64_t processor_limit_s; /* as the child set it */
+
+int __wrap_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit)
+{
+    if (resource == RLIMIT_CPU)
+        processor_limit_s = limit->rlim_cur;
+    return __real_setrlimit(resource, limit);
+}
+
+static int reply_processor_limit(void *user, void *to, child_write write)
+{
+    (void)user;
+    return write(to, &processor_limit_s, sizeof processor_limit_s) ? 0 : 3;
+}
+
+/* The kernel ends it even while its parent is stopped. */
+static void processor_time_is_limited_too(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    uint64_t seconds;
+    assert_int_equal(child_run(&ordinary, reply_processor_limit, NULL, &reply), CHILD_DONE);
+    assert_int_equal(reply.size_bytes, sizeof seconds);
+    memcpy(&seconds, reply.data, sizeof seconds);
+    assert_true(seconds > 0 && seconds <= 1 + (uint64_t)ordinary.cpu_s);
+    child_reply_free(&reply);
+}
+
+static int allocate(void *user, void *to, child_write write)
+{
+    size_t bytes = *(size_t *)user;
+    char *memory = malloc(bytes);
+    if (!memory)
+        return CHILD_EXIT_MEMORY;
+    memory[bytes / 2] = 'x';
+    bool written = write(to, &memory[bytes / 2], 1);
+    free(memory);
+    return written ? 0 : 1;
+}
+
+static void memory_is_limited(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    size_t bytes = 128u << 20;
+    assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_DONE);
+    child_reply_free(&reply);
+#ifndef HAS_ASAN
+    bytes = 512u << 20;
+    assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_MEMORY);
+#endif
+}
+
+static int chatter(void *user, void *to, child_write writer)
+{
+    (void)user;
+    static const char noise[] = "noise\n";
+    if (write(STDOUT_FILENO, noise, sizeof noise) < 0 ||
+        write(STDERR_FILENO, noise, sizeof noise) < 0)
+        return 1;
+    return writer(to, "k", 1) ? 0 : 1;
+}
+
+static void output_goes_nowhere(void **state)
+{
+    (void)state;
+    int ends[2], kept = dup(STDERR_FILENO);
+    assert_int_equal(pipe(ends), 0);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[1]);
+    struct child_reply reply;
+    enum child_end end = child_run(&ordinary, chatter, NULL, &reply);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    assert_int_equal(end, CHILD_DONE);
+    child_reply_free(&reply);
+    char text[8];
+    assert_int_equal(read(ends[0], text, sizeof text), 0);
+    close(ends[0]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reply_arrives_whole),
+        cmocka_unit_test(no_child_while_forks_are_held),
+        cmocka_unit_test(reply_limit_is_exact),
+        cmocka_unit_test(exit_codes_arrive),
+        cmocka_unit_test(crashes_are_told_apart),
+        cmocka_unit_test(hangs_end_at_the_limit),
+        cmocka_unit_test(time_of_the_processor_counts),
+        cmocka_unit_test(a_busy_machine_refuses_nothing),
+        cmocka_unit_test(time_of_the_processor_is_the_childs),
+        cmocka_unit_test(cancel_ends_it_soon),
+        cmocka_unit_test(processor_time_is_limited_too),
+        cmocka_unit_test(memory_is_limited),
+        cmocka_unit_test(output_goes_nowhere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
