@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "base/foreign.h"
 #include "whit.h"
 
 /* All that a sandbox or a handler would change of this process. */
@@ -84,8 +85,61 @@ static void the_host_is_left_as_it_was(void **state)
     assert_int_equal(rmdir(folder), 0);
 }
 
+/* Wrapped at link time: what the last child was allowed. */
+enum child_end __real_child_run(const struct child_limits *limits,
+                                int (*fn)(void *user, void *to, child_write write), void *user,
+                                struct child_reply *reply);
+enum child_end __wrap_child_run(const struct child_limits *limits,
+                                int (*fn)(void *user, void *to, child_write write), void *user,
+                                struct child_reply *reply);
+
+static struct child_limits allowed;
+
+enum child_end __wrap_child_run(const struct child_limits *limits,
+                                int (*fn)(void *user, void *to, child_write write), void *user,
+                                struct child_reply *reply)
+{
+    allowed = *limits;
+    return __real_child_run(limits, fn, user, reply);
+}
+
+static void loads(const char *path, const whit_load_params *params)
+{
+    whit_scene *scene = NULL;
+    assert_int_equal(whit_scene_load(path, params, NULL, &scene), WHIT_OK);
+    whit_scene_destroy(scene);
+}
+
+static void limits_are_those_that_were_asked_for(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/whit-load-XXXXXX", path[64];
+    static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const whit_load_params asked = {.import_limit_s = 99.0,
+                                    .time_limit_s = 7.0,
+                                    .memory_limit_bytes = UINT64_C(1) << 30,
+                                    .require_sandbox = true};
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.obj", folder);
+    put(path, model, sizeof model - 1);
+    loads(path, NULL);
+    assert_true(allowed.cpu_s >= 8.0 && allowed.cpu_s < 8.001);
+    assert_true(child_clock_limit_s(&allowed) >= 80.0 && !allowed.require_sandbox);
+    loads(path, &asked);
+    assert_true(allowed.cpu_s == 99.0 && allowed.clock_s == 7.0 && allowed.require_sandbox);
+    assert_int_equal(allowed.memory_bytes, UINT64_C(1) << 30);
+    assert_true(remove(path) == 0 && rmdir(folder) == 0);
+    const double seconds[] = {8.0, 12.0, 60.0};
+    const uint64_t bytes[] = {0, 10000000, 1000000000};
+    for (int i = 0; i < 3; ++i)
+        assert_true(foreign_limits(NULL, "importer", bytes[i], 1).cpu_s == seconds[i]);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_host_is_left_as_it_was)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_host_is_left_as_it_was),
+        cmocka_unit_test(limits_are_those_that_were_asked_for),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
