@@ -5,12 +5,14 @@
 
 enum { FLIPS = 3000 };
 
+static void (*change_reply)(struct child_reply *reply);
+
 enum child_end __wrap_child_run(const struct child_limits *limits,
                                 int (*fn)(void *user, void *to, child_write write), void *user,
                                 struct child_reply *reply)
 {
     (void)limits;
-    return child_in_place(fn, user, reply, NULL);
+    return child_in_place(fn, user, reply, change_reply);
 }
 
 struct sample {
@@ -133,6 +135,37 @@ static void damaged_hdr(void **state)
     damage(*state, &sample);
 }
 
+static uint64_t reply_seed;
+
+/* A child that a file has taken over may answer anything: here, any numbers, and any length. */
+static void answer_anything(struct child_reply *reply)
+{
+    uint8_t *answer = reply->data + reply->size_bytes - sizeof(struct foreign_answer);
+    for (uint32_t n = 1 + random_below(&reply_seed, 3); n; --n)
+        answer[random_below(&reply_seed, 20)] ^= (uint8_t)(1u << random_below(&reply_seed, 8));
+    if (random_below(&reply_seed, 2))
+        reply->size_bytes -= random_below(&reply_seed, (uint32_t)reply->size_bytes);
+}
+
+static void replies_are_not_believed(void **state)
+{
+    struct fixture *fixture = *state;
+    struct image image = fixture_floats(7, 5, 4);
+    struct sample sample = sample_of(fixture, "a.png", &image);
+    char *path = fixture_path(fixture, sample.name);
+    int refused = 0;
+    reply_seed = 7;
+    change_reply = answer_anything;
+    for (int i = 0; i < FLIPS; ++i)
+        refused += !try_load(fixture, path, sample.data, sample.size_bytes);
+    change_reply = NULL;
+    assert_true(refused > FLIPS / 2);
+    assert_true(try_load(fixture, path, sample.data, sample.size_bytes));
+    free(sample.data);
+    free(path);
+    image_finish(&image);
+}
+
 static void headers_that_lie(void **state)
 {
     struct fixture *fixture = *state;
@@ -164,8 +197,13 @@ static void headers_that_lie(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(damaged_png), TEST(damaged_exr), TEST(damaged_identities),
-        TEST(damaged_pfm), TEST(damaged_hdr), TEST(headers_that_lie),
+        TEST(damaged_png),
+        TEST(damaged_exr),
+        TEST(damaged_identities),
+        TEST(damaged_pfm),
+        TEST(damaged_hdr),
+        TEST(headers_that_lie),
+        TEST(replies_are_not_believed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
