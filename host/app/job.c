@@ -156,6 +156,12 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
     case JOB_ALLOW_PATH:
         read_allowed(job, reader);
         return true;
+    case JOB_IMPORT_LIMIT:
+        cli_number(reader, 1e-3, 1e6, &job->import_limit_s);
+        return true;
+    case JOB_REQUIRE_SANDBOX:
+        job->require_sandbox = true;
+        return true;
     case JOB_VALIDATION:
         job->validation = true;
         return true;
@@ -218,6 +224,8 @@ whit_result job_load(struct job *job)
             job->time_limit_s > 0.0 && job->time_limit_s < 60.0 ? cli_time_left_s() : 0.0,
         .texture_limit = job->texture_limit,
         .cancel = &cli_cancel,
+        .import_limit_s = job->import_limit_s,
+        .require_sandbox = job->require_sandbox,
         .allowed_folders = job->allowed,
         .allowed_count = job->allowed_count,
     };

@@ -38,6 +38,8 @@ struct job {
     const char *load_path; /* NULL: auto */
     const char *allowed[JOB_ALLOWED_MOST];
     uint32_t allowed_count;
+    double import_limit_s; /* 0: the default */
+    bool require_sandbox;
     bool validation, quiet, no_cache;
     double time_limit_s;
     uint32_t stats; /* enum job_stats */
@@ -67,6 +69,8 @@ enum job_id {
     JOB_THREADS,
     JOB_TEXTURE_LIMIT,
     JOB_ALLOW_PATH,
+    JOB_IMPORT_LIMIT,
+    JOB_REQUIRE_SANDBOX,
     JOB_LOAD_PATH,
     JOB_VALIDATION,
     JOB_TIME_LIMIT,
@@ -127,10 +131,16 @@ enum job_id {
     }
 /* What foreign files may do. */
 #define JOB_OPTION_FOREIGN                                                                         \
+    {JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                       \
+     "files of the scene may name files below FOLDER too, not\n"                                   \
+     "only below the scene's own; may be given again"},                                            \
+        {JOB_IMPORT_LIMIT, "import-limit", "S",                                                    \
+         "seconds of the processor for each file that foreign code\n"                              \
+         "reads (by its size, 8 to 60); ten times that by the clock"},                             \
     {                                                                                              \
-        JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                    \
-            "files of the scene may name files below FOLDER too, not\n"                            \
-            "only below the scene's own; may be given again"                                       \
+        JOB_REQUIRE_SANDBOX, "require-sandbox", NULL,                                              \
+            "fail where such code cannot be locked in, in place of a\n"                            \
+            "warning"                                                                              \
     }
 #define JOB_OPTION_LOADING                                                                         \
     {JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)"},         \

@@ -94,7 +94,8 @@ static bool read_setting(struct view_request *request, struct cli_reader *reader
 static void read_state_option(void *user, struct cli_reader *reader, int id)
 {
     /* What files may reach is not for a file to say. */
-    if (id == JOB_ALLOW_PATH || !read_setting(user, reader, id))
+    if (id == JOB_ALLOW_PATH || id == JOB_IMPORT_LIMIT || id == JOB_REQUIRE_SANDBOX ||
+        !read_setting(user, reader, id))
         cli_misuse(reader, "--%s is nothing to be saved", reader->option->name);
 }
 
@@ -182,6 +183,8 @@ static void fill_settings(const struct job *job, const struct render_request *re
     *settings = (struct view_settings){
         .texture_limit = job->texture_limit,
         .validation = job->validation,
+        .import_limit_s = job->import_limit_s,
+        .require_sandbox = job->require_sandbox,
         .trees = job_accel_params(job),
         .picture = picture_request_params(request, job),
         .paint = request->view.given ? VIEW_PAINT_DEPTH + request->view.view : VIEW_PAINT_COLOR,
@@ -279,6 +282,8 @@ static whit_result load_state(void *user, const char *path, struct view_state *s
         state->settings.reload = now.reload;
         state->settings.validation = now.validation;
         memcpy(state->settings.allowed, now.allowed, sizeof now.allowed);
+        state->settings.import_limit_s = now.import_limit_s;
+        state->settings.require_sandbox = now.require_sandbox;
         state->fps_goal = request.view.budget_fps;
     }
     free(file.text);

@@ -44,6 +44,8 @@ static whit_result load(struct session *session)
     whit_refused refused = {0};
     whit_load_params params = {.texture_limit = settings->texture_limit,
                                .cancel = &session->cancel,
+                               .import_limit_s = settings->import_limit_s,
+                               .require_sandbox = settings->require_sandbox,
                                .allowed_folders = allowed,
                                .refused = &refused};
     while (params.allowed_count < VIEW_ALLOWED && settings->allowed[params.allowed_count][0]) {

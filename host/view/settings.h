@@ -27,6 +27,8 @@ struct view_settings {
     uint32_t texture_limit;                /* 0: the default */
     char allowed[VIEW_ALLOWED][VIEW_PATH]; /* folders of --allow-path; "" behind the last */
     bool validation;
+    double import_limit_s; /* as --import-limit; 0: the default */
+    bool require_sandbox;
 
     whit_accel_params trees; /* without pointers */
     char build[VIEW_TEXT];   /* `trees` as --build names it, without +opt; "": the default */

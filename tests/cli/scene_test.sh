@@ -56,6 +56,12 @@ refuse 2 "a folder that is not there" "nowhere: cannot be allowed: No such file"
     scene "$OUT/model/a.obj" --allow-path "$OUT/nowhere"
 refuse 2 "an empty folder name" "--allow-path takes a folder" scene "$CUBE" --allow-path ""
 
+refuse 2 "an import limit of nothing" "import-limit" scene "$OUT/model/a.obj" --import-limit 0
+expect 0 "an import limit that is not reached" scene "$OUT/model/a.obj" --import-limit 30
+run scene "$OUT/model/a.obj" --require-sandbox
+check "a required sandbox is there, or an error" \
+    test "$status" -eq "$(if grep -q sandbox "$OUT/stderr"; then echo 2; else echo 0; fi)"
+
 refuse 2 "triangles into no folder" "nowhere/t" scene "$CUBE" --triangles "$OUT/nowhere/t"
 refuse 2 "missing scene" "missing.obj" scene "$OUT/missing.obj"
 check "no file was left" is_empty "$OUT/files"
