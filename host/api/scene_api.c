@@ -23,8 +23,8 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
     const struct load_params load = {
         .foreign = {.cpu_s = params->import_limit_s,
                     .clock_s = params->time_limit_s,
-                    .memory_bytes = params->memory_limit_bytes,
                     .require_sandbox = params->require_sandbox},
+        .memory_limit_bytes = params->memory_limit_bytes,
         .texture_limit = params->texture_limit,
         .cancel = params->cancel,
         .allowed_folders = params->allowed_folders,

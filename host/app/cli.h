@@ -64,6 +64,8 @@ bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(
 
 /* Values of the current option; on nonsense they misuse() and return false. */
 bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint32_t *out);
+/* Bytes, more than 0: a whole number, or one with K, M or G behind it. */
+bool cli_bytes(struct cli_reader *reader, uint64_t *out);
 bool cli_number(struct cli_reader *reader, double least, double most, double *out);
 bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height);
 bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out);

@@ -153,6 +153,9 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
     case JOB_TEXTURE_LIMIT:
         cli_unsigned(reader, 1, 16384, &job->texture_limit);
         return true;
+    case JOB_MEMORY_LIMIT:
+        cli_bytes(reader, &job->memory_limit);
+        return true;
     case JOB_ALLOW_PATH:
         read_allowed(job, reader);
         return true;
@@ -222,6 +225,7 @@ whit_result job_load(struct job *job)
     const whit_load_params params = {
         .time_limit_s =
             job->time_limit_s > 0.0 && job->time_limit_s < 60.0 ? cli_time_left_s() : 0.0,
+        .memory_limit_bytes = job->memory_limit,
         .texture_limit = job->texture_limit,
         .cancel = &cli_cancel,
         .import_limit_s = job->import_limit_s,

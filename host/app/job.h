@@ -35,6 +35,7 @@ struct job {
     whit_numerics numerics;
     const char *tree_path; /* of saved trees, or NULL */
     uint32_t threads, texture_limit;
+    uint64_t memory_limit;
     const char *load_path; /* NULL: auto */
     const char *allowed[JOB_ALLOWED_MOST];
     uint32_t allowed_count;
@@ -71,6 +72,7 @@ enum job_id {
     JOB_ALLOW_PATH,
     JOB_IMPORT_LIMIT,
     JOB_REQUIRE_SANDBOX,
+    JOB_MEMORY_LIMIT,
     JOB_LOAD_PATH,
     JOB_VALIDATION,
     JOB_TIME_LIMIT,
@@ -137,6 +139,9 @@ enum job_id {
         {JOB_IMPORT_LIMIT, "import-limit", "S",                                                    \
          "seconds of the processor for each file that foreign code\n"                              \
          "reads (by its size, 8 to 60); ten times that by the clock"},                             \
+        {JOB_MEMORY_LIMIT, "memory-limit", "SIZE",                                                 \
+         "refuse a scene that takes more on host and device, in bytes\n"                           \
+         "or with K, M, G (half of the machine's)"},                                               \
     {                                                                                              \
         JOB_REQUIRE_SANDBOX, "require-sandbox", NULL,                                              \
             "fail where such code cannot be locked in, in place of a\n"                            \

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTIONS_MAX = 48, ID_HELP = 'h', HELP_COLUMN = 27 };
+enum { OPTIONS_MAX = 96, ID_HELP = 'h', HELP_COLUMN = 27 };
 
 static const struct cli_option help_option = {ID_HELP, "help", NULL, "print this help"};
 
@@ -161,6 +161,22 @@ bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint
         return cli_misuse(reader, "--%s `%s`: a whole number from %u to %u is needed",
                           reader->option->name, reader->value, least, most);
     *out = (uint32_t)value;
+    return true;
+}
+
+bool cli_bytes(struct cli_reader *reader, uint64_t *out)
+{
+    static const char units[] = "KMG";
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(reader->value, &end, 10);
+    const char *unit = *end ? strchr(units, *end) : NULL;
+    int shift = unit ? 10 * (int)(unit - units + 1) : 0;
+    if (!isdigit((unsigned char)reader->value[0]) || end[unit != NULL] || errno || value == 0 ||
+        value > UINT64_MAX >> shift)
+        return cli_misuse(reader, "--%s `%s`: a number of bytes is needed, or one with K, M or G",
+                          reader->option->name, reader->value);
+    *out = (uint64_t)value << shift;
     return true;
 }
 

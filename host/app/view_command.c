@@ -95,7 +95,7 @@ static void read_state_option(void *user, struct cli_reader *reader, int id)
 {
     /* What files may reach is not for a file to say. */
     if (id == JOB_ALLOW_PATH || id == JOB_IMPORT_LIMIT || id == JOB_REQUIRE_SANDBOX ||
-        !read_setting(user, reader, id))
+        id == JOB_MEMORY_LIMIT || !read_setting(user, reader, id))
         cli_misuse(reader, "--%s is nothing to be saved", reader->option->name);
 }
 
@@ -181,6 +181,7 @@ static void fill_settings(const struct job *job, const struct render_request *re
     char build[JOB_BUILD_NAME];
     job_build_name(&job->build, build);
     *settings = (struct view_settings){
+        .memory_limit = job->memory_limit,
         .texture_limit = job->texture_limit,
         .validation = job->validation,
         .import_limit_s = job->import_limit_s,
@@ -281,6 +282,7 @@ static whit_result load_state(void *user, const char *path, struct view_state *s
         fill_settings(&request.job, &request.picture, &state->settings);
         state->settings.reload = now.reload;
         state->settings.validation = now.validation;
+        state->settings.memory_limit = now.memory_limit;
         memcpy(state->settings.allowed, now.allowed, sizeof now.allowed);
         state->settings.import_limit_s = now.import_limit_s;
         state->settings.require_sandbox = now.require_sandbox;

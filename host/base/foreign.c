@@ -62,8 +62,9 @@ static whit_result explain(enum child_end end, const struct child_limits *limits
                  who, limits->cpu_s, child_clock_limit_s(limits));
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
-        snprintf(reason, most, "the %s asked for more than %.0f MiB of memory", who,
-                 (double)limits->memory_bytes / 1048576.0);
+        snprintf(reason, most, "the %s asked for more than %.4g MiB of memory%s", who,
+                 (double)limits->memory_bytes / 1048576.0,
+                 limits->memory_bytes == DEFAULT_MEMORY_BYTES ? "" : ", half of --memory-limit");
         return WHIT_ERROR_INPUT;
     case CHILD_CANCELLED:
         snprintf(reason, most, "loading was cancelled");

@@ -15,7 +15,7 @@ struct job {
     const struct log *log;
     const char *path;
     const struct image_source *source;
-    size_t read_bytes;
+    size_t read_bytes, taken_bytes;
     FILE *stream;
     png_structp png;
     png_infop info;
@@ -66,6 +66,24 @@ static void read_data(png_structp png, png_bytep data, size_t size_bytes)
         png_error(png, "the file is cut short");
     memcpy(data, job->source->data + job->read_bytes, size_bytes);
     job->read_bytes += size_bytes;
+}
+
+/* What libpng asks for: texts grow a thousandfold, and there may be many. */
+static png_voidp take_memory(png_structp png, png_alloc_size_t size_bytes)
+{
+    enum { BYTES_FREE = 64 << 20, BYTES_PER_BYTE = 8 };
+    struct job *job = png_get_mem_ptr(png);
+    size_t left = BYTES_FREE + BYTES_PER_BYTE * job->source->size_bytes - job->taken_bytes;
+    if (size_bytes > left)
+        return NULL;
+    job->taken_bytes += size_bytes;
+    return malloc(size_bytes);
+}
+
+static void give_memory(png_structp png, png_voidp memory)
+{
+    (void)png;
+    free(memory);
 }
 
 static void finish(struct job *job)
@@ -179,7 +197,8 @@ no_memory:
 static bool begin_read(struct job *job, const struct image_source *source)
 {
     *job = (struct job){.log = source->log, .path = source->path, .source = source};
-    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, job,
+                                        take_memory, give_memory);
     job->info = job->png ? png_create_info_struct(job->png) : NULL;
     if (job->info)
         return true;
@@ -208,7 +227,7 @@ static void check_chunks(struct job *job)
 
 static void read_info(struct job *job)
 {
-    enum { CHUNK_BYTES_MAX = 16 << 20, CHUNK_COUNT_MAX = 1000 };
+    enum { CHUNK_BYTES_MAX = 2 << 20, CHUNK_COUNT_MAX = 100 };
     check_chunks(job);
     png_set_read_fn(job->png, job, read_data);
     png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);

@@ -74,7 +74,7 @@ static whit_result read_picture(const struct scene *scene, const char *path,
     whit_result result = file_read(log, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    result = picture_read(log, foreign, data, size_bytes, out, reason);
+    result = picture_read(log, foreign, UINT64_MAX, data, size_bytes, out, reason);
     free(data);
     if (result != WHIT_OK)
         log_error(log, "%s: %s", path, reason);

@@ -224,6 +224,8 @@ static void finish(struct gltf *gltf)
     free(gltf->parents);
     free(gltf->order);
     free(gltf->mesh_used);
+    free(gltf->ignored);
+    table_finish(&gltf->ignored_names);
     json_decref(gltf->root);
     free(gltf->file);
 }

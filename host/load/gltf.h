@@ -13,6 +13,12 @@ struct gltf_bytes {
 };
 
 /* A file being loaded. Arrays run beside the JSON's own. */
+/* An extension of materials that whit does not draw. */
+struct gltf_ignored {
+    const char *extension;
+    uint32_t first_material, materials;
+};
+
 struct gltf {
     struct scene *scene;
     const struct model_request *request;
@@ -28,7 +34,10 @@ struct gltf {
     uint32_t *parents;   /* of nodes, in the file */
     uint32_t *order;     /* drawn nodes of the file, parents first */
     bool *mesh_used;
+    struct gltf_ignored *ignored;
+    struct table ignored_names; /* their index */
     uint32_t buffer_count, image_count, material_count, mesh_count, node_count, order_count;
+    uint32_t ignored_count, ignored_capacity;
     uint32_t default_material; /* SCENE_NONE until needed */
 };
 

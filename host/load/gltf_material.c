@@ -198,11 +198,6 @@ static whit_result read_other_models(struct reading *r)
     return result;
 }
 
-static bool has_extension(const json_t *material, const char *name)
-{
-    return json_object_get(json_object_get(material, "extensions"), name) != NULL;
-}
-
 static bool is_read(const char *extension)
 {
     static const char *const read[] = {"KHR_materials_emissive_strength",
@@ -218,25 +213,35 @@ static bool is_read(const char *extension)
     return false;
 }
 
-/* Once for each extension, at the first material that has it. */
-static void note_ignored(const struct reading *r, uint32_t index)
+/* Counts the materials that have each of the extensions that whit does not draw. */
+static bool count_ignored(struct reading *r, uint32_t index)
 {
-    const json_t *materials = json_object_get(r->gltf->root, "materials");
+    struct gltf *gltf = r->gltf;
     const char *name;
     json_t *value;
     json_object_foreach(json_object_get(r->object, "extensions"), name, value)
     {
-        uint32_t before = 0, all = 0;
-        for (uint32_t i = 0; i < r->gltf->material_count; i++) {
-            bool has = has_extension(json_array_get(materials, i), name);
-            before += has && i < index;
-            all += has;
-        }
-        if (!is_read(name) && before == 0)
-            scene_note(r->gltf->scene, SCENE_NOTE_INFO,
-                       "%s: %s is not drawn: %u materials, the first is `%s`",
-                       path_name(r->gltf->request->path), text_token(name).text, all,
-                       text_token(r->out->name).text);
+        uint32_t at = gltf->ignored_count;
+        if (is_read(name))
+            continue;
+        if (!table_find(&gltf->ignored_names, name, strlen(name), &at) &&
+            !(table_add(&gltf->ignored_names, name, strlen(name), at) &&
+              ARRAY_PUSH(gltf->ignored, gltf->ignored_count, gltf->ignored_capacity,
+                         (struct gltf_ignored){name, index, 0})))
+            return false;
+        gltf->ignored[at].materials++;
+    }
+    return true;
+}
+
+static void note_ignored(const struct gltf *gltf)
+{
+    for (uint32_t i = 0; i < gltf->ignored_count; i++) {
+        const struct gltf_ignored *ignored = &gltf->ignored[i];
+        scene_note(
+            gltf->scene, SCENE_NOTE_INFO, "%s: %s is not drawn: %u materials, the first is `%s`",
+            path_name(gltf->request->path), text_token(ignored->extension).text, ignored->materials,
+            text_token(gltf->scene->materials[gltf->materials[ignored->first_material]].name).text);
     }
 }
 
@@ -267,8 +272,7 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
     }
     /* What refracts is entered and left through the same faces. */
     out->one_sided = !out->two_sided && !(out->transmission[0] > 0);
-    note_ignored(&reading, index);
-    return WHIT_OK;
+    return count_ignored(&reading, index) ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
 whit_result gltf_load_materials(struct gltf *gltf)
@@ -284,5 +288,6 @@ whit_result gltf_load_materials(struct gltf *gltf)
         if (gltf->materials[i] == SCENE_NONE)
             return WHIT_ERROR_MEMORY;
     }
+    note_ignored(gltf);
     return WHIT_OK;
 }

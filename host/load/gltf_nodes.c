@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "load/gltf.h"
+#include "scene/afford.h"
 
 /* --- which nodes are drawn ------------------------------------------------------------------ */
 
@@ -186,6 +187,9 @@ static whit_result add_instances(struct gltf *gltf, const json_t *extension,
 {
     struct instancing set = {0};
     whit_result result = read_instancing(gltf, extension, at, &set) ? WHIT_OK : WHIT_ERROR_INPUT;
+    if (result == WHIT_OK && !scene_afford(gltf->scene, scene_instance_cost(set.count),
+                                           "%s of %u instances", at->text, set.count))
+        result = WHIT_ERROR_INPUT;
     for (uint32_t i = 0; i < set.count && result == WHIT_OK; i++) {
         double translation[3] = {0, 0, 0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
         widen(set.translations, i, 3, translation);

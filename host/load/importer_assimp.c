@@ -14,6 +14,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/table.h"
 
 /* --- the only files that assimp sees ------------------------------------------------------- */
 
@@ -72,32 +73,31 @@ static enum aiReturn seek_file(struct aiFile *io, size_t offset, enum aiOrigin o
 /* All files that there are. */
 struct library {
     const struct import_request *request;
-    bool lacks_memory; /* to open one: assimp only says that it could not */
+    struct table names; /* of the files */
+    bool lacks_memory;  /* to open one: assimp only says that it could not */
 };
 
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
 {
     (void)mode;
     struct library *library = (struct library *)(void *)io->UserData;
-    const struct import_request *request = library->request;
-    for (uint32_t i = 0; i < request->file_count; i++) {
-        if (strcmp(path_name(path), request->files[i].name) != 0)
-            continue;
-        struct open_file *open = calloc(1, sizeof *open);
-        library->lacks_memory |= !open;
-        if (!open)
-            return NULL;
-        open->file = &request->files[i];
-        open->io = (struct aiFile){.ReadProc = read_file,
-                                   .WriteProc = write_file,
-                                   .TellProc = tell_file,
-                                   .FileSizeProc = size_file,
-                                   .SeekProc = seek_file,
-                                   .FlushProc = flush_file,
-                                   .UserData = (aiUserData)open};
-        return &open->io;
-    }
-    return NULL;
+    const char *name = path_name(path);
+    uint32_t index;
+    if (!table_find(&library->names, name, strlen(name), &index))
+        return NULL;
+    struct open_file *open = calloc(1, sizeof *open);
+    library->lacks_memory |= !open;
+    if (!open)
+        return NULL;
+    open->file = &library->request->files[index];
+    open->io = (struct aiFile){.ReadProc = read_file,
+                               .WriteProc = write_file,
+                               .TellProc = tell_file,
+                               .FileSizeProc = size_file,
+                               .SeekProc = seek_file,
+                               .FlushProc = flush_file,
+                               .UserData = (aiUserData)open};
+    return &open->io;
 }
 
 static void close_file(struct aiFileIO *io, struct aiFile *file)
@@ -448,12 +448,34 @@ static bool flatten_mesh(struct flat *flat, const struct aiScene *scene, const s
     return ok;
 }
 
-static bool sibling_has_normals(const struct flat *flat, uint32_t group)
+/* Groups of which some part has normals. */
+static bool find_shaded(const struct flat *flat, struct table *groups)
 {
-    for (uint32_t i = 0; i < flat->count; i++)
-        if (flat->parts[i].record.group == group && flat->parts[i].arrays[IMPORT_NORMALS])
-            return true;
-    return false;
+    uint32_t first;
+    for (uint32_t i = 0; i < flat->count; i++) {
+        const uint32_t *group = &flat->parts[i].record.group;
+        if (flat->parts[i].arrays[IMPORT_NORMALS] &&
+            !table_find(groups, group, sizeof *group, &first) &&
+            !table_add(groups, group, sizeof *group, i))
+            return false;
+    }
+    return true;
+}
+
+static bool finish_parts(struct flat *flat, const struct table *shaded, enum import_kind kind)
+{
+    for (uint32_t i = 0; i < flat->count; i++) {
+        struct part *part = &flat->parts[i];
+        uint32_t *group = &part->record.group, first;
+        bool flat_normals =
+            !part->arrays[IMPORT_NORMALS] && table_find(shaded, group, sizeof *group, &first);
+        if (flat_normals ? !add_flat_normals(part) : !repair_normals(part))
+            return false;
+        bool corners = kind == IMPORT_OBJ || kind == IMPORT_STL || flat_normals;
+        if (corners && !weld_part(part))
+            return false;
+    }
+    return true;
 }
 
 static bool flatten(struct flat *flat, const struct aiScene *scene, enum import_kind kind)
@@ -464,17 +486,10 @@ static bool flatten(struct flat *flat, const struct aiScene *scene, enum import_
     for (uint32_t i = 0; i < scene->mNumMeshes; i++)
         if (!flatten_mesh(flat, scene, scene->mMeshes[i], kind))
             return false;
-    for (uint32_t i = 0; i < flat->count; i++) {
-        struct part *part = &flat->parts[i];
-        bool flat_normals =
-            !part->arrays[IMPORT_NORMALS] && sibling_has_normals(flat, part->record.group);
-        if (flat_normals ? !add_flat_normals(part) : !repair_normals(part))
-            return false;
-        bool corners = kind == IMPORT_OBJ || kind == IMPORT_STL || flat_normals;
-        if (corners && !weld_part(part))
-            return false;
-    }
-    return true;
+    struct table shaded = {0};
+    bool ok = find_shaded(flat, &shaded) && finish_parts(flat, &shaded, kind);
+    table_finish(&shaded);
+    return ok;
 }
 
 static void flat_finish(struct flat *flat)
@@ -565,8 +580,14 @@ int importer_assimp_run(void *user, void *to, child_write write)
     struct library library = {.request = request};
     struct aiFileIO io = {
         .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)&library};
+    for (uint32_t i = 0; i < request->file_count; i++) {
+        const char *name = request->files[i].name;
+        if (!table_add(&library.names, name, strlen(name), i))
+            return CHILD_EXIT_MEMORY;
+    }
     const struct aiScene *scene =
         aiImportFileEx(request->files[0].name, aiProcess_Triangulate, &io);
+    table_finish(&library.names);
     if (!scene)
         return library.lacks_memory ? CHILD_EXIT_MEMORY
                                     : write_error(aiGetErrorString(), to, write);

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "scene/afford.h"
 
 static bool is_model(const char *extension)
 {
@@ -59,6 +60,8 @@ whit_result load_scene(const struct log *log, const char *path, const struct loa
         log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
+    scene->memory_limit = params && params->memory_limit_bytes ? params->memory_limit_bytes
+                                                               : scene_default_memory_limit();
     whit_result result = roots_init(&scene->roots, path);
     for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);

@@ -5,9 +5,13 @@
 #include <stddef.h>
 
 #include "base/foreign.h"
+#include "scene/afford.h"
 #include "scene/scene.h"
 
 struct load_params {
+    /* Of the scene on host and device together, and twice that of a foreign importer; 0: half of
+       what the machine has. */
+    uint64_t memory_limit_bytes;
     struct foreign_params foreign; /* for what is not whit's own: importers, decoders of pictures */
     uint32_t texture_limit;        /* longest side of a texture, larger ones are halved; 0: 4096 */
     const volatile bool *cancel;   /* polled; may be NULL */
@@ -25,6 +29,8 @@ static inline struct foreign_params load_foreign(const struct load_params *param
         foreign = params->foreign;
     if (params)
         foreign.cancel = params->cancel;
+    uint64_t memory_bytes = params ? params->memory_limit_bytes : 0;
+    foreign.memory_bytes = (memory_bytes ? memory_bytes : scene_default_memory_limit()) / 2;
     return foreign;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/table.h"
 #include "base/text.h"
 #include "load/obj.h"
 #include "load/ply.h"
@@ -49,9 +50,7 @@ static whit_result add_instance(struct scene *scene, const char *name, uint32_t 
 struct palette {
     const struct mtl_library *library;
     bool ambient_known;
-    char **names;
-    uint32_t *indices; /* in the scene, one for each name */
-    uint32_t count, capacity, index_count, index_capacity;
+    struct table indices; /* in the scene, by name */
 };
 
 static void make_default(const char *name, bool colored, struct scene_material *out)
@@ -80,12 +79,9 @@ static whit_result find_material(struct scene *scene, const struct model_request
                                  struct palette *palette, const struct import_part *part,
                                  uint32_t *index)
 {
-    for (uint32_t i = 0; i < palette->count; i++) {
-        if (strcmp(palette->names[i], part->material) != 0)
-            continue;
-        *index = palette->indices[i];
+    size_t name_bytes = strlen(part->material);
+    if (table_find(&palette->indices, part->material, name_bytes, index))
         return WHIT_OK;
-    }
     struct scene_material material = {0};
     whit_result result = make_material(scene, request, palette, part, &material);
     if (result != WHIT_OK) {
@@ -93,24 +89,9 @@ static whit_result find_material(struct scene *scene, const struct model_request
         return result;
     }
     *index = scene_add_material(scene, material);
-    char *name = string_copy(part->material);
-    if (*index == SCENE_NONE || !name ||
-        !ARRAY_PUSH(palette->indices, palette->index_count, palette->index_capacity, *index)) {
-        free(name);
-        return WHIT_ERROR_MEMORY;
-    }
-    if (ARRAY_PUSH(palette->names, palette->count, palette->capacity, name))
-        return WHIT_OK;
-    free(name);
-    return WHIT_ERROR_MEMORY;
-}
-
-static void palette_finish(struct palette *palette)
-{
-    for (uint32_t i = 0; i < palette->count; i++)
-        free(palette->names[i]);
-    free(palette->names);
-    free(palette->indices);
+    bool ok =
+        *index != SCENE_NONE && table_add(&palette->indices, part->material, name_bytes, *index);
+    return ok ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
 /* --- OBJ, PLY, STL -------------------------------------------------------------------------- */
@@ -134,7 +115,7 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
         result = model_add_mesh(scene, name, parts, block->part_count, colors_are_srgb, &mesh);
     if (result == WHIT_OK)
         result = add_instance(scene, name, mesh, request->parent);
-    palette_finish(&palette);
+    table_finish(&palette.indices);
     free(parts);
     return result;
 }

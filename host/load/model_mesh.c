@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "image/image.h"
 #include "load/model.h"
+#include "scene/afford.h"
 
 struct totals {
     uint64_t vertices, triangles;
@@ -26,6 +27,15 @@ static struct totals sum(const struct model_part *parts, uint32_t count)
         totals.all_tangents &= part->tangents != NULL;
     }
     return totals;
+}
+
+static uint64_t cost(const struct totals *totals)
+{
+    uint32_t floats = 3;
+    floats += totals->normals ? 3 : 0;
+    floats += (totals->uvs[0] ? 2u : 0) + (totals->uvs[1] ? 2u : 0);
+    floats += (totals->colors ? 4u : 0) + (totals->all_tangents ? 4u : 0);
+    return scene_triangle_cost(totals->triangles, totals->vertices, floats * sizeof(float));
 }
 
 static bool allocate(const struct totals *totals, uint32_t part_count, struct scene_mesh *mesh)
@@ -109,6 +119,11 @@ whit_result model_add_mesh(struct scene *scene, const char *name, const struct m
         log_error(&scene->log, "%s: mesh `%s` is too large: %llu triangles",
                   scene->name ? scene->name : "", text_token(name).text,
                   (unsigned long long)totals.triangles);
+        scene_mesh_finish(&mesh);
+        return WHIT_ERROR_INPUT;
+    }
+    if (!scene_afford(scene, cost(&totals), "mesh `%.60s` of %llu triangles", name,
+                      (unsigned long long)totals.triangles)) {
         scene_mesh_finish(&mesh);
         return WHIT_ERROR_INPUT;
     }

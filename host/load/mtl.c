@@ -91,21 +91,17 @@ struct reader {
     const char *path;
     uint32_t line;
     struct mtl_library *library;
-    char **noted; /* keywords already spoken of */
-    uint32_t noted_count, noted_capacity;
-    bool failed; /* no memory for a note */
+    struct table noted; /* keywords already spoken of */
+    bool failed;        /* no memory for a note */
 };
 
 static bool note_keyword(struct reader *reader, const char *keyword, const char *what)
 {
-    for (uint32_t i = 0; i < reader->noted_count; i++)
-        if (strcmp(reader->noted[i], keyword) == 0)
-            return true;
-    char *copy = string_copy(keyword);
-    if (!copy || !ARRAY_PUSH(reader->noted, reader->noted_count, reader->noted_capacity, copy)) {
-        free(copy);
+    uint32_t line;
+    if (table_find(&reader->noted, keyword, strlen(keyword), &line))
+        return true;
+    if (!table_add(&reader->noted, keyword, strlen(keyword), reader->line))
         return false;
-    }
     scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%s` %s", path_name(reader->path),
                reader->line, text_token(keyword).text, what);
     return true;
@@ -330,9 +326,12 @@ static bool begin_entry(struct reader *reader, char *rest)
     trim_end(name);
     struct mtl_entry entry = {
         .name = string_copy(name), .file = string_copy(reader->path), .line = reader->line};
-    if (entry.name && entry.file &&
-        ARRAY_PUSH(reader->library->entries, reader->library->count, reader->library->capacity,
-                   entry))
+    struct mtl_library *library = reader->library;
+    uint32_t index = library->count;
+    bool named = entry.name && entry.file;
+    if (named && !table_find(&library->names, name, strlen(name), &index))
+        named = table_add(&library->names, name, strlen(name), index);
+    if (named && ARRAY_PUSH(library->entries, library->count, library->capacity, entry))
         return true;
     free(entry.name);
     free(entry.file);
@@ -393,9 +392,7 @@ bool mtl_parse(struct scene *scene, const char *path, const char *text, struct m
         reader.line += lines;
         line = next;
     }
-    for (uint32_t i = 0; i < reader.noted_count; i++)
-        free(reader.noted[i]);
-    free(reader.noted);
+    table_finish(&reader.noted);
     free(copy);
     return ok;
 }
@@ -410,15 +407,15 @@ void mtl_finish(struct mtl_library *library)
             free(entry->maps[map].file);
     }
     free(library->entries);
+    table_finish(&library->names);
     *library = (struct mtl_library){0};
 }
 
 const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name)
 {
-    for (uint32_t i = 0; i < library->count; i++)
-        if (strcmp(library->entries[i].name, name) == 0)
-            return &library->entries[i];
-    return NULL;
+    uint32_t index;
+    bool found = table_find(&library->names, name, strlen(name), &index);
+    return found ? &library->entries[index] : NULL;
 }
 
 bool mtl_has_ambient(const struct mtl_library *library)

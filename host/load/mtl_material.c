@@ -23,6 +23,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/mtl.h"
+#include "scene/afford.h"
 
 enum { ALPHA_HALF = 128 };
 
@@ -96,17 +97,20 @@ static whit_result derive_texture(struct scene *scene, const struct mtl_texture 
     made.name =
         string_format("%s -imfchan %c -mm %g %g", from->name, map->channel ? map->channel : '-',
                       (double)map->base, (double)map->gain);
-    for (uint32_t i = 0; made.name && i < scene->texture_count; i++) {
-        if (strcmp(scene->textures[i].name, made.name) == 0) {
-            free(made.name);
-            *index = i;
-            return WHIT_OK;
-        }
+    if (made.name && scene_find_texture(scene, made.name, index)) {
+        free(made.name);
+        return WHIT_OK;
+    }
+    if (!made.name)
+        return WHIT_ERROR_MEMORY;
+    if (!scene_afford(scene, scene_texel_cost(from->width, from->height), "texture `%.120s`",
+                      made.name)) {
+        free(made.name);
+        return WHIT_ERROR_INPUT;
     }
     made.rgba = array_alloc(count, 4);
-    if (!made.name || !made.rgba) {
+    if (!made.rgba) {
         free(made.name);
-        free(made.rgba);
         return WHIT_ERROR_MEMORY;
     }
     derive_texels(map, count, from->rgba, made.rgba);

@@ -141,14 +141,9 @@ bool obj_repair_text(uint8_t **data, size_t *size_bytes)
 
 /* --- material libraries --------------------------------------------------------------------- */
 
-struct names {
-    char **paths; /* libraries already read */
-    uint32_t count, capacity;
-};
-
 /* *why_not: NULL, or why the file is not read; one that was read before is not read again. */
 static whit_result read_library(struct scene *scene, const char *obj_path, const char *name,
-                                struct mtl_library *library, struct names *read,
+                                struct mtl_library *library, struct table *read,
                                 const char **why_not)
 {
     uint8_t *data = NULL;
@@ -157,20 +152,17 @@ static whit_result read_library(struct scene *scene, const char *obj_path, const
     if (!path)
         return WHIT_ERROR_MEMORY;
     *why_not = roots_why_not(&scene->roots, path);
-    for (uint32_t i = 0; !*why_not && i < read->count; i++)
-        if (strcmp(read->paths[i], path) == 0)
-            goto done;
-    if (*why_not)
+    uint32_t before;
+    if (*why_not || table_find(read, path, strlen(path), &before))
         goto done;
     if (file_read(&scene->log, &scene->roots, path, LIBRARY_LIMIT, &data, &size) != WHIT_OK) {
         free(path);
         return WHIT_ERROR_INPUT;
     }
     scene->file_bytes += size;
-    bool ok = ARRAY_PUSH(read->paths, read->count, read->capacity, path);
-    if (!ok)
-        free(path);
-    ok = ok && mtl_parse(scene, path, (const char *)data, library);
+    bool ok = table_add(read, path, strlen(path), read->count) &&
+              mtl_parse(scene, path, (const char *)data, library);
+    free(path);
     free(data);
     return ok ? WHIT_OK : WHIT_ERROR_MEMORY;
 done:
@@ -201,7 +193,7 @@ static char *copy_word(const char *at, const char *end)
 
 /* The line may be one name with blanks in it, or several names. */
 static whit_result read_named(struct scene *scene, const char *obj_path, const char *line,
-                              struct mtl_library *library, struct names *read)
+                              struct mtl_library *library, struct table *read)
 {
     const char *why_not = NULL;
     whit_result result = read_library(scene, obj_path, line, library, read, &why_not);
@@ -244,7 +236,7 @@ static char *names_on_line(const char *at, const char *end, bool *is_library)
 }
 
 static whit_result read_sibling(struct scene *scene, const char *path, struct mtl_library *library,
-                                struct names *read)
+                                struct table *read)
 {
     const char *name = path_name(path), *dot = strrchr(name, '.');
     int length = dot ? (int)(dot - name) : (int)strlen(name);
@@ -263,7 +255,7 @@ static whit_result read_sibling(struct scene *scene, const char *path, struct mt
 whit_result obj_read_libraries(struct scene *scene, const char *path, const char *text,
                                struct mtl_library *library)
 {
-    struct names read = {0};
+    struct table read = {0};
     whit_result result = WHIT_OK;
     for (const char *at = text; at && *at && result == WHIT_OK;) {
         const char *end = strchr(at, '\n');
@@ -278,8 +270,6 @@ whit_result obj_read_libraries(struct scene *scene, const char *path, const char
     }
     if (result == WHIT_OK && read.count == 0)
         result = read_sibling(scene, path, library, &read);
-    for (uint32_t i = 0; i < read.count; i++)
-        free(read.paths[i]);
-    free(read.paths);
+    table_finish(&read);
     return result;
 }

@@ -13,7 +13,7 @@
 #include "load/jpeg.h"
 
 /* stb_image does not always say so. Blocks over the limit are refused: of a PNG it believes every
-   length. */
+   length, and unpacks all that is there, whatever the header tells of. */
 static _Thread_local bool lacks_memory, over_limit;
 static _Thread_local uint64_t block_bytes_most;
 
@@ -55,18 +55,17 @@ static void *take_block(void *block, size_t bytes)
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
-#define PIXELS_MOST     ((uint64_t)1 << 26)
+#define PIXELS_MOST      ((uint64_t)1 << 26)
 /* Decoders believe what a header says and allocate it. No format makes more of its bytes than PNG
    can: deflate 1032 bytes of one, of 8 pixels each. */
-#define PIXELS_FREE     ((uint64_t)1 << 16)
-#define PIXELS_PER_BYTE ((uint64_t)8 * 1032)
+#define PIXELS_FREE      ((uint64_t)1 << 16)
+#define PIXELS_PER_BYTE  ((uint64_t)8 * 1032)
+#define BLOCK_BYTES_FREE ((uint64_t)1 << 18) /* tables of decoders */
 
 static uint64_t pixels_most(size_t size_bytes)
 {
     return PIXELS_FREE + PIXELS_PER_BYTE * size_bytes;
 }
-
-static const char too_many[] = "its header tells of more than there is in it";
 
 const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes)
 {
@@ -77,7 +76,7 @@ const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_byt
         return "it has more than 2^26 pixels";
     if (width > SIDE_MOST || height > SIDE_MOST)
         return "a side has more than 16384 pixels";
-    return pixels > pixels_most(size_bytes) ? too_many : NULL;
+    return pixels > pixels_most(size_bytes) ? "its header tells of more than there is in it" : NULL;
 }
 
 /* Of a PNG chunk that it does not know stb_image repeats the name, whatever its bytes. */
@@ -91,6 +90,38 @@ static const char *failure_reason(void)
     return reason && *reason ? reason : "damaged";
 }
 
+/* In the first frame header: markers of 0xffc0 to 0xffcf but for those of tables. */
+static void jpeg_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
+{
+    for (size_t at = 2; at + 9 <= size_bytes && data[at] == 0xff;
+         at += 2 + ((size_t)data[at + 2] << 8 | data[at + 3])) {
+        uint8_t marker = data[at + 1];
+        if (marker < 0xc0 || marker > 0xcf || marker == 0xc4 || marker == 0xc8 || marker == 0xcc)
+            continue;
+        *height = (uint32_t)data[at + 5] << 8 | data[at + 6];
+        *width = (uint32_t)data[at + 7] << 8 | data[at + 8];
+        return;
+    }
+}
+
+/* What the header tells of, with a side of 0 where that is not seen at once. */
+static void picture_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
+{
+    int sides[2] = {0, 0}, channels;
+    *width = *height = 0;
+    if (size_bytes > INT_MAX)
+        return;
+    if (jpeg_is(data, size_bytes)) {
+        jpeg_sides(data, size_bytes, width, height);
+        return;
+    }
+    block_bytes_most = BLOCK_BYTES_FREE;
+    if (stbi_info_from_memory(data, (int)size_bytes, &sides[0], &sides[1], &channels)) {
+        *width = (uint32_t)sides[0];
+        *height = (uint32_t)sides[1];
+    }
+}
+
 whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
                            const char **reason)
 {
@@ -101,8 +132,7 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
     if (jpeg_is(data, size_bytes))
         return jpeg_decode(data, size_bytes, out, reason);
     int size = (int)size_bytes, width, height, channels;
-    /* 16 bits of 4 channels, in a buffer that grows by doubling. */
-    block_bytes_most = 16 * pixels_most(size_bytes);
+    block_bytes_most = BLOCK_BYTES_FREE;
     lacks_memory = over_limit = false;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return WHIT_ERROR_INPUT;
@@ -112,9 +142,13 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
         *reason = refused;
         return WHIT_ERROR_INPUT;
     }
+    /* 16 bits of 4 channels, in a buffer that grows by doubling; or the file's own bytes, likewise.
+     */
+    block_bytes_most =
+        BLOCK_BYTES_FREE + 2 * size_bytes + 16 * ((uint64_t)(uint32_t)width + 1) * (uint32_t)height;
     out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
     if (!out->rgba) {
-        *reason = over_limit ? too_many : failure_reason();
+        *reason = over_limit ? "it holds more than its header tells of" : failure_reason();
         if (!lacks_memory)
             return WHIT_ERROR_INPUT;
         *reason = "out of memory";
@@ -130,6 +164,7 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
 struct file {
     const uint8_t *data;
     size_t size_bytes;
+    uint64_t pixels_most;
 };
 
 static whit_result decode_file(void *user, void *to, child_write write,
@@ -138,6 +173,11 @@ static whit_result decode_file(void *user, void *to, child_write write,
     const struct file *file = user;
     struct picture picture;
     const char *reason = "";
+    picture_sides(file->data, file->size_bytes, &answer->numbers[0], &answer->numbers[1]);
+    uint32_t width = answer->numbers[0], height = answer->numbers[1];
+    if ((uint64_t)width * height > file->pixels_most &&
+        !picture_why_refused(width, height, file->size_bytes))
+        return WHIT_ERROR_INPUT;
     whit_result result = picture_decode(file->data, file->size_bytes, &picture, &reason);
     snprintf(answer->reason, sizeof answer->reason, "%s", reason);
     answer->numbers[0] = picture.width;
@@ -149,16 +189,18 @@ static whit_result decode_file(void *user, void *to, child_write write,
 }
 
 whit_result picture_read(const struct log *log, const struct foreign_params *params,
-                         const uint8_t *data, size_t size_bytes, struct picture *out,
-                         char reason[FOREIGN_REASON_BYTES])
+                         uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                         struct picture *out, char reason[FOREIGN_REASON_BYTES])
 {
-    struct file file = {data, size_bytes};
+    struct file file = {data, size_bytes, pixels_most};
     struct child_reply reply;
     struct foreign_answer answer;
     struct child_limits limits = foreign_limits(params, "decoder", size_bytes, 4 * PIXELS_MOST);
     *out = (struct picture){0};
     whit_result result = foreign_ask(log, &limits, decode_file, &file, &reply, &answer);
     memcpy(reason, answer.reason, sizeof answer.reason);
+    out->width = answer.numbers[0];
+    out->height = answer.numbers[1];
     if (result != WHIT_OK)
         return result;
     uint64_t pixels = (uint64_t)answer.numbers[0] * answer.numbers[1];

@@ -20,10 +20,11 @@ struct picture {
 };
 
 /* picture_decode() in a child process, whose reply becomes `rgba`. Not WHIT_OK: `reason` is filled
-   and nothing is logged; as of foreign_ask(). */
+   and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_most`
+   nothing is decoded, the result is WHIT_ERROR_INPUT and `out` has the sides. */
 WHIT_CHECK whit_result picture_read(const struct log *log, const struct foreign_params *params,
-                                    const uint8_t *data, size_t size_bytes, struct picture *out,
-                                    char reason[FOREIGN_REASON_BYTES]);
+                                    uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                    struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 
 /* `rgba` from the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame). A file whose header
    tells of more pixels than its bytes could hold in any of these formats is refused before memory

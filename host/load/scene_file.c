@@ -357,11 +357,9 @@ static bool read_root(struct reader *reader, const json_t *root)
 
 static void reader_finish(struct reader *reader)
 {
-    for (uint32_t i = 0; i < reader->shape_count; ++i)
-        free(reader->shapes[i].key);
-    for (uint32_t i = 0; i < reader->model_count; ++i)
-        free(reader->models[i].key);
-    free(reader->shapes);
+    table_finish(&reader->material_names);
+    table_finish(&reader->shapes);
+    table_finish(&reader->model_keys);
     free(reader->models);
 }
 

@@ -57,13 +57,10 @@ static bool add_picture(struct reader *reader, char *name, uint32_t width, uint3
         free(rgba);
         return reader_no_memory(reader);
     }
-    for (uint32_t i = 0; i < scene->texture_count; ++i) {
-        if (scene->textures[i].name && strcmp(scene->textures[i].name, name) == 0) {
-            free(name);
-            free(rgba);
-            *index = i;
-            return true;
-        }
+    if (scene_find_texture(scene, name, index)) {
+        free(name);
+        free(rgba);
+        return true;
     }
     *index = scene_add_texture(scene, (struct scene_texture){name, width, height, rgba, 0});
     return *index != SCENE_NONE || reader_no_memory(reader);
@@ -159,7 +156,7 @@ static bool file_texture(struct reader *reader, const struct place *place, const
         return reader_no_memory(reader);
     whit_result result =
         load_texture(reader->scene, path, NULL, 0, reader->params, &use->texture, &reason);
-    if (result == WHIT_ERROR_INPUT)
+    if (result == WHIT_ERROR_INPUT && reason)
         reader_fail(reader, place, "texture `%s`: %s", text_token(name).text, reason);
     else if (result != WHIT_OK)
         reader->result = result;
@@ -411,6 +408,8 @@ bool reader_materials(struct reader *reader, const struct place *place, const js
         uint32_t index;
         if (!add_material(reader, &here, material, name, &index))
             return false;
+        if (!table_add(&reader->material_names, name, strlen(name), index))
+            return reader_no_memory(reader);
     }
     reader->material_end = reader->scene->material_count;
     return true;
@@ -420,12 +419,8 @@ static bool named_material(struct reader *reader, const struct place *place, con
                            uint32_t *index)
 {
     const struct scene *scene = reader->scene;
-    for (uint32_t i = 0; i < reader->material_end; ++i) {
-        if (strcmp(scene->materials[i].name, name) == 0) {
-            *index = i;
-            return true;
-        }
-    }
+    if (table_find(&reader->material_names, name, strlen(name), index))
+        return true;
     const char **names = array_alloc_zeroed((size_t)reader->material_end + 1, sizeof *names);
     if (!names)
         return reader_no_memory(reader);

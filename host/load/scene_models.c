@@ -32,23 +32,21 @@ static bool place_model(struct reader *reader, const struct place *place, const 
     char *key = string_format("%u %d %d %s", material, lights, cameras, path);
     if (!key)
         return reader_no_memory(reader);
-    for (uint32_t i = 0; !lights && !cameras && i < reader->model_count; ++i) {
-        if (strcmp(reader->models[i].key, key) == 0) {
-            free(key);
-            return range_copy(reader, place, &reader->models[i].range, node);
-        }
-    }
-    struct scene_range range = range_begin(reader->scene, node);
-    if (!load_new_model(reader, path, node, material, lights, cameras)) {
-        free(key);
-        return false;
-    }
-    range_end(reader->scene, &range);
-    if (ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity,
-                   (struct model_cache){key, range}))
-        return true;
+    uint32_t index = reader->model_count;
+    size_t key_bytes = strlen(key);
+    bool before = !lights && !cameras && table_find(&reader->model_keys, key, key_bytes, &index);
+    bool good = before || lights || cameras ||
+                table_add(&reader->model_keys, key, key_bytes, index) || reader_no_memory(reader);
     free(key);
-    return reader_no_memory(reader);
+    if (before)
+        return range_afford(reader, place, &reader->models[index], 1) &&
+               range_copy(reader, place, &reader->models[index], node);
+    struct scene_range range = range_begin(reader->scene, node);
+    if (!good || !load_new_model(reader, path, node, material, lights, cameras))
+        return false;
+    range_end(reader->scene, &range);
+    return ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, range) ||
+           reader_no_memory(reader);
 }
 
 static bool has_extension_of_model(const char *path)

@@ -156,6 +156,8 @@ static bool read_object(struct reader *reader, const struct place *place, const 
     if (!read_content(reader, place, object, cell, depth))
         return false;
     range_end(reader->scene, &range);
+    if (!range_afford(reader, place, &range, cells - 1))
+        return false;
     for (uint32_t i = 1; i < cells; ++i) {
         if (!add_cell(reader, &repeat, i, parent, &cell) ||
             !range_copy(reader, place, &range, cell))

@@ -43,6 +43,9 @@ bool reader_transform(struct reader *reader, const struct place *place, const js
 struct scene_range range_begin(const struct scene *scene, uint32_t parent);
 void range_end(const struct scene *scene, struct scene_range *range);
 /* The nodes, instances and channels of `range` once more, below `parent`. */
+/* Whether the range may be copied `times` times, below a node of its own each. */
+bool range_afford(struct reader *reader, const struct place *place, const struct scene_range *range,
+                  uint64_t times);
 bool range_copy(struct reader *reader, const struct place *place, const struct scene_range *range,
                 uint32_t parent);
 

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "load/scene_objects.h"
+#include "scene/afford.h"
 
 static uint32_t moved_node(const struct scene_range *range, uint32_t node, uint32_t parent,
                            uint32_t first)
@@ -30,6 +31,18 @@ static bool copy_channel(struct reader *reader, struct scene_channel channel, ui
     channel.times_s = times;
     channel.values = copies;
     return scene_add_channel(reader->scene, channel) != SCENE_NONE || reader_no_memory(reader);
+}
+
+bool range_afford(struct reader *reader, const struct place *place, const struct scene_range *range,
+                  uint64_t times)
+{
+    uint64_t instances = range->instance_end - range->first_instance;
+    uint64_t bytes =
+        scene_node_cost(1 + range->node_end - range->first_node) + scene_instance_cost(instances);
+    for (uint32_t i = range->first_channel; i < range->channel_end; ++i)
+        bytes += 16 * sizeof(float) * (uint64_t)reader->scene->channels[i].key_count;
+    return reader_afford(reader, place, bytes * times, "%llu copies of %llu instances",
+                         (unsigned long long)times, (unsigned long long)instances);
 }
 
 bool range_copy(struct reader *reader, const struct place *place, const struct scene_range *range,

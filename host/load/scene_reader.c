@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "image/image.h"
+#include "scene/afford.h"
 
 /* The scanners below walk text that jansson has accepted: it is valid JSON. */
 static const char *skip_space(const char *at)
@@ -152,6 +153,21 @@ bool reader_fail(struct reader *reader, const struct place *place, const char *f
     return false;
 }
 
+bool reader_afford(struct reader *reader, const struct place *place, uint64_t bytes,
+                   const char *format, ...)
+{
+    char what[100], where[200] = "";
+    va_list args;
+    va_start(args, format);
+    vsnprintf(what, sizeof what, format, args);
+    va_end(args);
+    place_text(place, where, sizeof where);
+    if (scene_afford(reader->scene, bytes, "%.150s: %s", where, what))
+        return true;
+    reader->result = WHIT_ERROR_INPUT;
+    return false;
+}
+
 bool reader_no_memory(struct reader *reader)
 {
     log_error(&reader->scene->log, "%s: out of memory", reader->path);
@@ -237,7 +253,7 @@ bool reader_object_lists(struct reader *reader, const struct place *place, const
     {
         bool known = strcmp(key, "comment") == 0 || listed_in(key, lists, list_count);
         const char *nearest = NULL;
-        for (size_t i = 0; !nearest && i < list_count; ++i)
+        for (size_t i = 0; !known && !nearest && i < list_count; ++i)
             nearest = reader_nearest(key, lists[i]);
         struct place here = {place, key, 0};
         if (!known && nearest)

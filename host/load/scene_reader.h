@@ -18,19 +18,9 @@ struct place {
     size_t index;
 };
 
-struct shape_cache {
-    char *key;
-    uint32_t mesh;
-};
-
 /* What an object added to the scene: nodes below `parent`, instances, channels. */
 struct scene_range {
     uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end;
-};
-
-struct model_cache {
-    char *key;
-    struct scene_range range;
 };
 
 struct reader {
@@ -40,11 +30,12 @@ struct reader {
     const char *text; /* ends with a zero byte */
     size_t text_bytes;
     whit_result result;
-    uint32_t material_end;   /* materials below it have the names that objects refer to */
-    uint32_t plain_material; /* for objects that name none, or SCENE_NONE so far */
-    struct shape_cache *shapes;
-    uint32_t shape_count, shape_capacity;
-    struct model_cache *models;
+    uint32_t material_end;       /* materials below it have the names that objects refer to */
+    uint32_t plain_material;     /* for objects that name none, or SCENE_NONE so far */
+    struct table material_names; /* of these; the first of each */
+    struct table shapes;         /* their mesh, by what they are */
+    struct table model_keys;     /* index of models */
+    struct scene_range *models;
     uint32_t model_count, model_capacity;
 };
 
@@ -52,6 +43,9 @@ struct reader {
 bool reader_fail(struct reader *reader, const struct place *place, const char *format, ...)
     WHIT_PRINTF(3, 4);
 bool reader_no_memory(struct reader *reader);
+/* scene_afford for what is at `place`; false is the end. */
+bool reader_afford(struct reader *reader, const struct place *place, uint64_t bytes,
+                   const char *format, ...) WHIT_PRINTF(4, 5);
 /* 0 once looking would take long in a file of very many materials. */
 uint32_t reader_line(const struct reader *reader, const struct place *place);
 

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "load/scene_objects.h"
+#include "scene/afford.h"
 #include "scene/shapes.h"
 
 #define SIZE_MOST    1e15
@@ -163,6 +164,46 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
     return WHIT_ERROR_USAGE;
 }
 
+static uint64_t balls_of(const struct shape_sizes *s)
+{
+    uint64_t count = 1;
+    for (uint32_t i = 0; i < s->level; ++i)
+        count = 9 * count + 1;
+    return count;
+}
+
+/* At most; an atrium has about as many. */
+static uint64_t triangles_of(enum shape shape, const struct shape_sizes *s)
+{
+    uint64_t level = s->level, segments = s->segments;
+    switch (shape) {
+    case SHAPE_PLANE:
+    case SHAPE_TERRAIN:
+        return 2 * (uint64_t)s->steps * s->steps;
+    case SHAPE_SPHERE:
+    case SHAPE_SPHEREFLAKE:
+        return 2 * segments * s->rings;
+    case SHAPE_ICOSPHERE:
+        return UINT64_C(20) << 2 * level;
+    case SHAPE_TORUS:
+        return 2 * segments * s->sides;
+    case SHAPE_STRANDS:
+        return 4 * (uint64_t)s->count;
+    case SHAPE_ATRIUM:
+        return (s->bays + UINT64_C(1)) * level * (2200 + 420 * level);
+    default:
+        return 4 * segments;
+    }
+}
+
+static uint64_t mesh_cost(enum shape shape, const struct shape_sizes *s)
+{
+    uint64_t count = triangles_of(shape, s);
+    bool flake = shape == SHAPE_SPHEREFLAKE && s->balls;
+    return flake || shape == SHAPE_BALL ? scene_sphere_cost(flake ? balls_of(s) : 1)
+                                        : scene_triangle_cost(count, count, 8 * sizeof(float));
+}
+
 /* Everything that makes two meshes the same one. */
 static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t material)
 {
@@ -189,6 +230,8 @@ static bool add_mesh(struct reader *reader, const struct place *place, enum shap
                      const struct shape_sizes *sizes, uint32_t material, uint32_t *index)
 {
     struct scene_mesh mesh = {0};
+    if (!reader_afford(reader, place, mesh_cost(shape, sizes), "its %s", shape_names[shape]))
+        return false;
     whit_result result = make_mesh(shape, sizes, &mesh);
     if (result == WHIT_ERROR_MEMORY)
         return reader_no_memory(reader);
@@ -230,22 +273,12 @@ static bool shared_mesh(struct reader *reader, const struct place *place, enum s
     char *key = shape_key(shape, sizes, material);
     if (!key)
         return reader_no_memory(reader);
-    for (uint32_t i = 0; i < reader->shape_count; ++i) {
-        if (strcmp(reader->shapes[i].key, key) == 0) {
-            free(key);
-            *index = reader->shapes[i].mesh;
-            return true;
-        }
-    }
-    if (!add_mesh(reader, place, shape, sizes, material, index)) {
-        free(key);
-        return false;
-    }
-    if (ARRAY_PUSH(reader->shapes, reader->shape_count, reader->shape_capacity,
-                   (struct shape_cache){key, *index}))
-        return true;
+    size_t key_bytes = strlen(key);
+    bool good = table_find(&reader->shapes, key, key_bytes, index) ||
+                (add_mesh(reader, place, shape, sizes, material, index) &&
+                 (table_add(&reader->shapes, key, key_bytes, *index) || reader_no_memory(reader)));
     free(key);
-    return reader_no_memory(reader);
+    return good;
 }
 
 static bool add_instance(struct reader *reader, const char *name, uint32_t mesh, uint32_t node,
@@ -260,11 +293,15 @@ static bool add_instance(struct reader *reader, const char *name, uint32_t mesh,
     return scene_add_instance(reader->scene, instance) != SCENE_NONE || reader_no_memory(reader);
 }
 
-static bool add_sphereflake(struct reader *reader, const char *name, uint32_t mesh, uint32_t node,
-                            const struct shape_sizes *sizes)
+static bool add_sphereflake(struct reader *reader, const struct place *place, const char *name,
+                            uint32_t mesh, uint32_t node, const struct shape_sizes *sizes)
 {
     double *spheres;
     uint32_t count;
+    uint64_t balls = balls_of(sizes);
+    if (!reader_afford(reader, place, scene_instance_cost(balls), "its sphereflake of %llu spheres",
+                       (unsigned long long)balls))
+        return false;
     if (shape_sphereflake(sizes->radius, sizes->level, &spheres, &count) != WHIT_OK)
         return reader_no_memory(reader);
     bool added = true;
@@ -304,6 +341,6 @@ bool reader_shape(struct reader *reader, const struct place *place, const json_t
         return false;
     }
     if (shape == SHAPE_SPHEREFLAKE && !sizes.balls)
-        return add_sphereflake(reader, name, mesh, node, &sizes);
+        return add_sphereflake(reader, place, name, mesh, node, &sizes);
     return add_instance(reader, name, mesh, node, NULL);
 }

@@ -1,49 +1,143 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "load/load.h"
 #include "load/picture.h"
+#include "scene/afford.h"
 
 #define FILE_BYTES_MOST ((uint64_t)1 << 29)
 #define SIDE_MOST       4096u
 
-static bool known(const struct scene *scene, const char *name, uint32_t *index)
+enum { BY_FILE = 1, BY_BYTES };
+
+/* What two names of one picture share, be it a file or bytes within one. Names hold no zero bytes,
+   so these keys are none. */
+struct key {
+    uint64_t kind, damaged, limit, words[4];
+};
+
+static uint32_t limit_of(const struct load_params *params)
 {
-    for (uint32_t i = 0; i < scene->texture_count; ++i) {
-        if (scene->textures[i].name && strcmp(scene->textures[i].name, name) == 0) {
-            *index = i;
-            return true;
-        }
-    }
-    return false;
+    return params && params->texture_limit ? params->texture_limit : SIDE_MOST;
 }
 
+static bool key_of_file(const char *path, const struct load_params *params, struct key *key)
+{
+    struct stat info;
+    if (stat(path, &info) != 0)
+        return false;
+    *key = (struct key){BY_FILE,
+                        0,
+                        limit_of(params),
+                        {info.st_dev, info.st_ino, (uint64_t)info.st_size,
+                         (uint64_t)info.st_mtim.tv_sec ^ (uint64_t)info.st_mtim.tv_nsec << 34}};
+    return true;
+}
+
+static struct key key_of_bytes(const uint8_t *data, size_t size_bytes,
+                               const struct load_params *params)
+{
+    return (struct key){
+        BY_BYTES,
+        0,
+        limit_of(params),
+        {size_bytes, hash_bytes(HASH_START, data, size_bytes), hash_bytes(1, data, size_bytes)}};
+}
+
+/* Gives `name` the texture that the key has. What is damaged is found only where magenta may take
+   its place. */
+static bool share(struct scene *scene, const char *name, struct key key, bool damaged_too,
+                  uint32_t *index)
+{
+    bool found = table_find(&scene->texture_keys, &key, sizeof key, index);
+    key.damaged = 1;
+    if (!found && damaged_too && table_find(&scene->texture_keys, &key, sizeof key, index)) {
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "texture `%s`: the same as `%s`; magenta takes its "
+                   "place",
+                   name, scene->textures[*index].name);
+        found = true;
+    }
+    if (found)
+        scene->lacks_memory |= !table_add(&scene->texture_keys, name, strlen(name), *index);
+    return found;
+}
+
+/* The bytes of a texture, once. */
+struct source {
+    const uint8_t *data;
+    uint8_t *owned;
+    size_t size_bytes;
+    struct key keys[2];
+    uint32_t key_count;
+    bool too_large; /* for the scene; it was said */
+};
+
 /* Silent: a missing texture is a warning of the scene, not an error. */
-static whit_result decode_file(struct scene *scene, const char *path,
-                               const struct foreign_params *foreign, struct picture *picture,
+static whit_result read_source(struct scene *scene, const char *path, struct source *source,
                                char reason[FOREIGN_REASON_BYTES])
 {
-    uint8_t *data = NULL;
-    size_t size_bytes = 0;
     const struct log silent = {0};
-    const char *why_not = roots_why_not(&scene->roots, path);
-    whit_result result =
-        why_not ? WHIT_ERROR_INPUT
-                : file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
-    snprintf(reason, FOREIGN_REASON_BYTES, "%s",
-             why_not                       ? why_not
-             : result == WHIT_ERROR_MEMORY ? "out of memory for a texture"
-                                           : "it cannot be read");
-    if (result != WHIT_OK)
-        return result;
-    scene->file_bytes += size_bytes;
-    result = picture_read(&scene->log, foreign, data, size_bytes, picture, reason);
-    free(data);
+    whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &source->owned,
+                                   &source->size_bytes);
+    if (result != WHIT_ERROR_MEMORY)
+        snprintf(reason, FOREIGN_REASON_BYTES, "it cannot be read");
+    scene->file_bytes += source->size_bytes;
+    source->data = source->owned;
     return result;
+}
+
+/* Where the header tells of more than the scene can afford nothing is decoded. */
+static whit_result decode_source(struct scene *scene, const char *name,
+                                 const struct foreign_params *foreign, struct source *source,
+                                 struct picture *picture, char reason[FOREIGN_REASON_BYTES])
+{
+    uint64_t left =
+        scene->memory_limit > scene->memory_taken ? scene->memory_limit - scene->memory_taken : 0;
+    uint64_t pixels_most = scene->memory_limit ? left / scene_texel_cost(1, 1) : UINT64_MAX;
+    whit_result result = picture_read(&scene->log, foreign, pixels_most, source->data,
+                                      source->size_bytes, picture, reason);
+    uint64_t pixels = (uint64_t)picture->width * picture->height;
+    if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_most))
+        return result;
+    source->too_large =
+        !scene_afford(scene, scene_texel_cost(picture->width, picture->height),
+                      "texture `%.120s` of %ux%u pixels", name, picture->width, picture->height);
+    return source->too_large ? WHIT_ERROR_INPUT : result;
+}
+
+/* Decodes what no texture was made of yet; else *index is the one that was. */
+static whit_result decode(struct scene *scene, const char *name, const struct load_params *params,
+                          bool damaged_too, struct source *source, struct picture *picture,
+                          uint32_t *index, char reason[FOREIGN_REASON_BYTES])
+{
+    const struct foreign_params foreign = load_foreign(params);
+    if (!source->data) {
+        const char *why_not = roots_why_not(&scene->roots, name);
+        if (why_not) {
+            snprintf(reason, FOREIGN_REASON_BYTES, "%s", why_not);
+            return WHIT_ERROR_INPUT;
+        }
+        if (key_of_file(name, params, &source->keys[0])) {
+            source->key_count++;
+            if (share(scene, name, source->keys[0], damaged_too, index))
+                return WHIT_OK;
+        }
+        whit_result result = read_source(scene, name, source, reason);
+        if (result != WHIT_OK)
+            return result;
+    }
+    struct key key = key_of_bytes(source->data, source->size_bytes, params);
+    source->keys[source->key_count++] = key;
+    if (share(scene, name, key, damaged_too, index))
+        return WHIT_OK;
+    return decode_source(scene, name, &foreign, source, picture, reason);
 }
 
 /* What a texture that cannot be had looks like; never mistaken for one that can. */
@@ -58,10 +152,12 @@ static bool make_magenta(struct picture *picture)
 static bool shrink(struct scene *scene, const char *name, const struct load_params *params,
                    struct picture *picture)
 {
-    uint32_t most = params && params->texture_limit ? params->texture_limit : SIDE_MOST;
     uint32_t width = picture->width, height = picture->height;
-    if (!picture_shrink(picture, most))
+    if (!picture_shrink(picture, limit_of(params)))
         return false;
+    uint64_t kept = scene_texel_cost(picture->width, picture->height);
+    uint64_t counted = scene_texel_cost(width, height);
+    scene->memory_taken -= counted - kept < scene->memory_taken ? counted - kept : 0;
     if (picture->width != width || picture->height != height)
         scene_note(scene, SCENE_NOTE_INFO, "texture `%s`: shrunk from %ux%u to %ux%u",
                    text_token(path_name(name)).text, width, height, picture->width,
@@ -69,54 +165,64 @@ static bool shrink(struct scene *scene, const char *name, const struct load_para
     return true;
 }
 
+static bool add(struct scene *scene, char *name, const struct picture *picture, bool damaged,
+                struct source *source, uint32_t *index)
+{
+    *index = scene_add_texture(scene, (struct scene_texture){name, picture->width, picture->height,
+                                                             picture->rgba, picture->mapped_bytes});
+    bool ok = *index != SCENE_NONE;
+    for (uint32_t i = 0; ok && i < source->key_count; ++i) {
+        source->keys[i].damaged = damaged;
+        ok = table_add(&scene->texture_keys, &source->keys[i], sizeof source->keys[i], *index);
+    }
+    return ok;
+}
+
 whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
                          size_t size_bytes, const struct load_params *params, uint32_t *index,
                          const char **reason)
 {
-    struct picture picture = {0};
     static _Thread_local char why[FOREIGN_REASON_BYTES]; /* outlives the call */
-    const struct foreign_params foreign = load_foreign(params);
-    whit_result result = WHIT_ERROR_MEMORY;
-    snprintf(why, sizeof why, "out of memory for a texture");
+    struct picture picture = {0};
+    struct source source = {.data = data, .size_bytes = size_bytes};
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
+    whit_result result = WHIT_ERROR_MEMORY;
+    bool said = false;
+    snprintf(why, sizeof why, "out of memory for a texture");
     *index = SCENE_NONE;
     if (!name)
-        goto fail;
+        goto done;
     /* A model's stand-in for a missing file does not make it less missing. */
     bool missing = reason && !data && roots_reach(&scene->roots, name) != REACH_FILE;
-    if (!missing && known(scene, name, index)) {
-        free(name);
-        return WHIT_OK;
-    }
-    result = data ? picture_read(&scene->log, &foreign, data, size_bytes, &picture, why)
-                  : decode_file(scene, name, &foreign, &picture, why);
-    if (result != WHIT_OK && result != WHIT_ERROR_INPUT)
-        goto fail;
-    if (result != WHIT_OK && reason) {
-        free(name);
+    result = WHIT_OK;
+    if (!missing && scene_find_texture(scene, name, index))
+        goto done;
+    result = decode(scene, name, params, !reason, &source, &picture, index, why);
+    said = source.too_large;
+    if ((result != WHIT_OK && result != WHIT_ERROR_INPUT) || *index != SCENE_NONE || said)
+        goto done;
+    bool damaged = result != WHIT_OK;
+    if (damaged && reason) {
         *reason = why;
-        return WHIT_ERROR_INPUT;
+        said = true; /* by whoever asked */
+        goto done;
     }
-    if (result != WHIT_OK) {
+    if (damaged)
         scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place", name,
                    why);
-        if (!make_magenta(&picture))
-            goto no_memory;
-    }
-    if (!shrink(scene, name, params, &picture))
-        goto no_memory;
-    *index = scene_add_texture(scene, (struct scene_texture){name, picture.width, picture.height,
-                                                             picture.rgba, picture.mapped_bytes});
-    if (*index != SCENE_NONE)
-        return WHIT_OK;
-    name = NULL;
-    picture = (struct picture){0};
-no_memory:
     result = WHIT_ERROR_MEMORY;
     snprintf(why, sizeof why, "out of memory for a texture");
-fail:
-    log_error(&scene->log, "%s: %s", path, why);
+    if ((damaged && !make_magenta(&picture)) || !shrink(scene, name, params, &picture))
+        goto done;
+    if (add(scene, name, &picture, damaged, &source, index))
+        result = WHIT_OK;
+    name = NULL;
+    picture = (struct picture){0};
+done:
+    if (result != WHIT_OK && !said)
+        log_error(&scene->log, "%s: %s", path, why);
     free(name);
+    free(source.owned);
     picture_finish(&picture);
     return result;
 }

@@ -5,8 +5,18 @@
 
 #include "base/array.h"
 #include "render/renderer.h"
+#include "scene/afford.h"
 
 enum { ROW_BYTES = 16 };
+
+/* What the scene is estimated to take has room for both copies of these, nodes two to an instance
+   and one to two primitives. */
+_Static_assert(SCENE_TREE_INSTANCE_BYTES >=
+                   2 * (sizeof(struct gpu_instance) + 2 * sizeof(struct gpu_bvh_node)),
+               "instances cost more than estimated");
+_Static_assert(SCENE_TREE_TRIANGLE_BYTES >=
+                   2 * (sizeof(struct gpu_triangle) + sizeof(struct gpu_bvh_node) / 2),
+               "triangles cost more than estimated");
 
 static bool fits_storage(const struct renderer *renderer)
 {

@@ -94,6 +94,7 @@ void scene_destroy(struct scene *scene)
     if (!scene)
         return;
     roots_finish(&scene->roots);
+    table_finish(&scene->texture_keys);
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         scene_mesh_finish(&scene->meshes[i]);
     for (uint32_t i = 0; i < scene->node_count; ++i)
@@ -200,10 +201,21 @@ uint32_t scene_add_material(struct scene *scene, struct scene_material material)
 
 uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture)
 {
-    if (ARRAY_PUSH(scene->textures, scene->texture_count, scene->texture_capacity, texture))
-        return scene->texture_count - 1;
-    finish_texture(&texture);
-    return SCENE_NONE;
+    uint32_t index = scene->texture_count;
+    if (!ARRAY_PUSH(scene->textures, scene->texture_count, scene->texture_capacity, texture)) {
+        finish_texture(&texture);
+        return SCENE_NONE;
+    }
+    uint32_t first;
+    if (texture.name && !scene_find_texture(scene, texture.name, &first))
+        scene->lacks_memory |=
+            !table_add(&scene->texture_keys, texture.name, strlen(texture.name), index);
+    return index;
+}
+
+bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *index)
+{
+    return table_find(&scene->texture_keys, name, strlen(name), index);
 }
 
 uint32_t scene_add_light(struct scene *scene, struct scene_light light)

@@ -11,6 +11,7 @@
 #include "base/affine.h"
 #include "base/log.h"
 #include "base/roots.h"
+#include "base/table.h"
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
 
@@ -261,6 +262,8 @@ struct scene {
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
     float time_end_s;                      /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;                   /* of all files read */
+    uint64_t memory_limit, memory_taken;   /* see afford.h; 0: no limit */
+    struct table texture_keys;             /* their names, and what loaders know them by */
     struct roots roots;                    /* what the files that it is loaded from may name */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool lacks_memory;                     /* for a name or a note: scene_freeze fails */
@@ -288,6 +291,8 @@ uint32_t scene_add_node(struct scene *scene, struct scene_node node);
 uint32_t scene_add_instance(struct scene *scene, struct scene_instance instance);
 uint32_t scene_add_material(struct scene *scene, struct scene_material material);
 uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture);
+/* The first texture that was added under `name`; false: none was. */
+bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *index);
 uint32_t scene_add_light(struct scene *scene, struct scene_light light);
 uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
 uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);

@@ -42,7 +42,8 @@ static whit_result load(struct session *session)
     const struct view_settings *settings = &session->settings;
     const char *allowed[VIEW_ALLOWED];
     whit_refused refused = {0};
-    whit_load_params params = {.texture_limit = settings->texture_limit,
+    whit_load_params params = {.memory_limit_bytes = settings->memory_limit,
+                               .texture_limit = settings->texture_limit,
                                .cancel = &session->cancel,
                                .import_limit_s = settings->import_limit_s,
                                .require_sandbox = settings->require_sandbox,

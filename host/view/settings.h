@@ -25,6 +25,7 @@ struct view_settings {
     uint32_t reload;                       /* another number: the scene is read again */
     char device[VIEW_TEXT];                /* "": auto */
     uint32_t texture_limit;                /* 0: the default */
+    uint64_t memory_limit;                 /* of --memory-limit */
     char allowed[VIEW_ALLOWED][VIEW_PATH]; /* folders of --allow-path; "" behind the last */
     bool validation;
     double import_limit_s; /* as --import-limit; 0: the default */

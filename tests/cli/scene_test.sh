@@ -30,7 +30,31 @@ corners=$(od -An -v -tf4 -w44 "$T" | awk '{ for (i = 1; i <= 9; ++i) print ($i <
 check "every coordinate is half an edge" test "$corners" = 0.5
 rm "$T"
 
+# What would take too much is refused by name before it is asked for.
+too_much() { # name, what is named, limit, objects
+    printf '{"objects":[%s]}' "$4" >"$OUT/files/much.json"
+    (ulimit -v 400000 && "$WHIT" scene "$OUT/files/much.json" --memory-limit "$3") \
+        >"$OUT/stdout" 2>"$OUT/stderr"
+    check "$1 too large: exit code" test $? -eq 2
+    check "$1 too large: one error, with the option" test "$(grep -c . "$OUT/stderr")" -eq 1
+    check "$1 too large: what it is" grep -Eq "objects\[0\].*$2 would take .* MiB of memory, .*the \
+limit is .* MiB \(--memory-limit\)" "$OUT/stderr"
+}
+too_much "copies" "999999 copies of 1 instances" 1G \
+    '{"shape":"box","repeat":{"count":[1000,1000,1]}}'
+too_much "a terrain" "its terrain" 1G '{"shape":"terrain","steps":2000}'
+too_much "an icosphere" "its icosphere" 300M '{"shape":"icosphere","level":8}'
+too_much "a sphereflake" "its sphereflake of 597871 spheres" 400M '{"shape":"sphereflake","level":6}'
+too_much "balls" "its sphereflake" 100M '{"shape":"sphereflake","level":6,"balls":true}'
+expect 0 "within the limit" scene "$OUT/files/much.json" --memory-limit 1G
+rm "$OUT/files/much.json"
+for size in 0 -1 1T 1KK "" 99999999999G; do
+    refuse 2 "--memory-limit '$size'" "a number of bytes is needed" scene "$CUBE" --memory-limit "$size"
+done
+
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$OUT/bare.obj"
+refuse 2 "an importer that wants too much" "asked for more than .* MiB of memory, half of --memory-limit" \
+    scene "$OUT/bare.obj" --memory-limit 400
 expect 0 "a model without camera and light" scene "$OUT/bare.obj"
 check "says that a camera was added" grep -q "no camera in the file" "$OUT/stdout"
 check "says that a light was added" grep -q "no light in the file" "$OUT/stdout"

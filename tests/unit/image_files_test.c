@@ -1,10 +1,11 @@
 #include "image_fixture.h"
-
 #include <math.h>
 
 #include <png.h>
 
 #include <OpenEXR/openexr.h>
+
+#include "image/formats.h"
 
 static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
                                            {"options", "--aa 4 --depth 8"},
@@ -202,8 +203,13 @@ static void refusals_leave_nothing_behind(void **state)
     image_finish(&words);
 }
 
-static void png_write_raw(const char *path, int colour_type, int bit_depth, int interlace)
+/* With a text that packs well, unless `text_bytes` is 0. */
+static void png_write_raw(const char *path, int colour_type, int bit_depth, int interlace,
+                          size_t text_bytes)
 {
+    char *value = array_alloc_zeroed(text_bytes + 1, 1), key[] = "a";
+    png_text text = {PNG_TEXT_COMPRESSION_zTXt, key, value, text_bytes, 0, NULL, NULL};
+    memset(value, 'a', text_bytes);
     static const png_color palette[2] = {{0, 0, 0}, {255, 128, 0}};
     static const png_byte alpha[2] = {51, 255};
     FILE *stream = fopen(path, "wb");
@@ -215,6 +221,8 @@ static void png_write_raw(const char *path, int colour_type, int bit_depth, int 
         png_set_PLTE(png, info, palette, 2);
         png_set_tRNS(png, info, alpha, 2, NULL);
     }
+    if (text_bytes)
+        png_set_text(png, info, &text, 1);
     png_write_info(png, info);
     png_byte rows[8][64];
     png_bytep pointers[8];
@@ -226,6 +234,7 @@ static void png_write_raw(const char *path, int colour_type, int bit_depth, int 
     png_write_image(png, pointers);
     png_write_end(png, NULL);
     png_destroy_write_struct(&png, &info);
+    free(value);
     fclose(stream);
 }
 
@@ -240,27 +249,27 @@ static void png_kinds_are_converted(void **state)
     char *path = fixture_path(fixture, "a.png");
     struct image image;
     for (int interlace = 0; interlace <= 1; ++interlace) {
-        png_write_raw(path, PNG_COLOR_TYPE_PALETTE, 1, interlace);
+        png_write_raw(path, PNG_COLOR_TYPE_PALETTE, 1, interlace, 0);
         assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
         assert_int_equal(image.channels, 4);
         const float expected[8] = {1.0f, linear_of(128, 255), 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.2f};
         assert_memory_equal(image.pixels + 8 * 4 * 3, expected, sizeof expected);
         image_finish(&image);
 
-        png_write_raw(path, PNG_COLOR_TYPE_GRAY, 1, interlace);
+        png_write_raw(path, PNG_COLOR_TYPE_GRAY, 1, interlace, 0);
         assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
         assert_int_equal(image.channels, 1);
         assert_true(image.pixels[0] == 1.0f && image.pixels[1] == 0.0f);
         image_finish(&image);
 
-        png_write_raw(path, PNG_COLOR_TYPE_GRAY_ALPHA, 8, interlace);
+        png_write_raw(path, PNG_COLOR_TYPE_GRAY_ALPHA, 8, interlace, 0);
         assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
         assert_int_equal(image.channels, 4);
         assert_true(image.pixels[4] == linear_of(6, 255) && image.pixels[5] == image.pixels[4] &&
                     image.pixels[6] == image.pixels[4] && image.pixels[7] == 9.0f / 255.0f);
         image_finish(&image);
 
-        png_write_raw(path, PNG_COLOR_TYPE_RGB, 16, interlace);
+        png_write_raw(path, PNG_COLOR_TYPE_RGB, 16, interlace, 0);
         assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
         assert_int_equal(image.channels, 3);
         int word = (29 + 2 * 3) << 8 | (29 + 3 * 3); /* row 1, bytes 2 and 3 */
@@ -389,6 +398,59 @@ static void hdr_rows_of_all_kinds(void **state)
     free(path);
 }
 
+static uint64_t malloc_bytes;
+
+void *__real_malloc(size_t size_bytes);
+void *__wrap_malloc(size_t size_bytes);
+void *__wrap_malloc(size_t size_bytes)
+{
+    malloc_bytes += size_bytes;
+    return __real_malloc(size_bytes);
+}
+
+/* The file of a picture with its text, a chunk of `text_bytes` that hold a thousandfold, written
+   many times over. */
+static uint8_t *repeat_text(const char *path, size_t *size_bytes)
+{
+    enum { TIMES = 90, HEAD = 8, IHDR = 25, TAIL = 4 };
+    uint8_t *file;
+    size_t file_bytes;
+    assert_int_equal(file_read(NULL, NULL, path, 0, &file, &file_bytes), WHIT_OK);
+    uint8_t *text = file + HEAD + IHDR;
+    assert_memory_equal(text + 4, "zTXt", 4);
+    size_t text_bytes = HEAD + png_get_uint_32(text) + TAIL;
+    uint8_t *many = array_alloc(file_bytes + TIMES * text_bytes, 1), *at = many;
+    assert_non_null(many);
+    memcpy(at, file, HEAD + IHDR);
+    at += HEAD + IHDR;
+    for (int i = 0; i < TIMES; ++i, at += text_bytes)
+        memcpy(at, text, text_bytes);
+    size_t rest = file_bytes - (size_t)(text - file);
+    memcpy(at, text, rest);
+    *size_bytes = (size_t)(at - many) + rest;
+    free(file);
+    return many;
+}
+
+static void png_texts_take_what_they_may(void **state)
+{
+    enum { TEXT_BYTES = (2 << 20) - 100, FREE_BYTES = 64 << 20 };
+    struct fixture *fixture = *state;
+    char *path = fixture_path(fixture, "a.png");
+    png_write_raw(path, PNG_COLOR_TYPE_GRAY, 8, PNG_INTERLACE_NONE, TEXT_BYTES);
+    size_t size_bytes;
+    uint8_t *file = repeat_text(path, &size_bytes);
+    struct image image;
+    fixture_put(path, file, size_bytes);
+    const struct image_source source = {&fixture->log, path, file, size_bytes};
+    malloc_bytes = 0;
+    assert_int_equal(image_decode(&source, &image), WHIT_OK); /* which runs in a child else */
+    assert_in_range(malloc_bytes, TEXT_BYTES, FREE_BYTES + 10 * size_bytes + (1 << 20));
+    image_finish(&image);
+    free(file);
+    free(path);
+}
+
 static void sizes_out_of_range(void **state)
 {
     (void)state;
@@ -414,6 +476,7 @@ int main(void)
         TEST(recipe_comes_back),
         TEST(refusals_leave_nothing_behind),
         TEST(png_kinds_are_converted),
+        TEST(png_texts_take_what_they_may),
         TEST(exr_kinds_are_read),
         TEST(hdr_rows_of_all_kinds),
         cmocka_unit_test(sizes_out_of_range),

@@ -374,6 +374,17 @@ static void whole_pictures_cut_out_nothing(void **state)
 
 #define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
 
+static void models_too_large_are_refused(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    fixture->scene->memory_limit = 200;
+    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, "mesh `a.obj` of 1 triangles would take"));
+    assert_int_equal(fixture->scene->mesh_count, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -403,6 +414,7 @@ int main(void)
         TEST(unused_maps_are_named),
         TEST(alpha_cuts_out_once),
         TEST(whole_pictures_cut_out_nothing),
+        cmocka_unit_test_setup_teardown(models_too_large_are_refused, fixture_begin, fixture_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* JPEG: pixels of files by two encoders, and what becomes of damaged ones. */
+/* JPEG: pixels of files by two encoders, and what becomes of damaged ones; greedy PNGs. */
 #include "load_model_fixture.h"
 
 #include <errno.h>
@@ -231,6 +231,35 @@ static void greedy_jpegs_are_refused(void **state)
     free(file.data);
 }
 
+static size_t largest_block;
+
+void *__real_realloc(void *block, size_t size_bytes);
+void *__wrap_realloc(void *block, size_t size_bytes);
+void *__wrap_realloc(void *block, size_t size_bytes)
+{
+    largest_block = size_bytes > largest_block ? size_bytes : largest_block;
+    return __real_realloc(block, size_bytes);
+}
+
+/* 2x2 pixels by its header, and what would be 4 million. Checksums are not looked at. */
+static void pngs_take_what_their_header_tells_of(void **state)
+{
+    enum { SIDE = 2048, IHDR_WIDTH = 16 };
+    (void)state;
+    struct bytes file = {0};
+    uint8_t *pixels = array_alloc_zeroed((size_t)SIDE * SIDE, 1);
+    const char *reason = "";
+    assert_non_null(pixels);
+    assert_true(stbi_write_png_to_func(append, &file, SIDE, SIDE, 1, pixels, SIDE));
+    assert_true(decodes(file.data, file.count, &reason));
+    memcpy(file.data + IHDR_WIDTH, (uint8_t[]){0, 0, 0, 2, 0, 0, 0, 2}, 8);
+    largest_block = 0;
+    check_reason(&file, "more than its header tells of");
+    assert_in_range(largest_block, 1, (1 << 18) + 2 * file.count + 16 * 3 * 2);
+    free(pixels);
+    free(file.data);
+}
+
 static void damaged_textures_are_named(void **state)
 {
     struct fixture *fixture = *state;
@@ -334,6 +363,7 @@ int main(void)
         cmocka_unit_test(cut_jpegs_are_refused),
         cmocka_unit_test(changed_jpegs_end),
         cmocka_unit_test(greedy_jpegs_are_refused),
+        cmocka_unit_test(pngs_take_what_their_header_tells_of),
         cmocka_unit_test_setup_teardown(damaged_textures_are_named, fixture_begin, fixture_end),
         cmocka_unit_test_setup_teardown(decoders_that_reach_out_are_stopped, fixture_begin,
                                         fixture_end),

@@ -1,0 +1,29 @@
+/* What a scene takes in memory once it is drawn, before any of it is asked for: its records, what
+   is derived from them, the trees, and the copies on the device. */
+#ifndef SCENE_AFFORD_H
+#define SCENE_AFFORD_H
+
+#include "scene/scene.h"
+
+/* Of the trees over primitives and over instances, and of the device's records, on the host and on
+   the device; while trees are built. */
+enum {
+    SCENE_TREE_TRIANGLE_BYTES = 190,
+    SCENE_TREE_SPHERE_BYTES = 350,
+    SCENE_TREE_INSTANCE_BYTES = 600,
+};
+
+/* In bytes. `vertex_bytes` are those of all attributes of one vertex on the host. */
+uint64_t scene_node_cost(uint64_t count);
+uint64_t scene_instance_cost(uint64_t count);
+uint64_t scene_triangle_cost(uint64_t triangles, uint64_t vertices, uint64_t vertex_bytes);
+uint64_t scene_sphere_cost(uint64_t count);
+uint64_t scene_texel_cost(uint64_t width, uint64_t height);
+
+/* Counts `bytes` for `what` ("a texture of 4 x 4 pixels"). False, after one error that names it,
+   and nothing counted, when the scene would take more than its memory_limit. */
+bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...) WHIT_PRINTF(3, 4);
+/* Half of what this machine has. */
+uint64_t scene_default_memory_limit(void);
+
+#endif

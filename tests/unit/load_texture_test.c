@@ -1,0 +1,188 @@
+/* Pictures that are decoded and kept once, whatever their names. */
+#include "load_model_fixture.h"
+
+#include "load/picture.h"
+
+static uint32_t decoded, file_reads;
+
+whit_result __real_picture_read(const struct log *log, const struct foreign_params *params,
+                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                struct picture *out, char reason[FOREIGN_REASON_BYTES]);
+whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
+                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                struct picture *out, char reason[FOREIGN_REASON_BYTES]);
+whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
+                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                struct picture *out, char reason[FOREIGN_REASON_BYTES])
+{
+    whit_result result =
+        __real_picture_read(log, params, pixels_most, data, size_bytes, out, reason);
+    /* What is only looked at has sides. */
+    decoded += result == WHIT_OK || out->width == 0;
+    return result;
+}
+
+whit_result __real_file_read(const struct log *log, const struct roots *roots, const char *path,
+                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
+whit_result __wrap_file_read(const struct log *log, const struct roots *roots, const char *path,
+                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
+whit_result __wrap_file_read(const struct log *log, const struct roots *roots, const char *path,
+                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
+{
+    file_reads++;
+    return __real_file_read(log, roots, path, limit_bytes, data, size_bytes);
+}
+
+static int begin(void **state)
+{
+    decoded = file_reads = 0;
+    return fixture_begin(state);
+}
+
+/* 2x1 texels, and the same in base64. */
+static const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
+                              2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
+#define TGA_BASE64 "AAACAAAAAAAAAAAAAgABABggChQeFCg9"
+
+/* A glTF of `count` images, each the picture of a material. */
+static const char *write_gltf(struct fixture *fixture, const char *const *images, uint32_t count)
+{
+    char *lists[3] = {string_copy(""), string_copy(""), string_copy("")};
+    for (uint32_t i = 0; i < count; i++) {
+        char *longer[3] = {
+            string_format("%s%s%s", lists[0], i ? "," : "", images[i]),
+            string_format("%s%s{\"source\":%u}", lists[1], i ? "," : "", i),
+            string_format("%s%s{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":%u}}}",
+                          lists[2], i ? "," : "", i),
+        };
+        for (int k = 0; k < 3; k++) {
+            free(lists[k]);
+            lists[k] = longer[k];
+        }
+    }
+    char *text = string_format("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,"
+                               "\"uri\":\"data:;base64," TGA_BASE64 "\"}],"
+                               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":24}],"
+                               "\"images\":[%s],\"textures\":[%s],\"materials\":[%s]}",
+                               lists[0], lists[1], lists[2]);
+    const char *path = fixture_text(fixture, "a.gltf", text);
+    for (int k = 0; k < 3; k++)
+        free(lists[k]);
+    free(text);
+    return path;
+}
+
+enum { SPELLINGS = 60 };
+
+/* a.tga in ways that lead to one file. */
+static void spell(char spellings[SPELLINGS][96])
+{
+    for (uint32_t i = 0; i < SPELLINGS; i++) {
+        char name[80] = "";
+        for (uint32_t k = 0; k < i / 2; k++)
+            strcat(name, "./");
+        snprintf(spellings[i], 96, "{\"uri\":\"%s%s\"}", name, i % 2 ? "%61.tga" : "A.TGA");
+    }
+}
+
+static void one_file_of_many_names(void **state)
+{
+    struct fixture *fixture = *state;
+    char spellings[SPELLINGS][96];
+    const char *images[SPELLINGS];
+    spell(spellings);
+    for (uint32_t i = 0; i < SPELLINGS; i++)
+        images[i] = spellings[i];
+    fixture_write(fixture, "a.tga", tga, sizeof tga);
+    assert_int_equal(fixture_load(fixture, write_gltf(fixture, images, SPELLINGS)), WHIT_OK);
+    assert_int_equal(fixture->scene->material_count, SPELLINGS);
+    assert_int_equal(fixture->scene->texture_count, 1);
+    assert_int_equal(decoded, 1);
+    assert_int_equal(file_reads, 2); /* the model and the picture */
+    for (uint32_t i = 0; i < SPELLINGS; i++)
+        assert_int_equal(fixture->scene->materials[i].textures[SCENE_SLOT_DIFFUSE].texture, 0);
+}
+
+static void one_picture_in_many_places(void **state)
+{
+    static const char *const images[] = {
+        "{\"uri\":\"a.tga\"}",
+        "{\"uri\":\"b.tga\"}",
+        "{\"bufferView\":0}",
+        "{\"bufferView\":0}",
+        "{\"uri\":\"data:;base64," TGA_BASE64 "\"}",
+        "{\"uri\":\"other.tga\"}",
+    };
+    struct fixture *fixture = *state;
+    uint8_t other[sizeof tga];
+    memcpy(other, tga, sizeof tga);
+    other[sizeof tga - 1]++;
+    fixture_write(fixture, "a.tga", tga, sizeof tga);
+    fixture_write(fixture, "b.tga", tga, sizeof tga);
+    fixture_write(fixture, "other.tga", other, sizeof other);
+    assert_int_equal(fixture_load(fixture, write_gltf(fixture, images, 6)), WHIT_OK);
+    assert_int_equal(fixture->scene->texture_count, 2);
+    assert_int_equal(decoded, 2);
+    assert_int_equal(fixture->scene->materials[5].textures[SCENE_SLOT_DIFFUSE].texture, 1);
+}
+
+static void limits_keep_pictures_apart(void **state)
+{
+    struct fixture *fixture = *state;
+    const struct load_params params = {.texture_limit = 1};
+    uint32_t whole, halved;
+    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &whole, NULL),
+                     WHIT_OK);
+    assert_int_equal(load_texture(fixture->scene, "b", tga, sizeof tga, &params, &halved, NULL),
+                     WHIT_OK);
+    assert_int_equal(fixture->scene->textures[whole].width, 2);
+    assert_int_equal(fixture->scene->textures[halved].width, 1);
+}
+
+/* A damaged one is tried once, each of its names is told, and no scene file takes the magenta. */
+static void damaged_pictures_are_tried_once(void **state)
+{
+    struct fixture *fixture = *state;
+    uint32_t index, same;
+    const char *reason = NULL;
+    const char *a = fixture_write(fixture, "a.tga", tga, 12);
+    const char *b = fixture_write(fixture, "b.tga", tga, 12);
+    assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &same, NULL), WHIT_OK);
+    assert_int_equal(same, index);
+    assert_int_equal(decoded, 1);
+    assert_true(fixture_noted(fixture, a));
+    assert_true(fixture_noted(fixture, b));
+    assert_int_equal(load_texture(fixture->scene, "c", tga, 12, NULL, &index, &reason),
+                     WHIT_ERROR_INPUT);
+    assert_non_null(reason);
+}
+
+static void textures_too_large_are_not_decoded(void **state)
+{
+    struct fixture *fixture = *state;
+    uint32_t index;
+    fixture->scene->memory_limit = 15; /* two texels, on host and device */
+    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
+                     WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, "texture `a` of 2x1 pixels would take"));
+    assert_int_equal(decoded, 0);
+    fixture->scene->memory_limit = 16;
+    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
+                     WHIT_OK);
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(one_file_of_many_names),
+        TEST(one_picture_in_many_places),
+        TEST(limits_keep_pictures_apart),
+        TEST(damaged_pictures_are_tried_once),
+        TEST(textures_too_large_are_not_decoded),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

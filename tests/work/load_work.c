@@ -1,0 +1,142 @@
+/* Loading four times as much is about four times the work: branches taken by whit, in the
+   importer's child too. */
+#include <stdatomic.h>
+#include <sys/mman.h>
+
+#include "load_model_fixture.h"
+
+static _Atomic uint64_t *branches; /* shared with children */
+
+void __sanitizer_cov_trace_pc(void);
+void __sanitizer_cov_trace_pc(void)
+{
+    if (branches)
+        atomic_fetch_add_explicit(branches, 1, memory_order_relaxed);
+}
+
+enum { FEW = 250, MANY = 4 * FEW };
+
+/* Writes `text` with what is in < > written `count` times, # being the number. */
+static const char *write_file(struct fixture *fixture, const char *name, const char *text,
+                              uint32_t count)
+{
+    char *path = string_format("%s/%u%s", fixture->folder, count, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    const char *start = NULL;
+    uint32_t index = 0;
+    for (; *text; text++) {
+        if (*text == '<') {
+            start = text;
+            index = 0;
+        } else if (*text == '>') {
+            index++;
+            text = index < count ? start : text;
+        } else if (*text == '#') {
+            fprintf(file, "%u", start ? index : count);
+        } else if (*text != '~' || index) { /* a comma between two */
+            fputc(*text == '~' ? ',' : *text, file);
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+    fixture->files[fixture->file_count++] = path;
+    return path;
+}
+
+static uint64_t work_of(struct fixture *fixture, const char *path)
+{
+    struct scene *scene;
+    const struct log log = {.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_ERROR};
+    *branches = 0;
+    if (load_scene(&log, path, NULL, &scene) != WHIT_OK)
+        fail_msg("%s", fixture->last_error);
+    scene_destroy(scene);
+    return *branches;
+}
+
+/* A second file is for the first to name. */
+static void check(void **state, const char *name, const char *text, const char *more_name,
+                  const char *more)
+{
+    struct fixture *fixture = *state;
+    uint64_t work[2];
+    for (int i = 0; i < 2; i++) {
+        uint32_t count = i ? MANY : FEW;
+        if (more)
+            write_file(fixture, more_name, more, count);
+        work[i] = work_of(fixture, write_file(fixture, name, text, count));
+    }
+    print_message("%s: %llu and %llu branches\n", name, (unsigned long long)work[0],
+                  (unsigned long long)work[1]);
+    assert_true(work[0] > FEW);
+    assert_true((double)work[1] < 4.1 * (double)work[0]);
+}
+
+#define GLTF                                                                                       \
+    "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64,"     \
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"                                        \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+#define ACCESSOR "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}"
+
+static void primitives(void **state)
+{
+    check(state, "primitives.gltf",
+          GLTF "\"accessors\":[" ACCESSOR "],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":["
+               "<~{\"attributes\":{\"POSITION\":0}}>]}]}",
+          NULL, NULL);
+}
+
+static void meshes_and_materials(void **state)
+{
+    check(state, "meshes.gltf",
+          GLTF
+          "\"accessors\":[<~" ACCESSOR ">],\"nodes\":[<~{\"mesh\":#}>],"
+          "\"meshes\":[<~{\"primitives\":[{\"attributes\":{\"POSITION\":#},\"material\":#}]}>],"
+          "\"materials\":[<~{\"extensions\":{\"KHR_materials_ior\":{},\"EXT_a#\":{}}}>]}",
+          NULL, NULL);
+}
+
+static void missing_pictures(void **state)
+{
+    check(state, "pictures.gltf",
+          GLTF "\"accessors\":[" ACCESSOR "],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":["
+               "{\"attributes\":{\"POSITION\":0}}]}],"
+               "\"materials\":[<~{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":#}}}>],"
+               "\"textures\":[<~{\"source\":#}>],\"images\":[<~{\"uri\":\"#.png\"}>]}",
+          NULL, NULL);
+}
+
+static void groups_and_their_materials(void **state)
+{
+    check(state, "groups.obj",
+          "mtllib #groups.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+          "<g g#\nusemtl m#\nf 1 2 3\n>",
+          "groups.mtl", "<newmtl m#\nword# 1\n>");
+}
+
+static void objects(void **state)
+{
+    check(state, "objects.json",
+          "{\"camera\":{\"eye\":[0,0,9],\"target\":[0,0,0]},\"lights\":[{\"kind\":\"point\","
+          "\"position\":[0,9,0]}],\"materials\":{\"m\":{\"diffuse\":0.5}},\"objects\":[<~{"
+          "\"shape\":\"sphere\","
+          "\"segments\":4,\"rings\":2,\"radius\":1.#1,\"material\":\"m\"}>]}",
+          NULL, NULL);
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(primitives),       TEST(meshes_and_materials),
+        TEST(missing_pictures), TEST(groups_and_their_materials),
+        TEST(objects),
+    };
+    void *shared =
+        mmap(NULL, sizeof *branches, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED)
+        return 1;
+    branches = shared;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
