@@ -1,11 +1,16 @@
 #include "base/file.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,9 +18,11 @@
 
 /* Paths of unfinished files. Whoever takes a pointer out of its slot owns it, so that the signal
    handler never reads a string that another thread frees. Slot numbers start at 1. */
-enum { SLOT_COUNT = 64 };
+enum { SLOT_COUNT = 64, NAME_KEPT = 200 }; /* NAME_MAX is 255 */
 static _Atomic(char *) unfinished[SLOT_COUNT];
 static char *abandoned[SLOT_COUNT]; /* free() is not for signal handlers */
+/* Held while files begin, and while a slot is given back, so that paths in slots can be read. */
+static pthread_mutex_t begin_lock = PTHREAD_MUTEX_INITIALIZER;
 
 static int slot_take(const char *path)
 {
@@ -31,10 +38,18 @@ static int slot_take(const char *path)
     return 0;
 }
 
-static void slot_give_back(int slot)
+/* With begin_lock held. */
+static void slot_free(int slot)
 {
     if (slot > 0)
         free(atomic_exchange(&unfinished[slot - 1], NULL));
+}
+
+static void slot_give_back(int slot)
+{
+    pthread_mutex_lock(&begin_lock);
+    slot_free(slot);
+    pthread_mutex_unlock(&begin_lock);
 }
 
 void file_abandon_all(void)
@@ -126,6 +141,65 @@ fail:
     return result;
 }
 
+/* The process that an unfinished file for `target` is of, by its name as open_sibling gives it; 0
+   where `name` is another one. */
+static pid_t writer_of(const char *name, const char *target)
+{
+    size_t length = strnlen(target, NAME_KEPT);
+    if (name[0] != '.' || strncmp(name + 1, target, length) != 0 || name[length + 1] != '.' ||
+        !isdigit((unsigned char)name[length + 2]))
+        return 0;
+    char *rest;
+    long pid = strtol(name + length + 2, &rest, 10);
+    if (rest[0] == '.' && isdigit((unsigned char)rest[1]))
+        (void)strtol(rest + 1, &rest, 10);
+    return strcmp(rest, ".tmp") == 0 && pid > 0 && pid <= INT_MAX ? (pid_t)pid : 0;
+}
+
+/* A process with our number may be one that was killed before we were there. */
+static bool is_alive(pid_t writer, const char *name)
+{
+    if (writer != getpid())
+        return kill(writer, 0) == 0 || errno != ESRCH;
+    for (int i = 0; i < SLOT_COUNT; ++i) {
+        const char *path = atomic_load(&unfinished[i]);
+        if (path && strcmp(path_name(path), name) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Removes a file that its writer did not live to finish. The lock that a writer holds tells of one
+   in another container too, whose number says nothing here. */
+static void remove_left(const char *path)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_uid != geteuid())
+        return;
+    int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
+        unlink(path);
+    if (fd >= 0)
+        close(fd);
+}
+
+/* What killed runs left of `target` beside it. */
+static void sweep(const char *folder, const char *target)
+{
+    DIR *dir = opendir(folder[0] ? folder : ".");
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        pid_t writer = writer_of(entry->d_name, target);
+        char *path = writer && !is_alive(writer, entry->d_name)
+                         ? string_format("%s%s", folder, entry->d_name)
+                         : NULL;
+        if (path)
+            remove_left(path);
+        free(path);
+    }
+    if (dir)
+        closedir(dir);
+}
+
 /* The slot is taken before there is a file, so that a signal just after open() finds it. A file
    that is there already belongs to somebody else. */
 static int open_new(struct file_write *file)
@@ -137,8 +211,10 @@ static int open_new(struct file_write *file)
     int fd = open(file->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     int reason = errno;
     if (fd < 0) {
-        slot_give_back(file->slot);
+        slot_free(file->slot);
         file->slot = 0;
+    } else {
+        (void)flock(fd, LOCK_EX | LOCK_NB); /* see remove_left */
     }
     errno = reason;
     return fd;
@@ -146,9 +222,11 @@ static int open_new(struct file_write *file)
 
 static int open_sibling(struct file_write *file)
 {
-    enum { NAME_KEPT = 200, ATTEMPTS = 16 }; /* NAME_MAX is 255 */
+    enum { ATTEMPTS = 16 };
     char *folder = path_folder(file->path);
     int fd = -1;
+    if (folder)
+        sweep(folder, path_name(file->path));
     errno = ENOMEM;
     for (int attempt = 0; folder && attempt < ATTEMPTS && fd < 0; ++attempt) {
         char number[16] = "";
@@ -198,7 +276,9 @@ static int open_for_writing(struct file_write *file, const char *path)
     file->path = exists ? realpath(path, NULL) : string_copy(path);
     if (!file->path)
         return -1;
+    pthread_mutex_lock(&begin_lock);
     int fd = open_sibling(file);
+    pthread_mutex_unlock(&begin_lock);
     if (fd < 0) {
         free(file->temporary_path);
         file->temporary_path = NULL;
@@ -290,37 +370,4 @@ void file_write_abandon(struct file_write *file)
 bool file_exists(const char *path)
 {
     return access(path, F_OK) == 0;
-}
-
-const char *path_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-char *path_folder(const char *path)
-{
-    return string_format("%.*s", (int)(path_name(path) - path), path);
-}
-
-char *path_beside(const char *file, const char *relative)
-{
-    if (relative[0] == '/')
-        return string_copy(relative);
-    return string_format("%.*s%s", (int)(path_name(file) - file), file, relative);
-}
-
-void path_extension(const char *path, char *out, size_t out_bytes)
-{
-    if (out_bytes == 0)
-        return;
-    out[0] = 0;
-    const char *name = path_name(path);
-    const char *dot = strrchr(name, '.');
-    if (!dot || dot == name || strlen(dot + 1) >= out_bytes)
-        return; /* cut short it could look like another one */
-    size_t i = 0;
-    for (const char *c = dot + 1; *c; ++c, ++i)
-        out[i] = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);
-    out[i] = 0;
 }

@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "base/log.h"
+#include "base/path.h"
 #include "base/roots.h"
 
 /* *data is malloc'ed, with one zero byte behind its size; free() it. Errors are logged with the
@@ -21,7 +22,7 @@ WHIT_CHECK whit_result file_read(const struct log *log, const struct roots *root
 /* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
    `path`; abandon removes it. Exactly one of the two ends it; both accept a zeroed one. Files open
    when the process is interrupted are removed by file_abandon_all(), which is safe in a signal
-   handler. */
+   handler; those of a process that was killed by whoever writes the same path next. */
 struct file_write {
     FILE *stream;
     char *path;
@@ -36,12 +37,5 @@ void file_write_abandon(struct file_write *file);
 void file_abandon_all(void);
 
 bool file_exists(const char *path);
-/* Folder part of `path` with its slash, "" when there is none. Release with free(). */
-char *path_folder(const char *path);
-/* `relative` taken from the folder of `file`; absolute ones are kept. Release with free(). */
-char *path_beside(const char *file, const char *relative);
-/* Lower-case extension without the dot, "" when there is none. */
-void path_extension(const char *path, char *out, size_t out_bytes);
-const char *path_name(const char *path); /* behind the last slash */
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -272,6 +273,123 @@ static void second_interrupt_removes_files_and_ends(void **state)
     free(path);
 }
 
+/* The number of a process that is no more. */
+static pid_t ended_process(void)
+{
+    pid_t pid = fork();
+    if (pid == 0)
+        _exit(0);
+    assert_int_equal(waitpid(pid, NULL, 0), pid);
+    return pid;
+}
+
+static bool is_there(const char *path)
+{
+    struct stat info;
+    return lstat(path, &info) == 0;
+}
+
+/* Not beside and renamed, as put() does. */
+static void put_plain(const char *path, const char *text)
+{
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+/* Puts something at the name that process `writer` gives to an unfinished a.txt, with `end`. */
+static char *leave(pid_t writer, const char *end, const char *text)
+{
+    char *path = string_format("%s/.a.txt.%ld%s.tmp", folder, (long)writer, end);
+    put_plain(path, text);
+    return path;
+}
+
+static void files_of_killed_runs_are_swept(void **state)
+{
+    (void)state;
+    pid_t gone = ended_process();
+    char *path = in_folder("a.txt");
+    char *swept[] = {leave(gone, "", "half"), leave(gone, ".3", ""), leave(getpid(), "", "before")};
+    put(path, "whole");
+    for (size_t i = 0; i < sizeof swept / sizeof *swept; ++i) {
+        assert_false(is_there(swept[i]));
+        free(swept[i]);
+    }
+    assert_content(path, "whole");
+    assert_int_equal(entry_count(), 1);
+    free(path);
+}
+
+/* Of processes that live, of other names, of others, in use elsewhere, or no files at all. */
+static void nothing_else_is_swept(void **state)
+{
+    (void)state;
+    pid_t gone = ended_process();
+    char *path = in_folder("a.txt");
+    char *others[] = {leave(getppid(), "", "x"),
+                      leave(gone, ".x", "x"),
+                      leave(gone, "x", "x"),
+                      leave(gone, ".5", "locked"),
+                      leave(gone, ".6", "of another user"),
+                      string_format("%s/.a.txt.%ld.7.tmp", folder, (long)gone),
+                      string_format("%s/.a.txt.%ld.8.tmp", folder, (long)gone),
+                      string_format("%s/.b.txt.%ld.tmp", folder, (long)gone),
+                      string_format("%s/a.txt.%ld.tmp", folder, (long)gone)};
+    enum { LOCKED = 3, FOREIGN, LINK, PIPE, NAMED, COUNT = sizeof others / sizeof *others };
+    int lock = open(others[LOCKED], O_RDONLY);
+    assert_int_equal(flock(lock, LOCK_EX), 0);
+    bool has_foreign = chown(others[FOREIGN], 65534, (gid_t)-1) == 0; /* root only */
+    assert_int_equal(symlink("target", others[LINK]), 0);
+    assert_int_equal(mkfifo(others[PIPE], 0600), 0);
+    for (int i = NAMED; i < COUNT; ++i)
+        put_plain(others[i], "x");
+    put(path, "whole");
+    for (int i = 0; i < COUNT; ++i) {
+        if (i != FOREIGN || has_foreign)
+            assert_true(is_there(others[i]));
+        free(others[i]);
+    }
+    close(lock);
+    free(path);
+}
+
+/* Both are begun before either ends, in one process and in two. */
+static void two_writers_of_one_file(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"first", "second"};
+    char *path = in_folder("a.txt");
+    struct file_write files[2];
+    for (int last = 0; last < 2; ++last) {
+        for (int i = 0; i < 2; ++i) {
+            assert_int_equal(file_write_begin(NULL, path, &files[i]), WHIT_OK);
+            fputs(texts[i], files[i].stream);
+        }
+        assert_int_equal(file_write_commit(NULL, &files[!last]), WHIT_OK);
+        assert_content(path, texts[!last]);
+        assert_int_equal(file_write_commit(NULL, &files[last]), WHIT_OK);
+        assert_content(path, texts[last]);
+        assert_int_equal(entry_count(), 1);
+    }
+    int status;
+    assert_int_equal(file_write_begin(NULL, path, &files[0]), WHIT_OK);
+    pid_t pid = fork();
+    if (pid == 0) {
+        put(path, "other");
+        _exit(0);
+    }
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    assert_content(path, "other");
+    fputs("mine", files[0].stream);
+    assert_int_equal(file_write_commit(NULL, &files[0]), WHIT_OK);
+    assert_content(path, "mine");
+    assert_int_equal(entry_count(), 1);
+    free(path);
+}
+
 static void paths(void **state)
 {
     (void)state;
@@ -310,6 +428,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(read_refuses_with_one_message, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(second_interrupt_removes_files_and_ends, make_folder,
                                         remove_folder),
+        cmocka_unit_test_setup_teardown(files_of_killed_runs_are_swept, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(nothing_else_is_swept, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(two_writers_of_one_file, make_folder, remove_folder),
         cmocka_unit_test(paths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

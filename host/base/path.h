@@ -1,0 +1,15 @@
+/* Paths as text. */
+#ifndef BASE_PATH_H
+#define BASE_PATH_H
+
+#include <stddef.h>
+
+/* Folder part of `path` with its slash, "" when there is none. Release with free(). */
+char *path_folder(const char *path);
+/* `relative` taken from the folder of `file`; absolute ones are kept. Release with free(). */
+char *path_beside(const char *file, const char *relative);
+/* Lower-case extension without the dot, "" when there is none. */
+void path_extension(const char *path, char *out, size_t out_bytes);
+const char *path_name(const char *path); /* behind the last slash */
+
+#endif
