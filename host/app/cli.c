@@ -162,6 +162,15 @@ static void put(const char *text)
     (void)written;
 }
 
+void cli_put_end(const char *kind, const char *why)
+{
+    put(kind);
+    put(why);
+    put(", ");
+    put(written_text);
+    put("\n");
+}
+
 /* The work did not stop in time: it may be inside a driver or a compiler. */
 static void on_alarm(int number)
 {
@@ -171,9 +180,8 @@ static void on_alarm(int number)
         ;
     /* Else it was about to leave, or a time limit has been said by what obeyed it. */
     if (!end_said && (interrupt_signal || !error_said)) {
-        put(interrupt_signal ? "whit: interrupted, " : "whit: error: the time limit has passed, ");
-        put(written_text);
-        put("\n");
+        cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
+                    interrupt_signal ? "interrupted" : "the time limit has passed");
     }
     _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
@@ -239,6 +247,7 @@ void cli_catch_interrupts(void)
     struct sigaction before;
     if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
         sigaction(SIGHUP, &action, NULL); /* not under nohup */
+    cli_catch_ends();
 }
 
 void cli_limit_time(double seconds)

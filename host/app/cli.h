@@ -96,10 +96,15 @@ int cli_exit_of(whit_result result);
 
 /* ---- Interrupts and time limits ---- */
 
-/* Set by SIGINT and SIGTERM. Should the work not have stopped a moment later, the handler ends the
-   process, with all unfinished files removed. */
+/* Set by SIGINT, SIGTERM and SIGHUP. Should the work not have stopped a moment later, the handler
+   ends the process, with all unfinished files removed. */
 extern volatile bool cli_cancel;
 void cli_catch_interrupts(void);
+/* SIGPIPE ends the process without a word and without unfinished files. A crash for want of memory
+   or descriptors is an error, any other one stays what it is. */
+void cli_catch_ends(void);
+/* For signal handlers: KIND WHY, and what was written. */
+void cli_put_end(const char *kind, const char *why);
 /* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
    was written. */
 void cli_set_written(uint32_t written, uint32_t count);

@@ -57,6 +57,12 @@ typedef struct whit_refused {
 /* A short name for a result, for messages: "bad input". Never NULL. */
 const char *whit_result_name(whit_result result);
 
+/* What this process has run out of at this moment, by a limit of its own (`ulimit -v`, `ulimit -n`)
+   or the system's, for behind `: `: `room_bytes` of memory, or some descriptors; NULL: neither.
+   What drivers and libraries then fail with has other names, or they crash. Safe in signal
+   handlers. */
+const char *whit_shortage(uint64_t room_bytes);
+
 /* ---- Text that others wrote ---- */
 
 /* Names of files, materials and devices, and words of damaged files, may hold what steers a

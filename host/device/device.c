@@ -78,11 +78,12 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
         return WHIT_OK;
     if (device->lost)
         return WHIT_ERROR_DEVICE;
-    log_error(&device->log, "%s (%d) from %s at %s:%d", result_text(vk), (int)vk, expression,
-              path_name(file), line);
+    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
+    log_error(&device->log, "%s (%d) from %s at %s:%d%s%s", result_text(vk), (int)vk, expression,
+              path_name(file), line, lacks ? ": " : "", lacks ? lacks : "");
     if (vk == VK_ERROR_DEVICE_LOST)
         device->lost = true;
-    return result_map(vk);
+    return lacks ? WHIT_ERROR_MEMORY : result_map(vk);
 }
 
 void device_read_fault(struct device *device)

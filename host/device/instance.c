@@ -109,6 +109,17 @@ fail:
     return result;
 }
 
+/* A driver that cannot be loaded for want of memory or descriptors is there. */
+static whit_result refuse(struct device *device, const char *what)
+{
+    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
+    if (lacks)
+        log_error(&device->log, "no Vulkan driver could be loaded: %s", lacks);
+    else
+        log_error(&device->log, "%s: %s", what, install_driver);
+    return lacks ? WHIT_ERROR_MEMORY : WHIT_ERROR_NO_DEVICE;
+}
+
 static whit_result make_instance(struct device *device, uint32_t extensions,
                                  const char *const *names, uint32_t name_count,
                                  bool validation_features)
@@ -156,10 +167,8 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
     VkResult vk = VK_SUCCESS;
     if (device_may_call(device, "vkCreateInstance", &vk))
         vk = vkCreateInstance(&info, NULL, &device->instance);
-    if (vk == VK_ERROR_INCOMPATIBLE_DRIVER) {
-        log_error(&device->log, "no Vulkan driver: %s", install_driver);
-        return WHIT_ERROR_NO_DEVICE;
-    }
+    if (vk == VK_ERROR_INCOMPATIBLE_DRIVER)
+        return refuse(device, "no Vulkan driver");
     return device_check(device, vk, "vkCreateInstance", __FILE__, __LINE__);
 }
 
@@ -369,9 +378,7 @@ static whit_result list_physical(struct device *device, VkPhysicalDevice **handl
     if (*count > 0)
         VK_TRY(device, vkEnumeratePhysicalDevices(device->instance, count, *handles));
     if (*count == 0) {
-        log_error(&device->log, "no Vulkan device: no driver found its hardware; %s",
-                  install_driver);
-        result = WHIT_ERROR_NO_DEVICE;
+        result = refuse(device, "no Vulkan device: no driver found its hardware");
         goto fail;
     }
     for (uint32_t i = 0; i < *count; ++i)

@@ -129,7 +129,9 @@ bool device_fault(struct device *device, const char *expression);
 /* False when the call may not be made: *vk is then its result. Else *vk is what to give in place of
    VK_SUCCESS. */
 bool device_may_call(struct device *device, const char *expression, VkResult *vk);
-/* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. */
+/* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. What fails
+   with less left than a driver with its compiler takes fails for want of memory or descriptors. */
+#define DRIVER_ROOM_BYTES ((uint64_t)512 << 20)
 whit_result device_check(struct device *device, VkResult vk, const char *expression,
                          const char *file, int line);
 void device_name_object(struct device *device, VkObjectType type, uint64_t handle,

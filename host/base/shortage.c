@@ -1,0 +1,39 @@
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "base/whit_base.h"
+
+enum { ROOM_FILES = 16 }; /* as many as a driver may want at a time */
+
+static bool has_memory(size_t bytes)
+{
+    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return room != MAP_FAILED && munmap(room, bytes) == 0;
+}
+
+static bool has_files(void)
+{
+    int fds[ROOM_FILES], count = 0;
+    errno = 0;
+    while (count < ROOM_FILES && (fds[count] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0)
+        ++count;
+    bool has = errno != EMFILE && errno != ENFILE;
+    while (count > 0)
+        close(fds[--count]);
+    return has;
+}
+
+const char *whit_shortage(uint64_t room_bytes)
+{
+    int reason = errno;
+    const char *lacks = !has_memory((size_t)room_bytes) ? "out of memory"
+                        : !has_files()                  ? "too many open files"
+                                                        : NULL;
+    errno = reason;
+    return lacks;
+}
