@@ -1,5 +1,6 @@
 #include "base/foreign.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -70,7 +71,7 @@ static whit_result explain(enum child_end end, const struct child_limits *limits
         snprintf(reason, most, "loading was cancelled");
         return WHIT_ERROR_CANCELLED;
     case CHILD_NOT_STARTED:
-        snprintf(reason, most, "the %s's process could not be started", who);
+        snprintf(reason, most, "the %s's process could not be started: %s", who, strerror(errno));
         return WHIT_ERROR_MEMORY;
     case CHILD_OPEN:
         snprintf(reason, most, "the %s cannot be locked in here (%s), and that is required", who,

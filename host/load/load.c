@@ -17,6 +17,26 @@ static bool is_model(const char *extension)
     return false;
 }
 
+/* Errors name what is loaded, also where they are about a file that it names. */
+struct named_log {
+    const struct log *to;
+    const char *path;
+};
+
+static void name_error(void *user, whit_log_level level, const char *message)
+{
+    const struct named_log *named = user;
+    char path[1024], text[9216];
+    whit_text_show(named->path, path, sizeof path);
+    size_t length = strlen(path);
+    bool names = strncmp(message, path, length) == 0 && message[length] == ':';
+    if (!names && level == WHIT_LOG_ERROR) {
+        snprintf(text, sizeof text, "%s: %s", path, message);
+        message = text;
+    }
+    named->to->fn(named->to->user, level, message);
+}
+
 static whit_result read_into(struct scene *scene, const char *path,
                              const struct load_params *params)
 {
@@ -65,8 +85,13 @@ whit_result load_scene(const struct log *log, const char *path, const struct loa
     whit_result result = roots_init(&scene->roots, path);
     for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
+    struct named_log named = {log, path};
+    if (log && log->fn)
+        scene->log = (struct log){.fn = name_error, .user = &named, .level = log->level};
     if (result == WHIT_OK)
         result = read_into(scene, path, params);
+    if (log)
+        scene->log = *log;
     tell_refused(&scene->roots, params);
     if (result == WHIT_OK)
         result = scene_freeze(scene);

@@ -18,6 +18,8 @@ enum fault_calls {
     FAULT_CALLS_VULKAN = 4, /* functions that return a VkResult; these fail with `code` */
     FAULT_CALLS_CLOCK = 8,  /* readings of the monotonic clock */
     FAULT_CALLS_ALL = 15,
+    FAULT_CALLS_READ = 16, /* files that are read or looked at, and child processes; these fail with
+                              the errno `code` */
 };
 
 enum fault_event {

@@ -2,6 +2,7 @@
    raised before it, or the clock jumps (fault.h). Only calls from the program's own code count, and
    calls from libraries that are named: drivers get what they ask for. */
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <execinfo.h>
@@ -13,7 +14,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -345,6 +349,19 @@ static bool is_file(FILE *stream)
     return stream && stream != stdout && stream != stderr && fileno(stream) >= 0;
 }
 
+static bool unreadable(uintptr_t caller, const char *what)
+{
+    bool fails_now = fails(FAULT_CALLS_READ, caller, what);
+    if (fails_now)
+        errno = shared->code;
+    return fails_now;
+}
+
+static bool cannot_open(int flags, uintptr_t caller, const char *what)
+{
+    return flags & O_CREAT ? disk_full(caller, what) : unreadable(caller, what);
+}
+
 int open(const char *path, int flags, ...)
 {
     typedef int (*fn)(const char *, int, ...);
@@ -353,7 +370,25 @@ int open(const char *path, int flags, ...)
     va_start(args, flags);
     mode_t mode = flags & O_CREAT ? va_arg(args, mode_t) : 0;
     va_end(args);
-    return (flags & O_CREAT) && disk_full(CALLER, "open") ? -1 : next(path, flags, mode);
+    return cannot_open(flags, CALLER, "open") ? -1 : next(path, flags, mode);
+}
+
+int openat(int folder, const char *path, int flags, ...)
+{
+    typedef int (*fn)(int, const char *, int, ...);
+    NEXT(fn, "openat");
+    va_list args;
+    va_start(args, flags);
+    mode_t mode = flags & O_CREAT ? va_arg(args, mode_t) : 0;
+    va_end(args);
+    return cannot_open(flags, CALLER, "openat") ? -1 : next(folder, path, flags, mode);
+}
+
+ssize_t write(int file, const void *data, size_t bytes)
+{
+    typedef ssize_t (*fn)(int, const void *, size_t);
+    NEXT(fn, "write");
+    return file > STDERR_FILENO && disk_full(CALLER, "write") ? -1 : next(file, data, bytes);
 }
 
 size_t fwrite(const void *data, size_t bytes, size_t count, FILE *stream)
@@ -397,6 +432,54 @@ int rename(const char *from, const char *to)
     typedef int (*fn)(const char *, const char *);
     NEXT(fn, "rename");
     return disk_full(CALLER, "rename") ? -1 : next(from, to);
+}
+
+int renameat(int from_folder, const char *from, int to_folder, const char *to)
+{
+    typedef int (*fn)(int, const char *, int, const char *);
+    NEXT(fn, "renameat");
+    return disk_full(CALLER, "renameat") ? -1 : next(from_folder, from, to_folder, to);
+}
+
+/* ---- Files that are read, folders, and what child processes are made of ---- */
+
+#define READ(result, name, parameters, arguments, failed)                                          \
+    result name parameters                                                                         \
+    {                                                                                              \
+        typedef result(*fn) parameters;                                                            \
+        NEXT(fn, #name);                                                                           \
+        return unreadable(CALLER, #name) ? (failed) : next arguments;                              \
+    }
+
+READ(ssize_t, read, (int file, void *data, size_t bytes), (file, data, bytes), -1)
+READ(int, stat, (const char *path, struct stat *out), (path, out), -1)
+READ(int, lstat, (const char *path, struct stat *out), (path, out), -1)
+READ(int, fstat, (int file, struct stat *out), (file, out), -1)
+READ(int, fstatat, (int folder, const char *path, struct stat *out, int flags),
+     (folder, path, out, flags), -1)
+READ(int, access, (const char *path, int how), (path, how), -1)
+READ(char *, realpath, (const char *path, char *out), (path, out), NULL)
+READ(DIR *, opendir, (const char *path), (path), NULL)
+READ(DIR *, fdopendir, (int folder), (folder), NULL)
+READ(FILE *, fopen, (const char *path, const char *how), (path, how), NULL)
+READ(FILE *, fdopen, (int file, const char *how), (file, how), NULL)
+READ(int, flock, (int file, int how), (file, how), -1)
+READ(int, memfd_create, (const char *name, unsigned flags), (name, flags), -1)
+READ(int, pipe, (int ends[2]), (ends), -1)
+READ(int, pipe2, (int ends[2], int flags), (ends, flags), -1)
+READ(pid_t, fork, (void), (), -1)
+READ(int, socket, (int domain, int type, int protocol), (domain, type, protocol), -1)
+READ(void *, mmap, (void *at, size_t bytes, int how, int flags, int file, off_t offset),
+     (at, bytes, how, flags, file, offset), MAP_FAILED)
+
+size_t fread(void *data, size_t bytes, size_t count, FILE *stream)
+{
+    typedef size_t (*fn)(void *, size_t, size_t, FILE *);
+    NEXT(fn, "fread");
+    if (!is_file(stream) || !unreadable(CALLER, "fread"))
+        return next(data, bytes, count, stream);
+    stream->_flags |= _IO_ERR_SEEN;
+    return 0;
 }
 
 /* ---- Vulkan ---- */

@@ -7,10 +7,12 @@
    - each output is the old one, or the whole new one, and as many are new as it says; no other file
      is there;
    - all that the program itself allocated was given back, unless it had to end at once;
+   - killed, it leaves whole outputs, and nothing that the run behind it does not remove;
    - after a signal its timer ends it soon, and later only where it keeps what it has measured;
    - it went on for at most as many submissions to a queue as are allowed (--submits);
    - where it went well nevertheless, the outputs are those of a run without a fault; the viewer
      shows the pictures of such a run, or says why not (--stdout pictures).
+   --cache cold: each run has an empty cache, so that all that is kept there is written.
    --runs N: at most so many runs, evenly spread over all calls. WHIT_TEST_OFFSET, a whole number,
    says which of them: as many successive numbers as the stride is cover all calls, and then the
    next fault in turn. --every N: each N-th call, with each of the faults. The run without a fault
@@ -50,12 +52,19 @@ struct fault {
 static const struct fault faults[] = {
     {"memory", FAULT_CALLS_MEMORY, FAULT_FAILS, 0, 0, 2, NULL, false},
     {"write", FAULT_CALLS_WRITE, FAULT_FAILS, 0, 0, 2, "cannot write", false},
+    /* An output is looked at too. Caches that cannot be read are made anew. */
+    {"read", FAULT_CALLS_READ, FAULT_FAILS, EIO, 0, 2, "cannot write", false},
+    {"descriptors", FAULT_CALLS_READ, FAULT_FAILS, EMFILE, 0, 2, "cannot write", false},
+    /* Another run then finds what it left. */
+    {"kill", FAULT_CALLS_WRITE, FAULT_SIGNAL, SIGKILL, 0, 0, NULL, true},
+    {"pipe", FAULT_CALLS_WRITE, FAULT_SIGNAL, SIGPIPE, 0, 0, NULL, true},
     {"host-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -1, 0, 2, "VK_ERROR_OUT_OF_HOST", false},
     {"device-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -2, 0, 2, "VK_ERROR_OUT_OF_DEVICE", false},
     {"lost-device", FAULT_CALLS_VULKAN, FAULT_FAILS, -4, 0, 3, "VK_ERROR_DEVICE_LOST", false},
     /* Ctrl+C: the program ends by itself. */
     {"int", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, 0, 130, "interrupted", false},
     {"term", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGTERM, 0, 143, "interrupted", false},
+    {"hup", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGHUP, 0, 129, "interrupted", false},
     /* It has not ended by itself when its time to do so is over. */
     {"int-late", FAULT_CALLS_ALL, FAULT_SIGNAL, SIGINT, SIGALRM, 130, "interrupted", true},
     /* A second Ctrl+C. */
@@ -81,6 +90,7 @@ struct sweep {
     bool pictures;         /* it prints states of the viewer: see judge_states */
     bool figures, reports; /* what it measures is other in each run: see is_whole */
     bool may_leak, validated;
+    bool cold; /* Each run has a cache folder of its own, which is empty at first. */
     struct content printed;
     const struct fault *faults[FAULTS_MOST], *fault; /* fault: of this run */
     uint32_t fault_count;
@@ -88,8 +98,16 @@ struct sweep {
     char **command;
     uint32_t runs, fired, failed, fine, said, defects; /* said: fine, but a picture is missing */
     uint32_t kept;    /* reports of what was measured before the end */
+    uint32_t left;    /* killed runs that left an unfinished file */
     uint32_t submits; /* the most that a run had after its event */
 };
+
+/* The signal that ends the program without a word; 0: it exits. */
+static int deadly(const struct fault *fault)
+{
+    bool is_deadly = fault->code == SIGKILL || fault->code == SIGPIPE;
+    return is_deadly && fault->event == FAULT_SIGNAL ? fault->code : 0;
+}
 
 static void stop(const char *what)
 {
@@ -130,6 +148,12 @@ static void lay_out(const struct sweep *sweep)
     }
 }
 
+static void empty_cache(const struct sweep *sweep)
+{
+    if (sweep->cold && system("rm -rf ../cache && mkdir ../cache") != 0)
+        stop("../cache");
+}
+
 static void run_child(const struct sweep *sweep, bool validated)
 {
     char number[16], preload[4096];
@@ -145,6 +169,9 @@ static void run_child(const struct sweep *sweep, bool validated)
     setenv("LD_PRELOAD", preload, 1);
     if (!validated)
         unsetenv("WHIT_VALIDATION");
+    char *cache = sweep->cold ? realpath("../cache", NULL) : NULL;
+    if (cache)
+        setenv("XDG_CACHE_HOME", cache, 1);
     alarm(RUN_LIMIT_S);
     execvp(sweep->command[0], sweep->command);
     _exit(126);
@@ -228,6 +255,8 @@ static const char *judge_end(const struct sweep *sweep, int status, const char *
     const struct fault *fault = sweep->fault;
     bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     text[0] = '\0';
+    if (WIFSIGNALED(status) && WTERMSIG(status) == deadly(fault) && !errors[0])
+        return NULL;
     if (WIFSIGNALED(status))
         snprintf(text, sizeof text, "it died of signal %d", WTERMSIG(status));
     else if (!fine && WEXITSTATUS(status) != fault->expect)
@@ -251,7 +280,8 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
     char stray[256];
     struct fault_shared *shared = sweep->shared;
     uint32_t submits = atomic_load(&shared->submits_later);
-    bool is_signal = sweep->fault->event == FAULT_SIGNAL && atomic_load(&shared->fired) > 0;
+    bool is_signal = sweep->fault->event == FAULT_SIGNAL && !deadly(sweep->fault) &&
+                     atomic_load(&shared->fired) > 0;
     const char *end = judge_end(sweep, status, errors);
     if (find_stray(sweep, stray, sizeof stray))
         snprintf(text, sizeof text, "the file %s is left", stray);
@@ -433,14 +463,42 @@ static void show(const struct sweep *sweep, uint32_t at, const char *defect, con
     printf(": %s\n%.600s", defect, errors);
 }
 
+static bool has_unfinished(void)
+{
+    bool found = false;
+    DIR *folder = opendir(".");
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        size_t length = strlen(entry->d_name);
+        found |= entry->d_name[0] == '.' && length > 4 &&
+                 strcmp(entry->d_name + length - 4, ".tmp") == 0;
+    }
+    if (folder)
+        closedir(folder);
+    return found;
+}
+
+/* A killed run leaves whole files, and unfinished ones under names of their own. The run behind it
+   is then judged, and may leave nothing. What is wrong with the first; NULL: nothing. */
+static const char *run_again(struct sweep *sweep, const struct fault *fault, int *status)
+{
+    bool killed = WIFSIGNALED(*status) && WTERMSIG(*status) == SIGKILL;
+    const char *defect = killed ? judge_outputs(sweep, false, "") : NULL;
+    sweep->left += killed && has_unfinished();
+    if (killed)
+        *status = run_once(sweep, fault, 0, sweep->validated);
+    return defect;
+}
+
 static void check_run(struct sweep *sweep, const struct fault *fault, uint32_t at)
 {
+    empty_cache(sweep);
     int status = run_once(sweep, fault, at, sweep->validated);
+    const char *first = deadly(fault) == SIGKILL ? run_again(sweep, fault, &status) : NULL;
     struct content errors = read_whole("../stderr");
     bool fired = atomic_load(&sweep->shared->fired) > 0;
     bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     const char *text = errors.data ? errors.data : "";
-    const char *defect = judge(sweep, status, text);
+    const char *defect = first ? first : judge(sweep, status, text);
     if (!defect)
         defect = judge_outputs(sweep, fine, text);
     if (!defect && !fired && !fine)
@@ -466,6 +524,7 @@ static void stop_without_fault(const char *defect, const char *errors)
 /* The run that all others are held against. */
 static void run_without_fault(struct sweep *sweep)
 {
+    empty_cache(sweep);
     int status = run_once(sweep, sweep->faults[0], 0, true);
     struct content errors = read_whole("../stderr");
     const char *text = errors.data ? errors.data : "";
@@ -485,6 +544,7 @@ static void run_without_fault(struct sweep *sweep)
 /* Of a run as those with a fault are. All faults of a sweep are at the same kinds of calls. */
 static uint32_t count_calls(struct sweep *sweep)
 {
+    empty_cache(sweep);
     int status = run_once(sweep, sweep->faults[0], 0, sweep->validated);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         stop_without_fault("it does not work without validation", "");
@@ -535,6 +595,8 @@ static void remove_folder(const struct sweep *sweep, const char *folder)
         snprintf(path, sizeof path, "../%s", names[i]);
         unlink(path);
     }
+    if (sweep->cold && system("rm -rf ../cache") != 0)
+        stop("../cache");
     if (chdir("/") == 0) {
         char inner[64];
         snprintf(inner, sizeof inner, "%s/work", folder);
@@ -603,6 +665,8 @@ static bool read_option(struct sweep *sweep, const char *name, const char *value
         sweep->may_leak = strcmp(value, "ignore") == 0;
     else if (strcmp(name, "--validated") == 0)
         sweep->validated = strcmp(value, "yes") == 0;
+    else if (strcmp(name, "--cache") == 0)
+        sweep->cold = strcmp(value, "cold") == 0;
     else if (strcmp(name, "--step-ms") == 0)
         sweep->shared->step_ns = 1000000 * atoll(value);
     else if (strcmp(name, "--outputs") == 0) {
@@ -638,6 +702,8 @@ static void print_sum(const struct sweep *sweep)
         printf(", %u reports were kept", sweep->kept);
     if (sweep->faults[0]->event != FAULT_FAILS)
         printf("; at most %u submissions after the event", sweep->submits);
+    if (deadly(sweep->faults[0]) == SIGKILL)
+        printf("; %u left an unfinished file for the next run", sweep->left);
     printf("\n");
 }
 
@@ -664,6 +730,8 @@ int main(int argc, char **argv)
     remove_folder(&sweep, folder);
     print_sum(&sweep);
     /* Few runs may all go well; all of them may not. */
-    return sweep.defects > 0 || sweep.fired == 0 || (sweep.reports && sweep.kept == 0) ||
-           (sweep.every == 1 && sweep.failed + sweep.said == 0);
+    bool kills = deadly(sweep.faults[0]) == SIGKILL;
+    return sweep.defects > 0 || (kills ? sweep.left == 0 : sweep.fired == 0) ||
+           (sweep.reports && sweep.kept == 0) ||
+           (sweep.every == 1 && !kills && sweep.failed + sweep.said == 0);
 }
