@@ -164,6 +164,9 @@ static void put(const char *text)
 
 void cli_put_end(const char *kind, const char *why)
 {
+    /* Else it was about to leave, or what went wrong has been said. */
+    if (end_said || (error_said && !interrupt_signal))
+        return;
     put(kind);
     put(why);
     put(", ");
@@ -178,11 +181,8 @@ static void on_alarm(int number)
     whit_file_abandon_all();
     while (atomic_flag_test_and_set(&reason_lock))
         ;
-    /* Else it was about to leave, or a time limit has been said by what obeyed it. */
-    if (!end_said && (interrupt_signal || !error_said)) {
-        cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
-                    interrupt_signal ? "interrupted" : "the time limit has passed");
-    }
+    cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
+                interrupt_signal ? "interrupted" : "the time limit has passed");
     _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
 

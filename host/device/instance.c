@@ -68,6 +68,15 @@ fail:
     return result;
 }
 
+/* What is not found for want of memory or descriptors may be there. */
+static whit_result refuse(struct device *device, const char *what, const char *why,
+                          whit_result result)
+{
+    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
+    log_error(&device->log, "%s: %s", what, lacks ? lacks : why);
+    return lacks ? WHIT_ERROR_MEMORY : result;
+}
+
 static whit_result find_validation(struct device *device)
 {
     whit_result result = WHIT_OK;
@@ -83,13 +92,9 @@ static whit_result find_validation(struct device *device)
     VK_TRY(device, vkEnumerateInstanceLayerProperties(&count, list));
     for (uint32_t i = 0; i < count; ++i)
         found |= strcmp(list[i].layerName, validation_layer) == 0;
-    if (!found) {
-        log_error(&device->log,
-                  "validation was asked for, but %s is not installed (Debian: "
-                  "vulkan-validationlayers)",
-                  validation_layer);
-        result = WHIT_ERROR_DEVICE;
-    }
+    if (!found)
+        result = refuse(device, "validation was asked for, but its layer cannot be had",
+                        "install it (Debian: vulkan-validationlayers)", WHIT_ERROR_DEVICE);
 fail:
     free(list);
     return result;
@@ -107,17 +112,6 @@ static whit_result check_loader(struct device *device)
     }
 fail:
     return result;
-}
-
-/* A driver that cannot be loaded for want of memory or descriptors is there. */
-static whit_result refuse(struct device *device, const char *what)
-{
-    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
-    if (lacks)
-        log_error(&device->log, "no Vulkan driver could be loaded: %s", lacks);
-    else
-        log_error(&device->log, "%s: %s", what, install_driver);
-    return lacks ? WHIT_ERROR_MEMORY : WHIT_ERROR_NO_DEVICE;
 }
 
 static whit_result make_instance(struct device *device, uint32_t extensions,
@@ -168,7 +162,8 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
     if (device_may_call(device, "vkCreateInstance", &vk))
         vk = vkCreateInstance(&info, NULL, &device->instance);
     if (vk == VK_ERROR_INCOMPATIBLE_DRIVER)
-        return refuse(device, "no Vulkan driver");
+        return refuse(device, "no Vulkan driver could be loaded", install_driver,
+                      WHIT_ERROR_NO_DEVICE);
     return device_check(device, vk, "vkCreateInstance", __FILE__, __LINE__);
 }
 
@@ -378,7 +373,8 @@ static whit_result list_physical(struct device *device, VkPhysicalDevice **handl
     if (*count > 0)
         VK_TRY(device, vkEnumeratePhysicalDevices(device->instance, count, *handles));
     if (*count == 0) {
-        result = refuse(device, "no Vulkan device: no driver found its hardware");
+        result = refuse(device, "no Vulkan device, no driver found its hardware", install_driver,
+                        WHIT_ERROR_NO_DEVICE);
         goto fail;
     }
     for (uint32_t i = 0; i < *count; ++i)

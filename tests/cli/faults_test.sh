@@ -1,0 +1,230 @@
+#!/bin/sh
+# What lacks around the program, and what is sent to it: sh faults_test.sh WHIT SCENES MODELS [long].
+# MODELS is a folder with model.obj and the files that it names. docs/reliability.md lists it all.
+. "$(dirname "$0")/common.sh"
+MODELS=$(cd "$3" && pwd)
+LONG=${4:-}
+mkdir "$OUT/files"
+cd "$OUT/files" || exit 1
+cp "$MODELS"/model.* .
+small="--size 16x16 --quiet"
+
+# skip WHAT: says what could not be tried here.
+skip() {
+    echo "skipped $1"
+}
+
+# judge WHAT: an error is one line of whit's, with exit code 2; counts these in $errors.
+judge() {
+    case $status in
+    0) ;;
+    127) # No program as yet: it could not be loaded itself.
+        check "$1: that is the system's" grep -q "error while loading shared" "$OUT/stderr" ;;
+    *)
+        errors=$((errors + 1))
+        check "$1: exit code 2 (got $status)" test "$status" -eq 2
+        check "$1: one error" test "$(grep -c "^whit: error: " "$OUT/stderr")" -eq 1
+        check "$1: says $2" grep -qi "^whit: error: .*$2" "$OUT/stderr" ;;
+    esac
+}
+
+# ---- Few descriptors ----
+
+# with_files MOST COMMAND...: whit has so many descriptors, the three first ones among them.
+with_files() (
+    exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-
+    ulimit -n "$1"
+    shift
+    exec "$WHIT" "$@"
+) >"$OUT/stdout" 2>"$OUT/stderr"
+
+errors=0
+for most in 4 5 6 7 8; do
+    # shellcheck disable=SC2086
+    for command in "scene model.obj" "render model.gltf -o a.pfm $small"; do
+        with_files $most $command
+        status=$?
+        judge "$command with $most descriptors" "too many open files"
+    done
+done
+check "the last has enough" test $status -eq 0
+check "the first have not" test $errors -gt 2
+with_files 4 scene model.obj
+check "what cannot be opened names the model too" \
+    grep -q "^whit: error: model.obj: .*: Too many open files" "$OUT/stderr"
+rm -f a.pfm
+
+# ---- Little memory ----
+
+# with_memory KBYTES COMMAND...
+with_memory() (
+    ulimit -v "$1"
+    shift
+    exec "$WHIT" "$@"
+) >"$OUT/stdout" 2>"$OUT/stderr"
+
+# little_memory FROM STEP TO COMMAND...: in MB.
+little_memory() {
+    at=$1 step=$2 to=$3
+    shift 3
+    while [ "$at" -le "$to" ]; do
+        with_memory "${at}000" "$@"
+        status=$?
+        judge "$* in $at MB" "memory"
+        at=$((at + step))
+    done
+}
+errors=0
+if [ "$LONG" ]; then
+    for command in "render $SCENES/cube.json -o a.pfm $small" "render model.obj -o a.pfm $small" \
+        "render $SCENES/default.json -o a.pfm --size 320x240 --quiet" \
+        "trace $SCENES/swarm.json --rays $MODELS/one.rays -o a.pfm --quiet"; do
+        # shellcheck disable=SC2086
+        little_memory 30 15 900 $command
+        check "$command: the last has enough" test $status -eq 0
+    done
+    little_memory 30 1 120 scene model.obj
+    little_memory 30 1 120 scene "$SCENES/swarm.json"
+    little_memory 30 2 200 bvh "$SCENES/swarm.json" --no-trace --runs 1
+else
+    # Too little for a driver; a driver that crashes, or some that do.
+    # shellcheck disable=SC2086
+    little_memory 150 120 390 render "$SCENES/cube.json" -o a.pfm $small
+    little_memory 40 20 80 scene model.obj
+fi
+check "some have too little" test $errors -gt 1
+rm -f a.pfm
+
+# ---- No space, no permission, no HOME, no /tmp ----
+
+# in_mounts COMMAND: as root of file systems of its own; FOLDER /mnt is there to mount on.
+in_mounts() {
+    unshare -rm sh -c "$1" >"$OUT/stdout" 2>"$OUT/stderr" 9<"$WHIT"
+}
+if in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt"; then
+    in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt && echo old >/mnt/t &&
+        $WHIT scene $SCENES/default.json --triangles /mnt/t --quiet
+        test \$? -eq 2 && test \"\$(ls -A /mnt)\" = t && test \"\$(cat /mnt/t)\" = old"
+    check "a full disk: exit code 2, the old file and nothing else" test $? -eq 0
+    check "a full disk: says so" \
+        grep -q "^whit: error: /mnt/t: cannot write: No space left on device" "$OUT/stderr"
+    # The folder stays the current one when another one is mounted over /tmp.
+    in_mounts "unset TMPDIR; mount -t tmpfs -o ro tmpfs /tmp &&
+        /proc/self/fd/9 render model.obj -o a.pfm $small"
+    check "no /tmp: a picture" test $? -eq 0 -a -s a.pfm
+    check "no /tmp: nothing to say" test ! -s "$OUT/stderr"
+else
+    skip "a full disk, no /tmp: there are no mounts to be had"
+fi
+TMPDIR=/nowhere
+export TMPDIR
+expect 0 "TMPDIR leads nowhere" scene model.obj
+unset TMPDIR
+rm -f a.pfm
+
+# Root writes everywhere, unless it gives that up.
+mkdir read-only
+echo old >read-only/old
+echo old >kept
+chmod a-w read-only kept
+plain=
+[ -w read-only ] && plain="setpriv --bounding-set=-dac_override,-dac_read_search"
+if $plain test ! -w read-only 2>/dev/null; then
+    for file in read-only/new read-only/old kept; do
+        $plain "$WHIT" scene "$SCENES/cube.json" --triangles $file --quiet 2>"$OUT/stderr"
+        check "$file: exit code 2" test $? -eq 2
+        check "$file: says why" \
+            grep -q "^whit: error: $file: cannot write: Permission denied" "$OUT/stderr"
+    done
+    check "nothing is changed" test "$(ls -A read-only; cat read-only/old kept)" = "old
+old
+old"
+else
+    skip "a folder without permission: root may do all"
+fi
+chmod u+w read-only
+rm -rf read-only kept
+
+for home in "" /nowhere /dev/null; do
+    (
+        unset XDG_CACHE_HOME HOME
+        [ "$home" ] && export HOME="$home"
+        # shellcheck disable=SC2086
+        exec "$WHIT" render "$SCENES/cube.json" -o a.pfm $small
+    ) 2>"$OUT/stderr"
+    check "HOME ${home:-unset}: a picture" test $? -eq 0 -a -s a.pfm
+    rm -f a.pfm
+done
+
+# ---- SIGPIPE ----
+
+# into_nothing COMMAND...: its standard output is a pipe that nobody reads any more.
+mkfifo pipe
+into_nothing() {
+    exec 5<>pipe 6>pipe 5<&-
+    "$WHIT" "$@" >&6 2>"$OUT/stderr" 6>&-
+    status=$?
+    exec 6>&-
+}
+for command in "scene $SCENES/default.json --all" "scene model.obj --json" "--help"; do
+    # shellcheck disable=SC2086
+    into_nothing $command
+    check "$command | head: ends of SIGPIPE (got $status)" test $status -eq 141
+    check "$command | head: without a word" test ! -s "$OUT/stderr"
+done
+trap '' PIPE
+into_nothing scene model.obj
+trap - PIPE
+check "SIGPIPE ignored: exit code 2 (got $status)" test $status -eq 2
+check "SIGPIPE ignored: one error" \
+    test "$(cat "$OUT/stderr")" = "whit: error: standard output: cannot write: Broken pipe"
+
+# ---- SIGHUP, and two writers: whit waits for rays while it is sent something ----
+
+# begin_trace NUMBER: whit reads rays from a pipe, which is open at descriptor 7 or 8 then.
+begin_trace() {
+    mkfifo "rays$1"
+    "$WHIT" trace "$SCENES/cube.json" --rays "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
+}
+echo old >hits
+for signal in HUP:129 TERM:143 INT:130; do
+    begin_trace 7
+    exec 7>rays7
+    kill -${signal%:*} $!
+    wait $!
+    status=$?
+    exec 7>&-
+    check "SIG${signal%:*}: exit code ${signal#*:} (got $status)" test $status -eq "${signal#*:}"
+    check "SIG${signal%:*}: says so" \
+        test "$(cat "$OUT/stderr")" = "whit: interrupted, nothing was written"
+    check "SIG${signal%:*}: the old file" test "$(cat hits)" = old
+    rm rays7
+done
+trap '' HUP # as nohup does
+begin_trace 7
+exec 7>rays7
+kill -HUP $!
+cat "$MODELS/one.rays" >&7
+exec 7>&-
+wait $!
+check "SIGHUP under nohup: goes on (got $?)" test $? -eq 0
+trap - HUP
+one=$(wc -c <hits)
+rm rays7
+
+begin_trace 7
+first=$!
+begin_trace 8
+exec 7>rays7 8>rays8
+cat "$MODELS/one.rays" >&7
+cat "$MODELS/one.rays" "$MODELS/one.rays" >&8
+exec 7>&- 8>&-
+wait $first
+check "two writers: the first succeeds (got $?)" test $? -eq 0
+wait $!
+check "two writers: the second succeeds (got $?)" test $? -eq 0
+size=$(wc -c <hits)
+check "two writers: one of the two, whole ($size)" test "$size" -eq "$one" -o "$size" -eq $((2 * one))
+rm -f hits rays* pipe model.*
+check "nothing is left" is_empty .
+finish
