@@ -35,6 +35,7 @@ static volatile sig_atomic_t progress_drawn;
 /* Held by the thread that says why the program ends: SIGALRM comes in any thread and says it too.
    A thread that holds it does not get that signal. */
 static atomic_flag reason_lock = ATOMIC_FLAG_INIT;
+static _Thread_local bool holds_reason;
 
 static void lock_reason(sigset_t *before)
 {
@@ -44,10 +45,12 @@ static void lock_reason(sigset_t *before)
     pthread_sigmask(SIG_BLOCK, &alarm, before);
     while (atomic_flag_test_and_set(&reason_lock))
         ;
+    holds_reason = true;
 }
 
 static void unlock_reason(const sigset_t *before)
 {
+    holds_reason = false;
     atomic_flag_clear(&reason_lock);
     pthread_sigmask(SIG_SETMASK, before, NULL);
 }
@@ -164,6 +167,9 @@ static void put(const char *text)
 
 void cli_put_end(const char *kind, const char *why)
 {
+    /* It may be what this thread was about to say that it crashed over. */
+    while (!holds_reason && atomic_flag_test_and_set(&reason_lock))
+        ;
     /* Else it was about to leave, or what went wrong has been said. */
     if (end_said || (error_said && !interrupt_signal))
         return;
@@ -179,8 +185,6 @@ static void on_alarm(int number)
 {
     (void)number;
     whit_file_abandon_all();
-    while (atomic_flag_test_and_set(&reason_lock))
-        ;
     cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
                 interrupt_signal ? "interrupted" : "the time limit has passed");
     _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);

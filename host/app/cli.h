@@ -103,7 +103,7 @@ void cli_catch_interrupts(void);
 /* SIGPIPE ends the process without a word and without unfinished files. A crash for want of memory
    or descriptors is an error, any other one stays what it is. */
 void cli_catch_ends(void);
-/* For signal handlers: KIND WHY, and what was written. */
+/* For signal handlers that end the process: KIND WHY, and what was written, unless it is said. */
 void cli_put_end(const char *kind, const char *why);
 /* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
    was written. */
