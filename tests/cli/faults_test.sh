@@ -184,6 +184,7 @@ check "SIGPIPE ignored: one error" \
 # begin_trace NUMBER: whit reads rays from a pipe, which is open at descriptor 7 or 8 then.
 begin_trace() {
     mkfifo "rays$1"
+    ulimit -c 0
     "$WHIT" trace "$SCENES/cube.json" --rays "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
 }
 echo old >hits
@@ -200,6 +201,16 @@ for signal in HUP:129 TERM:143 INT:130; do
     check "SIG${signal%:*}: the old file" test "$(cat hits)" = old
     rm rays7
 done
+# Without a shortage a crash is a crash.
+begin_trace 7
+exec 7>rays7
+kill -SEGV $!
+wait $! 2>/dev/null
+status=$?
+exec 7>&-
+check "SIGSEGV: dies of it (got $status)" test $status -eq 139
+check "SIGSEGV: without a word of whit's" test ! -s "$OUT/stderr"
+rm rays7
 trap '' HUP # as nohup does
 begin_trace 7
 exec 7>rays7

@@ -16,6 +16,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -147,6 +148,8 @@ static bool fails(enum fault_calls kind, uintptr_t caller, const char *what)
     }
     if (atomic_load(&must_stop) && strcmp(what, "vkQueueSubmit") == 0)
         atomic_fetch_add(&shared->submits_later, 1);
+    if (now && shared->event == FAULT_SIGNAL && shared->code == SIGSEGV)
+        setrlimit(RLIMIT_AS, &(struct rlimit){0}); /* It crashes for want of memory. */
     if (now && shared->event == FAULT_SIGNAL)
         raise(shared->code);
     if (now && shared->event == FAULT_CLOCK)

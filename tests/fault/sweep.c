@@ -58,6 +58,8 @@ static const struct fault faults[] = {
     /* Another run then finds what it left. */
     {"kill", FAULT_CALLS_WRITE, FAULT_SIGNAL, SIGKILL, 0, 0, NULL, true},
     {"pipe", FAULT_CALLS_WRITE, FAULT_SIGNAL, SIGPIPE, 0, 0, NULL, true},
+    /* A driver or a library got no memory, and did not look. */
+    {"crash", FAULT_CALLS_WRITE, FAULT_SIGNAL, SIGSEGV, 0, 2, "out of memory, ", true},
     {"host-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -1, 0, 2, "VK_ERROR_OUT_OF_HOST", false},
     {"device-memory", FAULT_CALLS_VULKAN, FAULT_FAILS, -2, 0, 2, "VK_ERROR_OUT_OF_DEVICE", false},
     {"lost-device", FAULT_CALLS_VULKAN, FAULT_FAILS, -4, 0, 3, "VK_ERROR_DEVICE_LOST", false},
@@ -107,6 +109,11 @@ static int deadly(const struct fault *fault)
 {
     bool is_deadly = fault->code == SIGKILL || fault->code == SIGPIPE;
     return is_deadly && fault->event == FAULT_SIGNAL ? fault->code : 0;
+}
+
+static bool is_interrupt(const struct fault *fault)
+{
+    return fault->event == FAULT_SIGNAL && fault->code != SIGSEGV && !deadly(fault);
 }
 
 static void stop(const char *what)
@@ -267,7 +274,7 @@ static const char *judge_end(const struct sweep *sweep, int status, const char *
     uint32_t reasons = count_of(errors, "whit: error: ") + interrupts;
     bool second = fault->then == SIGINT; /* says nothing, or what the first one had said */
     bool right = fine ? reasons == 0 : reasons == 1 || (second && reasons == 0);
-    if (!right || (!fine && fault->event == FAULT_SIGNAL && interrupts != reasons) ||
+    if (!right || (!fine && is_interrupt(fault) && interrupts != reasons) ||
         (!fine && !says_why(sweep, errors)))
         snprintf(text, sizeof text, "%u errors, exit code %d", reasons, WEXITSTATUS(status));
     return text[0] ? text : NULL;
@@ -280,8 +287,7 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
     char stray[256];
     struct fault_shared *shared = sweep->shared;
     uint32_t submits = atomic_load(&shared->submits_later);
-    bool is_signal = sweep->fault->event == FAULT_SIGNAL && !deadly(sweep->fault) &&
-                     atomic_load(&shared->fired) > 0;
+    bool is_signal = is_interrupt(sweep->fault) && atomic_load(&shared->fired) > 0;
     const char *end = judge_end(sweep, status, errors);
     if (find_stray(sweep, stray, sizeof stray))
         snprintf(text, sizeof text, "the file %s is left", stray);
