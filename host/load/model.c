@@ -162,11 +162,12 @@ static whit_result load_plain(struct scene *scene, const struct model_request *r
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size;
-    if (kind == IMPORT_PLY && !ply_repair(&data, &size)) {
-        free(data);
-        return WHIT_ERROR_MEMORY;
-    }
-    result = import(scene, request, kind, data, size, &block);
+    if (kind == IMPORT_PLY)
+        result = ply_check(&scene->log, request->path, data, size);
+    if (result == WHIT_OK && kind == IMPORT_PLY && !ply_repair(&data, &size))
+        result = WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = import(scene, request, kind, data, size, &block);
     free(data);
     if (result == WHIT_OK)
         result = add_block(scene, request, &block, &no_library, true);

@@ -1,5 +1,6 @@
 #include "load/ply.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +29,47 @@ static size_t find_data(const uint8_t *data, size_t size_bytes)
         at += bytes + 1;
     }
     return 0;
+}
+
+/* The number of "element NAME COUNT"; false for other lines. More than 2^64 are as many as that. */
+static bool read_count(const uint8_t *line, size_t bytes, unsigned long long *count)
+{
+    char text[256];
+    snprintf(text, sizeof text, "%.*s", (int)(bytes < sizeof text ? bytes : sizeof text),
+             (const char *)line);
+    return sscanf(text, " element %*s %llu", count) == 1;
+}
+
+whit_result ply_check(const struct log *log, const char *path, const uint8_t *data,
+                      size_t size_bytes)
+{
+    unsigned long long most = 0, count;
+    uint32_t number = 1, most_number = 0;
+    for (size_t at = 0; at < size_bytes; ++number) {
+        size_t bytes = 0;
+        while (at + bytes < size_bytes && data[at + bytes] != '\n' && data[at + bytes] != '\r')
+            ++bytes;
+        const uint8_t *line = data + at;
+        size_t blanks = 0;
+        while (blanks < bytes && (line[blanks] == ' ' || line[blanks] == '\t'))
+            ++blanks;
+        at += bytes + 1;
+        if (line[bytes] == '\r' && at < size_bytes && data[at] == '\n')
+            ++at;
+        if (read_count(line, bytes, &count) && count > most) {
+            most = count;
+            most_number = number;
+        }
+        if (!starts_with(line + blanks, bytes - blanks, "end_header"))
+            continue;
+        if (at > size_bytes || most <= size_bytes - at)
+            return WHIT_OK;
+        log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path,
+                  most_number, most, size_bytes - at);
+        return WHIT_ERROR_INPUT;
+    }
+    log_error(log, "%s:%u: the file ends within its header", path, number);
+    return WHIT_ERROR_INPUT;
 }
 
 bool ply_repair(uint8_t **data, size_t *size_bytes)
