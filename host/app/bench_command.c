@@ -119,7 +119,11 @@ static whit_result write_json(struct bench *bench, const char *name)
     document_put(root, "tables", bench->sections);
     bench->sections = NULL;
     char *text = document_line(root);
-    whit_result result = whit_file_write(bench->json, text, strlen(text), &cli_log);
+    whit_result result = WHIT_ERROR_MEMORY;
+    if (text)
+        result = whit_file_write(bench->json, text, strlen(text), &cli_log);
+    else
+        cli_error("out of memory");
     free(text);
     return result;
 }

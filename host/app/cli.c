@@ -312,11 +312,11 @@ int cli_finish_stdout(int status)
 
 int cli_print_json(json_t *value)
 {
-    if (!value) {
+    char *text = value ? document_lines(value) : NULL;
+    if (!text) {
         cli_error("out of memory");
         return EXIT_USAGE;
     }
-    char *text = document_lines(value);
     /* Through the buffer, which keeps what cannot be written: cli_finish_stdout then learns why. */
     for (const char *c = text; *c; ++c)
         putchar(*c);

@@ -194,7 +194,7 @@ whit_result cost_save_json(const struct cost_report *report, const char *scene, 
 void cost_keep(const struct cost_report *report, const char *name)
 {
     char *text = document_line(report_document(report, NULL, NULL));
-    if (report->complete)
+    if (text && report->complete)
         whit_cache_write(name, text, strlen(text), &cli_log);
     free(text);
 }

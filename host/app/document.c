@@ -139,15 +139,28 @@ void document_numbers(json_t *object, const char *key, const double *values, uin
     document_put(object, key, array);
 }
 
+/* Not by json_dumps: jansson 2.14 drops a key that it has no memory for, and goes on. The stream
+   remembers that. NULL: memory ran out. */
+static char *dump_all(const json_t *value, size_t flags)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    bool whole = to && value && json_dumpf(value, to, flags) == 0 && !ferror(to);
+    whole = to && fclose(to) == 0 && whole;
+    if (whole)
+        return text;
+    free(text);
+    return NULL;
+}
+
 /* JSON has the characters that steer a terminal in strings alone, where an escape says the same. */
 static char *dump(json_t *value, size_t flags)
 {
-    char *text = json_dumps(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
+    char *text = dump_all(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
     char *shown = text ? malloc(6 * strlen(text) + WHIT_SHOWN_BYTES) : NULL, *to = shown;
-    if (!shown)
-        out_of_memory();
     json_decref(value);
-    for (const char *from = text; *from; to += strlen(to)) {
+    for (const char *from = shown ? text : ""; *from; to += strlen(to)) {
         if (*from == '\n')
             from += sprintf(to, "\n");
         else
@@ -165,6 +178,10 @@ char *document_lines(json_t *value)
 whit_result document_save(json_t *value, const char *path)
 {
     char *text = document_lines(value);
+    if (!text) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
     cli_set_saving();
     whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
     free(text);

@@ -201,7 +201,8 @@ bool recipe_init(struct recipe *recipe, const struct job *job, const struct rend
     recipe->scene = strdup(cli_shown(job->scene_path));
     recipe->name = strdup(cli_shown(recipe->device.name));
     recipe->driver = strdup(cli_shown(recipe->device.driver));
-    if (!recipe->command || !recipe->scene || !recipe->name || !recipe->driver) {
+    if (!recipe->command || !recipe->options || !recipe->counters || !recipe->scene ||
+        !recipe->name || !recipe->driver) {
         cli_error("out of memory");
         recipe_finish(recipe);
         return false;
@@ -227,6 +228,8 @@ bool recipe_add_view(struct recipe *recipe, const struct cost_view *view,
     document_number(object, "mean", figures->mean);
     document_number(object, "most", figures->most);
     recipe->view = document_line(object);
+    if (!recipe->view)
+        cli_error("out of memory");
     add(recipe, "whit:view", recipe->view);
     return recipe->view != NULL;
 }
