@@ -108,6 +108,12 @@ static whit_result moments_init(const struct scene *scene, const struct scene_po
     return WHIT_OK;
 }
 
+/* Of -SOUP_CELLS/2 to SOUP_CELLS/2; of what is no number the first one. */
+static uint32_t cell_of(float place)
+{
+    return (uint32_t)fminf(fmaxf(place + 0.5f * SOUP_CELLS, 0.0f), SOUP_CELLS - 1);
+}
+
 /* The cell of a cube map. */
 static uint32_t direction_cell(const float p[3])
 {
@@ -116,11 +122,8 @@ static uint32_t direction_cell(const float p[3])
     uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (!(size[axis] > 0.0f))
         return 0;
-    float scale = 0.5f * SOUP_CELLS / size[axis];
-    uint32_t x = (uint32_t)(p[u] * scale + 0.5f * SOUP_CELLS),
-             y = (uint32_t)(p[v] * scale + 0.5f * SOUP_CELLS);
-    x = x < SOUP_CELLS ? x : SOUP_CELLS - 1;
-    y = y < SOUP_CELLS ? y : SOUP_CELLS - 1;
+    float scale = 0.5f * SOUP_CELLS / size[axis]; /* infinite where that is a denormal */
+    uint32_t x = cell_of(p[u] * scale), y = cell_of(p[v] * scale);
     return ((2 * axis + (p[axis] < 0.0f)) * SOUP_CELLS + y) * SOUP_CELLS + x;
 }
 
