@@ -7,10 +7,8 @@
 #include "base/array.h"
 #include "base/text.h"
 
-/* Transforms end in floats on the device, so must their inverses. */
-#define LARGEST_ENTRY 1e30
 /* That of shaders/bind/light.glsl, which takes no more of what arrives. */
-#define LIGHT_MOST    1e24f
+#define LIGHT_MOST 1e24f
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
 {
@@ -226,18 +224,6 @@ static struct still_node *still_nodes(const struct scene *scene)
     return still;
 }
 
-static bool usable_matrix(const struct affine *matrix)
-{
-    struct affine inverse;
-    if (!affine_is_finite(matrix) || !affine_invert(matrix, &inverse))
-        return false;
-    for (int i = 0; i < 12; ++i) {
-        if (fabs(matrix->m[i]) > LARGEST_ENTRY || fabs(inverse.m[i]) > LARGEST_ENTRY)
-            return false;
-    }
-    return true;
-}
-
 static bool keep_instance(struct scene *scene, uint32_t index, const struct still_node *still,
                           uint32_t *empty)
 {
@@ -252,7 +238,7 @@ static bool keep_instance(struct scene *scene, uint32_t index, const struct stil
             return true;
         matrix = affine_multiply(&still[instance->node].world, &matrix);
     }
-    if (usable_matrix(&matrix))
+    if (scene_can_place(&matrix))
         return true;
     scene_note(scene, SCENE_NOTE_WARNING, "instance %u `%s` dropped: its transform has no inverse",
                index, text_token(instance->name).text);

@@ -272,14 +272,30 @@ static void grow_bounds(struct scene_pose *pose, const struct affine *matrix,
     }
 }
 
+/* Transforms end in floats on the device, so must their inverses. */
+#define LARGEST_ENTRY 1e30
+
+bool scene_can_place(const struct affine *matrix)
+{
+    struct affine inverse;
+    if (!affine_is_finite(matrix) || !affine_invert(matrix, &inverse))
+        return false;
+    for (int i = 0; i < 12; ++i) {
+        if (fabs(matrix->m[i]) > LARGEST_ENTRY || fabs(inverse.m[i]) > LARGEST_ENTRY)
+            return false;
+    }
+    return true;
+}
+
 static whit_result pose_instances(const struct scene *scene, const struct affine *nodes,
                                   struct scene_pose *pose)
 {
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_instance *instance = &scene->instances[i];
-        struct affine matrix = instance_matrix(instance, nodes), inverse;
-        if (!affine_is_finite(&matrix) || !affine_invert(&matrix, &inverse)) {
-            log_error(&scene->log, "%s: instance %u `%s` has no invertible transform at %g s",
+        struct affine matrix = instance_matrix(instance, nodes);
+        if (!scene_can_place(&matrix)) {
+            log_error(&scene->log,
+                      "%s: instance %u `%s` has a transform without an inverse in range at %g s",
                       scene->name, i, text_token(instance->name).text, pose->time_s);
             return WHIT_ERROR_INPUT;
         }

@@ -322,8 +322,10 @@ struct scene_pose {
     double lo[3], hi[3];          /* bounds of all instances; lo > hi when empty */
 };
 
-/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance's matrix is singular
-   or not finite at that time (named in the log), WHIT_ERROR_MEMORY. */
+/* Whether floats have room for a transform of instances and its inverse. */
+bool scene_can_place(const struct affine *matrix);
+/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance cannot be placed at
+   that time (named in the log), WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
                                        struct scene_pose *pose);
 void scene_pose_finish(struct scene_pose *pose);

@@ -23,9 +23,9 @@ static float *copy_of(const float *values, size_t count)
 }
 
 /* A box below a moving node below a still one at x = 10. */
-static struct scene *moving_scene(enum scene_path path, enum scene_interpolation interpolation,
-                                  const float *times, uint32_t keys, const float *values,
-                                  size_t value_count)
+static struct scene *raw_scene(enum scene_path path, enum scene_interpolation interpolation,
+                               const float *times, uint32_t keys, const float *values,
+                               size_t value_count)
 {
     struct scene *scene = scene_begin(NULL, "test");
     uint32_t still = scene_put_node(scene, SCENE_NONE, 10, 0, 0);
@@ -37,7 +37,14 @@ static struct scene *moving_scene(enum scene_path path, enum scene_interpolation
                                                     .key_count = keys,
                                                     .times_s = copy_of(times, keys),
                                                     .values = copy_of(values, value_count)});
-    return scene_ready(scene);
+    return scene;
+}
+
+static struct scene *moving_scene(enum scene_path path, enum scene_interpolation interpolation,
+                                  const float *times, uint32_t keys, const float *values,
+                                  size_t value_count)
+{
+    return scene_ready(raw_scene(path, interpolation, times, keys, values, value_count));
 }
 
 static struct affine matrix_at(const struct scene *scene, double time_s)
@@ -125,6 +132,18 @@ static void rotation_between_equal_keys(void **state)
     struct affine matrix = matrix_at(scene, 0.5);
     assert_near(matrix.m[0], 1.0);
     assert_near(matrix.m[5], 1.0);
+    scene_destroy(scene);
+}
+
+/* Finite, and with an inverse; the scene is looked at at nine of its times before it is taken. */
+static void what_floats_cannot_place_is_refused(void **state)
+{
+    (void)state;
+    const float times[] = {0, 2}, near[] = {0, 0, 0, 4e29f, 0, 0}, far[] = {0, 0, 0, 4e30f, 0, 0};
+    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, near, 6);
+    scene_destroy(scene);
+    scene = raw_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, far, 6);
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
     scene_destroy(scene);
 }
 
@@ -230,6 +249,7 @@ int main(void)
         cmocka_unit_test(cubic_is_hermite),
         cmocka_unit_test(rotation_is_slerp_by_the_shorter_way),
         cmocka_unit_test(rotation_between_equal_keys),
+        cmocka_unit_test(what_floats_cannot_place_is_refused),
         cmocka_unit_test(vanishing_scale_keeps_an_inverse),
         cmocka_unit_test(unordered_times_are_dropped),
         cmocka_unit_test(lights_cameras_and_bounds_follow_their_nodes),
