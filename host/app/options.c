@@ -139,6 +139,8 @@ int cli_next(struct cli_reader *reader)
                        option ? option->value : "?");
         } else if (id == '?') {
             unknown_option(reader);
+        } else if (id == ID_HELP && reader->where) {
+            cli_misuse(reader, "--help is for the command line alone");
         } else if (id == ID_HELP) {
             cli_print_help(reader->command, stdout);
             reader->done = true;
