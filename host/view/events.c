@@ -1,5 +1,6 @@
 #include "view/events.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -136,7 +137,8 @@ static bool parse_button(const char *rest, struct view_event *event)
 static bool parse_pair(const char *rest, enum view_event_kind kind, struct view_event *event)
 {
     event->kind = kind;
-    return sscanf(rest, "%lf %lf", &event->x, &event->y) == 2;
+    return sscanf(rest, "%lf %lf", &event->x, &event->y) == 2 && isfinite(event->x) &&
+           isfinite(event->y);
 }
 
 static bool parse_path(const char *rest, enum view_event_kind kind, struct view_event *event)
@@ -220,7 +222,8 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     if (strcmp(verb, "char") == 0)
         return sscanf(rest, "%u", &event->code) == 1;
     event->kind = EVENT_WAIT;
-    return strcmp(verb, "wait") == 0 && sscanf(rest, "%lf", &event->x) == 1 && event->x >= 0.0;
+    return strcmp(verb, "wait") == 0 && sscanf(rest, "%lf", &event->x) == 1 && event->x >= 0.0 &&
+           isfinite(event->x);
 }
 
 bool events_from_line(const struct log *log, const char *file, uint32_t line, const char *text,
