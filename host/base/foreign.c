@@ -130,6 +130,8 @@ whit_result foreign_ask(const struct log *log, const struct child_limits *limits
     foreign_text(got.reason, sizeof got.reason, answer->reason, sizeof answer->reason);
     if (got.result == WHIT_OK)
         return WHIT_OK;
+    if (!answer->reason[0])
+        snprintf(answer->reason, sizeof answer->reason, "the %s gave no reason", limits->who);
     child_reply_free(reply);
     return got.result == WHIT_ERROR_MEMORY ? WHIT_ERROR_MEMORY : WHIT_ERROR_INPUT;
 }
