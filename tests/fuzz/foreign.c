@@ -219,12 +219,14 @@ static void damage(struct child_reply *written)
         written->size_bytes -= 1 + take() % written->size_bytes;
 }
 
+void (*fuzz_reply)(struct child_reply *reply);
+
 enum child_end __wrap_child_run(const struct child_limits *limits,
                                 int (*fn)(void *user, void *to, child_write write), void *user,
                                 struct child_reply *reply)
 {
     (void)limits;
-    enum child_end end = child_in_place(fn, user, reply, damage);
+    enum child_end end = child_in_place(fn, user, reply, fuzz_reply ? fuzz_reply : damage);
     free(stream.data);
     stream.data = NULL;
     stream.left = 0;

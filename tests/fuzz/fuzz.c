@@ -1,10 +1,15 @@
+/* nftw is POSIX and X/Open. */
+#define _GNU_SOURCE
 #include "fuzz.h"
 
+#include <ftw.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include <zlib.h>
 
 #include "accel/accel.h"
 #include "base/hash.h"
@@ -50,28 +55,33 @@ static struct {
     int count;
 } files;
 
+static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *place)
+{
+    (void)info, (void)kind, (void)place;
+    return remove(path);
+}
+
 static void remove_files(void)
 {
-    for (int i = 0; i < files.count; i++)
-        unlink(files.paths[i]);
-    rmdir(files.folder);
+    nftw(files.folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
 }
 
 /* In memory where the system has a place for that: a disk would be most of the time. */
-static void make_folder(void)
+const char *fuzz_folder(void)
 {
+    if (files.folder[0])
+        return files.folder;
     const char *place = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
     snprintf(files.folder, sizeof files.folder, "%s/whit-fuzz-XXXXXX", place);
     fuzz_check(mkdtemp(files.folder), "%s: no folder can be made", files.folder);
     atexit(remove_files);
+    return files.folder;
 }
 
 static const char *path_of(const char *name)
 {
     char path[PATH_BYTES];
-    if (!files.folder[0])
-        make_folder();
-    snprintf(path, sizeof path, "%.40s/%.40s", files.folder, name);
+    snprintf(path, sizeof path, "%.40s/%.40s", fuzz_folder(), name);
     for (int i = 0; i < files.count; i++)
         if (strcmp(files.paths[i], path) == 0)
             return files.paths[i];
@@ -158,6 +168,37 @@ void fuzz_load(const char *path)
     if (scene)
         fuzz_check_trees(scene);
     scene_destroy(scene);
+}
+
+/* --- checksums: else nothing behind the first change is read -----------------------------------
+ */
+
+enum { PNG_HEAD = 8, CHUNK_HEAD = 8, CHUNK_TAIL = 4 };
+
+static void put_u32(uint8_t *to, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        to[i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
+static uint32_t get_u32(const uint8_t *at)
+{
+    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+}
+
+void fuzz_sign_png(uint8_t *data, size_t size_bytes)
+{
+    static const uint8_t magic[PNG_HEAD] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10};
+    if (size_bytes < PNG_HEAD || memcmp(data, magic, PNG_HEAD) != 0)
+        return;
+    for (size_t at = PNG_HEAD; size_bytes - at >= CHUNK_HEAD + CHUNK_TAIL;) {
+        size_t bytes = get_u32(data + at);
+        if (bytes > size_bytes - at - CHUNK_HEAD - CHUNK_TAIL)
+            return;
+        uint8_t *end = data + at + CHUNK_HEAD + bytes;
+        put_u32(end, (uint32_t)crc32(0, data + at + 4, (uInt)(bytes + 4)));
+        at += CHUNK_HEAD + bytes + CHUNK_TAIL;
+    }
 }
 
 void fuzz_sign_tree(uint8_t *file, size_t size_bytes)

@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 
+struct child_reply;
 struct scene;
 
 struct fuzz_target {
@@ -26,7 +27,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size_bytes);
 /* Prints the text and aborts, which is how libFuzzer learns of a finding. */
 void fuzz_check(bool good, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Writes a file of the run's own folder, in place of the one that was there, and gives its path. */
+/* The run's own folder, made at the first call and removed with all in it at the end. */
+const char *fuzz_folder(void);
+/* Writes a file of that folder, in place of the one that was there, and gives its path. */
 const char *fuzz_file(const char *name, const void *data, size_t size_bytes);
 
 /* Counts errors and keeps the last one; every message is formatted. */
@@ -43,7 +46,13 @@ void fuzz_check_errors(whit_result result, const char *path);
 void fuzz_load(const char *path);
 void fuzz_check_trees(const struct scene *scene);
 
+/* What a child has answered goes to this function, which may change it; NULL: the end of a model's
+   bytes says how it is damaged. */
+extern void (*fuzz_reply)(struct child_reply *reply);
+
 /* Gives a saved tree the size and the checksum that fit, as who damages it on purpose would. */
 void fuzz_sign_tree(uint8_t *file, size_t size_bytes);
+/* Gives each chunk of a PNG the checksum that fits; nothing to other files. */
+void fuzz_sign_png(uint8_t *data, size_t size_bytes);
 
 #endif

@@ -45,29 +45,20 @@ static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
     fuzz_check(status == 0, "status %#x", status);
 }
 
-static uint32_t error_count;
-
-void cli_error(const char *format, ...)
-{
-    (void)format;
-    ++error_count;
-}
-
 /* All rays of the file or one error. */
 static uint64_t read_rays(const uint8_t *data, size_t size_bytes, whit_ray rays[RAYS_MOST])
 {
     enum { PIECE = 5 };
     struct ray_file file;
     uint64_t count = 1, sum = 0;
-    error_count = 0;
+    fuzz_log_clear();
     whit_result result = ray_file_open(fuzz_file("rays.bin", data, size_bytes), &file);
     while (result == WHIT_OK && count > 0 && sum + PIECE <= RAYS_MOST) {
         result = ray_file_read(&file, rays + sum, PIECE, &count);
         sum += count;
     }
     ray_file_close(&file);
-    fuzz_check(error_count == (result != WHIT_OK), "%u errors, the result is %d", error_count,
-               (int)result);
+    fuzz_check_errors(result, file.path);
     fuzz_check((result == WHIT_OK) == (size_bytes % sizeof *rays == 0), "%zu bytes: %d", size_bytes,
                (int)result);
     fuzz_check(memcmp(rays, data, sum * sizeof *rays) == 0, "other rays than in the file");

@@ -10,9 +10,11 @@
 #include "../unit/stb_write_fixture.h"
 #include "accel/bvh_file.h"
 #include "base/array.h"
+#include "base/child.h"
 #include "base/file.h"
 #include "fuzz.h"
 #include "image/image.h"
+#include "load/picture.h"
 #include "trees.h"
 
 const struct fuzz_target fuzz_target = {0};
@@ -165,9 +167,9 @@ static void write_pictures(void)
     save_png("palette.png", PNG_FORMAT_RGBA_COLORMAP);
     save_png("deep.png", PNG_FORMAT_LINEAR_RGB_ALPHA);
     write_seed("image", "rows.hdr", hdr, sizeof hdr - 1);
-    write_seed("image", "small.gif", gif, sizeof gif - 1);
-    char *paths[] = {seed_path("image", "a.jpg"), seed_path("image", "a.bmp"),
-                     seed_path("image", "a.tga"), seed_path("image", "stb.hdr")};
+    write_seed("texture", "small.gif", gif, sizeof gif - 1);
+    char *paths[] = {seed_path("texture", "a.jpg"), seed_path("texture", "a.bmp"),
+                     seed_path("texture", "a.tga"), seed_path("image", "stb.hdr")};
     float floats[SIDE * SIDE * 3] = {0.5f, 2.0f, 1e-3f};
     bool good = stbi_write_jpg(paths[0], SIDE, SIDE, 3, pixels, 80) &&
                 stbi_write_bmp(paths[1], SIDE, SIDE, 4, pixels) &&
@@ -176,6 +178,63 @@ static void write_pictures(void)
     fuzz_check(good, "pictures that cannot be written");
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         free(paths[i]);
+}
+
+/* --- answers of children -------------------------------------------------------------------- */
+
+static uint8_t asker; /* the first byte of a seed of `reply` */
+
+static void write_reply(struct child_reply *reply)
+{
+    static int number;
+    char name[24];
+    uint8_t *seed = malloc(reply->size_bytes + 1);
+    fuzz_check(seed, "out of memory");
+    seed[0] = asker;
+    if (reply->size_bytes)
+        memcpy(seed + 1, reply->data, reply->size_bytes);
+    snprintf(name, sizeof name, "reply%d-%d", asker, number++);
+    write_seed("reply", name, seed, reply->size_bytes + 1);
+    free(seed);
+}
+
+static void ask(uint8_t who, const char *target, const char *name)
+{
+    char *path = seed_path(target, name);
+    struct image image = {0};
+    struct image_text *texts = NULL;
+    uint32_t count;
+    whit_result result = WHIT_OK;
+    asker = who;
+    if (who == 0)
+        result = image_load(&fuzz_log, path, &image);
+    else if (who == 1)
+        result = image_load_texts(&fuzz_log, path, &texts, &count);
+    else
+        fuzz_load(path);
+    fuzz_check(result == WHIT_OK, "%s: no answer", path);
+    image_finish(&image);
+    free(texts);
+    free(path);
+}
+
+static void write_replies(void)
+{
+    static const uint8_t file[] = "BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18"
+                                  "\0\0\0\0\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\1\2\3";
+    struct picture picture;
+    char reason[FOREIGN_REASON_BYTES];
+    fuzz_reply = write_reply;
+    ask(0, "image", "rgb.png");
+    ask(0, "image", "ids.exr");
+    ask(1, "image", "rgb.png");
+    asker = 2;
+    fuzz_check(picture_read(&fuzz_log, NULL, UINT64_MAX, file, sizeof file, &picture, reason) ==
+                   WHIT_OK,
+               "%s", reason);
+    picture_finish(&picture);
+    ask(3, "ply", "pyramid.stl");
+    fuzz_reply = NULL;
 }
 
 /* --- rays and trees ------------------------------------------------------------------------- */
@@ -249,6 +308,7 @@ int main(int argc, char **argv)
     folder = argv[1];
     write_models();
     write_pictures();
+    write_replies();
     write_rays();
     write_trees();
     write_patches();

@@ -1,0 +1,26 @@
+/* What files of app/ call of the program, for targets that read as it does: errors are counted as
+   those of the library are. */
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "app/cli.h"
+#include "fuzz.h"
+
+const whit_log cli_log = {0};
+
+void cli_error(const char *format, ...)
+{
+    char text[1024];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    log_error(&fuzz_log, "%s", text);
+}
+
+void cli_set_saving(void) {}
+
+int cli_finish_stdout(int status)
+{
+    return status;
+}

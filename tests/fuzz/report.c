@@ -1,0 +1,35 @@
+/* Reports of `whit cost --json`, which it reads back to compare with. */
+#include "fuzz.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost.h"
+
+static void choose(const struct cost_report *report)
+{
+    static const struct cost_goal goals[] = {{COST_UNDER, COST_RMSE, 0.01},
+                                             {COST_WITHIN, COST_FLIP, 20.0}};
+    char text[512];
+    for (size_t i = 0; i < sizeof goals / sizeof *goals; i++) {
+        struct cost_choice choice = cost_choose(report, &goals[i]);
+        cost_choice_text(&choice, text, sizeof text);
+    }
+}
+
+static void run(const uint8_t *data, size_t size_bytes)
+{
+    struct cost_report report;
+    char *scene = NULL;
+    fuzz_log_clear();
+    const char *path = fuzz_file("report.json", data, size_bytes);
+    bool good = cost_load_json(path, &report, &scene);
+    fuzz_check_errors(good ? WHIT_OK : WHIT_ERROR_INPUT, path);
+    fuzz_check(!good || (report.row_count > 0 && report.row_count <= COST_ROWS_MOST), "%u rows",
+               report.row_count);
+    if (good)
+        choose(&report);
+    free(scene);
+}
+
+const struct fuzz_target fuzz_target = {.run = run, .memory_bytes = UINT64_C(1) << 20};
