@@ -176,8 +176,9 @@ static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
         uint32_t y = i / sheet->columns * (sheet->height + LABEL_ROWS);
         whit_image *image = NULL;
         double start_ms = whit_clock_ms();
-        whit_result result = is_picture(files[i]) ? whit_image_load(files[i], &log_errors, &image)
-                                                  : render(sheet, device, files[i], &image);
+        whit_result result = is_picture(files[i])
+                                 ? whit_image_load(files[i], NULL, &log_errors, &image)
+                                 : render(sheet, device, files[i], &image);
         if (result == WHIT_OK) {
             place(sheet, x, y, image);
         } else {

@@ -3,15 +3,16 @@
    transform leaves it a sphere that is not turned: moved, and scaled alike along all axes. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "accel/accel_inside.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/text.h"
 #include "base/threads.h"
+#include "scene/afford.h"
 
 enum {
     SPAN = 4096,            /* triangles or vertices handled by one call */
@@ -68,20 +69,17 @@ uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance)
     return flat->first_triangle[instance];
 }
 
-static whit_result refuse_size(const struct accel *accel, uint64_t triangles)
+static whit_result check_size(const struct accel *accel, uint64_t triangles, uint64_t vertices)
 {
-    log_error(&accel->log,
-              "%s: without instances it is %llu triangles: more than memory or %u can hold",
-              accel->scene->name, (unsigned long long)triangles, BVH_FIRST_MASK / 2);
+    const struct scene *scene = accel->scene;
+    char what[64];
+    snprintf(what, sizeof what, "its %llu triangles without instances",
+             (unsigned long long)triangles);
+    if (triangles > BVH_FIRST_MASK / 2 || vertices > UINT32_MAX / 4)
+        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, BVH_FIRST_MASK / 2);
+    else if (scene_could_afford(scene, &accel->log, triangles * BYTES_A_TRIANGLE, what))
+        return WHIT_OK;
     return WHIT_ERROR_INPUT;
-}
-
-static bool fits_memory(uint64_t triangles)
-{
-    long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
-    if (pages <= 0 || page_bytes <= 0)
-        return true;
-    return triangles <= (uint64_t)pages * (uint64_t)page_bytes / BYTES_A_TRIANGLE;
 }
 
 /* The centre stands for a sphere's vertices. */
@@ -103,8 +101,9 @@ static whit_result place_instances(const struct accel *accel, struct accel_flat 
     }
     flat->first_triangle[scene->instance_count] = (uint32_t)triangles;
     flat->first_vertex[scene->instance_count] = (uint32_t)vertices;
-    if (triangles > BVH_FIRST_MASK / 2 || vertices > UINT32_MAX / 4 || !fits_memory(triangles))
-        return refuse_size(accel, triangles);
+    whit_result result = check_size(accel, triangles, vertices);
+    if (result != WHIT_OK)
+        return result;
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
         uint32_t primitives = scene_mesh_primitives(mesh), placed = placed_vertices(mesh);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "device/device.h"
 #include "image/image.h"
+#include "load/load.h"
 #include "render/render.h"
 #include "scene/scene.h"
 
@@ -61,6 +62,23 @@ static inline struct log log_from_public(const whit_log *log)
     if (!log)
         return (struct log){0};
     return (struct log){.fn = log->fn, .user = log->user, .level = log->level};
+}
+
+static inline struct load_params load_from_public(const whit_load_params *params)
+{
+    if (!params)
+        return (struct load_params){0};
+    return (struct load_params){
+        .foreign = {.cpu_s = params->import_limit_s,
+                    .clock_s = params->time_limit_s,
+                    .require_sandbox = params->require_sandbox},
+        .memory_limit_bytes = params->memory_limit_bytes,
+        .texture_limit = params->texture_limit,
+        .cancel = params->cancel,
+        .allowed_folders = params->allowed_folders,
+        .allowed_count = params->allowed_count,
+        .refused = params->refused,
+    };
 }
 
 #endif

@@ -89,16 +89,19 @@ whit_result whit_image_encode_png(const whit_image *image, const whit_text *text
     return result;
 }
 
-whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out)
+whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
+                            whit_image **out)
 {
     struct log inner = log_from_public(log);
+    const struct load_params load = load_from_public(params);
+    const struct foreign_params foreign = load_foreign(&load);
     *out = NULL;
     whit_image *image = calloc(1, sizeof *image);
     if (!image) {
         log_error(&inner, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = image_load(&inner, path, &image->image);
+    whit_result result = image_load_by(&inner, NULL, path, &foreign, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

@@ -2,16 +2,12 @@
 #include <stdlib.h>
 
 #include "api/handles.h"
-#include "load/load.h"
 
 static const double DEGREES = 180.0 / 3.14159265358979323846;
 
 whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_scene **out)
 {
-    const whit_load_params defaults = {0};
-    if (!params)
-        params = &defaults;
     *out = NULL;
     struct log inner = log_from_public(log);
     whit_scene *scene = calloc(1, sizeof *scene);
@@ -20,17 +16,7 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
         return WHIT_ERROR_MEMORY;
     }
     scene->log = inner;
-    const struct load_params load = {
-        .foreign = {.cpu_s = params->import_limit_s,
-                    .clock_s = params->time_limit_s,
-                    .require_sandbox = params->require_sandbox},
-        .memory_limit_bytes = params->memory_limit_bytes,
-        .texture_limit = params->texture_limit,
-        .cancel = params->cancel,
-        .allowed_folders = params->allowed_folders,
-        .allowed_count = params->allowed_count,
-        .refused = params->refused,
-    };
+    const struct load_params load = load_from_public(params);
     whit_result result = load_scene(&inner, path, &load, &scene->scene);
     if (result != WHIT_OK)
         goto fail;

@@ -2,7 +2,7 @@
 #ifndef WHIT_IMAGE_H
 #define WHIT_IMAGE_H
 
-#include "whit_types.h"
+#include "whit_scene.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,7 +28,9 @@ typedef struct whit_text {
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
-WHIT_CHECK whit_result whit_image_load(const char *path, const whit_log *log, whit_image **out);
+/* Of `params`, which may be NULL, what is about code that reads foreign files. */
+WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,
+                                       const whit_log *log, whit_image **out);
 /* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.
  */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,

@@ -2,7 +2,7 @@
 #include "app/document.h"
 #include <math.h>
 
-enum compare_id { ID_TOLERANCE = 256, ID_METRIC, ID_DIFF, ID_FLIP, ID_JSON, ID_PPD };
+enum compare_id { ID_TOLERANCE = JOB_ID_END, ID_METRIC, ID_DIFF, ID_FLIP, ID_JSON, ID_PPD };
 
 static const struct cli_option options[] = {
     {ID_TOLERANCE, "tolerance", "X", "exit code 1 when the metric is over X"},
@@ -16,6 +16,7 @@ static const struct cli_option options[] = {
     {ID_FLIP, "flip", "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers"},
     {ID_JSON, "json", "FILE", "all metrics as JSON"},
     {ID_PPD, "ppd", "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)"},
+    JOB_OPTION_DECODING,
     {'q', "quiet", NULL, "print nothing but errors"},
     {0, NULL, NULL, NULL},
 };
@@ -36,10 +37,11 @@ static const char *const metric_names[] = {"rmse", "relmse",    "largest", "mean
 struct compare {
     const char *paths[2];
     const char *diff, *flip, *json; /* or NULL */
-    bool has_tolerance, has_metric, quiet;
+    bool has_tolerance, has_metric;
     double tolerance;
     uint32_t metric;
     whit_compare_params params;
+    struct job job; /* how its pictures are read */
     whit_image *images[2], *flip_map;
     whit_image_info info;
     whit_difference found;
@@ -110,7 +112,7 @@ static void print_head(const struct compare *compare)
 static int print_text(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
-    if (compare->quiet)
+    if (compare->job.quiet)
         return EXIT_FINE;
     if (compare->has_metric) {
         print_metric(compare, compare->metric);
@@ -275,9 +277,10 @@ static whit_result check_pair(struct compare *compare)
 
 static whit_result find_out(struct compare *compare)
 {
+    const whit_load_params load = job_load_params(&compare->job);
     whit_result result = WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
-        result = whit_image_load(compare->paths[i], &cli_log, &compare->images[i]);
+        result = whit_image_load(compare->paths[i], &load, &cli_log, &compare->images[i]);
         if (result == WHIT_OK)
             result = job_still_wanted();
     }
@@ -341,6 +344,8 @@ static bool check_request(struct cli_reader *reader, struct compare *compare)
 
 static void read_option(struct cli_reader *reader, int id, struct compare *compare)
 {
+    if (job_option(&compare->job, reader, id))
+        return;
     if (id == ID_TOLERANCE)
         compare->has_tolerance = cli_number(reader, 0.0, 1e30, &compare->tolerance);
     else if (id == ID_METRIC)
@@ -351,16 +356,15 @@ static void read_option(struct cli_reader *reader, int id, struct compare *compa
         compare->flip = reader->value;
     else if (id == ID_JSON)
         compare->json = reader->value;
-    else if (id == ID_PPD)
-        cli_number(reader, 1.0, 1000.0, &compare->params.pixels_per_degree);
     else
-        compare->quiet = true;
+        cli_number(reader, 1.0, 1000.0, &compare->params.pixels_per_degree);
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct compare compare = {.metric = METRIC_FLIP};
+    job_init(&compare.job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &compare);

@@ -220,9 +220,9 @@ bool job_options_done(struct job *job, struct cli_reader *reader)
     return true;
 }
 
-whit_result job_load(struct job *job)
+whit_load_params job_load_params(const struct job *job)
 {
-    const whit_load_params params = {
+    return (whit_load_params){
         .time_limit_s =
             job->time_limit_s > 0.0 && job->time_limit_s < 60.0 ? cli_time_left_s() : 0.0,
         .memory_limit_bytes = job->memory_limit,
@@ -233,6 +233,11 @@ whit_result job_load(struct job *job)
         .allowed_folders = job->allowed,
         .allowed_count = job->allowed_count,
     };
+}
+
+whit_result job_load(struct job *job)
+{
+    const whit_load_params params = job_load_params(job);
     double start_ms = whit_clock_ms();
     whit_result result = whit_scene_load(job->scene_path, &params, &cli_log_errors, &job->scene);
     job->load_ms = whit_clock_ms() - start_ms;

@@ -131,22 +131,25 @@ enum job_id {
     {                                                                                              \
         JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)"                    \
     }
-/* What foreign files may do. */
-#define JOB_OPTION_FOREIGN                                                                         \
-    {JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                       \
-     "files of the scene may name files below FOLDER too, not\n"                                   \
-     "only below the scene's own; may be given again"},                                            \
-        {JOB_IMPORT_LIMIT, "import-limit", "S",                                                    \
-         "seconds of the processor for each file that foreign code\n"                              \
-         "reads (by its size, 8 to 60); ten times that by the clock"},                             \
-        {JOB_MEMORY_LIMIT, "memory-limit", "SIZE",                                                 \
-         "refuse a scene that takes more on host and device, in bytes\n"                           \
-         "or with K, M, G (half of the machine's)"},                                               \
+/* What code that reads foreign files may do. */
+#define JOB_OPTION_DECODING                                                                        \
+    {JOB_IMPORT_LIMIT, "import-limit", "S",                                                        \
+     "seconds of the processor for each file that foreign code\n"                                  \
+     "reads (by its size, 8 to 60); ten times that by the clock"},                                 \
     {                                                                                              \
         JOB_REQUIRE_SANDBOX, "require-sandbox", NULL,                                              \
             "fail where such code cannot be locked in, in place of a\n"                            \
             "warning"                                                                              \
     }
+/* And what these files may ask for. */
+#define JOB_OPTION_FOREIGN                                                                         \
+    {JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                       \
+     "files of the scene may name files below FOLDER too, not\n"                                   \
+     "only below the scene's own; may be given again"},                                            \
+        {JOB_MEMORY_LIMIT, "memory-limit", "SIZE",                                                 \
+         "refuse a scene that takes more on host and device, in bytes\n"                           \
+         "or with K, M, G (half of the machine's)"},                                               \
+        JOB_OPTION_DECODING
 #define JOB_OPTION_LOADING                                                                         \
     {JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)"},         \
         JOB_OPTION_FOREIGN
@@ -172,6 +175,8 @@ bool job_options_done(struct job *job, struct cli_reader *reader);
 void job_begin_device(struct job *job);
 /* Each step before the next one. Failures were said. */
 whit_result job_load(struct job *job);
+/* What job_load loads by. */
+whit_load_params job_load_params(const struct job *job);
 whit_result job_build(struct job *job);
 /* What job_build asks for. */
 whit_accel_params job_accel_params(const struct job *job);

@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "load/load.h"
 #include "load/picture.h"
+#include "scene/afford.h"
 
 #define FILE_BYTES_MOST ((uint64_t)1 << 30)
 #define SIDE_MOST       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
@@ -110,6 +111,12 @@ whit_result load_environment(struct scene *scene, const char *path,
         result = read_picture(scene, found, &foreign, &picture);
     if (result != WHIT_OK)
         goto fail;
+    if (!scene_afford(scene, scene_texel_cost(3 * picture.width, picture.height),
+                      "environment `%.120s` of %ux%u pixels", path, picture.width,
+                      picture.height)) {
+        result = WHIT_ERROR_INPUT;
+        goto fail;
+    }
     if (!picture_shrink(&picture, SIDE_MOST)) {
         log_error(log, "%s: out of memory", path);
         result = WHIT_ERROR_MEMORY;

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "scene/afford.h"
 
 #define GLTF_LIMIT (UINT64_C(4) << 30)
 
@@ -214,6 +215,7 @@ static whit_result allocate(struct gltf *gltf)
 
 static void finish(struct gltf *gltf)
 {
+    scene_give_back(gltf->scene, gltf->counted_bytes);
     for (uint32_t i = 0; i < gltf->buffer_count; i++)
         free(gltf->buffers[i].owned);
     free(gltf->buffers);

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/gltf.h"
+#include "scene/afford.h"
 
 #define BUFFER_LIMIT (UINT64_C(4) << 30)
 
@@ -95,9 +96,15 @@ static whit_result read_external(struct gltf *gltf, const struct gltf_place *at,
     }
     whit_result result = file_read(&gltf->scene->log, &gltf->scene->roots, path, BUFFER_LIMIT,
                                    &out->owned, &out->size_bytes);
-    if (result == WHIT_OK)
-        gltf->scene->file_bytes += out->size_bytes;
     out->data = out->owned;
+    /* However often a file is named: it is read as often. */
+    if (result == WHIT_OK && !scene_afford(gltf->scene, out->size_bytes, "%s: buffer `%s`",
+                                           gltf->request->path, text_token(uri).text))
+        result = WHIT_ERROR_INPUT;
+    if (result == WHIT_OK) {
+        gltf->scene->file_bytes += out->size_bytes;
+        gltf->counted_bytes += out->size_bytes;
+    }
     free(path);
     return result;
 }

@@ -155,9 +155,8 @@ static bool shrink(struct scene *scene, const char *name, const struct load_para
     uint32_t width = picture->width, height = picture->height;
     if (!picture_shrink(picture, limit_of(params)))
         return false;
-    uint64_t kept = scene_texel_cost(picture->width, picture->height);
-    uint64_t counted = scene_texel_cost(width, height);
-    scene->memory_taken -= counted - kept < scene->memory_taken ? counted - kept : 0;
+    scene_give_back(scene, scene_texel_cost(width, height) -
+                               scene_texel_cost(picture->width, picture->height));
     if (picture->width != width || picture->height != height)
         scene_note(scene, SCENE_NOTE_INFO, "texture `%s`: shrunk from %ux%u to %ux%u",
                    text_token(path_name(name)).text, width, height, picture->width,

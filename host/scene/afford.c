@@ -36,25 +36,36 @@ uint64_t scene_texel_cost(uint64_t width, uint64_t height)
     return width * height * DEVICE_COPIES * 4;
 }
 
-bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...)
+bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
+                        const char *what)
 {
     uint64_t limit = scene->memory_limit, taken = scene->memory_taken;
-    if (!limit || (taken <= limit && bytes <= limit - taken)) {
-        scene->memory_taken += bytes;
+    const double mebibyte = 1 << 20;
+    if (!limit || (taken <= limit && bytes <= limit - taken))
         return true;
-    }
+    log_error(log,
+              "%s: %s would take %.4g MiB of memory, with what comes before it %.4g MiB; the limit "
+              "is %.4g MiB (--memory-limit)",
+              scene->name, what, (double)bytes / mebibyte,
+              ((double)taken + (double)bytes) / mebibyte, (double)limit / mebibyte);
+    return false;
+}
+
+bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...)
+{
     char text[256];
     va_list args;
     va_start(args, what);
     vsnprintf(text, sizeof text, what, args);
     va_end(args);
-    const double mebibyte = 1 << 20;
-    log_error(&scene->log,
-              "%s: %s would take %.4g MiB of memory, with what comes before it %.4g MiB; the limit "
-              "is %.4g MiB (--memory-limit)",
-              scene->name, text, (double)bytes / mebibyte,
-              ((double)taken + (double)bytes) / mebibyte, (double)limit / mebibyte);
-    return false;
+    bool good = scene_could_afford(scene, &scene->log, bytes, text);
+    scene->memory_taken += good ? bytes : 0;
+    return good;
+}
+
+void scene_give_back(struct scene *scene, uint64_t bytes)
+{
+    scene->memory_taken -= bytes < scene->memory_taken ? bytes : scene->memory_taken;
 }
 
 uint64_t scene_default_memory_limit(void)

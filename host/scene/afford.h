@@ -23,6 +23,11 @@ uint64_t scene_texel_cost(uint64_t width, uint64_t height);
 /* Counts `bytes` for `what` ("a texture of 4 x 4 pixels"). False, after one error that names it,
    and nothing counted, when the scene would take more than its memory_limit. */
 bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...) WHIT_PRINTF(3, 4);
+/* The same without counting, for what is made of a scene that is whole; errors go to `log`. */
+bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
+                        const char *what);
+/* Gives back what was counted for something that is gone again. */
+void scene_give_back(struct scene *scene, uint64_t bytes);
 /* Half of what this machine has. */
 uint64_t scene_default_memory_limit(void);
 

@@ -1,5 +1,6 @@
 #include "view/events.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -268,7 +269,10 @@ void event_to_line(const struct view_event *event, FILE *to)
             fprintf(to, "size %u %u\n", event->width, event->height);
         break;
     case EVENT_DROP:
-        fprintf(to, "drop %s\n", event->path);
+        if (isspace((unsigned char)event->path[0]) || strpbrk(event->path, "\r\n"))
+            fprintf(to, "# a file was dropped whose name is not one that a line can hold\n");
+        else
+            fprintf(to, "drop %s\n", event->path);
         break;
     case EVENT_WAIT:
         fprintf(to, "wait %.0f\n", event->x);

@@ -79,6 +79,10 @@ refuse 2 "not a picture" "not a PNG, EXR, PFM or HDR" compare "$A" "$OUT/j.json"
 refuse 2 "unknown metric" "one of rmse, relmse" compare "$A" "$B" --metric psnr
 refuse 2 "tolerance below 0" "a number from 0" compare "$A" "$B" --tolerance -1
 refuse 2 "tolerance nan" "a number from 0" compare "$A" "$B" --tolerance nan
+refuse 2 "an import limit of nothing" "import-limit" compare "$A" "$B" --import-limit 0
+run compare "$A" "$A" --require-sandbox --import-limit 30
+check "a required sandbox is there, or an error" \
+    test "$status" -eq "$(if grep -q sandbox "$OUT/stderr"; then echo 2; else echo 0; fi)"
 refuse 2 "difference as text" ".png, .exr or .pfm" compare "$A" "$B" --diff "$OUT/d.txt"
 refuse 2 "no such folder" "none/d.png" compare "$A" "$B" --diff "$OUT/none/d.png"
 check "nothing was left" test ! -e "$OUT/d.txt"

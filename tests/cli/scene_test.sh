@@ -48,6 +48,11 @@ too_much "a sphereflake" "its sphereflake of 597871 spheres" 400M '{"shape":"sph
 too_much "balls" "its sphereflake" 100M '{"shape":"sphereflake","level":6,"balls":true}'
 expect 0 "within the limit" scene "$OUT/files/much.json" --memory-limit 1G
 rm "$OUT/files/much.json"
+head -c 400000 /dev/zero >"$OUT/b.bin"
+buffers=$(yes ',{"uri":"b.bin","byteLength":400000}' | head -60 | tr -d '\n')
+printf '{"asset":{"version":"2.0"},"buffers":[%s]}' "${buffers#,}" >"$OUT/buffers.gltf"
+refuse 2 "one file in 60 buffers" 'buffer `b.bin` would take .* MiB of memory, .*--memory-limit' \
+    scene "$OUT/buffers.gltf" --memory-limit 8M
 for size in 0 -1 1T 1KK "" 99999999999G; do
     refuse 2 "--memory-limit '$size'" "a number of bytes is needed" scene "$CUBE" --memory-limit "$size"
 done

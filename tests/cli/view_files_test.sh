@@ -15,9 +15,9 @@ cp "$SCENES/spin.json" list/c.json
 echo no scene >list/notes.txt
 echo "--size 96x64" >start.view
 echo "--size 96x64 --effects -highlights" >plain.view
-EXPECTED="^whit: error: $OUT/nowhere"
+EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
 # shellcheck disable=SC2086
-play "scenes by arrows" list/a.json $SMALL <<END
+play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
 still
 state a
 press Right
@@ -45,6 +45,9 @@ state stood
 drop $SCENES/cube.json
 still
 state dropped
+drop $SCENES/atrium.json
+until error
+state large
 drop $OUT/nowhere.obj
 still
 state nowhere
@@ -78,14 +81,18 @@ is c scene list/c.json
 is around scene list/a.json
 is back scene list/c.json
 is dropped scene "$SCENES/cube.json"
+is large scene "$SCENES/cube.json"
+has=$(value large error)
+check "a scene that takes too much is refused" test "${has%% (--memory-limit)*}" != "$has"
 differs frame.ids a b
 same frame.ids a around
 same frame.ids c back
 same frame.ids a dropped
 same frame.ids dropped nowhere
 check "a scene that is not there is said" test "$(value nowhere error | grep -c nowhere.obj)" -eq 1
-check "each once on standard error" test "$(sort "$OUT/stderr" | tr '\n' ' ')" = \
+check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
     "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
+check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
 # What is shown goes on beside what was refused.
 is plays playing true
 same frame.pixels stepped stood

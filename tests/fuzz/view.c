@@ -34,7 +34,7 @@ static void check_line(const struct view_event *event)
     fuzz_check(to, "out of memory");
     event_to_line(event, to);
     fuzz_check(fclose(to) == 0, "a line that does not fit");
-    if (!line[0])
+    if (!line[0] || line[0] == '#')
         return;
     fuzz_check(strlen(line) > 1 && strcspn(line, "\r\n") == strlen(line) - 1, "`%s`: no line",
                line);
@@ -67,6 +67,17 @@ static void read_events(const char *path)
     free(events);
 }
 
+/* Whatever its name is. */
+static void drop_file(const uint8_t *data, size_t size_bytes)
+{
+    char name[EVENT_PATH];
+    size_t length = size_bytes < sizeof name ? size_bytes : sizeof name - 1;
+    memcpy(name, data, length);
+    name[length] = 0;
+    if (name[0])
+        check_line(&(struct view_event){.kind = EVENT_DROP, .path = name});
+}
+
 static void remember(const uint8_t *data, size_t size_bytes)
 {
     char camera[64] = "";
@@ -81,6 +92,7 @@ static void remember(const uint8_t *data, size_t size_bytes)
 static void run(const uint8_t *data, size_t size_bytes)
 {
     read_events(fuzz_file("a.replay", data, size_bytes));
+    drop_file(data, size_bytes);
     if (size_bytes && data[0] == '{') /* it is forced to the disk */
         remember(data, size_bytes);
 }

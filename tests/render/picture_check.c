@@ -92,7 +92,7 @@ static void check_picture(const char *path, const whit_image *image, unsigned lo
 static void check_file(const char *path, const char *width, const char *height)
 {
     whit_image *image = NULL;
-    if (whit_image_load(path, &messages, &image) == WHIT_OK)
+    if (whit_image_load(path, NULL, &messages, &image) == WHIT_OK)
         check_picture(path, image, strtoul(width, NULL, 10), strtoul(height, NULL, 10));
     whit_image_destroy(image);
 }

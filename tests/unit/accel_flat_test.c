@@ -350,7 +350,27 @@ static void too_many_triangles_are_refused(void **state)
     struct accel *accel = NULL;
     assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_ERROR_INPUT);
     assert_null(accel);
-    assert_non_null(strstr(last_error, "flat: without instances it is 148500000 triangles"));
+    assert_non_null(strstr(last_error, "flat: its 148500000 triangles without instances are more"));
+    scene_destroy(scene);
+}
+
+static void more_than_the_limit_is_refused(void **state)
+{
+    (void)state;
+    struct scene *scene = new_scene();
+    uint32_t mesh = add_sphere(scene, 150, 100, 0);
+    for (int i = 0; i < 9; ++i)
+        scene_put_again(scene, mesh, NULL);
+    scene_ready(scene);
+    const struct accel_params params = {.flatten = true};
+    struct accel *accel = NULL;
+    scene->memory_limit = UINT64_C(16) << 20;
+    assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(last_error, "flat: its 267300 triangles without instances would take"));
+    assert_non_null(strstr(last_error, "--memory-limit"));
+    scene->memory_limit = UINT64_C(160) << 20;
+    assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_OK);
+    accel_destroy(accel);
     scene_destroy(scene);
 }
 
@@ -365,6 +385,7 @@ int main(void)
         cmocka_unit_test(broken_records_are_refused),
         cmocka_unit_test(scenes_without_anything),
         cmocka_unit_test(too_many_triangles_are_refused),
+        cmocka_unit_test(more_than_the_limit_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -313,6 +313,18 @@ int __wrap_sandbox_enter(void)
 
 static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
 
+static void environments_too_large_are_refused(void **state)
+{
+    struct fixture *fixture = *state;
+    const char *sky = fixture_write(fixture, "a.hdr", hdr, sizeof hdr - 1);
+    fixture->scene->memory_limit = 23; /* three floats, on host and device */
+    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture->errors, 1);
+    assert_non_null(strstr(fixture->last_error, "a.hdr` of 1x1 pixels would take"));
+    fixture->scene->memory_limit = 24;
+    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_OK);
+}
+
 static void decoders_that_reach_out_are_stopped(void **state)
 {
     struct fixture *fixture = *state;
@@ -365,6 +377,8 @@ int main(void)
         cmocka_unit_test(greedy_jpegs_are_refused),
         cmocka_unit_test(pngs_take_what_their_header_tells_of),
         cmocka_unit_test_setup_teardown(damaged_textures_are_named, fixture_begin, fixture_end),
+        cmocka_unit_test_setup_teardown(environments_too_large_are_refused, fixture_begin,
+                                        fixture_end),
         cmocka_unit_test_setup_teardown(decoders_that_reach_out_are_stopped, fixture_begin,
                                         fixture_end),
         cmocka_unit_test_setup_teardown(a_sandbox_that_is_required_is_an_error, fixture_begin,

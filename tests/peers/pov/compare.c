@@ -47,7 +47,7 @@ static int load_whit(const char *path, struct picture *picture)
     const whit_log log = {.fn = on_message, .level = WHIT_LOG_WARNING};
     whit_image *image;
     whit_image_info info;
-    if (whit_image_load(path, &log, &image) != WHIT_OK)
+    if (whit_image_load(path, NULL, &log, &image) != WHIT_OK)
         return 0;
     whit_image_get_info(image, &info);
     const float *pixels = whit_image_floats(image);
