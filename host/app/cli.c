@@ -180,6 +180,11 @@ void cli_put_end(const char *kind, const char *why)
     put("\n");
 }
 
+__attribute__((no_sanitize_address)) void cli_leave(int code)
+{
+    _exit(code);
+}
+
 /* The work did not stop in time: it may be inside a driver or a compiler. */
 static void on_alarm(int number)
 {
@@ -187,7 +192,7 @@ static void on_alarm(int number)
     whit_file_abandon_all();
     cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
                 interrupt_signal ? "interrupted" : "the time limit has passed");
-    _exit(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
+    cli_leave(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
 
 /* Whether SIGALRM will come. Safe in a signal handler. */
@@ -204,12 +209,12 @@ static void on_interrupt(int number)
     cli_cancel = true;
     if (interrupt_signal) {
         whit_file_abandon_all();
-        _exit(128 + number);
+        cli_leave(128 + number);
     }
     interrupt_signal = number;
     if (!set_timer(grace_ms)) {
         whit_file_abandon_all();
-        _exit(128 + number);
+        cli_leave(128 + number);
     }
     errno = reason;
 }

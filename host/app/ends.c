@@ -28,7 +28,7 @@ static void on_crash(int number, siginfo_t *info, void *context)
     if (lacks) {
         whit_file_abandon_all();
         cli_put_end("whit: error: ", lacks);
-        _exit(EXIT_USAGE);
+        cli_leave(EXIT_USAGE);
     }
     /* It comes again when the handler returns, unless it was sent. */
     for (int i = 0; i < CRASH_COUNT; ++i)
