@@ -4,9 +4,11 @@
 #include "base/sandbox.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <seccomp.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -93,6 +95,41 @@ static void give_up_files(void)
     close(rules);
 }
 
+/* `line` is one of /proc/self/maps: the part of memory, then `rw-s` or the like. */
+static void give_up_if_shared(const char *line)
+{
+    char *end;
+    uintptr_t first = strtoul(line, &end, 16);
+    uintptr_t behind = *end == '-' ? strtoul(end + 1, &end, 16) : 0;
+    if (behind > first && strlen(end) > 4 && end[4] == 's')
+        (void)syscall(SYS_munmap, first, behind - first);
+}
+
+/* What is written to memory that is shared leaves the child: a driver's cache of kernels is a file
+   of the user, mapped; a window's pixels are another process's. 0, or errno. No memory is taken:
+   the fork may have come while another thread held the lock of that. */
+static int give_up_shared_memory(void)
+{
+    char text[8192];
+    size_t used = 0;
+    int fd = open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        return errno;
+    for (ssize_t got; (got = read(fd, text + used, sizeof text - 1 - used)) > 0;) {
+        char *line = text;
+        used += (size_t)got;
+        text[used] = 0;
+        for (char *end; (end = strchr(line, '\n')); line = end + 1) {
+            *end = 0;
+            give_up_if_shared(line);
+        }
+        used = strlen(line);
+        memmove(text, line, used);
+    }
+    close(fd);
+    return 0;
+}
+
 static void close_the_rest(void)
 {
     if (syscall(SYS_close_range, SANDBOX_FD_COUNT, ~0u, 0) == 0)
@@ -106,11 +143,13 @@ int sandbox_enter(void)
 {
     const struct rlimit files = {SANDBOX_FD_COUNT, SANDBOX_FD_COUNT}, none = {0, 0};
     close_the_rest();
+    int shared = give_up_shared_memory();
     (void)prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     give_up_files();
     (void)setrlimit(RLIMIT_NOFILE, &files);
     (void)setrlimit(RLIMIT_NPROC, &none);
     (void)setrlimit(RLIMIT_CORE, &none);
     (void)setrlimit(RLIMIT_FSIZE, &none);
-    return filter_calls();
+    int error = filter_calls();
+    return error ? error : shared;
 }

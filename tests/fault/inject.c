@@ -81,6 +81,15 @@ static int add_range(struct dl_phdr_info *info, size_t bytes, void *user)
     return 0;
 }
 
+/* A child of the program gives shared memory up before it works: faults go on in a copy, of which
+   the sweep sees no more than what the program makes of them. */
+static void keep_copy(void)
+{
+    static struct fault_shared copy;
+    memcpy(&copy, shared, sizeof copy);
+    shared = &copy;
+}
+
 __attribute__((constructor)) static void begin(void)
 {
     const char *number = getenv(FAULT_VARIABLE);
@@ -91,6 +100,7 @@ __attribute__((constructor)) static void begin(void)
     if (memory == MAP_FAILED)
         abort();
     shared = memory;
+    pthread_atfork(NULL, NULL, keep_copy);
     program = getpid();
     atomic_store(&now_ns, start_ns);
     dl_iterate_phdr(add_range, &first);

@@ -28,6 +28,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/foreign.h"
+#include "base/sandbox.h"
 
 int __real_seccomp_load(const scmp_filter_ctx filter);
 int __wrap_seccomp_load(const scmp_filter_ctx filter);
@@ -66,7 +67,10 @@ static int begin(void **state)
     victim.secret = string_format("%s/secret", victim.folder);
     victim.other = string_format("%s/other", victim.folder);
     make_file(victim.secret);
-    victim.fd = open(victim.secret, O_RDWR); /* inherited: nothing closes it at exec */
+    /* Inherited: nothing closes it at exec. Not the number of the reply's. */
+    int low = open(victim.secret, O_RDWR);
+    victim.fd = fcntl(low, F_DUPFD, 2 * SANDBOX_FD_COUNT);
+    close(low);
     victim.pid = getpid();
     no_filter = false;
     return victim.fd < 0 ? -1 : 0;
@@ -313,6 +317,63 @@ static void landlock_holds_without_the_filter(void **state)
     nothing_was_harmed("a child without a filter");
 }
 
+static volatile int *shared_with_child;
+
+static int write_shared(void *user, void *to, child_write write)
+{
+    (void)user;
+    *shared_with_child = 1;
+    return write(to, "", 1) ? 0 : 1;
+}
+
+/* As a driver maps its cache. */
+static void shared_memory_is_gone(void **state)
+{
+    (void)state;
+    struct child_reply reply;
+    void *memory = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(memory != MAP_FAILED);
+    shared_with_child = memory;
+    for (int i = 0; i < 2; ++i) {
+        no_filter = i;
+        assert_int_equal(child_run(&ordinary, write_shared, NULL, &reply), CHILD_CRASHED);
+        assert_int_equal(*shared_with_child, 0);
+    }
+    munmap(memory, 4096);
+}
+
+static int give_memory_back(void *user, void *to, child_write write)
+{
+    enum { BLOCKS = 16384, BYTES = 1024 };
+    static void *blocks[BLOCKS];
+    (void)user;
+    for (int i = 0; i < BLOCKS; ++i)
+        blocks[i] = malloc(BYTES);
+    for (int i = BLOCKS; i > 0; --i)
+        free(blocks[i - 1]);
+    return write(to, "", 1) ? 0 : 1;
+}
+
+static void *run_there(void *user)
+{
+    struct child_reply reply;
+    free(malloc(100)); /* its own arena */
+    *(enum child_end *)user = child_run(&ordinary, give_memory_back, NULL, &reply);
+    child_reply_free(&reply);
+    return NULL;
+}
+
+/* Of a thread's arena glibc asks the system how it counts memory before it shrinks that. */
+static void memory_is_given_back_in_threads(void **state)
+{
+    (void)state;
+    enum child_end end = CHILD_NOT_STARTED;
+    pthread_t other;
+    assert_int_equal(pthread_create(&other, NULL, run_there, &end), 0);
+    assert_int_equal(pthread_join(other, NULL), 0);
+    assert_int_equal(end, CHILD_DONE);
+}
+
 struct heard {
     int warnings;
     char text[256];
@@ -370,6 +431,8 @@ int main(void)
         TEST(crashes_are_still_crashes),
         TEST(the_rest_holds_without_the_filter),
         TEST(landlock_holds_without_the_filter),
+        TEST(shared_memory_is_gone),
+        TEST(memory_is_given_back_in_threads),
         TEST(a_filter_that_cannot_be_set_is_said_once),
         TEST(a_filter_that_is_required_is_an_error),
     };
