@@ -193,10 +193,10 @@ static void write_hint(const char *folder, char *to, size_t bytes)
                                 "/._-+,@%";
     bool quoted = folder[strspn(folder, plain)] != 0, known = !strchr(folder, '\'');
     const char *mark = quoted && known ? "'" : "";
-    snprintf(
-        to, bytes,
-        "it lies outside of the folder of what is loaded; --allow-path %s%s%s lets whit read it",
-        mark, known ? folder : "FOLDER", mark);
+    static const char text[] =
+        "it lies outside of the folder of what is loaded; --allow-path %s%s%s lets whit read it";
+    if ((size_t)snprintf(to, bytes, text, mark, known ? folder : "FOLDER", mark) >= bytes)
+        snprintf(to, bytes, text, "", "FOLDER", "");
 }
 
 static const char *refuse(struct roots *roots, const char *path)

@@ -38,6 +38,7 @@ static bool is_hidden(uint32_t code)
         {0x17b4, 0x17b5},   {0x180b, 0x180f},   /* vowels and variants that are not seen */
         {0x200b, 0x200f},   {0x2028, 0x202e},   /* no width; ends of lines, directions */
         {0x2060, 0x206f},   {0x3164, 0x3164},   /* joiners, directions; a filler */
+        {0xfe00, 0xfe0f},                       /* variants of characters */
         {0xfeff, 0xfeff},   {0xffa0, 0xffa0},   /* a byte order mark, a filler */
         {0xfff0, 0xfffb},   {0x1bca0, 0x1bca3}, /* marks of annotations and of shorthand */
         {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, /* marks of music, tags */

@@ -27,6 +27,7 @@ static void each_kind_is_shown(void **state)
         {"\xc2\x80\xc2\x9b\xc2\x9f\xc2\xa0", "\\u0080\\u009b\\u009f\xc2\xa0"}, /* C1, then none */
         {"\xd8\x9c\xe2\x80\x8e\xe2\x80\x8f", "\\u061c\\u200e\\u200f"},         /* directions */
         {"\xe2\x80\xaa\xe2\x80\xae\xe2\x81\xa6\xe2\x81\xa9", "\\u202a\\u202e\\u2066\\u2069"},
+        {"\xef\xb8\x80\xef\xb8\x8f", "\\ufe00\\ufe0f"}, /* variants */
         {"\xe2\x80\x8b\xe2\x80\x8d\xe2\x81\xa0\xef\xbb\xbf", "\\u200b\\u200d\\u2060\\ufeff"},
         {"\xc2\xad\xe1\xa0\x8e\xe2\x80\xa8\xe2\x80\xa9", "\\u00ad\\u180e\\u2028\\u2029"},
         {"\xf3\xa0\x80\x81\xf3\xa0\x81\x81", "\\udb40\\udc01\\udb40\\udc41"}, /* tags */
