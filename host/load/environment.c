@@ -65,7 +65,15 @@ static whit_result linearize(const struct log *log, const char *path, struct pic
     return WHIT_OK;
 }
 
-static whit_result read_picture(const struct scene *scene, const char *path,
+static bool afford(struct scene *scene, const char *path, const struct picture *picture)
+{
+    return scene_afford(scene, scene_texel_cost(3 * (uint64_t)picture->width, picture->height),
+                        "environment `%.120s` of %ux%u pixels", path, picture->width,
+                        picture->height);
+}
+
+/* Where the header tells of more than the scene can afford nothing is decoded. */
+static whit_result read_picture(struct scene *scene, const char *path,
                                 const struct foreign_params *foreign, struct picture *out)
 {
     const struct log *log = &scene->log;
@@ -75,8 +83,12 @@ static whit_result read_picture(const struct scene *scene, const char *path,
     whit_result result = file_read(log, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    result = picture_read(log, foreign, UINT64_MAX, data, size_bytes, out, reason);
+    uint64_t most = scene_room(scene) / scene_texel_cost(3, 1);
+    result = picture_read(log, foreign, most, data, size_bytes, out, reason);
     free(data);
+    bool too_large = result == WHIT_ERROR_INPUT && (uint64_t)out->width * out->height > most;
+    if (too_large && !afford(scene, path, out))
+        return result;
     if (result != WHIT_OK)
         log_error(log, "%s: %s", path, reason);
     else
@@ -111,9 +123,7 @@ whit_result load_environment(struct scene *scene, const char *path,
         result = read_picture(scene, found, &foreign, &picture);
     if (result != WHIT_OK)
         goto fail;
-    if (!scene_afford(scene, scene_texel_cost(3 * picture.width, picture.height),
-                      "environment `%.120s` of %ux%u pixels", path, picture.width,
-                      picture.height)) {
+    if (!afford(scene, path, &picture)) {
         result = WHIT_ERROR_INPUT;
         goto fail;
     }

@@ -187,8 +187,10 @@ static whit_result add_instances(struct gltf *gltf, const json_t *extension,
 {
     struct instancing set = {0};
     whit_result result = read_instancing(gltf, extension, at, &set) ? WHIT_OK : WHIT_ERROR_INPUT;
-    if (result == WHIT_OK && !scene_afford(gltf->scene, scene_instance_cost(set.count),
-                                           "%s of %u instances", at->text, set.count))
+    if (result == WHIT_OK &&
+        !scene_afford(gltf->scene,
+                      scene_instance_cost(set.count) + (uint64_t)set.count * strlen(name),
+                      "%s of %u instances", at->text, set.count))
         result = WHIT_ERROR_INPUT;
     for (uint32_t i = 0; i < set.count && result == WHIT_OK; i++) {
         double translation[3] = {0, 0, 0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};

@@ -33,12 +33,22 @@ static bool copy_channel(struct reader *reader, struct scene_channel channel, ui
     return scene_add_channel(reader->scene, channel) != SCENE_NONE || reader_no_memory(reader);
 }
 
+/* 0 where there was no memory for it. */
+static uint64_t length_of(const char *name)
+{
+    return name ? strlen(name) : 0;
+}
+
 bool range_afford(struct reader *reader, const struct place *place, const struct scene_range *range,
                   uint64_t times)
 {
     uint64_t instances = range->instance_end - range->first_instance;
     uint64_t bytes =
         scene_node_cost(1 + range->node_end - range->first_node) + scene_instance_cost(instances);
+    for (uint32_t i = range->first_node; i < range->node_end; ++i)
+        bytes += length_of(reader->scene->nodes[i].name);
+    for (uint32_t i = range->first_instance; i < range->instance_end; ++i)
+        bytes += length_of(reader->scene->instances[i].name);
     for (uint32_t i = range->first_channel; i < range->channel_end; ++i)
         bytes += 16 * sizeof(float) * (uint64_t)reader->scene->channels[i].key_count;
     return reader_afford(reader, place, bytes * times, "%llu copies of %llu instances",

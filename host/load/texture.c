@@ -79,15 +79,29 @@ struct source {
     bool too_large; /* for the scene; it was said */
 };
 
+/* The reason of an error that names `path`. */
+struct unread {
+    const char *path;
+    char *reason;
+};
+
+static void keep_reason(void *user, whit_log_level level, const char *message)
+{
+    const struct unread *unread = user;
+    size_t length = strlen(unread->path);
+    bool named = strncmp(message, unread->path, length) == 0 && message[length] == ':';
+    (void)level;
+    snprintf(unread->reason, FOREIGN_REASON_BYTES, "%s", named ? message + length + 2 : message);
+}
+
 /* Silent: a missing texture is a warning of the scene, not an error. */
 static whit_result read_source(struct scene *scene, const char *path, struct source *source,
                                char reason[FOREIGN_REASON_BYTES])
 {
-    const struct log silent = {0};
+    struct unread unread = {path, reason};
+    const struct log silent = {.fn = keep_reason, .user = &unread, .level = WHIT_LOG_ERROR};
     whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &source->owned,
                                    &source->size_bytes);
-    if (result != WHIT_ERROR_MEMORY)
-        snprintf(reason, FOREIGN_REASON_BYTES, "it cannot be read");
     scene->file_bytes += source->size_bytes;
     source->data = source->owned;
     return result;
@@ -98,9 +112,7 @@ static whit_result decode_source(struct scene *scene, const char *name,
                                  const struct foreign_params *foreign, struct source *source,
                                  struct picture *picture, char reason[FOREIGN_REASON_BYTES])
 {
-    uint64_t left =
-        scene->memory_limit > scene->memory_taken ? scene->memory_limit - scene->memory_taken : 0;
-    uint64_t pixels_most = scene->memory_limit ? left / scene_texel_cost(1, 1) : UINT64_MAX;
+    uint64_t pixels_most = scene_room(scene) / scene_texel_cost(1, 1);
     whit_result result = picture_read(&scene->log, foreign, pixels_most, source->data,
                                       source->size_bytes, picture, reason);
     uint64_t pixels = (uint64_t)picture->width * picture->height;

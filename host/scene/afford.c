@@ -36,12 +36,18 @@ uint64_t scene_texel_cost(uint64_t width, uint64_t height)
     return width * height * DEVICE_COPIES * 4;
 }
 
+uint64_t scene_room(const struct scene *scene)
+{
+    uint64_t limit = scene->memory_limit, taken = scene->memory_taken;
+    return !limit ? UINT64_MAX : limit > taken ? limit - taken : 0;
+}
+
 bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
                         const char *what)
 {
     uint64_t limit = scene->memory_limit, taken = scene->memory_taken;
     const double mebibyte = 1 << 20;
-    if (!limit || (taken <= limit && bytes <= limit - taken))
+    if (bytes <= scene_room(scene))
         return true;
     log_error(log,
               "%s: %s would take %.4g MiB of memory, with what comes before it %.4g MiB; the limit "

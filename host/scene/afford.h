@@ -26,6 +26,8 @@ bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...) WH
 /* The same without counting, for what is made of a scene that is whole; errors go to `log`. */
 bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
                         const char *what);
+/* Bytes that it may take yet. */
+uint64_t scene_room(const struct scene *scene);
 /* Gives back what was counted for something that is gone again. */
 void scene_give_back(struct scene *scene, uint64_t bytes);
 /* Half of what this machine has. */
