@@ -35,8 +35,9 @@ run_one() {
     for seeds in seeds/$target found/$target; do
         [ ! -d "tests/fuzz/$seeds" ] || set -- "$@" "tests/fuzz/$seeds"
     done
-    [ ! -d "$folder/build/tests/fuzz/seeds/$target" ] ||
-        set -- "$@" "$folder/build/tests/fuzz/seeds/$target"
+    for seeds in seeds/$target corpus/$target; do
+        [ ! -d "$folder/build/tests/fuzz/$seeds" ] || set -- "$@" "$folder/build/tests/fuzz/$seeds"
+    done
     [ "$target" != scene ] || set -- "$@" scenes
     [ ! -f "tests/fuzz/$target.dict" ] || set -- "-dict=tests/fuzz/$target.dict" "$@"
     "$folder/build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len=4096 \
