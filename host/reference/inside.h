@@ -190,7 +190,6 @@ struct dvec3 optics_highlight(const struct optics *o, struct dvec3 n, struct dve
 
 /* The medium that counts: material; SCENE_NONE: air. */
 uint32_t media_top(const struct media *media);
-bool media_bounded_by(const struct scene_material *m);
 /* Beer's law along t in the medium that counts. */
 struct dvec3 media_transmittance(const struct reference *reference, const struct media *media,
                                  double t);

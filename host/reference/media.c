@@ -2,6 +2,8 @@
    surfaces of several of them that a ray crosses at one place. */
 #include "reference/inside.h"
 
+#include "render/bodies.h"
+
 /* Surfaces touch within roundings of floats: their vertices are floats. */
 #define FLOAT_ROUNDINGS 8.0
 #define ROUNDING        0x1p-24
@@ -56,12 +58,6 @@ static bool have(const struct media *media, uint32_t entry)
 {
     struct media copy = *media;
     return take_out(&copy, entry);
-}
-
-bool media_bounded_by(const struct scene_material *m)
-{
-    return !m->thin_walled && m->model != SCENE_MODEL_UNLIT &&
-           (m->transmission[0] > 0.0f || m->transmission[1] > 0.0f || m->transmission[2] > 0.0f);
 }
 
 static double transmitted(double absorption, double t)
@@ -158,7 +154,7 @@ static void gather_touching(const struct reference *reference, const struct ray 
             return;
         struct surface other = surface_at(reference, &hit);
         bool leaves = surface_face(&other, ray->dir);
-        if (!media_bounded_by(other.material))
+        if (!bodies_bounded_by(other.material))
             return;
         uint32_t entry = other.material_index + 1;
         uint32_t same = find_crossed(crossed, entry, hit.instance);
@@ -217,7 +213,7 @@ struct crossing media_cross(struct tracer *tracer, const struct ray *ray, const 
                          .room = s->room,
                          .instance = hit->instance,
                          .primitive = hit->primitive};
-    if (!media_bounded_by(s->material))
+    if (!bodies_bounded_by(s->material))
         return c;
     if (is_crossed_already(ray, hit, s, inside)) {
         c.seen = false;

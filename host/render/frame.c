@@ -53,6 +53,7 @@ whit_result render_view(const struct log *log, struct accel *accel, const struct
     whit_result result = camera_frame(log, pose, camera, width, height, &view.frame, kind);
     if (result == WHIT_OK)
         result = media_frame(&view);
+    bodies_finish(&view.bodies);
     *frame = view.frame;
     return result;
 }

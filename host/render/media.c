@@ -6,176 +6,53 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
-enum { MATERIALS_MOST = 65534, PAIRS_MOST = 1 << 20, DIRECTIONS = 3, HITS_MOST = 4096 };
-
-/* ---- Bodies: what is of one medium, in one instance; each sphere is one of its own ---- */
-
-struct body {
-    uint32_t material;
-    double lo[3], hi[3];
-};
-
-struct bodies {
-    struct body *all;
-    uint32_t count, capacity;
-};
-
-static bool bounds_medium(const struct scene_material *m)
-{
-    return !m->thin_walled && m->model != SCENE_MODEL_UNLIT &&
-           (m->transmission[0] > 0 || m->transmission[1] > 0 || m->transmission[2] > 0);
-}
+enum { MATERIALS_MOST = 65534, DIRECTIONS = 3, HITS_MOST = 4096 };
 
 static bool any_medium(const struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->material_count; ++i) {
-        if (bounds_medium(&scene->materials[i]))
+        if (bodies_bounded_by(&scene->materials[i]))
             return true;
     }
     return false;
 }
 
-static void grow(struct body *body, const float at[3], float radius)
+/* ---- Media that touch ---- */
+
+/* How far apart surfaces may be that a ray crosses at one place, at most: crossing_slack and
+   crossing_contact of shaders/bind/crossing.glsl. Rays start in the scene or at the camera and end
+   on a body; the two edges of a triangle are no longer than its body, those of a sphere's
+   coordinates together three times pi of its radius. */
+static double crossing_reach(const struct renderer *renderer)
 {
+    const struct gpu_frame *frame = &renderer->frame;
+    const struct scene_pose *pose = &renderer->pose;
+    const struct bodies *bodies = &renderer->bodies;
+    const double rounding = 8.0 * 0x1p-24 / (1.0 - 8.0 * 0x1p-24), pi = 3.14159265358979;
+    double origin = 0.0, place = 0.0, edges = 0.0, way2 = 0.0;
     for (int k = 0; k < 3; ++k) {
-        body->lo[k] = fmin(body->lo[k], (double)at[k] - (double)radius);
-        body->hi[k] = fmax(body->hi[k], (double)at[k] + (double)radius);
-    }
-}
-
-static struct body empty_body(uint32_t material)
-{
-    return (struct body){.material = material,
-                         .lo = {DBL_MAX, DBL_MAX, DBL_MAX},
-                         .hi = {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
-}
-
-static struct body *body_of(struct bodies *bodies, uint32_t first, uint32_t material)
-{
-    for (uint32_t i = bodies->count; i > first; --i) {
-        if (bodies->all[i - 1].material == material)
-            return &bodies->all[i - 1];
-    }
-    if (!ARRAY_PUSH(bodies->all, bodies->count, bodies->capacity, empty_body(material)))
-        return NULL;
-    return &bodies->all[bodies->count - 1];
-}
-
-/* Of a mesh, in object space, behind those that are listed. */
-static bool list_mesh(const struct scene *scene, const struct scene_mesh *mesh,
-                      struct bodies *bodies)
-{
-    uint32_t first = bodies->count;
-    struct body *body = NULL;
-    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
-        uint32_t material = mesh->materials[t];
-        if (!bounds_medium(&scene->materials[material]))
-            continue;
-        if (!body || body->material != material)
-            body = body_of(bodies, first, material);
-        if (!body)
-            return false;
-        for (size_t k = 0; k < 3; ++k)
-            grow(body, &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)t + k]], 0.0f);
-    }
-    for (uint32_t i = 0; i < mesh->sphere_count; ++i) {
-        if (!bounds_medium(&scene->materials[mesh->materials[i]]))
-            continue;
-        struct body sphere = empty_body(mesh->materials[i]);
-        grow(&sphere, &mesh->spheres[4 * (size_t)i], mesh->spheres[4 * (size_t)i + 3]);
-        if (!ARRAY_PUSH(bodies->all, bodies->count, bodies->capacity, sphere))
-            return false;
-    }
-    return true;
-}
-
-/* To world space, wider by `margin` and by what placing a box rounds. */
-static struct body place_body(const struct body *body, const struct affine *placed, double margin)
-{
-    struct body out = empty_body(body->material);
-    double size = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        double at[3], to[3];
-        for (int k = 0; k < 3; ++k)
-            at[k] = corner >> k & 1 ? body->hi[k] : body->lo[k];
-        affine_point(placed, at, to);
-        for (int k = 0; k < 3; ++k) {
-            out.lo[k] = fmin(out.lo[k], to[k]);
-            out.hi[k] = fmax(out.hi[k], to[k]);
-            size = fmax(size, fabs(to[k]));
+        double aside = (double)(fabsf(frame->right[k]) + fabsf(frame->up[k]) + frame->lens_radius);
+        double from = fmin(pose->lo[k], (double)frame->eye[k] - aside);
+        double to = fmax(pose->hi[k], (double)frame->eye[k] + aside), lo = INFINITY, hi = -INFINITY;
+        for (uint32_t i = 0; i < bodies->count; ++i) {
+            const struct body *body = &bodies->all[i];
+            lo = fmin(lo, body->lo[k]);
+            hi = fmax(hi, body->hi[k]);
+            edges = fmax(edges, 1.5 * pi * (body->hi[k] - body->lo[k]));
         }
+        double way = fmax(hi - from, to - lo);
+        origin = fmax(origin, fmax(fabs(from), fabs(to)));
+        place = fmax(place, fmax(fabs(lo), fabs(hi)));
+        way2 += way * way;
     }
-    margin += size * 64.0 * FLT_EPSILON; /* more than hits are off by: see crossing_reach */
-    for (int k = 0; k < 3; ++k) {
-        out.lo[k] -= margin;
-        out.hi[k] += margin;
-    }
-    return out;
+    double size = origin + place + edges + sqrt(way2);
+    return 1.01 * (1024.0 * rounding * size + 16.0 * (double)renderer->scene->contact);
 }
 
-/* Every body of the scene, in world space. */
-static bool list_bodies(const struct renderer *renderer, struct bodies *out)
+bool media_touch(const struct renderer *renderer)
 {
-    const struct scene *scene = renderer->scene;
-    struct bodies meshes = {0};
-    uint32_t *first = array_alloc((size_t)scene->mesh_count + 1, sizeof *first);
-    bool fine = first != NULL;
-    for (uint32_t m = 0; fine && m < scene->mesh_count; ++m) {
-        first[m] = meshes.count;
-        fine = list_mesh(scene, &scene->meshes[m], &meshes);
-        first[m + 1] = meshes.count;
-    }
-    for (uint32_t i = 0; fine && i < renderer->pose.instance_count; ++i) {
-        uint32_t mesh = scene->instances[i].mesh;
-        for (uint32_t b = first[mesh]; fine && b < first[mesh + 1]; ++b) {
-            struct body body =
-                place_body(&meshes.all[b], &renderer->pose.instances[i], (double)scene->contact);
-            fine = ARRAY_PUSH(out->all, out->count, out->capacity, body);
-        }
-    }
-    free(first);
-    free(meshes.all);
-    return fine;
-}
-
-bool media_may_touch(const struct renderer *renderer)
-{
-    struct bodies bodies = {0};
-    bool may = !list_bodies(renderer, &bodies) || bodies.count > 1;
-    free(bodies.all);
-    return may;
-}
-
-static int by_low_x(const void *a, const void *b)
-{
-    double x = ((const struct body *)a)->lo[0], y = ((const struct body *)b)->lo[0];
-    return (x > y) - (x < y);
-}
-
-static bool meet(const struct body *a, const struct body *b)
-{
-    for (int k = 0; k < 3; ++k) {
-        if (a->lo[k] > b->hi[k] || b->lo[k] > a->hi[k])
-            return false;
-    }
-    return true;
-}
-
-/* Whether boxes of two bodies meet; also where it takes too long to tell. Sorts the bodies. */
-static bool any_meet(struct bodies *bodies)
-{
-    uint32_t pairs = 0;
-    if (bodies->count > 1)
-        qsort(bodies->all, bodies->count, sizeof *bodies->all, by_low_x);
-    for (uint32_t i = 0; i < bodies->count; ++i) {
-        for (uint32_t j = i + 1; j < bodies->count; ++j) {
-            if (bodies->all[j].lo[0] > bodies->all[i].hi[0])
-                break;
-            if (meet(&bodies->all[i], &bodies->all[j]) || ++pairs > PAIRS_MOST)
-                return true;
-        }
-    }
-    return false;
+    bool moves = renderer->scene->channel_count > 0;
+    return moves ? renderer->bodies.count > 1 : renderer->frame.nested != 0;
 }
 
 /* ---- What is around the camera ---- */
@@ -225,7 +102,7 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
     for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MOST; ++hits) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[hit.instance].mesh];
         uint32_t material = mesh->materials[hit.primitive];
-        if (bounds_medium(&scene->materials[material])) {
+        if (bodies_bounded_by(&scene->materials[material])) {
             struct around *around = find_around(s, hit.instance, material);
             if (!around)
                 return false;
@@ -301,13 +178,14 @@ static whit_result fill_eye(struct renderer *renderer, struct surroundings *s)
     return WHIT_OK;
 }
 
-static bool in_a_box(const struct bodies *bodies, const float eye[3])
+static bool in_a_box(const struct bodies *bodies, const float eye[3], double margin)
 {
     for (uint32_t i = 0; i < bodies->count; ++i) {
         const struct body *body = &bodies->all[i];
         bool in = true;
         for (int k = 0; k < 3; ++k)
-            in = in && (double)eye[k] >= body->lo[k] && (double)eye[k] <= body->hi[k];
+            in = in && (double)eye[k] >= body->lo[k] - margin &&
+                 (double)eye[k] <= body->hi[k] + margin;
         if (in)
             return true;
     }
@@ -327,17 +205,17 @@ whit_result media_frame(struct renderer *renderer)
                   renderer->scene->name, renderer->scene->material_count, MATERIALS_MOST);
         return WHIT_ERROR_USAGE;
     }
-    struct bodies bodies = {0};
+    struct bodies *bodies = &renderer->bodies;
     struct surroundings around = {0};
-    bool fine = list_bodies(renderer, &bodies);
-    frame->nested = fine && any_meet(&bodies);
-    bool inside = fine && in_a_box(&bodies, frame->eye);
+    bool fine = bodies_list(renderer->scene, &renderer->pose, bodies);
+    frame->nested = fine && bodies_come_within(renderer->scene, &renderer->pose, bodies,
+                                               crossing_reach(renderer));
+    bool inside = fine && in_a_box(bodies, frame->eye, (double)frame->contact);
     for (int i = 0; fine && inside && i < DIRECTIONS; ++i)
         fine = look_around(renderer, frame->eye, i, &around);
     whit_result result = fine ? fill_eye(renderer, &around) : WHIT_ERROR_MEMORY;
     if (!fine)
         log_error(&renderer->log, "out of memory for the media of the scene");
-    free(bodies.all);
     free(around.all);
     return result;
 }

@@ -109,6 +109,7 @@ void renderer_destroy(struct renderer *renderer)
     pixels_finish(&renderer->pixel_buffers);
     costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);
+    bodies_finish(&renderer->bodies);
     scene_pose_finish(&renderer->pose);
     image_finish(&renderer->color);
     image_finish(&renderer->ids);

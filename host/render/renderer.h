@@ -5,6 +5,7 @@
 #include "abi/bindings.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
+#include "render/bodies.h"
 #include "render/render.h"
 
 /* The scene in device memory. `none` stands in for what the scene lacks. */
@@ -112,6 +113,7 @@ struct renderer {
     struct probe_state probe;
     struct commands *commands;
     struct gpu_frame frame;
+    struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids;            /* of the last picture, where it has more than one band */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     struct render_stats stats;
@@ -206,8 +208,9 @@ WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
    and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told
    apart, WHIT_ERROR_STATUS where the camera is in too many media. */
 WHIT_CHECK whit_result media_frame(struct renderer *renderer);
-/* Whether the scene has more than one body of a medium: at some time they may touch. */
-bool media_may_touch(const struct renderer *renderer);
+/* Whether surfaces of two bodies may be at one place, for the frame that was filled in; of a scene
+   that moves, at some time. */
+bool media_touch(const struct renderer *renderer);
 
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */

@@ -67,6 +67,7 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     renderer->params = wanted;
     renderer->has_secondary = renderer_bounces(renderer);
     uint32_t camera = variant_camera(renderer);
+    bool touched = media_touch(renderer);
     if (!same)
         result = replace_pixels(renderer);
     if (result == WHIT_OK && moved)
@@ -74,7 +75,8 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     else if (result == WHIT_OK)
         result = frame_upload(renderer);
     bool other_kernel = variant_camera(renderer) != camera || (wanted.adaptive > 0.0) != listed ||
-                        renderer->has_secondary != had_secondary;
+                        renderer->has_secondary != had_secondary ||
+                        media_touch(renderer) != touched;
     if (result == WHIT_OK && other_kernel) {
         beside_finish(renderer);
         passes_finish(renderer);

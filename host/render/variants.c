@@ -91,7 +91,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
         spec.SPEC_LIGHTS &= lights_kinds(&renderer->pose) | added_lights(renderer);
     if (!renderer->params.all_effects && spec.SPEC_FILTER_DETAIL)
         spec.SPEC_FILTER_DETAIL = accel_filters_vary(renderer->accel);
-    if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_may_touch(renderer))
+    if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_touch(renderer))
         spec.SPEC_MEDIA = MEDIA_ALONE;
     return spec;
 }

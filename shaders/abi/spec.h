@@ -29,7 +29,7 @@
 
 /* Media. */
 #define MEDIA_NONE  0u
-#define MEDIA_ALONE 1u /* of one body, which nothing touches */
+#define MEDIA_ALONE 1u /* surfaces of two bodies are nowhere at one place */
 #define MEDIA_TOUCH 2u /* surfaces of several may be at one place */
 
 /* What the triangle records of all meshes are. */

@@ -79,6 +79,23 @@ static void views_are_those_of_new_renderers(void **state)
     walk("whitted", NULL, STEPS);
 }
 
+/* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */
+static void media_touch_for_cameras_far_away(void **state)
+{
+    (void)state;
+    struct render_params far_away = steps[0];
+    far_away.camera = "0.6,2.35,900,0.42,1.62,0,0,1,0,0.3";
+    struct fixture f = fixture_open(load("whitted"), NULL, &steps[0]);
+    assert_false(media_touch(f.renderer));
+    assert_int_equal(renderer_set_view(f.renderer, &far_away), WHIT_OK);
+    assert_true(media_touch(f.renderer));
+    check_same(&f, &far_away);
+    assert_int_equal(renderer_set_view(f.renderer, &steps[0]), WHIT_OK);
+    assert_false(media_touch(f.renderer));
+    check_same(&f, &steps[0]);
+    fixture_close(&f);
+}
+
 static void without_trees(void **state)
 {
     (void)state;
@@ -121,6 +138,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_those_of_new_renderers),
+        cmocka_unit_test(media_touch_for_cameras_far_away),
         cmocka_unit_test(without_trees),
         cmocka_unit_test(rays_are_traced_in_between),
         cmocka_unit_test(nonsense_is_refused),

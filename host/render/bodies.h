@@ -1,0 +1,36 @@
+/* Bodies of media: what is of one medium, in one instance; each sphere is one of its own. */
+#ifndef RENDER_BODIES_H
+#define RENDER_BODIES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scene/scene.h"
+
+struct body {
+    uint32_t instance, material;
+    uint32_t sphere;     /* of its mesh, or SCENE_NONE: triangles */
+    double lo[3], hi[3]; /* world space, with what placing them rounds */
+    double rounding;     /* as much */
+};
+
+/* Those of one pose. A zeroed one is empty. */
+struct bodies {
+    struct body *all;
+    uint32_t count, capacity;
+    uint64_t pose_hash;
+    double searched,
+        gap; /* surfaces of two bodies closer than `searched` are at least `gap` apart */
+};
+
+/* Whether light passes through a surface of it into a medium of its own. */
+bool bodies_bounded_by(const struct scene_material *m);
+/* All of the scene, unless they are there already for this pose. False: memory ran out. */
+bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struct bodies *bodies);
+/* Whether surfaces of two bodies may come nearer than `distance_most`, in world units; also where
+   it takes too long to tell, or memory runs out. */
+bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
+                        struct bodies *bodies, double distance_most);
+void bodies_finish(struct bodies *bodies);
+
+#endif
