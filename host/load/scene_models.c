@@ -6,6 +6,13 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/scene_objects.h"
+#include "scene/afford.h"
+
+static void set_material(struct scene_mesh *mesh, uint32_t material)
+{
+    for (uint32_t t = 0; t < scene_mesh_primitives(mesh); ++t)
+        mesh->materials[t] = material;
+}
 
 static bool load_new_model(struct reader *reader, const char *path, uint32_t node,
                            uint32_t material, bool lights, bool cameras)
@@ -17,34 +24,117 @@ static bool load_new_model(struct reader *reader, const char *path, uint32_t nod
         reader->result = result;
         return false;
     }
-    for (uint32_t i = first_mesh; material != SCENE_NONE && i < scene->mesh_count; ++i) {
-        struct scene_mesh *mesh = &scene->meshes[i];
-        for (uint32_t t = 0; t < mesh->triangle_count; ++t)
-            mesh->materials[t] = material;
-    }
+    for (uint32_t i = first_mesh; material != SCENE_NONE && i < scene->mesh_count; ++i)
+        set_material(&scene->meshes[i], material);
     return true;
 }
 
-/* A model that was placed before is not read again: its meshes get more instances. */
+/* The same mesh under another material. */
+static bool add_copy(struct reader *reader, const struct place *place, uint32_t mesh,
+                     uint32_t material, uint32_t *out)
+{
+    struct scene *scene = reader->scene;
+    const struct scene_mesh *from = &scene->meshes[mesh];
+    struct scene_mesh copy;
+    uint64_t bytes =
+        scene_triangle_cost(from->triangle_count, from->vertex_count, 16 * sizeof(float)) +
+        scene_sphere_cost(from->sphere_count);
+    if (!reader_afford(reader, place, bytes, "another copy of %u primitives",
+                       scene_mesh_primitives(from)))
+        return false;
+    if (!scene_mesh_copy(from, &copy))
+        return reader_no_memory(reader);
+    set_material(&copy, material);
+    *out = scene_add_mesh(scene, copy);
+    return *out != SCENE_NONE || reader_no_memory(reader);
+}
+
+/* Gives instances from `first` on meshes of their own, under `material`. */
+static bool dress_instances(struct reader *reader, const struct place *place, uint32_t first,
+                            uint32_t material)
+{
+    struct scene *scene = reader->scene;
+    uint32_t known = scene->mesh_count;
+    uint32_t *copies = array_alloc(known, sizeof *copies);
+    bool good = copies != NULL || reader_no_memory(reader);
+    for (uint32_t i = 0; good && i < known; ++i)
+        copies[i] = SCENE_NONE;
+    for (uint32_t i = first; good && i < scene->instance_count; ++i) {
+        uint32_t *copy = &copies[scene->instances[i].mesh];
+        good = *copy != SCENE_NONE ||
+               add_copy(reader, place, scene->instances[i].mesh, material, copy);
+        if (good)
+            scene->instances[i].mesh = *copy;
+    }
+    free(copies);
+    return good;
+}
+
+/* In the place of a material: whatever the model was placed under first. */
+#define ANY_MATERIAL (SCENE_NONE - 1)
+
+static char *key_of(uint32_t material, const char *path)
+{
+    char *real = realpath(path, NULL);
+    char *key = string_format("%u %s", material, real ? real : path);
+    free(real);
+    return key;
+}
+
+static bool find_model(const struct reader *reader, uint32_t material, const char *path,
+                       uint32_t *index)
+{
+    char *key = key_of(material, path);
+    bool found = key && table_find(&reader->model_keys, key, strlen(key), index);
+    free(key);
+    return found;
+}
+
+static bool know_model(struct reader *reader, uint32_t material, const char *path, uint32_t index)
+{
+    char *key = key_of(material, path);
+    bool good = key && table_add(&reader->model_keys, key, strlen(key), index);
+    free(key);
+    return good || reader_no_memory(reader);
+}
+
+/* A model that was placed before is not read again: its meshes get more instances, or are copied
+   where they are to have another material. */
+static bool place_again(struct reader *reader, const struct place *place, const char *path,
+                        uint32_t node, uint32_t material, uint32_t index, bool dressed)
+{
+    struct scene *scene = reader->scene;
+    struct scene_range from = reader->models[index], range = range_begin(scene, node);
+    if (!range_afford(reader, place, &from, 1) || !range_copy(reader, place, &from, node))
+        return false;
+    if (dressed)
+        return true;
+    if (!dress_instances(reader, place, range.first_instance, material))
+        return false;
+    range_end(scene, &range);
+    return know_model(reader, material, path, reader->model_count) &&
+           (ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, range) ||
+            reader_no_memory(reader));
+}
+
 static bool place_model(struct reader *reader, const struct place *place, const char *path,
                         uint32_t node, uint32_t material, bool lights, bool cameras)
 {
-    char *key = string_format("%u %d %d %s", material, lights, cameras, path);
-    if (!key)
-        return reader_no_memory(reader);
-    uint32_t index = reader->model_count;
-    size_t key_bytes = strlen(key);
-    bool before = !lights && !cameras && table_find(&reader->model_keys, key, key_bytes, &index);
-    bool good = before || lights || cameras ||
-                table_add(&reader->model_keys, key, key_bytes, index) || reader_no_memory(reader);
-    free(key);
-    if (before)
-        return range_afford(reader, place, &reader->models[index], 1) &&
-               range_copy(reader, place, &reader->models[index], node);
+    uint32_t index;
+    bool plain = !lights && !cameras;
+    bool same = plain && find_model(reader, material, path, &index);
+    bool other =
+        plain && !same && material != SCENE_NONE && find_model(reader, ANY_MATERIAL, path, &index);
+    if (same || other)
+        return place_again(reader, place, path, node, material, index, same);
     struct scene_range range = range_begin(reader->scene, node);
-    if (!good || !load_new_model(reader, path, node, material, lights, cameras))
+    if (!load_new_model(reader, path, node, material, lights, cameras))
         return false;
     range_end(reader->scene, &range);
+    bool known = !plain || find_model(reader, ANY_MATERIAL, path, &index) ||
+                 know_model(reader, ANY_MATERIAL, path, reader->model_count);
+    if (!known || (plain && !know_model(reader, material, path, reader->model_count)))
+        return false;
     return ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, range) ||
            reader_no_memory(reader);
 }

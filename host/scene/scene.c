@@ -43,6 +43,40 @@ void scene_mesh_finish(struct scene_mesh *mesh)
     *mesh = (struct scene_mesh){0};
 }
 
+/* Of `count` times `bytes`; NULL stays NULL. */
+static void *copy_of(const void *data, size_t count, size_t bytes, bool *good)
+{
+    void *copy = data ? array_alloc(count, bytes) : NULL;
+    *good = *good && (copy || !data);
+    return copy ? memcpy(copy, data, count * bytes) : NULL;
+}
+
+bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out)
+{
+    size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
+    bool good = true;
+    *out = *mesh;
+    out->name = mesh->name ? string_copy(mesh->name) : NULL;
+    out->spheres = copy_of(mesh->spheres, mesh->sphere_count, 4 * sizeof(float), &good);
+    out->positions = copy_of(mesh->positions, vertices, 3 * sizeof(float), &good);
+    out->normals = copy_of(mesh->normals, vertices, 3 * sizeof(float), &good);
+    for (int i = 0; i < 2; ++i)
+        out->uvs[i] = copy_of(mesh->uvs[i], vertices, 2 * sizeof(float), &good);
+    out->colors = copy_of(mesh->colors, vertices, 4 * sizeof(float), &good);
+    out->tangents = copy_of(mesh->tangents, vertices, 4 * sizeof(float), &good);
+    out->indices = copy_of(mesh->indices, triangles, 3 * sizeof(uint32_t), &good);
+    out->materials = copy_of(mesh->materials, scene_mesh_primitives(mesh), sizeof(uint32_t), &good);
+    out->groups = copy_of(mesh->groups, mesh->group_count, sizeof *mesh->groups, &good);
+    for (uint32_t i = 0; out->groups && i < out->group_count; ++i) {
+        out->groups[i].name = string_copy(mesh->groups[i].name);
+        good = good && out->groups[i].name;
+    }
+    if (good && (out->name || !mesh->name))
+        return true;
+    scene_mesh_finish(out);
+    return false;
+}
+
 void scene_material_finish(struct scene_material *material)
 {
     if (!material)

@@ -304,6 +304,8 @@ void scene_note(struct scene *scene, enum scene_note_level level, const char *fo
     WHIT_PRINTF(3, 4);
 
 void scene_mesh_finish(struct scene_mesh *mesh);
+/* Another one with the same content; false, and nothing in it, where memory ran out. */
+bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out);
 void scene_material_finish(struct scene_material *material);
 
 /* Checks everything, once: indices in range (else WHIT_ERROR_INPUT), vertices finite and below

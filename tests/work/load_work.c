@@ -6,12 +6,14 @@
 #include "load_model_fixture.h"
 
 static _Atomic uint64_t branches;
+static uint32_t children;
 
 enum child_end __wrap_child_run(const struct child_limits *limits,
                                 int (*fn)(void *user, void *to, child_write write), void *user,
                                 struct child_reply *reply)
 {
     (void)limits;
+    children++;
     return child_in_place(fn, user, reply, NULL);
 }
 
@@ -131,6 +133,32 @@ static void objects(void **state)
           NULL, NULL);
 }
 
+static void one_model_under_many_materials(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_text(fixture, "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = write_file(
+        fixture, "models.json",
+        "{\"camera\":{\"eye\":[0,0,9],\"target\":[0,0,0]},\"lights\":[{\"kind\":\"point\","
+        "\"position\":[0,9,0]}],\"objects\":[<~{\"model\":\"././tri.obj\",\"material\":"
+        "{\"diffuse\":0.#1}}>,{\"model\":\"tri.obj\"},{\"model\":\"tri.obj\"}]}",
+        FEW);
+    struct scene *scene;
+    children = 0;
+    assert_int_equal(load_scene(&(struct log){0}, path, NULL, &scene), WHIT_OK);
+    assert_int_equal(children, 2); /* under materials, and under its own */
+    assert_int_equal(scene->mesh_count, FEW + 1);
+    assert_int_equal(scene->instance_count, FEW + 2);
+    for (uint32_t i = 0; i < FEW; i++) {
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        const struct scene_material *material = &scene->materials[mesh->materials[0]];
+        char expected[16];
+        snprintf(expected, sizeof expected, "0.%u1", i);
+        assert_float_equal(material->diffuse[0], atof(expected), 1e-6);
+    }
+    scene_destroy(scene);
+}
+
 #define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
 
 int main(void)
@@ -138,7 +166,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(primitives),       TEST(meshes_and_materials),
         TEST(missing_pictures), TEST(groups_and_their_materials),
-        TEST(objects),
+        TEST(objects),          TEST(one_model_under_many_materials),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
