@@ -12,7 +12,7 @@
 #include "base/platform.h"
 
 /* Of a progressive file each scan is work for all of the picture, however few bytes it has. */
-enum { SCANS_MOST = 200 };
+enum { SCANS_MOST = 64 };
 
 /* libjpeg leaves its functions by longjmp. Whatever must survive that lives in here, outside the
    frame that calls setjmp. */

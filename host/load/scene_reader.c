@@ -115,7 +115,7 @@ uint32_t reader_line(const struct reader *reader, const struct place *place)
     const char *marked;
     uint32_t line, column;
     uint64_t looks = (uint64_t)reader->scene->material_count + reader->scene->light_count;
-    if (looks * reader->text_bytes > UINT64_C(1000000000))
+    if (looks * reader->text_bytes > UINT64_C(300000000))
         return 0;
     (void)locate(reader, place, &marked);
     line_and_column(reader->text, marked, &line, &column);
