@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "load/gltf.h"
+#include "scene/afford.h"
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 
@@ -24,6 +25,8 @@ struct geometry {
     struct gltf *gltf;
     json_t *meshes, *accessors, *views, *buffers; /* of the smaller file */
     struct gltf_bytes *floats;                    /* attributes converted, a buffer each */
+    uint32_t *converted;    /* of each accessor of the file that of its floats, or SCENE_NONE */
+    uint64_t counted_bytes; /* of these */
     struct drawn *drawn;
     uint32_t float_count, float_capacity, drawn_count, drawn_capacity;
     uint64_t lines_and_points, morphed;
@@ -48,6 +51,11 @@ static bool convert(struct geometry *geometry, const struct gltf_place *at, uint
     if (!gltf_read_floats(geometry->gltf, accessor, components, &values, &count))
         return false;
     size_t bytes = (size_t)count * components * sizeof *values;
+    if (!scene_afford(geometry->gltf->scene, bytes, "accessors[%u] as floats", accessor)) {
+        free(values);
+        return false;
+    }
+    geometry->counted_bytes += bytes;
     struct gltf_bytes floats = {(const uint8_t *)values, bytes, (uint8_t *)values};
     if (!ARRAY_PUSH(geometry->floats, geometry->float_count, geometry->float_capacity, floats)) {
         free(values);
@@ -67,6 +75,25 @@ static bool convert(struct geometry *geometry, const struct gltf_place *at, uint
     appended = json_array_append_new(geometry->views, v) == 0 && appended;
     appended = json_array_append_new(geometry->accessors, a) == 0 && appended;
     return appended || gltf_fail(geometry->gltf, at, no_memory);
+}
+
+/* Once, however many primitives use it. *index becomes that of the floats. */
+static bool convert_once(struct geometry *geometry, const struct gltf_place *at,
+                         const struct gltf_accessor *accessor, const char *type, uint32_t *index)
+{
+    uint32_t count = gltf_count(geometry->gltf, "accessors"), *converted = geometry->converted;
+    if (!converted) {
+        converted = geometry->converted = array_alloc(count, sizeof *converted);
+        for (uint32_t i = 0; converted && i < count; i++)
+            converted[i] = SCENE_NONE;
+    }
+    if (!converted)
+        return gltf_fail(geometry->gltf, at, no_memory);
+    uint32_t *known = &converted[*index];
+    if (*known == SCENE_NONE && !convert(geometry, at, *index, type, accessor->components, known))
+        return false;
+    *index = *known;
+    return true;
 }
 
 static bool add_attributes(struct geometry *geometry, const json_t *primitive,
@@ -104,8 +131,8 @@ static bool add_attributes(struct geometry *geometry, const json_t *primitive,
                              wanted[i].name, accessor.count, *vertex_count);
         bool is_packed = json_object_get(packed, wanted[i].name) != NULL;
         if (accessor.component != GLTF_FLOAT && !is_packed &&
-            !convert(geometry, &place, index, accessor.components == 3 ? "VEC3" : wanted[i].type,
-                     accessor.components, &index))
+            !convert_once(geometry, &place, &accessor,
+                          accessor.components == 3 ? "VEC3" : wanted[i].type, &index))
             return false;
         if (!set_new(out, wanted[i].name, json_integer(index)))
             return gltf_fail(gltf, &place, no_memory);
@@ -409,6 +436,8 @@ whit_result gltf_load_meshes(struct gltf *gltf)
     for (uint32_t i = 0; i < geometry.float_count; i++)
         free(geometry.floats[i].owned);
     free(geometry.floats);
+    free(geometry.converted);
+    scene_give_back(gltf->scene, geometry.counted_bytes);
     free(geometry.drawn);
     json_decref(geometry.meshes);
     json_decref(geometry.accessors);
