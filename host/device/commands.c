@@ -139,7 +139,7 @@ whit_result commands_begin(struct commands *commands)
     if (device->begin_label) {
         VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                       .pLabelName = commands->name};
-        device->begin_label(commands->vk, &label);
+        LAYERS_BESIDE(device->begin_label(commands->vk, &label));
     }
     commands_barrier(commands); /* sees what earlier submissions wrote */
 fail:
@@ -295,7 +295,7 @@ void commands_span_begin(struct commands *commands, const char *label)
     if (commands->device->begin_label) {
         VkDebugUtilsLabelEXT info = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                      .pLabelName = label};
-        commands->device->begin_label(commands->vk, &info);
+        LAYERS_BESIDE(commands->device->begin_label(commands->vk, &info));
     }
     stamp(commands, 2 * commands->span_count);
 }
@@ -311,7 +311,7 @@ void commands_span_end(struct commands *commands)
     }
     stamp(commands, 2 * commands->span_count + 1);
     if (commands->device->end_label)
-        commands->device->end_label(commands->vk);
+        LAYERS_BESIDE(commands->device->end_label(commands->vk));
     ++commands->span_count;
     commands->span_open = false;
 }
@@ -332,7 +332,7 @@ whit_result commands_submit(struct commands *commands)
         return device->lost ? WHIT_ERROR_DEVICE : result;
     }
     if (device->end_label)
-        device->end_label(commands->vk);
+        LAYERS_BESIDE(device->end_label(commands->vk));
     commands->state = COMMANDS_IDLE;
     VK_TRY(device, vkEndCommandBuffer(commands->vk));
     VK_TRY(device, vkResetFences(device->vk, 1, &commands->fence));

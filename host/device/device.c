@@ -140,7 +140,7 @@ void device_name_object(struct device *device, VkObjectType type, uint64_t handl
         .pObjectName = name,
     };
     /* A name that cannot be kept is only missing from a debugger. */
-    (void)device->set_object_name(device->vk, &info);
+    (void)LAYERS_BESIDE(device->set_object_name(device->vk, &info));
 }
 
 static bool environment_on(const char *name)
@@ -237,6 +237,8 @@ whit_result device_create(const struct log *log, const struct device_params *par
     device->validation = asked || environment_on("WHIT_VALIDATION");
     device->validation_of_shaders =
         device->validation && (asked || strcmp(validation, "sync") != 0);
+    if (device->validation)
+        layers_expect();
     device->staged = environment_on("WHIT_STAGING");
     device_read_fault(device);
 

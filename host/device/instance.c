@@ -175,7 +175,8 @@ static whit_result make_messenger(struct device *device)
                                                                   "vkCreateDebugUtilsMessengerEXT");
     VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(device);
     if (create_messenger)
-        VK_TRY(device, create_messenger(device->instance, &info, NULL, &device->messenger));
+        VK_TRY(device,
+               LAYERS_BESIDE(create_messenger(device->instance, &info, NULL, &device->messenger)));
 fail:
     return result;
 }
@@ -214,7 +215,8 @@ whit_result instance_make_surface(struct device *device)
         return WHIT_OK;
     VkResult vk = VK_SUCCESS;
     if (device_may_call(device, "vkCreateSurface", &vk))
-        vk = (VkResult)source->create(source->user, device->instance, &device->surface);
+        vk = (VkResult)LAYERS_BESIDE(
+            source->create(source->user, device->instance, &device->surface));
     return device_check(device, vk, "the window's surface", __FILE__, __LINE__);
 }
 
@@ -226,7 +228,7 @@ void instance_destroy(struct device *device)
         PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger =
             (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
                 device->instance, "vkDestroyDebugUtilsMessengerEXT");
-        destroy_messenger(device->instance, device->messenger, NULL);
+        LAYERS_BESIDE(destroy_messenger(device->instance, device->messenger, NULL));
     }
     if (device->surface)
         vkDestroySurfaceKHR(device->instance, device->surface, NULL);

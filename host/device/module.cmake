@@ -1,5 +1,5 @@
 whit_module(device
-  SOURCES instance.c device.c cache.c kernel_cache.c buffer.c pipeline.c specialize.cpp
+  SOURCES instance.c device.c layers.c cache.c kernel_cache.c buffer.c pipeline.c specialize.cpp
     evaluate.c evaluate_read.c evaluate_memory.c evaluate_output.c spirv_ops.c commands.c
     swapchain.c swapchain_show.c
   LINK whit_base Vulkan::Vulkan SPIRV-Tools-opt)

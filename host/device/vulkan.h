@@ -15,6 +15,7 @@
 #include <vulkan/vulkan.h>
 
 #include "device/device.h"
+#include "device/layers.h"
 #include "device/specialize.h"
 
 enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };

@@ -12,6 +12,7 @@
 #include <imgui.h>
 
 extern "C" {
+#include "device/layers.h"
 #include "device/swapchain.h"
 }
 
@@ -224,7 +225,7 @@ static void make_fonts(void *user, void *commands)
 {
     struct ui *ui = static_cast<struct ui *>(user);
     try {
-        ImGui_ImplVulkan_CreateFontsTexture(static_cast<VkCommandBuffer>(commands));
+        LAYERS_BESIDE(ImGui_ImplVulkan_CreateFontsTexture(static_cast<VkCommandBuffer>(commands)));
     } catch (const failed_call &failure) {
         ui->result = say_failure(ui, failure);
     }
@@ -278,7 +279,7 @@ static void start_backend(struct ui *ui)
     info.ImageCount = handles.image_count;
     info.CheckVkResultFn = check_call;
     ui->backend = true; // also where it gets half way: it knows what it has
-    ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass);
+    LAYERS_BESIDE(ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass));
 }
 
 static whit_result start(struct ui *ui)
@@ -292,7 +293,7 @@ static whit_result start(struct ui *ui)
     if (result == WHIT_OK)
         result = ui->result;
     if (result == WHIT_OK)
-        ImGui_ImplVulkan_DestroyFontUploadObjects();
+        LAYERS_BESIDE(ImGui_ImplVulkan_DestroyFontUploadObjects());
     return result;
 }
 
@@ -319,7 +320,7 @@ static bool give_back(struct ui *ui)
     shrink(ImGui::GetBackgroundDrawList()->VtxBuffer);
     shrink(ImGui::GetBackgroundDrawList()->IdxBuffer);
     try {
-        ImGui_ImplVulkan_SetMinImageCount(ui->images);
+        LAYERS_BESIDE(ImGui_ImplVulkan_SetMinImageCount(ui->images));
     } catch (const failed_call &failure) {
         ui->result = say_failure(ui, failure);
     }
@@ -364,7 +365,7 @@ void ui_destroy(struct ui *ui)
         (void)vkDeviceWaitIdle(ui->device); // a lost device has nothing left to wait for
     // After a failure in a frame it has handles to what it destroyed: then it is left as it is.
     if (ui->backend && ui->result == WHIT_OK)
-        ImGui_ImplVulkan_Shutdown();
+        LAYERS_BESIDE(ImGui_ImplVulkan_Shutdown());
     if (ui->device)
         vkDestroyDescriptorPool(ui->device, ui->descriptors, nullptr);
     ImGui::DestroyContext();
@@ -467,8 +468,8 @@ void ui_draw(void *user, void *commands)
 {
     struct ui *ui = static_cast<struct ui *>(user);
     try {
-        ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(),
-                                        static_cast<VkCommandBuffer>(commands));
+        LAYERS_BESIDE(ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(),
+                                                      static_cast<VkCommandBuffer>(commands)));
     } catch (const failed_call &failure) {
         ui->result = say_failure(ui, failure);
     }
