@@ -16,11 +16,20 @@ struct memory_file {
     uint8_t *data; /* written */
     size_t size_bytes, capacity_bytes;
     char reason[REASON_BYTES]; /* the first one: what follows is its consequence */
+    bool no_memory; /* the library also says so of data that unpack to more than they should */
 };
 
 /* The file in work on this thread. The error callback cannot ask the context for its user data:
    exr_get_user_data takes a lock that the library holds when it reports an error while writing. */
 static _Thread_local struct memory_file *current;
+
+static void *on_alloc(size_t size_bytes)
+{
+    void *block = malloc(size_bytes);
+    if (!block && current)
+        current->no_memory = true;
+    return block;
+}
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
@@ -72,6 +81,7 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *fro
 {
     struct memory_file *file = user;
     if (offset > SIZE_MAX / 4 || size_bytes > SIZE_MAX / 4 || !grow(file, offset + size_bytes)) {
+        file->no_memory = true;
         error(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
         return -1;
     }
@@ -87,6 +97,8 @@ static exr_context_initializer_t callbacks(struct memory_file *file)
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     current = file;
     init.error_handler_fn = on_error;
+    init.alloc_fn = on_alloc;
+    init.free_fn = free;
     init.user_data = file;
     init.max_image_width = init.max_image_height = IMAGE_SIDE_MAX;
     init.max_tile_width = init.max_tile_height = IMAGE_SIDE_MAX;
@@ -107,7 +119,7 @@ static whit_result report(const struct log *log, const char *path, const struct 
 {
     log_error(log, "%s: EXR: %s", path,
               file->reason[0] ? file->reason : exr_get_default_error_message(code));
-    return code == EXR_ERR_OUT_OF_MEMORY ? WHIT_ERROR_MEMORY : result;
+    return file->no_memory ? WHIT_ERROR_MEMORY : result;
 }
 
 /* Names in the order of the image's channels. */
