@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 64 };
@@ -18,6 +19,20 @@ uint32_t threads_available(void)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     return cores < 1 ? 1 : cores > THREADS_MAX ? THREADS_MAX : (uint32_t)cores;
+}
+
+bool threads_have_room(uint32_t count)
+{
+    pthread_attr_t usual;
+    size_t stack_bytes = 8 << 20;
+    if (pthread_attr_init(&usual) == 0) {
+        (void)pthread_attr_getstacksize(&usual, &stack_bytes);
+        pthread_attr_destroy(&usual);
+    }
+    size_t bytes = count * stack_bytes;
+    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return room != MAP_FAILED && munmap(room, bytes) == 0;
 }
 
 static void *run(void *user)

@@ -2,10 +2,14 @@
 #ifndef BASE_THREADS_H
 #define BASE_THREADS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Usable cores of this machine, at least 1. */
 uint32_t threads_available(void);
+
+/* Whether there is address space for the stacks of `count` more threads. */
+bool threads_have_room(uint32_t count);
 
 /* Calls fn(context, i) once for every i in [0, count), from at most `thread_count` threads
    (0: threads_available()), the caller's among them; returns when all are done. Items are handed

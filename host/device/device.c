@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/threads.h"
 
 const char *device_kind_name(enum device_kind kind)
 {
@@ -164,6 +165,17 @@ static bool has_portability_subset(struct device *device)
     return found;
 }
 
+/* lavapipe starts a thread a core, and a few more, and waits for ever for one that did not start.
+ */
+static whit_result check_room(const struct device *device)
+{
+    enum { OTHER_THREADS = 4 };
+    if (device->info.kind != DEVICE_CPU || threads_have_room(threads_available() + OTHER_THREADS))
+        return WHIT_OK;
+    log_error(&device->log, "%s: out of memory for its threads", device->info.name);
+    return WHIT_ERROR_MEMORY;
+}
+
 static whit_result logical_create(struct device *device)
 {
     whit_result result = WHIT_OK;
@@ -250,6 +262,8 @@ whit_result device_create(const struct log *log, const struct device_params *par
     device->surface_source = NULL;
     if (result == WHIT_OK)
         result = instance_select(device, params ? params->selector : NULL);
+    if (result == WHIT_OK)
+        result = check_room(device);
     if (result == WHIT_OK)
         result = logical_create(device);
     if (result == WHIT_OK)

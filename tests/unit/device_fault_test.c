@@ -264,6 +264,31 @@ static void damaged_cache_files_are_replaced(void **state)
     unsetenv("XDG_CACHE_HOME");
 }
 
+static bool is_short;
+bool __real_threads_have_room(uint32_t count);
+bool __wrap_threads_have_room(uint32_t count);
+bool __wrap_threads_have_room(uint32_t count)
+{
+    return !is_short && __real_threads_have_room(count);
+}
+
+/* A driver of the CPU would wait for them for ever. */
+static void no_device_without_room_for_its_threads(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct log log = messages_log(&messages);
+    struct device *device = device_open(&messages, false);
+    bool on_cpu = device_get_info(device)->kind == DEVICE_CPU;
+    device_close(device, &messages);
+    is_short = true;
+    whit_result result = device_create(&log, &(struct device_params){0}, &device);
+    is_short = false;
+    assert_int_equal(result, on_cpu ? WHIT_ERROR_MEMORY : WHIT_OK);
+    assert_int_equal(strstr(messages.text, ": out of memory for its threads") != NULL, on_cpu);
+    device_destroy(device);
+}
+
 /* For the tests that count calls or messages: the plain case, whatever the suite runs under. */
 static int plain_environment(void **state)
 {
@@ -283,6 +308,7 @@ int main(void)
         cmocka_unit_test(each_call_may_fail_with_staging),
         cmocka_unit_test(nothing_is_left_behind),
         cmocka_unit_test(memory_running_out_is_told_apart),
+        cmocka_unit_test(no_device_without_room_for_its_threads),
         cmocka_unit_test(loss_is_for_good),
         cmocka_unit_test(fifty_devices_in_turn),
         cmocka_unit_test(damaged_cache_files_are_replaced),
