@@ -147,6 +147,30 @@ static void arrays_may_not_be_claimed_twice(void **state)
     assert_false(parse(&block, sizeof block, reason));
 }
 
+/* Names that end in one place would each be a text of their own. */
+static void names_may_not_be_claimed_twice(void **state)
+{
+    (void)state;
+    char reason[128];
+    struct {
+        struct block block;
+        char text[400];
+    } longer = {good_block(), ""};
+    struct import_record *record = &longer.block.record;
+    struct import_block out = {0};
+    longer.block.header.size_bytes = sizeof longer;
+    memset(longer.text, 'k', sizeof longer.text - 1);
+    record->name = sizeof longer.block;
+    record->name_bytes = sizeof longer.text - 1;
+    assert_true(importer_parse((uint8_t *)&longer, sizeof longer, &out, reason, sizeof reason));
+    free(out.parts);
+    record->material = sizeof longer.block + 1;
+    record->material_bytes = sizeof longer.text - 2;
+    assert_false(importer_parse((uint8_t *)&longer, sizeof longer, &out, reason, sizeof reason));
+    free(out.parts);
+    assert_string_equal(reason, "the importer's reply is damaged");
+}
+
 static void reasons_are_one_line(void **state)
 {
     (void)state;
@@ -388,6 +412,7 @@ int main(void)
         cmocka_unit_test(good_blocks_are_taken),
         cmocka_unit_test(damaged_blocks_are_refused),
         cmocka_unit_test(arrays_may_not_be_claimed_twice),
+        cmocka_unit_test(names_may_not_be_claimed_twice),
         cmocka_unit_test(reasons_are_one_line),
         TEST(colors_of_scans),
         TEST(binary_data_that_looks_like_a_line_end),
