@@ -8,6 +8,7 @@
 #include "accel/bvh_file.h"
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/text.h"
 #include "base/threads.h"
 
 enum {
@@ -62,7 +63,7 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     uint8_t *whole = split ? array_alloc(count, 1) : NULL;
     if (!boxes || (split && !whole)) {
         log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
-                  mesh->name);
+                  text_token(mesh->name).text);
         goto done;
     }
     struct box_context context = {mesh, boxes};
@@ -96,7 +97,8 @@ static whit_result check_whole(const struct creation *creation, uint32_t index)
         return WHIT_OK;
     uint8_t *whole = array_alloc(scene_mesh_primitives(mesh), 1);
     if (!whole) {
-        log_error(&accel->log, "%s: mesh %s: out of memory", accel->params.tree_file, mesh->name);
+        log_error(&accel->log, "%s: mesh %s: out of memory", accel->params.tree_file,
+                  text_token(mesh->name).text);
         return WHIT_ERROR_MEMORY;
     }
     material_bits_whole(accel->scene, creation->materials, mesh, whole);
@@ -105,7 +107,7 @@ static whit_result check_whole(const struct creation *creation, uint32_t index)
         if (*once == 2) {
             log_error(&accel->log,
                       "%s: mesh %s: it splits a triangle that filters light, or a sphere (%u)",
-                      accel->params.tree_file, mesh->name, tree->order[i]);
+                      accel->params.tree_file, text_token(mesh->name).text, tree->order[i]);
             result = WHIT_ERROR_INPUT;
         }
         *once = *once ? 2 : 0;

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/text.h"
 
 /* The file: a header, then of each mesh a header, its nodes with indices from 0, and its order;
    then the checksum of all that. Words are in the order of the machine that wrote it. */
@@ -165,7 +166,7 @@ struct reader {
     size_t size_bytes, offset; /* without the checksum */
     struct file_header header;
     struct bvh_params *params;
-    char mesh[80]; /* name of the current one */
+    char mesh[sizeof(struct text_token)]; /* name of the current one */
     char violation[256];
 };
 
@@ -358,7 +359,7 @@ static whit_result read_trees(struct reader *reader, struct bvh *trees)
         const struct scene_mesh *mesh = &reader->scene->meshes[i];
         double begin_ms = clock_ms();
         if (mesh->name)
-            snprintf(reader->mesh, sizeof reader->mesh, "%s", mesh->name);
+            snprintf(reader->mesh, sizeof reader->mesh, "%s", text_token(mesh->name).text);
         else
             snprintf(reader->mesh, sizeof reader->mesh, "%u", i);
         result = read_arrays(reader, mesh, &trees[i]);

@@ -39,12 +39,28 @@ void cli_reader_init(struct cli_reader *reader, const struct cli_command *comman
     opterr = 0;
 }
 
+/* Words of a file are quoted up to 40 bytes, those of the command line whole. */
+static void limit_quotes(const char *format, char *limited, size_t bytes)
+{
+    size_t used = 0;
+    for (bool quoted = false; *format && used + 5 < bytes; ++format) {
+        quoted ^= *format == '`';
+        limited[used++] = *format;
+        if (quoted && format[0] == '%' && format[1] == 's') {
+            memcpy(limited + used, ".40", 3);
+            used += 3;
+        }
+    }
+    limited[used] = '\0';
+}
+
 bool cli_misuse(struct cli_reader *reader, const char *format, ...)
 {
-    char text[1024];
+    char text[1024], limited[512];
     va_list args;
+    limit_quotes(format, limited, sizeof limited);
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    vsnprintf(text, sizeof text, reader->where ? limited : format, args);
     va_end(args);
     if (reader->said)
         snprintf(reader->said, reader->said_bytes, "%s: %s", reader->where, text);

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "image/image.h"
 #include "load/load.h"
 #include "load/picture.h"
@@ -68,8 +69,8 @@ static whit_result linearize(const struct log *log, const char *path, struct pic
 static bool afford(struct scene *scene, const char *path, const struct picture *picture)
 {
     return scene_afford(scene, scene_texel_cost(3 * (uint64_t)picture->width, picture->height),
-                        "environment `%.120s` of %ux%u pixels", path, picture->width,
-                        picture->height);
+                        "environment `%s` of %ux%u pixels", text_token(path_name(path)).text,
+                        picture->width, picture->height);
 }
 
 /* Where the header tells of more than the scene can afford nothing is decoded. */

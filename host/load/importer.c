@@ -19,10 +19,13 @@ uint32_t importer_array_words(enum import_array array)
     return words[array];
 }
 
+/* *spent is what strings and arrays of all records take together: it may not pass the block's size,
+   so that a small block cannot claim one of them many times. */
 static bool check_string(const uint8_t *data, size_t size_bytes, uint64_t offset, uint32_t bytes,
-                         const char **out)
+                         uint64_t *spent, const char **out)
 {
-    if (offset > size_bytes || size_bytes - offset < (uint64_t)bytes + 1)
+    *spent += (uint64_t)bytes + 1;
+    if (offset > size_bytes || size_bytes - offset < (uint64_t)bytes + 1 || *spent > size_bytes)
         return false;
     if (data[offset + bytes] != 0 || memchr(data + offset, 0, bytes))
         return false;
@@ -38,8 +41,6 @@ static bool check_indices(const uint32_t *indices, uint32_t triangle_count, uint
     return largest < vertex_count;
 }
 
-/* *spent is what the arrays of all records take together: it may not pass the block's size, so that
-   a small block cannot claim one array many times. */
 static bool check_array(const uint8_t *data, size_t size_bytes, const struct import_record *record,
                         enum import_array array, uint64_t *spent, const void **out)
 {
@@ -75,8 +76,8 @@ static bool check_record(const uint8_t *data, size_t size_bytes, const struct im
         .indices = arrays[IMPORT_INDICES],
     };
     return record->vertex_count > 0 && record->triangle_count > 0 &&
-           check_string(data, size_bytes, record->name, record->name_bytes, &part->name) &&
-           check_string(data, size_bytes, record->material, record->material_bytes,
+           check_string(data, size_bytes, record->name, record->name_bytes, spent, &part->name) &&
+           check_string(data, size_bytes, record->material, record->material_bytes, spent,
                         &part->material) &&
            check_indices(part->indices, part->triangle_count, part->vertex_count);
 }

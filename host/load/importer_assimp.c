@@ -574,6 +574,22 @@ static int write_error(const char *text, void *to, child_write write)
 _Static_assert(sizeof(struct import_header) % 8 == 0, "records follow the header");
 _Static_assert(sizeof(struct import_record) % 8 == 0, "strings follow the records");
 
+/* Looked for before assimp cuts faces into triangles. */
+static bool has_long_face(const struct aiScene *scene, struct import_counts *counts)
+{
+    for (uint32_t i = 0; i < scene->mNumMeshes; i++) {
+        const struct aiMesh *mesh = scene->mMeshes[i];
+        for (uint32_t face = 0; face < mesh->mNumFaces; face++) {
+            if (mesh->mFaces[face].mNumIndices <= IMPORT_CORNERS_MOST)
+                continue;
+            counts->face = face;
+            counts->corners = mesh->mFaces[face].mNumIndices;
+            return true;
+        }
+    }
+    return false;
+}
+
 int importer_assimp_run(void *user, void *to, child_write write)
 {
     const struct import_request *request = user;
@@ -585,15 +601,19 @@ int importer_assimp_run(void *user, void *to, child_write write)
         if (!table_add(&library.names, name, strlen(name), i))
             return CHILD_EXIT_MEMORY;
     }
-    const struct aiScene *scene =
-        aiImportFileEx(request->files[0].name, aiProcess_Triangulate, &io);
+    const struct aiScene *scene = aiImportFileEx(request->files[0].name, 0, &io);
     table_finish(&library.names);
     if (!scene)
         return library.lacks_memory ? CHILD_EXIT_MEMORY
                                     : write_error(aiGetErrorString(), to, write);
     struct flat flat = {0};
+    bool refused = has_long_face(scene, &flat.counts);
+    if (!refused)
+        scene = aiApplyPostProcessing(scene, aiProcess_Triangulate);
+    if (!scene) /* released, for want of memory: nothing else stops this step */
+        return CHILD_EXIT_MEMORY;
     int code = 1;
-    if (!flatten(&flat, scene, request->kind))
+    if (!refused && !flatten(&flat, scene, request->kind))
         code = CHILD_EXIT_MEMORY;
     else if (write_block(&flat, to, write))
         code = 0;

@@ -14,6 +14,19 @@
 /* A model larger than this is refused before it is read. */
 #define MODEL_LIMIT (UINT64_C(4) << 30)
 
+/* A line is known where the text is read by whit, too. */
+static void log_long_face(const struct log *log, const char *path, uint32_t line,
+                          const struct import_counts *counts)
+{
+    char place[32];
+    if (line)
+        snprintf(place, sizeof place, ":%u: a face", line);
+    else
+        snprintf(place, sizeof place, ": face %llu", (unsigned long long)counts->face);
+    log_error(log, "%s%s has %llu corners, at most %u are possible: cut it into triangles", path,
+              place, (unsigned long long)counts->corners, IMPORT_CORNERS_MOST);
+}
+
 static whit_result import(struct scene *scene, const struct model_request *request,
                           enum import_kind kind, const uint8_t *data, size_t size_bytes,
                           struct import_block *block)
@@ -24,13 +37,18 @@ static whit_result import(struct scene *scene, const struct model_request *reque
     whit_result result = importer_run(&scene->log, request->path, &import, request->params, block);
     if (result != WHIT_OK)
         return result;
-    model_note_counts(scene, request->path, &block->counts);
+    const struct import_counts *counts = &block->counts;
+    model_note_counts(scene, request->path, counts);
     if (block->part_count)
         return WHIT_OK;
-    log_error(&scene->log,
-              "%s: there are no triangles in it (%llu points, %llu lines, %llu damaged faces)",
-              request->path, (unsigned long long)block->counts.points,
-              (unsigned long long)block->counts.lines, (unsigned long long)block->counts.bad_faces);
+    if (counts->corners)
+        log_long_face(&scene->log, request->path,
+                      kind == IMPORT_OBJ ? obj_longest_face((const char *)data) : 0, counts);
+    else
+        log_error(&scene->log,
+                  "%s: there are no triangles in it (%llu points, %llu lines, %llu damaged faces)",
+                  request->path, (unsigned long long)counts->points,
+                  (unsigned long long)counts->lines, (unsigned long long)counts->bad_faces);
     importer_finish(block);
     return WHIT_ERROR_INPUT;
 }

@@ -122,7 +122,7 @@ whit_result model_add_mesh(struct scene *scene, const char *name, const struct m
         scene_mesh_finish(&mesh);
         return WHIT_ERROR_INPUT;
     }
-    if (!scene_afford(scene, cost(&totals), "mesh `%.60s` of %llu triangles", name,
+    if (!scene_afford(scene, cost(&totals), "mesh `%s` of %llu triangles", text_token(name).text,
                       (unsigned long long)totals.triangles)) {
         scene_mesh_finish(&mesh);
         return WHIT_ERROR_INPUT;

@@ -139,6 +139,42 @@ bool obj_repair_text(uint8_t **data, size_t *size_bytes)
     return (!wide || from_utf16(data, size_bytes)) && add_zeros(data, size_bytes);
 }
 
+/* --- faces ---------------------------------------------------------------------------------- */
+
+static uint32_t count_words(const char *at, const char *end)
+{
+    uint32_t words = 0;
+    for (bool blank = true; at < end; at++) {
+        bool was_blank = blank;
+        blank = *at == ' ' || *at == '\t' || *at == '\r' || *at == '\\';
+        words += was_blank && !blank;
+    }
+    return words;
+}
+
+uint32_t obj_longest_face(const char *text)
+{
+    uint32_t longest = 0, most = 0, first = 0, words = 0;
+    bool joined = false;
+    for (uint32_t line = 1; *text; line++) {
+        const char *end = text + strcspn(text, "\n"), *last = end;
+        if (!joined) {
+            first = text[strspn(text, " \t")] == 'f' ? line : 0;
+            words = 0;
+        }
+        words += count_words(text, end);
+        if (first && words > most) {
+            most = words;
+            longest = first;
+        }
+        while (last > text && last[-1] == '\r')
+            last--;
+        joined = last > text && last[-1] == '\\';
+        text = end + (*end != 0);
+    }
+    return longest;
+}
+
 /* --- material libraries --------------------------------------------------------------------- */
 
 /* *why_not: NULL, or why the file is not read; one that was read before is not read again. */

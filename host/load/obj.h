@@ -11,6 +11,10 @@
    when memory runs out, *data intact. */
 WHIT_CHECK bool obj_repair_text(uint8_t **data, size_t *size_bytes);
 
+/* Number of the line on which the face with the most words starts; 0: there is no face. A line that
+   ends with a backslash goes on in the next one. */
+uint32_t obj_longest_face(const char *text);
+
 /* Reads the material libraries that the text names, or the one beside the OBJ with its name.
    Missing ones are noted. */
 WHIT_CHECK whit_result obj_read_libraries(struct scene *scene, const char *path, const char *text,

@@ -14,18 +14,25 @@ static void set_material(struct scene_mesh *mesh, uint32_t material)
         mesh->materials[t] = material;
 }
 
-static bool load_new_model(struct reader *reader, const char *path, uint32_t node,
-                           uint32_t material, bool lights, bool cameras)
+/* How an object places a model. */
+struct placement {
+    const char *path;
+    uint32_t material; /* SCENE_NONE: the model's own */
+    bool lights, cameras;
+};
+
+static bool load_new_model(struct reader *reader, const struct placement *what, uint32_t node)
 {
     struct scene *scene = reader->scene;
     uint32_t first_mesh = scene->mesh_count;
-    whit_result result = load_model(scene, path, node, lights, cameras, reader->params);
+    whit_result result =
+        load_model(scene, what->path, node, what->lights, what->cameras, reader->params);
     if (result != WHIT_OK) {
         reader->result = result;
         return false;
     }
-    for (uint32_t i = first_mesh; material != SCENE_NONE && i < scene->mesh_count; ++i)
-        set_material(&scene->meshes[i], material);
+    for (uint32_t i = first_mesh; what->material != SCENE_NONE && i < scene->mesh_count; ++i)
+        set_material(&scene->meshes[i], what->material);
     return true;
 }
 
@@ -73,35 +80,45 @@ static bool dress_instances(struct reader *reader, const struct place *place, ui
 /* In the place of a material: whatever the model was placed under first. */
 #define ANY_MATERIAL (SCENE_NONE - 1)
 
-static char *key_of(uint32_t material, const char *path)
+static char *key_of(const struct placement *what, uint32_t material)
 {
-    char *real = realpath(path, NULL);
-    char *key = string_format("%u %s", material, real ? real : path);
+    char *real = realpath(what->path, NULL);
+    char *key = string_format("%u %d %d %s", material, what->lights, what->cameras,
+                              real ? real : what->path);
     free(real);
     return key;
 }
 
-static bool find_model(const struct reader *reader, uint32_t material, const char *path,
+static bool find_model(const struct reader *reader, const struct placement *what, uint32_t material,
                        uint32_t *index)
 {
-    char *key = key_of(material, path);
+    char *key = key_of(what, material);
     bool found = key && table_find(&reader->model_keys, key, strlen(key), index);
     free(key);
     return found;
 }
 
-static bool know_model(struct reader *reader, uint32_t material, const char *path, uint32_t index)
+/* The model that is added next. */
+static bool know_model(struct reader *reader, const struct placement *what, uint32_t material)
 {
-    char *key = key_of(material, path);
-    bool good = key && table_add(&reader->model_keys, key, strlen(key), index);
+    char *key = key_of(what, material);
+    bool good = key && table_add(&reader->model_keys, key, strlen(key), reader->model_count);
     free(key);
     return good || reader_no_memory(reader);
 }
 
+static bool add_model(struct reader *reader, const struct placement *what,
+                      const struct scene_range *range)
+{
+    return know_model(reader, what, what->material) &&
+           (ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, *range) ||
+            reader_no_memory(reader));
+}
+
 /* A model that was placed before is not read again: its meshes get more instances, or are copied
    where they are to have another material. */
-static bool place_again(struct reader *reader, const struct place *place, const char *path,
-                        uint32_t node, uint32_t material, uint32_t index, bool dressed)
+static bool place_again(struct reader *reader, const struct place *place,
+                        const struct placement *what, uint32_t node, uint32_t index, bool dressed)
 {
     struct scene *scene = reader->scene;
     struct scene_range from = reader->models[index], range = range_begin(scene, node);
@@ -109,34 +126,25 @@ static bool place_again(struct reader *reader, const struct place *place, const 
         return false;
     if (dressed)
         return true;
-    if (!dress_instances(reader, place, range.first_instance, material))
+    if (!dress_instances(reader, place, range.first_instance, what->material))
         return false;
     range_end(scene, &range);
-    return know_model(reader, material, path, reader->model_count) &&
-           (ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, range) ||
-            reader_no_memory(reader));
+    return add_model(reader, what, &range);
 }
 
-static bool place_model(struct reader *reader, const struct place *place, const char *path,
-                        uint32_t node, uint32_t material, bool lights, bool cameras)
+static bool place_model(struct reader *reader, const struct place *place,
+                        const struct placement *what, uint32_t node)
 {
     uint32_t index;
-    bool plain = !lights && !cameras;
-    bool same = plain && find_model(reader, material, path, &index);
-    bool other =
-        plain && !same && material != SCENE_NONE && find_model(reader, ANY_MATERIAL, path, &index);
-    if (same || other)
-        return place_again(reader, place, path, node, material, index, same);
+    bool same = find_model(reader, what, what->material, &index);
+    bool other = !same && find_model(reader, what, ANY_MATERIAL, &index);
+    if (same || (other && what->material != SCENE_NONE))
+        return place_again(reader, place, what, node, index, same);
     struct scene_range range = range_begin(reader->scene, node);
-    if (!load_new_model(reader, path, node, material, lights, cameras))
+    if (!load_new_model(reader, what, node))
         return false;
     range_end(reader->scene, &range);
-    bool known = !plain || find_model(reader, ANY_MATERIAL, path, &index) ||
-                 know_model(reader, ANY_MATERIAL, path, reader->model_count);
-    if (!known || (plain && !know_model(reader, material, path, reader->model_count)))
-        return false;
-    return ARRAY_PUSH(reader->models, reader->model_count, reader->model_capacity, range) ||
-           reader_no_memory(reader);
+    return (other || know_model(reader, what, ANY_MATERIAL)) && add_model(reader, what, &range);
 }
 
 static bool has_extension_of_model(const char *path)
@@ -155,13 +163,12 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
                   uint32_t node)
 {
     const char *name = NULL;
-    bool lights = false, cameras = false;
-    uint32_t material;
+    struct placement what = {0};
     struct place here = {place, "model", 0};
     if (!reader_string(reader, place, object, "model", &name) ||
-        !reader_bool(reader, place, object, "lights", &lights) ||
-        !reader_bool(reader, place, object, "cameras", &cameras) ||
-        !reader_object_material(reader, place, object, &material))
+        !reader_bool(reader, place, object, "lights", &what.lights) ||
+        !reader_bool(reader, place, object, "cameras", &what.cameras) ||
+        !reader_object_material(reader, place, object, &what.material))
         return false;
     if (!has_extension_of_model(name))
         return reader_fail(reader, &here, "`%s` is no model; whit reads .obj .gltf .glb .ply .stl",
@@ -169,9 +176,10 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
     char *path = roots_join(reader->path, name);
     if (!path)
         return reader_no_memory(reader);
+    what.path = path;
     const char *why_not = roots_why_not(&reader->scene->roots, path);
     bool placed = why_not ? reader_fail(reader, &here, "`%s`: %s", text_token(name).text, why_not)
-                          : place_model(reader, place, path, node, material, lights, cameras);
+                          : place_model(reader, place, &what, node);
     free(path);
     return placed;
 }

@@ -156,6 +156,9 @@ static bool read_object(struct reader *reader, const struct place *place, const 
     if (!read_content(reader, place, object, cell, depth))
         return false;
     range_end(reader->scene, &range);
+    /* What is repeated has its lights and cameras once. */
+    range.light_end = range.first_light;
+    range.camera_end = range.first_camera;
     if (!range_afford(reader, place, &range, cells - 1))
         return false;
     for (uint32_t i = 1; i < cells; ++i) {

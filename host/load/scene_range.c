@@ -51,8 +51,35 @@ bool range_afford(struct reader *reader, const struct place *place, const struct
         bytes += length_of(reader->scene->instances[i].name);
     for (uint32_t i = range->first_channel; i < range->channel_end; ++i)
         bytes += 16 * sizeof(float) * (uint64_t)reader->scene->channels[i].key_count;
+    for (uint32_t i = range->first_light; i < range->light_end; ++i)
+        bytes += sizeof(struct scene_light) + length_of(reader->scene->lights[i].name) +
+                 length_of(reader->scene->lights[i].origin.file);
+    for (uint32_t i = range->first_camera; i < range->camera_end; ++i)
+        bytes += sizeof(struct scene_camera) + length_of(reader->scene->cameras[i].name);
     return reader_afford(reader, place, bytes * times, "%llu copies of %llu instances",
                          (unsigned long long)times, (unsigned long long)instances);
+}
+
+static bool copy_lights_and_cameras(struct reader *reader, const struct scene_range *range,
+                                    uint32_t parent, uint32_t first)
+{
+    struct scene *scene = reader->scene;
+    for (uint32_t i = range->first_light; i < range->light_end; ++i) {
+        struct scene_light light = scene->lights[i];
+        light.name = scene_text(scene, light.name);
+        light.origin.file = scene_text(scene, light.origin.file);
+        light.node = moved_node(range, light.node, parent, first);
+        if (scene_add_light(scene, light) == SCENE_NONE)
+            return reader_no_memory(reader);
+    }
+    for (uint32_t i = range->first_camera; i < range->camera_end; ++i) {
+        struct scene_camera camera = scene->cameras[i];
+        camera.name = scene_text(scene, camera.name);
+        camera.node = moved_node(range, camera.node, parent, first);
+        if (scene_add_camera(scene, camera) == SCENE_NONE)
+            return reader_no_memory(reader);
+    }
+    return true;
 }
 
 bool range_copy(struct reader *reader, const struct place *place, const struct scene_range *range,
@@ -83,7 +110,7 @@ bool range_copy(struct reader *reader, const struct place *place, const struct s
         if (!copy_channel(reader, scene->channels[i], node))
             return false;
     }
-    return true;
+    return copy_lights_and_cameras(reader, range, parent, first);
 }
 
 struct scene_range range_begin(const struct scene *scene, uint32_t parent)
@@ -93,6 +120,8 @@ struct scene_range range_begin(const struct scene *scene, uint32_t parent)
         .first_node = scene->node_count,
         .first_instance = scene->instance_count,
         .first_channel = scene->channel_count,
+        .first_light = scene->light_count,
+        .first_camera = scene->camera_count,
     };
 }
 
@@ -101,4 +130,6 @@ void range_end(const struct scene *scene, struct scene_range *range)
     range->node_end = scene->node_count;
     range->instance_end = scene->instance_count;
     range->channel_end = scene->channel_count;
+    range->light_end = scene->light_count;
+    range->camera_end = scene->camera_count;
 }

@@ -18,9 +18,10 @@ struct place {
     size_t index;
 };
 
-/* What an object added to the scene: nodes below `parent`, instances, channels. */
+/* What an object added to the scene: nodes below `parent`, and what is on them. */
 struct scene_range {
-    uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end;
+    uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end,
+        first_light, light_end, first_camera, camera_end;
 };
 
 struct reader {

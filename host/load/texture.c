@@ -59,9 +59,9 @@ static bool share(struct scene *scene, const char *name, struct key key, bool da
     key.damaged = 1;
     if (!found && damaged_too && table_find(&scene->texture_keys, &key, sizeof key, index)) {
         scene_note(scene, SCENE_NOTE_WARNING,
-                   "texture `%s`: the same as `%s`; magenta takes its "
-                   "place",
-                   name, scene->textures[*index].name);
+                   "texture `%s`: the same as `%s`; magenta takes its place",
+                   text_token(path_name(name)).text,
+                   text_token(path_name(scene->textures[*index].name)).text);
         found = true;
     }
     if (found)
@@ -88,10 +88,13 @@ struct unread {
 static void keep_reason(void *user, whit_log_level level, const char *message)
 {
     const struct unread *unread = user;
-    size_t length = strlen(unread->path);
-    bool named = strncmp(message, unread->path, length) == 0 && message[length] == ':';
+    char path[4 * 2048]; /* as it is shown */
+    whit_text_show(unread->path, path, sizeof path);
+    size_t length = strlen(path);
+    bool named = strncmp(message, path, length) == 0 && message[length] == ':';
     (void)level;
-    snprintf(unread->reason, FOREIGN_REASON_BYTES, "%s", named ? message + length + 2 : message);
+    snprintf(unread->reason, FOREIGN_REASON_BYTES, "%s",
+             named ? message + length + 2 : "it cannot be read");
 }
 
 /* Silent: a missing texture is a warning of the scene, not an error. */
@@ -118,9 +121,9 @@ static whit_result decode_source(struct scene *scene, const char *name,
     uint64_t pixels = (uint64_t)picture->width * picture->height;
     if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_most))
         return result;
-    source->too_large =
-        !scene_afford(scene, scene_texel_cost(picture->width, picture->height),
-                      "texture `%.120s` of %ux%u pixels", name, picture->width, picture->height);
+    source->too_large = !scene_afford(
+        scene, scene_texel_cost(picture->width, picture->height), "texture `%s` of %ux%u pixels",
+        text_token(path_name(name)).text, picture->width, picture->height);
     return source->too_large ? WHIT_ERROR_INPUT : result;
 }
 
@@ -219,8 +222,8 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
         goto done;
     }
     if (damaged)
-        scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place", name,
-                   why);
+        scene_note(scene, SCENE_NOTE_WARNING, "texture `%s`: %s; magenta takes its place",
+                   text_token(path_name(name)).text, why);
     result = WHIT_ERROR_MEMORY;
     snprintf(why, sizeof why, "out of memory for a texture");
     if ((damaged && !make_magenta(&picture)) || !shrink(scene, name, params, &picture))

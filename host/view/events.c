@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 static const struct key_name {
     int key;
@@ -238,7 +239,7 @@ bool events_from_line(const struct log *log, const char *file, uint32_t line, co
         return true;
     if (parse(verb, text + read, events, count))
         return true;
-    log_error(log, "%s:%u: `%s` is no event of a replay", file, line, text);
+    log_error(log, "%s:%u: `%s` is no event of a replay", file, line, text_token(text).text);
     return false;
 }
 

@@ -1,5 +1,6 @@
 /* The importer's process and its reply: nothing in it is believed. */
 #include <fcntl.h>
+#include <math.h>
 #include <unistd.h>
 
 #include "load/importer.h"
@@ -146,6 +147,30 @@ static void arrays_may_not_be_claimed_twice(void **state)
     assert_false(parse(&block, sizeof block, reason));
 }
 
+/* Names that end in one place would each be a text of their own. */
+static void names_may_not_be_claimed_twice(void **state)
+{
+    (void)state;
+    char reason[128];
+    struct {
+        struct block block;
+        char text[400];
+    } longer = {good_block(), ""};
+    struct import_record *record = &longer.block.record;
+    struct import_block out = {0};
+    longer.block.header.size_bytes = sizeof longer;
+    memset(longer.text, 'k', sizeof longer.text - 1);
+    record->name = sizeof longer.block;
+    record->name_bytes = sizeof longer.text - 1;
+    assert_true(importer_parse((uint8_t *)&longer, sizeof longer, &out, reason, sizeof reason));
+    free(out.parts);
+    record->material = sizeof longer.block + 1;
+    record->material_bytes = sizeof longer.text - 2;
+    assert_false(importer_parse((uint8_t *)&longer, sizeof longer, &out, reason, sizeof reason));
+    free(out.parts);
+    assert_string_equal(reason, "the importer's reply is damaged");
+}
+
 static void reasons_are_one_line(void **state)
 {
     (void)state;
@@ -254,6 +279,70 @@ static void headers_without_an_end_are_refused(void **state)
     fixture_refused(fixture, path, ".ply:6: the file ends within its header");
 }
 
+/* `count` corners on a circle, as lines of `word` x y z, in memory of the caller. */
+static char *circle(const char *word, unsigned count)
+{
+    char *text = NULL;
+    size_t bytes;
+    FILE *file = open_memstream(&text, &bytes);
+    assert_non_null(file);
+    for (unsigned i = 0; i < count; i++) {
+        double angle = 8.0 * atan(1.0) * i / count;
+        fprintf(file, "%s%.9g %.9g 0\n", word, cos(angle), sin(angle));
+    }
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+/* The first half of the numbers, a line end that joins, the second half. */
+static const char *write_round_obj(struct fixture *fixture, const char *name, unsigned count)
+{
+    char *corners = circle("v ", count), path[64];
+    snprintf(path, sizeof path, "%s/%s", fixture->folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "%sf 1 2 3\nf", corners);
+    for (unsigned i = 1; i <= count; i++)
+        fprintf(file, i == count / 2 ? " \\\n%u" : " %u", i);
+    fputs("\nf 1 2 4\n", file);
+    assert_int_equal(fclose(file), 0);
+    free(corners);
+    fixture->files[fixture->file_count++] = string_copy(path);
+    return fixture->files[fixture->file_count - 1];
+}
+
+/* assimp's time for one face is its corners cubed. */
+static void faces_of_very_many_corners_are_refused(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_refused(fixture, write_round_obj(fixture, "a.obj", 1025),
+                    "a.obj:1027: a face has 1025 corners, at most 1024 are possible");
+    assert_int_equal(fixture_load(fixture, write_round_obj(fixture, "b.obj", 1024)), WHIT_OK);
+    assert_int_equal(fixture->scene->meshes[0].triangle_count, 1024);
+}
+
+static void faces_of_a_ply_are_counted_too(void **state)
+{
+    struct fixture *fixture = *state;
+    char *corners = circle("", 1025), *text = NULL;
+    size_t bytes;
+    FILE *file = open_memstream(&text, &bytes);
+    assert_non_null(file);
+    fprintf(file,
+            "ply\nformat ascii 1.0\nelement vertex 1025\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 2\nproperty list uint uint vertex_indices\n"
+            "end_header\n%s3 0 1 2\n1025",
+            corners);
+    for (unsigned i = 0; i < 1025; i++)
+        fprintf(file, " %u", i);
+    fputc('\n', file);
+    assert_int_equal(fclose(file), 0);
+    fixture_refused(fixture, fixture_text(fixture, "a.ply", text),
+                    "a.ply: face 1 has 1025 corners, at most 1024 are possible");
+    free(corners);
+    free(text);
+}
+
 /* assimp 5.2 dies of a face index far out of range; whit must not. */
 static void crashes_stay_in_the_child(void **state)
 {
@@ -323,6 +412,7 @@ int main(void)
         cmocka_unit_test(good_blocks_are_taken),
         cmocka_unit_test(damaged_blocks_are_refused),
         cmocka_unit_test(arrays_may_not_be_claimed_twice),
+        cmocka_unit_test(names_may_not_be_claimed_twice),
         cmocka_unit_test(reasons_are_one_line),
         TEST(colors_of_scans),
         TEST(binary_data_that_looks_like_a_line_end),
@@ -330,6 +420,8 @@ int main(void)
         TEST(refusals_name_the_file),
         TEST(claims_of_endless_memory_are_refused),
         TEST(headers_without_an_end_are_refused),
+        TEST(faces_of_very_many_corners_are_refused),
+        TEST(faces_of_a_ply_are_counted_too),
         TEST(crashes_stay_in_the_child),
         TEST(time_limits_are_kept),
         TEST(importers_that_reach_out_are_stopped),

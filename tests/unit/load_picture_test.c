@@ -268,7 +268,7 @@ static void damaged_textures_are_named(void **state)
     uint32_t index;
     assert_int_equal(load_texture(fixture->scene, path, NULL, 0, NULL, &index, NULL), WHIT_OK);
     assert_memory_equal(fixture->scene->textures[index].rgba, "\377\0\377\377", 4);
-    assert_true(fixture_noted(fixture, path));
+    assert_true(fixture_noted(fixture, "texture `cut.jpg`: "));
     assert_true(fixture_noted(fixture, "magenta takes its place"));
     assert_int_equal(fixture->errors, 0);
     assert_int_equal(load_environment(fixture->scene, path, NULL), WHIT_ERROR_INPUT);

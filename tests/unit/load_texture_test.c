@@ -151,11 +151,38 @@ static void damaged_pictures_are_tried_once(void **state)
     assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &same, NULL), WHIT_OK);
     assert_int_equal(same, index);
     assert_int_equal(decoded, 1);
-    assert_true(fixture_noted(fixture, a));
-    assert_true(fixture_noted(fixture, b));
+    assert_true(fixture_noted(fixture, "texture `a.tga`: "));
+    assert_true(fixture_noted(fixture, "texture `b.tga`: the same as `a.tga`; magenta"));
     assert_int_equal(load_texture(fixture->scene, "c", tga, 12, NULL, &index, &reason),
                      WHIT_ERROR_INPUT);
     assert_non_null(reason);
+}
+
+/* Neither of the folder nor of a long name more than 40 characters, nor within the reason. */
+static void notes_quote_little(void **state)
+{
+    struct fixture *fixture = *state;
+    uint32_t index;
+    char k[61] = "", name[96];
+    memset(k, 'k', sizeof k - 1);
+    snprintf(name, sizeof name, "%s1.tga", k);
+    const char *a = fixture_write(fixture, name, tga, 12);
+    snprintf(name, sizeof name, "%s2.tga", k);
+    const char *b = fixture_write(fixture, name, tga, 12);
+    const char *large = fixture_write(fixture, "\033.tga", tga, 12);
+    assert_int_equal(truncate(large, (off_t)1 << 30), 0);
+    assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture->scene, large, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    k[40] = 0;
+    snprintf(name, sizeof name, "`%s...`: ", k);
+    assert_true(fixture_noted(fixture, name));
+    snprintf(name, sizeof name, "the same as `%s...`; magenta", k);
+    assert_true(fixture_noted(fixture, name));
+    assert_true(fixture_noted(fixture, "`\033.tga`: 1073741824 bytes, over the limit"));
+    k[40] = 'k';
+    assert_false(fixture_noted(fixture, k));
+    assert_false(fixture_noted(fixture, fixture->folder));
 }
 
 static void textures_too_large_are_not_decoded(void **state)
@@ -178,11 +205,9 @@ static void textures_too_large_are_not_decoded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(one_file_of_many_names),
-        TEST(one_picture_in_many_places),
-        TEST(limits_keep_pictures_apart),
-        TEST(damaged_pictures_are_tried_once),
-        TEST(textures_too_large_are_not_decoded),
+        TEST(one_file_of_many_names),     TEST(one_picture_in_many_places),
+        TEST(limits_keep_pictures_apart), TEST(damaged_pictures_are_tried_once),
+        TEST(notes_quote_little),         TEST(textures_too_large_are_not_decoded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

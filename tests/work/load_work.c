@@ -159,14 +159,53 @@ static void one_model_under_many_materials(void **state)
     scene_destroy(scene);
 }
 
+/* They are where the model is placed. */
+static void one_model_with_lights_and_cameras(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_text(fixture, "lamp.gltf",
+                 GLTF "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"name\":\"lamp\","
+                      "\"type\":\"point\"}]}},\"cameras\":[{\"name\":\"eye\",\"type\":"
+                      "\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],"
+                      "\"accessors\":[" ACCESSOR "],\"meshes\":[{\"primitives\":[{\"attributes\":"
+                      "{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"camera\":0,\"extensions\":"
+                      "{\"KHR_lights_punctual\":{\"light\":0}}}]}");
+    const char *path = write_file(fixture, "lamps.json",
+                                  "{\"objects\":[<~{\"model\":\"lamp.gltf\",\"lights\":true,"
+                                  "\"cameras\":true,\"translation\":[#,0,0]}>,{\"model\":"
+                                  "\"lamp.gltf\",\"lights\":true,\"cameras\":true,"
+                                  "\"repeat\":{\"count\":[2,1,1]}}]}",
+                                  FEW);
+    struct scene *scene;
+    children = 0;
+    assert_int_equal(load_scene(&(struct log){0}, path, NULL, &scene), WHIT_OK);
+    assert_int_equal(children, 1);
+    assert_int_equal(scene->mesh_count, 1);
+    assert_int_equal(scene->instance_count, FEW + 2);
+    assert_int_equal(scene->light_count, FEW + 1); /* not repeated */
+    assert_int_equal(scene->camera_count, FEW + 1);
+    for (uint32_t i = 0; i < FEW; i++) {
+        uint32_t node = scene->lights[i].node;
+        assert_int_equal(scene->cameras[i].node, node);
+        assert_int_equal(scene->nodes[scene->nodes[node].parent].translation[0], i);
+        assert_string_equal(scene->lights[i].name, "lamp");
+        assert_string_equal(scene->cameras[i].name, "eye");
+    }
+    scene_destroy(scene);
+}
+
 #define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(primitives),       TEST(meshes_and_materials),
-        TEST(missing_pictures), TEST(groups_and_their_materials),
-        TEST(objects),          TEST(one_model_under_many_materials),
+        TEST(primitives),
+        TEST(meshes_and_materials),
+        TEST(missing_pictures),
+        TEST(groups_and_their_materials),
+        TEST(objects),
+        TEST(one_model_under_many_materials),
+        TEST(one_model_with_lights_and_cameras),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
