@@ -233,7 +233,8 @@ static void read_price(const json_t *object, struct cost_price *price)
     price->rounds = (uint32_t)whole(object, "rounds");
     price->width = (uint32_t)whole(object, "width");
     price->height = (uint32_t)whole(object, "height");
-    price->verdict = (int)number(object, "verdict", 0.0);
+    double verdict = number(object, "verdict", 0.0);
+    price->verdict = (verdict > 0.0) - (verdict < 0.0);
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
         const json_t *clock = json_object_get(object, cost_clock_name((enum cost_clock)c));
         if (!json_is_object(clock))
