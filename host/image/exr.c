@@ -118,7 +118,9 @@ static whit_result report(const struct log *log, const char *path, const struct 
                           exr_result_t code, whit_result result)
 {
     log_error(log, "%s: EXR: %s", path,
-              file->reason[0] ? file->reason : exr_get_default_error_message(code));
+              file->no_memory   ? "out of memory"
+              : file->reason[0] ? file->reason
+                                : exr_get_default_error_message(code));
     return file->no_memory ? WHIT_ERROR_MEMORY : result;
 }
 
