@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "app/cli.h"
@@ -12,7 +13,7 @@
 #include "cost/cost.h"
 
 /* Mesa's own limit holds in each of its folders. */
-enum { MESA_FOLDERS = 4 };
+enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };
 static const char mesa_size[] = "MESA_SHADER_CACHE_MAX_SIZE", mesa_size_text[] = "128M";
 static const char mesa_place[] = "MESA_SHADER_CACHE_DIR", mesa_off[] = "MESA_SHADER_CACHE_DISABLE";
 
@@ -90,7 +91,8 @@ static uint64_t walk(int parent, const char *name, bool removes)
     return bytes;
 }
 
-/* Of Mesa's folders; `oldest` gets the one that was not used for longest. */
+/* Of Mesa's folders; `oldest` gets the one that was not used for longest, unless another process
+   may be at it still: then "". */
 static uint32_t count_folders(int folder, char oldest[256])
 {
     uint32_t count = 0;
@@ -108,6 +110,8 @@ static uint32_t count_folders(int folder, char oldest[256])
     }
     if (dir)
         closedir(dir);
+    if (count > 0 && time(NULL) - oldest_time < MESA_IN_USE_S)
+        oldest[0] = 0;
     return count;
 }
 
@@ -123,7 +127,8 @@ static void choose_folder(const char *folder)
     (void)setenv(mesa_place, path, 0);
     (void)setenv(mesa_size, mesa_size_text, 0);
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    for (uint32_t i = 0; fd >= 0 && i < 8 && count_folders(fd, oldest) > MESA_FOLDERS; ++i)
+    for (uint32_t i = 0; fd >= 0 && i < 8 && count_folders(fd, oldest) > MESA_FOLDERS && oldest[0];
+         ++i)
         (void)walk(fd, oldest, true);
     if (fd >= 0)
         close(fd);

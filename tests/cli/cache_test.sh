@@ -105,7 +105,14 @@ before=$(mesa_folder VK_ADD_DRIVER_FILES="$OUT/a.json:$OUT/drivers")
 touch -d 2002-01-01 "$OUT/drivers/b.json"
 check "and each version of it" \
     test "$(mesa_folder VK_ADD_DRIVER_FILES="$OUT/a.json:$OUT/drivers")" != "$before"
-check "of which four are kept" test "$(find "$KEPT" -maxdepth 1 -name 'mesa-*' | wc -l)" -eq 4
+folders() {
+    find "$KEPT" -maxdepth 1 -name 'mesa-*' | wc -l
+}
+check "none goes that may be in use ($(folders))" test "$(folders)" -gt 4
+find "$KEPT" -maxdepth 1 -name 'mesa-*' -exec touch -d '2 hours ago' {} +
+mesa_folder A=B >"$OUT/again"
+check "of older ones four are kept" test "$(folders)" -eq 4
+check "the one in use among them" test -d "$own"
 MESA_SHADER_CACHE_DIR=$OUT/mine run devices --json
 check "what the user says stays" jq -e --arg mine "$OUT/mine" \
     '.cache.mesa_folder == $mine and .cache.mesa_limit == null' "$OUT/stdout"
