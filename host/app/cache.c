@@ -91,8 +91,8 @@ static uint64_t walk(int parent, const char *name, bool removes)
     return bytes;
 }
 
-/* Of Mesa's folders; `oldest` gets the one that was not used for longest, unless another process
-   may be at it still: then "". */
+/* Counts Mesa's folders. `oldest` gets the name of the one whose last start of whit is longest ago;
+   "" where that is less than MESA_IN_USE_S ago, as that process may still use it. */
 static uint32_t count_folders(int folder, char oldest[256])
 {
     uint32_t count = 0;

@@ -103,9 +103,8 @@ void cli_catch_interrupts(void);
 /* SIGPIPE ends the process without a word and without unfinished files. A crash for want of memory
    or descriptors is an error, any other one stays what it is. */
 void cli_catch_ends(void);
-/* _exit() for signal handlers. Before a call that is known not to return, AddressSanitizer
-   allocates, which waits for ever where the signal came while it did: it is not told of this one.
- */
+/* _exit() for signal handlers. AddressSanitizer allocates before a call that it knows not to
+   return, and waits for ever where the signal came while it did: it is not told of this one. */
 void cli_leave(int code);
 /* For signal handlers that end the process: KIND WHY, and what was written, unless it is said. */
 void cli_put_end(const char *kind, const char *why);

@@ -125,8 +125,7 @@ static int run_inside(const struct child_limits *limits,
                       int (*fn)(void *user, void *to, child_write write), void *user)
 {
     bool whole = true;
-    /* Else glibc looks into /proc, which the filter does not let it, before it gives memory back.
-     */
+    /* Else glibc looks into /proc before it gives memory back, which the filter forbids. */
     (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
     uint8_t error = (uint8_t)sandbox_enter();
     if (!write_all(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))

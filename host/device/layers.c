@@ -4,8 +4,9 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* Who creates goes first, or it might wait for as long as others call. No call of Vulkan waits for
-   a call in another thread. */
+/* A thread that creates a device goes before threads that call Vulkan: else it would wait as long
+   as these go on. Nobody is blocked for ever, since no call of Vulkan waits for a call in another
+   thread. */
 static pthread_rwlock_t lock = PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP;
 static atomic_bool expected;
 

@@ -156,7 +156,7 @@ static bool read_object(struct reader *reader, const struct place *place, const 
     if (!read_content(reader, place, object, cell, depth))
         return false;
     range_end(reader->scene, &range);
-    /* What is repeated has its lights and cameras once. */
+    /* `repeat` copies no lights and no cameras. */
     range.light_end = range.first_light;
     range.camera_end = range.first_camera;
     if (!range_afford(reader, place, &range, cells - 1))

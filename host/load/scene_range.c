@@ -33,7 +33,7 @@ static bool copy_channel(struct reader *reader, struct scene_channel channel, ui
     return scene_add_channel(reader->scene, channel) != SCENE_NONE || reader_no_memory(reader);
 }
 
-/* 0 where there was no memory for it. */
+/* A name is NULL where memory ran out for it. */
 static uint64_t length_of(const char *name)
 {
     return name ? strlen(name) : 0;

@@ -1,6 +1,6 @@
-/* Devices that are created and destroyed in one thread while others use their own. Here the
-   validation layers look for a device in a table that has no lock: see layers_enter in
-   device/vulkan.h. */
+/* Devices that are created and destroyed in one thread while other threads use theirs. The
+   validation layers, under which this test runs, look devices up in a table without a lock:
+   device/layers.h. */
 #include <stdatomic.h>
 
 #include "base/threads.h"
