@@ -138,7 +138,8 @@ double light_form_factor(const struct scene_light *light, struct dvec3 p, struct
     const struct dvec3 corners[4] = {
         c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
     double height = -dvec3_dot(c0, direction), sum = 0.0;
-    if (fabs(height) <= 4.0 * DBL_EPSILON * d3_length(c0)) /* in its plane */
+    /* In its plane, but for what rounds the corners of triangles to floats. */
+    if (fabs(height) <= (double)FLT_EPSILON * (d3_length(p) + d3_length(three(light->position))))
         return 0.0;
     int count = clip_to_horizon(n, corners, triangle ? 3 : 4, clipped);
     for (int i = 0; i < count; ++i)

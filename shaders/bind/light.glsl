@@ -75,15 +75,15 @@ vec3 emitter_point(gpu_light light, uint index)
     return light.position + light.edge_u * u + light.edge_v * v;
 }
 
-// Form factor of a flat emitter at `p` with shading normal `n`, without shadows.
-float emitter_form_factor(gpu_light light, vec3 p, vec3 n)
+// Form factor of a flat emitter at `p`, off by up to `error`, with shading normal `n`, without shadows.
+float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
 {
     vec3 c0 = light.position - p;
     vec3 c1 = c0 + light.edge_u, c3 = c0 + light.edge_v;
     vec3 c2 = light.kind == LIGHT_TRIANGLE ? c3 : c1 + light.edge_v;
     float height = -dot(c0, light.direction);
-    // In the emitter's own plane, but for rounding.
-    if (abs(height) <= rounding_bound(4.0) * dot(abs(c0), abs(light.direction)))
+    // In the emitter's own plane, but for rounding: of the point too, or it would light itself.
+    if (abs(height) <= dot(rounding_bound(4.0) * abs(c0) + error, abs(light.direction)))
         return 0.0;
     float factor = polygon_form_factor(n, c0, c1, c2, c3);
     bool front = height > 0.0;

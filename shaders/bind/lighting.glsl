@@ -95,7 +95,7 @@ vec3 emitter_light(gpu_light light, Surface s, Optics o, EmitterSum sum, out vec
     open = vec3(0.0);
     if (!(sum.weight > 0.0))
         return open;
-    float factor = emitter_form_factor(light, s.p, s.ns);
+    float factor = emitter_form_factor(light, s.p, s.error, s.ns);
     float sampled = light.area_share * sum.weight;
     vec3 radiance = min(light.color, vec3(LIGHT_MOST));
     vec3 diffuse = o.diffuse * (factor * (sum.visible / sum.weight));

@@ -475,6 +475,40 @@ static void trees_do_not_matter(void **state)
     close_reference(&d);
 }
 
+/* What glows lies in its light's plane, but for what its corners are rounded by in one tree. */
+static void emitters_do_not_light_themselves(void **state)
+{
+    (void)state;
+    const struct accel_params flat = {.flatten = true};
+    const struct reference_params params = {
+        .picture = {.width = 9, .height = 9, .no_shadows = true}};
+    const double heights[] = {1.99, 0.7, -3.3, 1001.3};
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
+        double h = heights[i];
+        struct scene *scene = dark_scene((double[]){0, h + 3, 0}, (double[]){0, h, 0});
+        struct scene_material m = material_plain("panel");
+        set_rgb(m.diffuse, 1, 1, 1);
+        add_object(scene, mesh_plane(4), m, 0, h, 0);
+        scene_put_light(scene, (struct scene_light){.name = string_copy("panel"),
+                                                    .kind = SCENE_LIGHT_RECTANGLE,
+                                                    .node = SCENE_NONE,
+                                                    .two_sided = true,
+                                                    .position = {-2, h, -2},
+                                                    .edge_u = {4, 0, 0},
+                                                    .edge_v = {0, 0, 4},
+                                                    .color = {1, 1, 1}});
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        struct drawn d = {.scene = scene};
+        assert_int_equal(accel_create(&fixture_log, scene, &flat, &d.accel), WHIT_OK);
+        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
+        struct image image = draw(&d);
+        for (size_t k = 0; k < 9 * 9; ++k)
+            assert_true(image.pixels[4 * k] == 0.0f);
+        image_finish(&image);
+        close_reference(&d);
+    }
+}
+
 static void what_it_cannot_draw_is_refused(void **state)
 {
     (void)state;
@@ -519,6 +553,7 @@ int main(void)
         cmocka_unit_test(ray_trees_add_up_to_pixels),
         cmocka_unit_test(cameras_are_those_of_kernels),
         cmocka_unit_test(trees_do_not_matter),
+        cmocka_unit_test(emitters_do_not_light_themselves),
         cmocka_unit_test(what_it_cannot_draw_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

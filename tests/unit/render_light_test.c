@@ -315,6 +315,29 @@ static void lamps_next_to_a_surface_are_on_one_side(void **state)
     }
 }
 
+/* What glows lies in its light's plane, but for the roundings of where it is met. */
+static void emitters_do_not_light_themselves(void **state)
+{
+    (void)state;
+    const double heights[] = {1.99, 1001.3};
+    const struct render_params params = {.width = SIDE, .height = SIDE, .no_shadows = true};
+    for (size_t i = 0; i < 2 * sizeof heights / sizeof *heights; ++i) {
+        const struct accel_params trees = {.flatten = i % 2};
+        double h = heights[i / 2];
+        struct scene *scene = dark_scene((double[]){0, h + 3, 0}, (double[]){0, h, 0});
+        struct scene_material m = material_plain("panel");
+        set_rgb(m.diffuse, 1, 1, 1);
+        add_object(scene, mesh_plane(4), m, 0, h, 0);
+        scene_put_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-2, h, -2},
+                                       (double[]){4, 0, 0}, (double[]){0, 0, 4}, 1.0f));
+        struct fixture f = fixture_open(scene, &trees, &params);
+        struct image image = render(&f);
+        assert_true(pixel_sum(&image) == 0.0);
+        image_finish(&image);
+        fixture_close(&f);
+    }
+}
+
 /* A room with a lamp, a glass pane, a mirror and a smooth ball. */
 static struct scene *room_scene(void)
 {
@@ -383,6 +406,7 @@ int main(void)
         cmocka_unit_test(ranges_end_lights),
         cmocka_unit_test(odd_lights_give_finite_pictures),
         cmocka_unit_test(lamps_next_to_a_surface_are_on_one_side),
+        cmocka_unit_test(emitters_do_not_light_themselves),
         cmocka_unit_test(all_effects_change_nothing),
         cmocka_unit_test(trees_change_nothing),
     };
