@@ -14,11 +14,7 @@
 #include "base/threads.h"
 #include "scene/afford.h"
 
-enum {
-    SPAN = 4096,            /* triangles or vertices handled by one call */
-    BYTES_A_TRIANGLE = 300, /* at the peak of a build: corners, boxes, builder, nodes, records */
-};
-static const double COORDINATE_MOST = 1e18; /* as scene_freeze has it in object space */
+enum { SPAN = 4096 }; /* triangles or vertices handled by one call */
 
 /* What stays from pose to pose. */
 struct accel_flat {
@@ -75,17 +71,11 @@ static whit_result check_size(const struct accel *accel, uint64_t triangles, uin
     char what[64];
     snprintf(what, sizeof what, "its %llu triangles without instances",
              (unsigned long long)triangles);
-    if (triangles > BVH_FIRST_MASK / 2 || vertices > UINT32_MAX / 4)
-        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, BVH_FIRST_MASK / 2);
-    else if (scene_could_afford(scene, &accel->log, triangles * BYTES_A_TRIANGLE, what))
+    if (triangles > FLAT_TRIANGLES_MOST || vertices > FLAT_VERTICES_MOST)
+        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, FLAT_TRIANGLES_MOST);
+    else if (scene_could_afford(scene, &accel->log, triangles * FLAT_TRIANGLE_BYTES, what))
         return WHIT_OK;
     return WHIT_ERROR_INPUT;
-}
-
-/* The centre stands for a sphere's vertices. */
-static uint32_t placed_vertices(const struct scene_mesh *mesh)
-{
-    return mesh->sphere_count ? mesh->sphere_count : mesh->vertex_count;
 }
 
 static whit_result place_instances(const struct accel *accel, struct accel_flat *flat)
@@ -97,7 +87,7 @@ static whit_result place_instances(const struct accel *accel, struct accel_flat 
         flat->first_triangle[i] = (uint32_t)triangles;
         flat->first_vertex[i] = (uint32_t)vertices;
         triangles += scene_mesh_primitives(mesh);
-        vertices += placed_vertices(mesh);
+        vertices += accel_flat_vertices(mesh);
     }
     flat->first_triangle[scene->instance_count] = (uint32_t)triangles;
     flat->first_vertex[scene->instance_count] = (uint32_t)vertices;
@@ -106,7 +96,7 @@ static whit_result place_instances(const struct accel *accel, struct accel_flat 
         return result;
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-        uint32_t primitives = scene_mesh_primitives(mesh), placed = placed_vertices(mesh);
+        uint32_t primitives = scene_mesh_primitives(mesh), placed = accel_flat_vertices(mesh);
         uint32_t larger = primitives > placed ? primitives : placed;
         for (uint32_t begin = 0; begin < larger; begin += SPAN) {
             uint32_t end = larger - begin < SPAN ? larger : begin + SPAN;
@@ -144,7 +134,7 @@ whit_result accel_flat_create(struct accel *accel)
     accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
     if (!flat || !accel->meshes || !accel->instances)
         return WHIT_ERROR_MEMORY;
-    if (scene->instance_count >= UINT32_MAX >> TRIANGLE_INSTANCE_SHIFT) {
+    if (scene->instance_count >= FLAT_INSTANCES_MOST) {
         log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
         return WHIT_ERROR_INPUT;
     }
@@ -174,7 +164,7 @@ static void place_vertices(void *user, uint32_t index)
     struct flat_span *span = &f->accel->world->spans[index];
     const struct scene_mesh *mesh = mesh_of(f, span->instance);
     const struct affine *forward = &f->pose->instances[span->instance];
-    uint32_t placed = placed_vertices(mesh);
+    uint32_t placed = accel_flat_vertices(mesh);
     uint32_t end = span->end < placed ? span->end : placed;
     float *out = f->positions + 3 * (size_t)f->accel->world->first_vertex[span->instance];
     span->bad = false;
@@ -184,7 +174,7 @@ static void place_vertices(void *user, uint32_t index)
         double world[3];
         affine_point(forward, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, world);
         for (int i = 0; i < 3; ++i) {
-            span->bad |= !(fabs(world[i]) <= COORDINATE_MOST);
+            span->bad |= !(fabs(world[i]) <= FLAT_COORDINATE_MOST);
             out[3 * (size_t)v + (size_t)i] = (float)world[i];
         }
     }
@@ -251,18 +241,11 @@ static whit_result refuse_range(const struct flattening *f)
     return WHIT_OK;
 }
 
-static bool keeps_spheres(const struct affine *forward)
-{
-    const double *m = forward->m;
-    return m[0] > 0.0 && m[5] == m[0] && m[10] == m[0] && m[1] == 0.0 && m[2] == 0.0 &&
-           m[4] == 0.0 && m[6] == 0.0 && m[8] == 0.0 && m[9] == 0.0;
-}
-
 static whit_result refuse_spheres(const struct flattening *f)
 {
     const struct accel *accel = f->accel;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
-        if (!mesh_of(f, i)->sphere_count || keeps_spheres(&f->pose->instances[i]))
+        if (!mesh_of(f, i)->sphere_count || accel_flat_keeps_spheres(&f->pose->instances[i]))
             continue;
         const char *name = accel->scene->instances[i].name;
         log_error(&accel->log,

@@ -71,6 +71,7 @@ struct hard_scene {
     struct scene *owned; /* the same, or NULL: borrowed */
     struct scene_pose pose;
     struct accel *accel;
+    bool flatten;               /* `accel` is one tree, of placed and rounded triangles */
     double middle[3], reach[3]; /* HARD_AIMED rays start within */
     double lo[3], hi[3];        /* bounds */
     enum hard_rays rays;
@@ -81,7 +82,7 @@ WHIT_CHECK whit_result hard_scene_init(const struct log *log, const struct hard_
                                        struct hard_scene *out);
 /* A scene of the user's at one time; `scene` is borrowed. */
 WHIT_CHECK whit_result hard_scene_borrow(const struct log *log, const struct scene *scene,
-                                         double time_s, struct hard_scene *out);
+                                         double time_s, bool flatten, struct hard_scene *out);
 /* A frozen scene of one mesh, which is taken over; `place` NULL: where it is. */
 WHIT_CHECK whit_result hard_scene_of_mesh(const struct log *log, const char *name,
                                           struct scene_mesh *mesh, const struct affine *place,

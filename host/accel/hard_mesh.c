@@ -407,7 +407,7 @@ enum { STACK_FLOOR = 48 };
 
 static whit_result pose_and_build(const struct log *log, double time_s, struct hard_scene *hard)
 {
-    const struct accel_params params = {.stack_floor = STACK_FLOOR};
+    const struct accel_params params = {.stack_floor = STACK_FLOOR, .flatten = hard->flatten};
     whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
     if (result == WHIT_OK)
         result = accel_create(log, hard->scene, &params, &hard->accel);
@@ -446,9 +446,10 @@ static whit_result take_scene(const struct log *log, double time_s, struct hard_
 }
 
 whit_result hard_scene_borrow(const struct log *log, const struct scene *scene, double time_s,
-                              struct hard_scene *out)
+                              bool flatten, struct hard_scene *out)
 {
-    *out = (struct hard_scene){.scene = scene, .rays = HARD_AROUND, .truth = HARD_ORACLE};
+    *out = (struct hard_scene){
+        .scene = scene, .flatten = flatten, .rays = HARD_AROUND, .truth = HARD_ORACLE};
     if (scene->triangle_total == 0) {
         log_error(log, "%s: no triangles to shoot at", scene->name);
         return WHIT_ERROR_INPUT;

@@ -95,6 +95,8 @@ static void draw_triangle(const struct hard_scene *hard, uint64_t *state, struct
         const double local[3] = {(double)p[0], (double)p[1], (double)p[2]};
         const double *m = hard->pose.instances[at].m;
         affine_point(&hard->pose.instances[at], local, target->corner[i]);
+        for (int k = 0; k < 3 && hard->flatten; ++k)
+            target->corner[i][k] = (double)(float)target->corner[i][k];
         for (int k = 0; k < 3; ++k)
             target->size[k] = fmax(i ? target->size[k] : 0.0,
                                    fabs(m[4 * k] * local[0]) + fabs(m[4 * k + 1] * local[1]) +

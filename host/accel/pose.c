@@ -225,16 +225,6 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     return WHIT_OK;
 }
 
-static bool is_identity(const struct affine *a)
-{
-    struct affine identity = affine_identity();
-    for (int i = 0; i < 12; ++i) {
-        if (a->m[i] != identity.m[i])
-            return false;
-    }
-    return true;
-}
-
 /* Leaves name instances, not ranks. */
 static void tree_place(struct accel *accel, const struct bvh *tree, const uint32_t *indices)
 {
@@ -337,7 +327,7 @@ static whit_result pose_instances(struct accel *accel, const struct scene_pose *
     instances_exchange(accel);
     accel->single_identity = accel->instance_count == 1 &&
                              accel->meshes[accel->scene->instances[0].mesh].triangle_count > 0 &&
-                             is_identity(&pose->instances[0]);
+                             affine_is_identity(&pose->instances[0]);
     return WHIT_OK;
 }
 

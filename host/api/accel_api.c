@@ -36,7 +36,11 @@ static whit_result check_params(const struct log *log, const whit_accel_params *
                   BVH_LEAF_MAX);
         return WHIT_ERROR_USAGE;
     }
-    if (params->tree_path && params->flatten) {
+    if ((unsigned)params->instances > WHIT_INSTANCES_OFF) {
+        log_error(log, "instances %d: auto, on and off are what there is", (int)params->instances);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->tree_path && params->instances == WHIT_INSTANCES_OFF) {
         log_error(log, "%s: saved trees are of single meshes, not of a flattened scene",
                   params->tree_path);
         return WHIT_ERROR_USAGE;
@@ -85,7 +89,7 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
                       .leaf_limit = 1,
                       .thread_count = params->threads},
         .update = params->instance_refit ? ACCEL_REFIT : ACCEL_REBUILD,
-        .flatten = params->flatten,
+        .flatten = !params->tree_path && api_one_tree(scene, params->instances),
         .tree_file = params->tree_path,
         .validate = params->validate || ALWAYS_VALIDATE,
     };
@@ -150,6 +154,7 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
         .instance_depth = accel->instance_depth,
         .bytes = accel_bytes(accel),
         .build_ms = accel->build_ms,
+        .one_tree = accel->flat,
         .instance_build_ms = accel->instance_build_ms,
     };
     builder_name(&accel->params.mesh, info->builder, sizeof info->builder);

@@ -15,8 +15,14 @@ struct whit_scene {
     struct scene *scene;
     struct scene_pose pose; /* at time 0, for descriptions */
     struct scene_effects effects;
+    bool one_tree; /* by WHIT_INSTANCES_AUTO */
     struct log log;
 };
+
+static inline bool api_one_tree(const struct whit_scene *scene, whit_instances instances)
+{
+    return instances == WHIT_INSTANCES_OFF || (instances == WHIT_INSTANCES_AUTO && scene->one_tree);
+}
 
 struct whit_accel {
     struct accel *accel;

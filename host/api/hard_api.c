@@ -309,16 +309,17 @@ static whit_result run_variants(struct hard_run *run, const struct hard_scene *g
     return result;
 }
 
-static whit_result run_scene(struct hard_run *run, const struct scene *scene)
+static whit_result run_scene(struct hard_run *run, const whit_scene *scene)
 {
     static const enum hard_rays kinds[] = {HARD_AROUND,  HARD_AXIAL, HARD_FLAT,
                                            HARD_GRAZING, HARD_FAR,   HARD_LEAVING};
     const uint32_t count = sizeof kinds / sizeof *kinds;
     struct hard_scene given;
-    whit_result result = hard_scene_borrow(&run->log, scene, 0.0, &given);
+    whit_result result = hard_scene_borrow(&run->log, scene->scene, 0.0,
+                                           api_one_tree(scene, run->params->instances), &given);
     if (result != WHIT_OK)
         return result;
-    result = describe_surface(run, scene);
+    result = describe_surface(run, scene->scene);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         const whit_hard_row names = {
             .name = hard_rays_name(kinds[i]), .place = "as given", .promised = true};
@@ -363,7 +364,7 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
     if (result == WHIT_OK)
         result = allocate(&run);
     if (result == WHIT_OK && scene)
-        result = run_scene(&run, scene->scene);
+        result = run_scene(&run, scene);
     else if (result == WHIT_OK)
         result = run_cases(&run);
     free(run.rays);

@@ -28,7 +28,8 @@ static whit_result open_scene(struct view *view, const whit_scene *scene)
     uint32_t count;
     if (!scene)
         return hard_scene_init(&view->log, hard_cases(&count), &view->hard);
-    return hard_scene_borrow(&view->log, scene->scene, view->params->time_s, &view->hard);
+    return hard_scene_borrow(&view->log, scene->scene, view->params->time_s,
+                             api_one_tree(scene, view->params->instances), &view->hard);
 }
 
 /* The built-in sphere is seen from outside here. */

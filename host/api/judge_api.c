@@ -79,7 +79,8 @@ static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_j
         log_error(&judge->log, "out of memory for %u rays", wanted);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = hard_scene_borrow(&judge->log, scene->scene, params->time_s, &judge->hard);
+    whit_result result = hard_scene_borrow(&judge->log, scene->scene, params->time_s,
+                                           api_one_tree(scene, params->instances), &judge->hard);
     if (result == WHIT_OK)
         result = hard_topology_init(scene->scene, &judge->topology);
     if (result == WHIT_OK)

@@ -24,6 +24,7 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
     if (result != WHIT_OK)
         goto fail;
     scene_effects_scan(scene->scene, &scene->effects);
+    scene->one_tree = accel_flat_suits(scene->scene, &scene->pose);
     *out = scene;
     return WHIT_OK;
 fail:
@@ -81,6 +82,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         .hash = scene->hash,
         .channel_count = scene->channel_count,
         .time_end_s = (double)scene->time_end_s,
+        .one_tree = handle->one_tree,
         .environment = scene->environment.kind == SCENE_ENVIRONMENT_MAP ? "map" : "gradient",
         .environment_made_by_whit = scene->environment.made_by_whit,
     };

@@ -27,11 +27,11 @@ typedef struct whit_accel_params {
     uint32_t threads;                    /* 0: one a core; never changes the tree */
     whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
     bool instance_refit;       /* moving instances keep their tree, with new boxes */
-    bool flatten;              /* no tree over instances: one tree over all their triangles */
-    bool validate;             /* check the tree after the build (always in debug builds) */
-    const char
-        *tree_path;      /* mesh trees saved by whit_accel_save, instead of building; NULL: build */
-    double time_limit_s; /* for WHIT_BUILD_SWEEP_NAIVE; 0: none */
+    whit_instances instances;
+    bool validate;         /* check the tree after the build (always in debug builds) */
+    const char *tree_path; /* mesh trees saved by whit_accel_save, instead of building; then
+                              WHIT_INSTANCES_AUTO is WHIT_INSTANCES_ON. NULL: build */
+    double time_limit_s;   /* for WHIT_BUILD_SWEEP_NAIVE; 0: none */
     const volatile bool *cancel;
 } whit_accel_params;
 
@@ -44,6 +44,7 @@ typedef struct whit_accel_info {
     uint32_t reference_count; /* in leaves: more than both where triangles are split */
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
+    bool one_tree;                                /* in world space, see whit_instances */
     char builder[48]; /* of the mesh trees, also of saved ones: "binned:7", "spatial+opt" */
 } whit_accel_info;
 void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
@@ -51,7 +52,8 @@ void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
 /* Checks every tree: each triangle in a leaf, children inside parents, indices in range, no cycle,
    leaf sizes, depth. WHIT_ERROR_STATUS, with the first violation in the log. */
 WHIT_CHECK whit_result whit_accel_validate(const whit_accel *accel);
-/* Saves the mesh trees with a checksum, for whit_accel_params.tree_path and the same scene. */
+/* Saves the mesh trees with a checksum, for whit_accel_params.tree_path and the same scene; what is
+   one tree has none: build it with WHIT_INSTANCES_ON. */
 WHIT_CHECK whit_result whit_accel_save(const whit_accel *accel, const char *path);
 
 enum { WHIT_DEPTH_BINS = 130, WHIT_LEAF_BINS = 16 };

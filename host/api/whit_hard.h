@@ -19,6 +19,7 @@ typedef struct whit_hard_params {
     uint32_t threads;   /* on the CPU; 0: one a core */
     const char *filter; /* of the built-in cases those with this in their name; NULL: all, and then
                            there is a hash */
+    whit_instances instances; /* of `scene` as it is given; variants and built-in cases say it */
     const volatile bool *cancel;
     double time_limit_s; /* 0: none */
     void (*progress)(void *user, double done);
@@ -73,6 +74,7 @@ typedef struct whit_hard_view_params {
     const char *camera;     /* as in whit_renderer_params */
     double time_s;
     whit_numerics numerics;
+    whit_instances instances;
     uint32_t threads;
 } whit_hard_view_params;
 /* What camera rays hit, as grey lit from the eye; red where that is wrong: a leak, or beyond the
@@ -96,7 +98,8 @@ typedef struct whit_judge_params {
     const char *camera; /* as in whit_renderer_params */
     uint32_t width, height; /* the camera's picture, for its shape; 0: 640 x 480 */
     double time_s;
-    uint32_t threads; /* 0: one a core */
+    whit_instances instances; /* whose triangles: hits that are judged are of such trees */
+    uint32_t threads;         /* 0: one a core */
 } whit_judge_params;
 WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
                                          const whit_log *log, whit_judge **out);

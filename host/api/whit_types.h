@@ -20,6 +20,14 @@ typedef struct whit_device whit_device;     /* one Vulkan device */
 typedef struct whit_renderer whit_renderer; /* an accel on a device, with settings */
 typedef struct whit_image whit_image;       /* pixels in host memory */
 
+/* Whether there is one tree over the triangles of all instances, each vertex placed in the world in
+   double and rounded once, in place of trees of meshes and one over their instances. */
+typedef enum whit_instances {
+    WHIT_INSTANCES_AUTO = 0, /* one tree where whit_scene_info.one_tree */
+    WHIT_INSTANCES_ON,       /* instances */
+    WHIT_INSTANCES_OFF,      /* one tree */
+} whit_instances;
+
 /* Where messages go. Zeroed: nowhere. */
 typedef struct whit_log {
     whit_log_fn fn;

@@ -163,11 +163,13 @@ static bool check_request(struct cli_reader *reader, struct study *study,
     if (!cli_no_dash(reader, "--save", study->save_path, "trees are saved in a file") ||
         !cli_no_dash(reader, "--load", request->load_path, "trees are read from a file"))
         return false;
-    if (request->load_path && (job->flatten || job->leaf_limit))
+    if (request->load_path && (job->instances == WHIT_INSTANCES_OFF || job->leaf_limit))
         return cli_misuse(reader, "--load and %s: the trees in the file are built already",
-                          job->flatten ? "--instances off" : "--leaf");
-    if (study->save_path && job->flatten)
+                          job->leaf_limit ? "--leaf" : "--instances off");
+    if (study->save_path && job->instances == WHIT_INSTANCES_OFF)
         return cli_misuse(reader, "--save and --instances off: files hold trees of single meshes");
+    if ((study->save_path || request->load_path) && job->instances == WHIT_INSTANCES_AUTO)
+        study->job.instances = WHIT_INSTANCES_ON;
     if (!request->builders && !request->load_path &&
         !read_builders(study, reader, builders_default))
         return false;

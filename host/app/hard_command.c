@@ -20,6 +20,7 @@ static const struct cli_option options[] = {
     {ID_SIZE, "size", "WxH", "of the picture (640x480)"},
     {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`"},
     JOB_OPTION_TIME,
+    JOB_OPTION_INSTANCES,
     JOB_OPTION_DEVICE,
     JOB_OPTION_FOREIGN,
     {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)"},
@@ -46,6 +47,7 @@ static whit_result find_out(struct hard *hard)
     whit_result result = prepare(job);
     cli_progress_init(&hard->progress, job->quiet);
     hard->params.threads = job->threads;
+    hard->params.instances = job->instances;
     hard->params.cancel = &cli_cancel;
     hard->params.time_limit_s = cli_time_left_s();
     hard->params.progress = cli_progress_update;
@@ -64,6 +66,7 @@ static whit_result draw(struct hard *hard, uint64_t *wrong, uint64_t *other)
     hard->view.time_s = job->time_s;
     hard->view.numerics = job->numerics;
     hard->view.threads = job->threads;
+    hard->view.instances = job->instances;
     whit_result result = prepare(job);
     if (result == WHIT_OK)
         result = whit_hard_view(job->device, job->scene, &hard->view, &cli_log_errors, wrong, other,

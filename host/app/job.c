@@ -11,12 +11,19 @@ void job_init(struct job *job)
     *job = (struct job){.fps = 24.0, .start_ms = whit_clock_ms()};
 }
 
+/* In the order of whit_instances. */
+static const char *const instances_names[] = {"auto", "on", "off", NULL};
+
+const char *job_instances_name(whit_instances instances)
+{
+    return instances_names[instances];
+}
+
 static void read_instances(struct job *job, struct cli_reader *reader)
 {
-    static const char *const choices[] = {"on", "off", NULL};
     uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->flatten = choice == 1;
+    if (cli_choice(reader, instances_names, &choice))
+        job->instances = (whit_instances)choice;
 }
 
 static void read_instance_build(struct job *job, struct cli_reader *reader)
@@ -197,7 +204,7 @@ static bool check_trees(const struct job *job, struct cli_reader *reader)
                           job->has_build  ? "--build"
                           : job->no_trees ? "--no-bvh"
                                           : "--leaf");
-    return !job->flatten ||
+    return job->instances != WHIT_INSTANCES_OFF ||
            cli_misuse(reader, "--tree and --instances off: files hold trees of single meshes");
 }
 
@@ -285,7 +292,7 @@ whit_accel_params job_accel_params(const struct job *job)
         .threads = job->threads,
         .instance_build = job->instance_build,
         .instance_refit = job->instance_refit,
-        .flatten = job->flatten,
+        .instances = job->instances,
         .tree_path = job->tree_path,
         .time_limit_s = cli_time_left_s(),
         .cancel = &cli_cancel,

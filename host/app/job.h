@@ -28,7 +28,8 @@ struct job {
     bool has_time, has_frame;
     uint32_t frame;
     struct job_build build;
-    bool has_build, no_trees, flatten, instance_refit;
+    bool has_build, no_trees, instance_refit;
+    whit_instances instances;
     whit_build instance_build;
     uint32_t leaf_limit; /* 0: the default */
     whit_traversal traversal;
@@ -95,10 +96,15 @@ enum job_id {
     }
 /* How trees are built and walked. A command that has its own --build takes JOB_OPTION_BUILDING
    and JOB_OPTION_WALKING alone. */
+#define JOB_OPTION_INSTANCES                                                                       \
+    {                                                                                              \
+        JOB_INSTANCES, "instances", "auto|on|off",                                                 \
+            "off: one tree over the triangles of all instances, placed\n"                          \
+            "in the world; auto: where nothing moves and no mesh is\n"                             \
+            "there twice (auto)"                                                                   \
+    }
 #define JOB_OPTION_BUILDING                                                                        \
-    {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)"},                              \
-        {JOB_INSTANCES, "instances", "on|off",                                                     \
-         "off: one tree over the triangles of all instances (on)"},                                \
+    {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)"}, JOB_OPTION_INSTANCES,        \
         {JOB_INSTANCE_BUILD, "instance-build", "sah|median",                                       \
          "how the tree over instances is built (sah)"},                                            \
     {                                                                                              \
@@ -161,6 +167,7 @@ enum job_id {
         'q', "quiet", NULL, "no notes, no progress, only errors"                                   \
     }
 
+const char *job_instances_name(whit_instances instances);
 const char *job_numerics_name(whit_numerics numerics);
 
 void job_init(struct job *job);

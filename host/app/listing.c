@@ -164,6 +164,8 @@ static void print_summary(const struct job *job, const whit_scene_info *info)
         puts("  bounds       empty");
     if (info->channel_count)
         printf("  animation    %u channels, to %.4g s\n", info->channel_count, info->time_end_s);
+    if (info->one_tree)
+        puts("  trees        one, in world space (--instances)");
     printf("  environment  %s%s\n", info->environment,
            info->environment_made_by_whit ? "  (made by whit)" : "");
     printf("  files        %.1f kB, hash %016llx\n", (double)info->file_bytes * 1e-3,

@@ -125,8 +125,8 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --allow-path", to);
         recipe_put_word(to, job->allowed[i]);
     }
-    if (job->flatten)
-        fputs(" --instances off", to);
+    if (job->instances)
+        fprintf(to, " --instances %s", job_instances_name(job->instances));
     if (job->numerics)
         fprintf(to, " --numerics %s", job_numerics_name(job->numerics));
     if (request->view.given)
@@ -155,8 +155,8 @@ static char *options_line(const struct job *job, const struct render_request *re
         document_text(options, "effects", request->effects);
     if (job->texture_limit)
         document_count(options, "texture_limit", job->texture_limit);
-    if (job->flatten) /* hits are those of triangles in world space: the last bit may differ */
-        document_text(options, "instances", "off");
+    if (job->instances) /* in one tree triangles are others, by the last bit */
+        document_text(options, "instances", job_instances_name(job->instances));
     if (job->numerics)
         document_text(options, "numerics", job_numerics_name(job->numerics));
     return document_line(options);

@@ -129,6 +129,7 @@ static json_t *pixels_document(const struct figures *figures)
 static json_t *tree_document(const whit_accel_info *info)
 {
     json_t *tree = document_object();
+    document_flag(tree, "one", info->one_tree);
     document_count(tree, "nodes", info->node_count);
     document_count(tree, "leaves", info->leaf_count);
     document_count(tree, "triangles", info->triangle_count);
@@ -314,9 +315,9 @@ static int print_text(const struct job *job, const struct render_request *reques
     print_kernel(figures);
     if (request->view.given || request->counters)
         costs_print(figures->render);
-    printf("trees\n  %u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
-           tree->node_count, tree->leaf_count, tree->triangle_count, tree->instance_depth,
-           tree->depth, tree->sah_cost);
+    printf("trees\n  %s%u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
+           tree->one_tree ? "one in world space: " : "", tree->node_count, tree->leaf_count,
+           tree->triangle_count, tree->instance_depth, tree->depth, tree->sah_cost);
     if (figures->sequence)
         print_frames(figures->sequence);
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads\n",

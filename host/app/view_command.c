@@ -227,7 +227,7 @@ static void fill_request(const struct view_settings *settings, struct job *job,
     job->texture_limit = settings->texture_limit;
     for (uint32_t i = 0; i < VIEW_ALLOWED && settings->allowed[i][0]; ++i)
         job->allowed[job->allowed_count++] = settings->allowed[i];
-    job->flatten = settings->trees.flatten;
+    job->instances = settings->trees.instances;
     job->numerics = p->numerics;
     request->output = path;
     request->picture = (struct picture){

@@ -58,6 +58,16 @@ double affine_determinant(const struct affine *a)
            m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
+bool affine_is_identity(const struct affine *a)
+{
+    struct affine identity = affine_identity();
+    for (int i = 0; i < 12; ++i) {
+        if (a->m[i] != identity.m[i])
+            return false;
+    }
+    return true;
+}
+
 bool affine_is_finite(const struct affine *a)
 {
     for (int i = 0; i < 12; ++i) {

@@ -17,6 +17,7 @@ struct affine affine_from_trs(const double translation[3], const double rotation
 struct affine affine_from_floats(const float rows[12]);
 double affine_determinant(const struct affine *a); /* of the 3x3 part */
 bool affine_is_finite(const struct affine *a);
+bool affine_is_identity(const struct affine *a);
 /* False, and *out untouched, when the 3x3 part has no finite inverse, or its determinant is no
    farther from 0 than its own roundings. */
 bool affine_invert(const struct affine *a, struct affine *out);

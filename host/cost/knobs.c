@@ -79,7 +79,7 @@ static void apply_build(const struct knob_setting *setting, struct knob_target *
 
 static void apply_instances(const struct knob_setting *setting, struct knob_target *target)
 {
-    target->accel.flatten = setting->value == 1.0;
+    target->accel.instances = (whit_instances)setting->value;
 }
 
 static void apply_load_path(const struct knob_setting *setting, struct knob_target *target)
@@ -204,7 +204,9 @@ static const struct knob table[] = {
      .about = "off: one tree over all triangles, placed and rounded",
      .change = KNOB_HITS,
      .level = KNOB_TREE,
-     .settings = {{"on", 0, NULL}, {"off", 1, "instances"}},
+     .settings = {{"auto", WHIT_INSTANCES_AUTO, NULL},
+                  {"on", WHIT_INSTANCES_ON, "instances"},
+                  {"off", WHIT_INSTANCES_OFF, "instances"}},
      .apply = apply_instances},
     {.name = "traversal",
      .option = "--traversal %s",
@@ -283,7 +285,10 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
         if (strcmp(wanted->effect, "reflection") != 0 || !calls_for(scene, "refraction"))
             return "the scene does not call for it";
     }
-    if (knob->apply == apply_instances && info.sphere_count > 0)
+    if (knob->apply == apply_instances &&
+        info.one_tree == (wanted->value == (double)WHIT_INSTANCES_OFF))
+        return "it is what the scene takes by itself";
+    if (knob->apply == apply_instances && !info.one_tree && info.sphere_count > 0)
         return "the scene has spheres";
     if (knob->level == KNOB_TREE && info.triangle_count == 0)
         return "the scene has no triangles";

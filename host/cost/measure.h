@@ -37,10 +37,10 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct k
 
 /* Both references, at the largest size that `seconds` allow (reference.c). */
 WHIT_CHECK whit_result measure_references(struct measure *measure, double seconds);
-/* The sets of rays (rays.c), and the hits of a renderer. */
+/* The sets of rays (rays.c) for the usual trees, and the hits of a renderer of `target`. */
 WHIT_CHECK whit_result measure_judges(struct measure *measure);
 WHIT_CHECK whit_result measure_hits(struct measure *measure, whit_renderer *renderer,
-                                    whit_numerics numerics, struct cost_row *row);
+                                    const struct knob_target *target, struct cost_row *row);
 /* One row: renderer, errors, price, hits, within about `seconds` (row.c). What a device or a scene
    refuses is a note in the row, and WHIT_OK. */
 WHIT_CHECK whit_result measure_row(struct measure *measure, const struct knob_target *target,

@@ -11,11 +11,13 @@ const char *cost_set_name(enum cost_set set)
     return names[set];
 }
 
-whit_result measure_judges(struct measure *measure)
+/* With and without instances it is other triangles that rays are aimed at and held against. */
+static whit_result make_judges(struct measure *measure, whit_instances instances,
+                               whit_judge **judges, uint64_t *most)
 {
     const struct cost_request *request = measure->request;
-    uint64_t most = 0;
     whit_result result = WHIT_OK;
+    *most = 0;
     for (uint32_t set = 0; result == WHIT_OK && request->rays && set < COST_SETS; ++set) {
         const whit_judge_params params = {
             .aimed = set == COST_AIMED,
@@ -24,16 +26,25 @@ whit_result measure_judges(struct measure *measure)
             .width = measure->report->width,
             .height = measure->report->height,
             .time_s = request->picture.time_s,
+            .instances = instances,
         };
-        uint64_t count;
+        uint64_t count = 0;
         measure_say(measure, "exact hits");
-        result = whit_judge_create(request->scene, &params, request->log, &measure->judges[set]);
+        result = whit_judge_create(request->scene, &params, request->log, &judges[set]);
         if (result == WHIT_OK)
-            whit_judge_rays(measure->judges[set], &count);
-        most = result == WHIT_OK && count > most ? count : most;
+            whit_judge_rays(judges[set], &count);
+        *most = count > *most ? count : *most;
         if (result == WHIT_OK)
             result = measure_still_wanted(measure);
     }
+    return result;
+}
+
+whit_result measure_judges(struct measure *measure)
+{
+    uint64_t most;
+    whit_result result =
+        make_judges(measure, measure->usual.accel.instances, measure->judges, &most);
     measure->hits = result == WHIT_OK && most ? calloc((size_t)most, sizeof *measure->hits) : NULL;
     return result == WHIT_OK && most && !measure->hits ? WHIT_ERROR_MEMORY : result;
 }
@@ -57,26 +68,43 @@ static whit_result trace(struct measure *measure, whit_renderer *renderer, const
     return result;
 }
 
-whit_result measure_hits(struct measure *measure, whit_renderer *renderer, whit_numerics numerics,
-                         struct cost_row *row)
+static whit_result judge_hits(struct measure *measure, whit_renderer *renderer,
+                              whit_judge *const *judges, whit_numerics numerics,
+                              struct cost_row *row)
 {
     whit_result result = WHIT_OK;
     for (uint32_t set = 0; result == WHIT_OK && set < COST_SETS; ++set) {
         struct cost_hits *hits = &row->hits[set];
         uint64_t count = 0;
-        if (measure->judges[set])
-            whit_judge_rays(measure->judges[set], &count);
+        if (judges[set])
+            whit_judge_rays(judges[set], &count);
         if (count == 0)
             continue;
-        result = trace(measure, renderer, measure->judges[set], &hits->ms);
+        result = trace(measure, renderer, judges[set], &hits->ms);
         hits->unanswered = result == WHIT_ERROR_STATUS;
         hits->traced = result == WHIT_OK || hits->unanswered;
         if (result == WHIT_OK)
-            result = whit_judge_hits(measure->judges[set], numerics, measure->hits, &hits->judged);
+            result = whit_judge_hits(judges[set], numerics, measure->hits, &hits->judged);
         else if (hits->unanswered)
             result = WHIT_OK;
         if (result == WHIT_OK)
             result = measure_still_wanted(measure);
     }
+    return result;
+}
+
+whit_result measure_hits(struct measure *measure, whit_renderer *renderer,
+                         const struct knob_target *target, struct cost_row *row)
+{
+    whit_judge *own[COST_SETS] = {NULL};
+    bool as_usual = target->accel.instances == measure->usual.accel.instances;
+    uint64_t most;
+    whit_result result =
+        as_usual ? WHIT_OK : make_judges(measure, target->accel.instances, own, &most);
+    if (result == WHIT_OK)
+        result = judge_hits(measure, renderer, as_usual ? measure->judges : own,
+                            target->picture.numerics, row);
+    for (uint32_t set = 0; set < COST_SETS; ++set)
+        whit_judge_destroy(own[set]);
     return result;
 }

@@ -241,7 +241,7 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
     if (result == WHIT_OK)
         result = judge(measure, renderer, row);
     if (result == WHIT_OK && row->change != KNOB_SHADING)
-        result = measure_hits(measure, renderer, params.numerics, row);
+        result = measure_hits(measure, renderer, target, row);
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
     if (result == WHIT_OK)
         result = price(measure, target, renderer, (end_ms - whit_clock_ms()) * 1e-3,
@@ -367,7 +367,7 @@ whit_result measure_usual(struct measure *measure, double seconds, struct cost_r
     if (result == WHIT_OK)
         result = judge(measure, measure->renderer, row);
     if (result == WHIT_OK)
-        result = measure_hits(measure, measure->renderer, measure->usual.picture.numerics, row);
+        result = measure_hits(measure, measure->renderer, &measure->usual, row);
     if (result == WHIT_OK)
         result = time_full(measure, 0.7 * (end_ms - whit_clock_ms()) * 1e-3);
     if (result == WHIT_OK)

@@ -132,16 +132,16 @@ static void set_trees(struct view_settings *settings, uint32_t value)
     set_build(settings, value ? WHIT_BUILD_NONE : WHIT_BUILD_BINNED, "");
 }
 
-static const char *const instances[] = {"on", "off: one tree"};
+static const char *const instances[] = {"auto", "on", "off: one tree"};
 
 static int get_instances(const struct view_settings *settings)
 {
-    return settings->trees.flatten;
+    return (int)settings->trees.instances;
 }
 
 static void set_instances(struct view_settings *settings, uint32_t value)
 {
-    settings->trees.flatten = value != 0;
+    settings->trees.instances = (whit_instances)value;
 }
 
 /* ---- Shading ---- */

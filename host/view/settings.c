@@ -12,7 +12,7 @@ static bool same_trees(const whit_accel_params *a, const whit_accel_params *b)
     return a->build == b->build && a->optimize == b->optimize && a->bins == b->bins &&
            a->leaf_limit == b->leaf_limit && a->spatial_alpha == b->spatial_alpha &&
            a->spatial_budget == b->spatial_budget && a->instance_build == b->instance_build &&
-           a->instance_refit == b->instance_refit && a->flatten == b->flatten;
+           a->instance_refit == b->instance_refit && a->instances == b->instances;
 }
 
 static bool same_allowed(const struct view_settings *a, const struct view_settings *b)
@@ -165,8 +165,8 @@ static void tree_words(struct words *words, const struct view_settings *settings
         option(words, "--build", "%s%s", settings->build, trees->optimize ? "+opt" : "");
     if (trees->leaf_limit)
         option(words, "--leaf", "%u", trees->leaf_limit);
-    if (trees->flatten)
-        option(words, "--instances", "off");
+    if (trees->instances)
+        option(words, "--instances", trees->instances == WHIT_INSTANCES_ON ? "on" : "off");
     if (trees->instance_build == WHIT_BUILD_MEDIAN)
         option(words, "--instance-build", "median");
     if (trees->instance_refit)

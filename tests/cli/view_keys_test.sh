@@ -39,10 +39,13 @@ still
 state binned
 press O
 still
+state instances
+press O
+still
 state flat
 press O
 still
-state instances
+state again
 press M
 still
 state exact
@@ -55,8 +58,8 @@ state watertight
 END
 for at in "sign traversal|order|sign" "basic traversal|order|basic" "round traversal|order|distance" \
     "back traversal|order|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
-    "median tree|builder|median" "binned tree|builder|binned" "flat instance|tree|off:|one|tree" \
-    "instances instance|tree|on" "exact numerics|exact" "fast numerics|fast" \
+    "median tree|builder|median" "binned tree|builder|binned" "instances instance|tree|on" \
+    "flat instance|tree|off:|one|tree" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
     "watertight numerics|watertight"; do
     state=${at%% *}
     key=${at#* }
@@ -67,7 +70,7 @@ for at in "sign traversal|order|sign" "basic traversal|order|basic" "round trave
     is "$state" "keys.$name" "$(echo "${key#"$(echo "$name" | tr ' ' '|')|"}" | tr '|' ' ')"
     is "$state" frame.whole true
 done
-for state in sign basic round back sweep spatial median binned instances exact watertight; do
+for state in sign basic round back sweep spatial median binned instances again exact watertight; do
     same frame.ids start $state
     is $state change.other_ids 0
     is $state change.pixels 6144
@@ -77,9 +80,6 @@ for state in sign basic round back sweep spatial median binned; do
 done
 is sign change.what "traversal distance -> sign"
 is median change.what "builder spatial -> median"
-# One tree over all makes other instances and primitives of the same hits.
-is flat frame.whole true
-
 # Where `fast` leaks, the window says on how many pixels: as many as two pictures of `whit render`.
 INSIDE="--camera 0,0,0,1,0,0,0,1,0,90 --size 161x121"
 for level in watertight fast; do

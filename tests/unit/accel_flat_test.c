@@ -338,6 +338,83 @@ static void scenes_without_anything(void **state)
     }
 }
 
+/* ---- Where nobody says ---- */
+
+/* Triangles and a ball of the same size, each once, where `place` says. */
+static struct scene *two_objects(const struct affine *place)
+{
+    const double ball[4] = {0, 0, 0, 1};
+    struct scene *scene = new_scene();
+    scene_put(scene, mesh_sphere(1.0, 8, 6), &(struct put){.matrix = place});
+    scene_put(scene, mesh_balls(ball, 1), &(struct put){.matrix = place});
+    return scene;
+}
+
+static void takes_one_tree(struct scene *scene, uint64_t memory_limit, bool expected)
+{
+    struct scene_pose pose;
+    scene_ready(scene);
+    scene->memory_limit = memory_limit;
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(accel_flat_suits(scene, &pose), expected);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static struct affine moved_by(double x, double scale)
+{
+    struct affine place = affine_identity();
+    place.m[0] = place.m[5] = place.m[10] = scale;
+    place.m[3] = x;
+    return place;
+}
+
+static void a_scene_takes_one_tree_where_nothing_is_lost(void **state)
+{
+    (void)state;
+    struct affine aside = moved_by(3, 2), turned = moved_by(0, 1);
+    turned.m[1] = 0.5;
+    takes_one_tree(two_objects(&aside), 0, true);
+    takes_one_tree(two_objects(NULL), 0, true);
+    takes_one_tree(two_objects(&turned), 0, false); /* a sphere no more */
+    takes_one_tree(two_objects(&aside), 1 << 10, false);
+    takes_one_tree(new_scene(), 0, false);
+
+    struct scene *twice = two_objects(&aside);
+    scene_put_again(twice, 0, NULL);
+    takes_one_tree(twice, 0, false);
+}
+
+static void one_object_takes_it_if_it_is_moved(void **state)
+{
+    (void)state;
+    struct affine turned = moved_by(3, 2);
+    turned.m[1] = 0.5;
+    for (int moved = 0; moved < 2; ++moved) {
+        struct scene *scene = new_scene();
+        scene_put(scene, mesh_sphere(1.0, 8, 6), &(struct put){.matrix = moved ? &turned : NULL});
+        takes_one_tree(scene, 0, moved);
+    }
+}
+
+/* From 256 of its longest sides on, which are 2, an object's vertices are rounded too much. */
+static void far_objects_keep_their_instances(void **state)
+{
+    (void)state;
+    struct affine near = moved_by(510, 1), far = moved_by(512, 1);
+    takes_one_tree(two_objects(&near), 0, true);
+    takes_one_tree(two_objects(&far), 0, false);
+}
+
+static void what_may_move_keeps_its_instances(void **state)
+{
+    (void)state;
+    struct scene *scene = two_objects(NULL);
+    scene_put_channel(scene, scene_put_node(scene, SCENE_NONE, 0, 0, 0), SCENE_PATH_TRANSLATION, 1,
+                      (float[]){0}, (float[]){0, 0, 0});
+    takes_one_tree(scene, 0, false);
+}
+
 static void too_many_triangles_are_refused(void **state)
 {
     (void)state;
@@ -384,6 +461,10 @@ int main(void)
         cmocka_unit_test(a_pose_builds_anew),
         cmocka_unit_test(broken_records_are_refused),
         cmocka_unit_test(scenes_without_anything),
+        cmocka_unit_test(a_scene_takes_one_tree_where_nothing_is_lost),
+        cmocka_unit_test(one_object_takes_it_if_it_is_moved),
+        cmocka_unit_test(far_objects_keep_their_instances),
+        cmocka_unit_test(what_may_move_keeps_its_instances),
         cmocka_unit_test(too_many_triangles_are_refused),
         cmocka_unit_test(more_than_the_limit_is_refused),
     };

@@ -80,7 +80,7 @@ static struct sheets make_sheets(const struct gap *gap, uint32_t ulps)
     assert_int_equal(
         hard_scene_of_mesh(&silent, gap->name, &mesh, gap->placed ? &place : NULL, &out.scene),
         WHIT_OK);
-    assert_int_equal(hard_scene_borrow(&silent, out.scene, 0.0, &out.hard), WHIT_OK);
+    assert_int_equal(hard_scene_borrow(&silent, out.scene, 0.0, false, &out.hard), WHIT_OK);
     return out;
 }
 

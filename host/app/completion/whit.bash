@@ -10,7 +10,7 @@ _whit() {
         --aa) words="1 4 16 64" ;;
         --build) words="binned median sweep spatial sweep-naive binned+opt sweep+opt spatial+opt" ;;
         --effects) words="auto all" ;;
-        --instances) words="on off" ;;
+        --instances) words="auto on off" ;;
         --instance-build) words="sah median" ;;
         --instance-update) words="rebuild refit" ;;
         --load-path) words="auto storage texel" ;;

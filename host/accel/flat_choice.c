@@ -1,0 +1,69 @@
+/* Which scenes are one tree in world space where nobody says. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel_inside.h"
+#include "base/array.h"
+#include "scene/afford.h"
+
+/* Of an object's coordinates in the world, in its longest sides. Placed vertices are then off by at
+   most 2^-16 of it: a sixtieth of a pixel where it fills a thousand of them. */
+static const double FARTHEST = 256.0;
+
+bool accel_flat_keeps_spheres(const struct affine *forward)
+{
+    const double *m = forward->m;
+    return m[0] > 0.0 && m[5] == m[0] && m[10] == m[0] && m[1] == 0.0 && m[2] == 0.0 &&
+           m[4] == 0.0 && m[6] == 0.0 && m[8] == 0.0 && m[9] == 0.0;
+}
+
+/* Where an instance is at the place of its mesh nothing is rounded. */
+static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *forward)
+{
+    struct bvh_box box;
+    double farthest = 0.0, longest = 0.0;
+    if (affine_is_identity(forward) || scene_mesh_primitives(mesh) == 0)
+        return true;
+    if (mesh->sphere_count && !accel_flat_keeps_spheres(forward))
+        return false;
+    memcpy(box.lo, mesh->lo, sizeof box.lo);
+    memcpy(box.hi, mesh->hi, sizeof box.hi);
+    struct accel_extent world = accel_transformed_box(forward->m, &box);
+    for (int k = 0; k < 3; ++k) {
+        farthest = fmax(farthest, fmax(fabs(world.lo[k]), fabs(world.hi[k])));
+        longest = fmax(longest, world.hi[k] - world.lo[k]);
+    }
+    return farthest <= FARTHEST * longest && farthest <= FLAT_COORDINATE_MOST;
+}
+
+/* A mesh that is there twice would be in the tree twice. */
+static bool is_each_once(const struct scene *scene)
+{
+    uint8_t *seen = array_alloc_zeroed(scene->mesh_count, 1);
+    bool once = seen != NULL;
+    for (uint32_t i = 0; once && i < scene->instance_count; ++i)
+        once = seen[scene->instances[i].mesh]++ == 0;
+    free(seen);
+    return once;
+}
+
+static bool has_room(const struct scene *scene)
+{
+    uint64_t vertices = 0, primitives = scene->triangle_total + scene->sphere_total;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i)
+        vertices += accel_flat_vertices(&scene->meshes[i]);
+    return primitives > 0 && primitives <= FLAT_TRIANGLES_MOST && vertices <= FLAT_VERTICES_MOST &&
+           scene->instance_count < FLAT_INSTANCES_MOST &&
+           primitives * FLAT_TRIANGLE_BYTES <= scene_room(scene);
+}
+
+bool accel_flat_suits(const struct scene *scene, const struct scene_pose *pose)
+{
+    bool single_identity = scene->instance_count == 1 && affine_is_identity(&pose->instances[0]);
+    bool suits =
+        scene->channel_count == 0 && !single_identity && has_room(scene) && is_each_once(scene);
+    for (uint32_t i = 0; suits && i < scene->instance_count; ++i)
+        suits = is_placed_well(&scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
+    return suits;
+}
