@@ -83,6 +83,22 @@ done
 check "600 rays are aimed" test "$(value "$C" usual "" aimed_rays)" = 600
 check "exact: no aimed ray hits something else" test "$(value "$C" \
     numerics exact aimed_other_ids)$(value "$C" numerics exact aimed_misses)" = 00
+# Far from the origin a turned box is other triangles with instances and in one tree, which the scene is
+# by itself: each is held against its own.
+cat >"$OUT/far.json" <<'JSON'
+{ "camera": { "eye": [90, 1, 4], "target": [90, 0.5, 0] },
+  "objects": [
+    { "shape": "box", "translation": [90.3, 0.7, 0.1], "rotation": [10, 30, 20] },
+    { "shape": "sphere", "translation": [91.6, 0.7, 0.1] } ] }
+JSON
+# shellcheck disable=SC2086
+expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --samples 4 \
+    --knobs instances --csv "$C"
+for row in usual: instances:on; do
+    most=$(value "$C" "${row%:*}" "${row#*:}" aimed_ulp_most)
+    check "$row: rays are held against its triangles ($most ulp)" holds "$most < 100"
+done
+check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
 # shellcheck disable=SC2086
 expect 0 "one knob" cost "$GLASS" $small --samples 4 --knobs fresnel --rays 0 --csv "$C"

@@ -19,6 +19,14 @@ done
 expect 0 "scene --json again" scene "$CUBE" --json
 check "JSON is stable" cmp "$OUT/first" "$OUT/stdout"
 
+trees=$(for scene in "$SCENES"/*.json; do
+    "$WHIT" scene "$scene" --json 2>/dev/null | jq -r "select(.one_tree) | .file | split(\"/\") | last"
+done | tr '\n' ' ')
+check "these are one tree by themselves: $trees" test "$trees" = "34k.json 8k.json default.json \
+glass-of-water.json lens.json spotlight.json strands.json whitted.json "
+expect 0 "one of them" scene "$SCENES/lens.json"
+check "says so" grep -q "^  trees        one, in world space" "$OUT/stdout"
+
 T=$OUT/files/triangles
 expect 0 "scene --triangles" scene "$CUBE" --triangles "$T" --quiet
 check "12 records of 44 bytes" test "$(wc -c <"$T")" -eq 528

@@ -207,6 +207,24 @@ static void the_oracle_agrees(void **state)
     scene_destroy(scene);
 }
 
+/* As `whit scene --triangles` has it: in double, and rounded once. */
+static void assert_placed(const struct scene *scene, const struct scene_pose *pose,
+                          const struct gpu_triangle *record)
+{
+    uint32_t instance = record->flags >> TRIANGLE_INSTANCE_SHIFT;
+    const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    const float *corners[3] = {record->v0, record->v1, record->v2};
+    for (size_t i = 0; i < 3; ++i) {
+        size_t vertex = mesh->indices[3 * (size_t)record->primitive + i];
+        double world[3];
+        for (size_t k = 0; k < 3; ++k)
+            world[k] = (double)mesh->positions[3 * vertex + k];
+        affine_point(&pose->instances[instance], world, world);
+        for (size_t k = 0; k < 3; ++k)
+            assert_true(corners[i][k] == (float)world[k]);
+    }
+}
+
 static void records_say_whose_they_are(void **state)
 {
     (void)state;
@@ -219,6 +237,7 @@ static void records_say_whose_they_are(void **state)
         uint32_t flags = accel->triangles[i].flags;
         uint32_t instance = flags >> TRIANGLE_INSTANCE_SHIFT;
         assert_true(instance < OBJECTS);
+        assert_placed(scene, &pose, &accel->triangles[i]);
         assert_int_equal((flags & TRIANGLE_MIRRORED) != 0,
                          affine_determinant(&pose.instances[instance]) < 0.0);
         assert_int_equal((flags & TRIANGLE_FILTER) != 0, scene->instances[instance].mesh == 1);
@@ -404,6 +423,11 @@ static void far_objects_keep_their_instances(void **state)
     struct affine near = moved_by(510, 1), far = moved_by(512, 1);
     takes_one_tree(two_objects(&near), 0, true);
     takes_one_tree(two_objects(&far), 0, false);
+
+    /* Of a mesh that is where it was made nothing is rounded. */
+    struct scene *there = two_objects(NULL);
+    scene_put(there, mesh_triangles((float[]){9e3f, 0, 0, 9e3f, 1, 0, 9e3f, 0, 1}, 1), NULL);
+    takes_one_tree(there, 0, true);
 }
 
 static void what_may_move_keeps_its_instances(void **state)
