@@ -133,7 +133,8 @@ bool accel_flat_keeps_spheres(const struct affine *forward);
 
 /* Instead of mesh trees; the tree over all triangles comes with the first pose. */
 WHIT_CHECK whit_result accel_flat_create(struct accel *accel);
-/* That tree, as accel->meshes[0]. Changes nothing unless all goes well. */
+/* That tree, as accel->meshes[0]; the one that there is where nothing has moved. Changes nothing
+   unless all goes well. */
 WHIT_CHECK whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose);
 void accel_flat_destroy(struct accel_flat *flat);
 /* Of the scene: only triangle_count and shade_base are set. */

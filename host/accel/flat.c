@@ -21,6 +21,8 @@ struct accel_flat {
     struct accel_mesh *meshes; /* of the scene: what instances say of theirs */
     struct material_bits *materials;
     uint32_t *first_triangle, *first_vertex; /* of each instance, and the total */
+    struct affine *placed;                   /* where instances are in the tree that there is */
+    bool has_tree;
     struct flat_span *spans;
     uint32_t span_count, span_capacity;
 };
@@ -51,6 +53,7 @@ void accel_flat_destroy(struct accel_flat *flat)
     free(flat->materials);
     free(flat->first_triangle);
     free(flat->first_vertex);
+    free(flat->placed);
     free(flat->spans);
     free(flat);
 }
@@ -143,7 +146,9 @@ whit_result accel_flat_create(struct accel *accel)
     flat->materials = array_alloc_zeroed(scene->material_count, sizeof *flat->materials);
     flat->first_triangle = array_alloc(ends, sizeof *flat->first_triangle);
     flat->first_vertex = array_alloc(ends, sizeof *flat->first_vertex);
-    if (!flat->meshes || !flat->materials || !flat->first_triangle || !flat->first_vertex)
+    flat->placed = array_alloc(scene->instance_count, sizeof *flat->placed);
+    if (!flat->meshes || !flat->materials || !flat->first_triangle || !flat->first_vertex ||
+        !flat->placed)
         return WHIT_ERROR_MEMORY;
     describe_meshes(scene, flat);
     material_bits_scan(scene, flat->materials);
@@ -364,11 +369,18 @@ static void world_commit(struct flattening *f)
 whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose)
 {
     struct flattening f = {.accel = accel, .pose = pose};
+    struct accel_flat *flat = accel->world;
+    size_t bytes = accel->instance_count * sizeof *flat->placed;
+    if (flat->has_tree && memcmp(flat->placed, pose->instances, bytes) == 0)
+        return WHIT_OK;
     whit_result result = world_build(&f);
     if (result == WHIT_OK)
         result = world_write(&f);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
         world_commit(&f);
+        memcpy(flat->placed, pose->instances, bytes);
+        flat->has_tree = true;
+    }
     bvh_finish(&f.tree);
     free(f.triangles);
     free(f.positions);

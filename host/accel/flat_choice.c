@@ -38,14 +38,18 @@ static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *f
 }
 
 /* A mesh that is there twice would be in the tree twice. */
-static bool is_each_once(const struct scene *scene)
+static whit_result find_repeated(const struct scene *scene, bool *each_once)
 {
     uint8_t *seen = array_alloc_zeroed(scene->mesh_count, 1);
-    bool once = seen != NULL;
-    for (uint32_t i = 0; once && i < scene->instance_count; ++i)
-        once = seen[scene->instances[i].mesh]++ == 0;
+    if (!seen) {
+        log_error(&scene->log, "%s: out of memory", scene->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    *each_once = true;
+    for (uint32_t i = 0; *each_once && i < scene->instance_count; ++i)
+        *each_once = seen[scene->instances[i].mesh]++ == 0;
     free(seen);
-    return once;
+    return WHIT_OK;
 }
 
 static bool has_room(const struct scene *scene)
@@ -58,12 +62,12 @@ static bool has_room(const struct scene *scene)
            primitives * FLAT_TRIANGLE_BYTES <= scene_room(scene);
 }
 
-bool accel_flat_suits(const struct scene *scene, const struct scene_pose *pose)
+whit_result accel_flat_suits(const struct scene *scene, const struct scene_pose *pose, bool *out)
 {
     bool single_identity = scene->instance_count == 1 && affine_is_identity(&pose->instances[0]);
-    bool suits =
-        scene->channel_count == 0 && !single_identity && has_room(scene) && is_each_once(scene);
+    bool suits = scene->channel_count == 0 && !single_identity && has_room(scene);
     for (uint32_t i = 0; suits && i < scene->instance_count; ++i)
         suits = is_placed_well(&scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
-    return suits;
+    *out = suits;
+    return suits ? find_repeated(scene, out) : WHIT_OK;
 }

@@ -23,8 +23,10 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
     result = scene_pose_init(scene->scene, 0.0, &scene->pose);
     if (result != WHIT_OK)
         goto fail;
+    result = accel_flat_suits(scene->scene, &scene->pose, &scene->one_tree);
+    if (result != WHIT_OK)
+        goto fail;
     scene_effects_scan(scene->scene, &scene->effects);
-    scene->one_tree = accel_flat_suits(scene->scene, &scene->pose);
     *out = scene;
     return WHIT_OK;
 fail:

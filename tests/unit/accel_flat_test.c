@@ -283,6 +283,9 @@ static void a_pose_builds_anew(void **state)
         }
         assert_true(met > 1000 && other <= 1);
     }
+    const struct gpu_bvh_node *nodes = flat->nodes;
+    assert_int_equal(accel_pose(flat, &pose), WHIT_OK);
+    assert_ptr_equal(flat->nodes, nodes); /* nothing has moved */
     /* What is refused leaves everything as it was. */
     struct gpu_ray ray = random_ray(&rays);
     struct gpu_hit before = trace(flat, &ray), after;
@@ -372,10 +375,12 @@ static struct scene *two_objects(const struct affine *place)
 static void takes_one_tree(struct scene *scene, uint64_t memory_limit, bool expected)
 {
     struct scene_pose pose;
+    bool suits;
     scene_ready(scene);
     scene->memory_limit = memory_limit;
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-    assert_int_equal(accel_flat_suits(scene, &pose), expected);
+    assert_int_equal(accel_flat_suits(scene, &pose, &suits), WHIT_OK);
+    assert_int_equal(suits, expected);
     scene_pose_finish(&pose);
     scene_destroy(scene);
 }
