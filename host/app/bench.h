@@ -6,7 +6,13 @@
 #include "app/document.h"
 #include "cost/sample.h"
 
-enum { BENCH_RUNS_MOST = 99, BENCH_NOTES_MOST = 12, BENCH_PATH = 2200 };
+enum {
+    BENCH_RUNS_MOST = 99,
+    BENCH_NOTES_MOST = 12,
+    BENCH_PATH = 2200,
+    BENCH_SCRATCH = 512,
+    BENCH_GRACE_MS = 3000
+};
 
 /* What `whit bench` was asked for, and where its answers go. */
 struct bench {
@@ -90,6 +96,23 @@ double bench_visits(const struct bench_case *c);
 double bench_triangle_tests(const struct bench_case *c);
 json_t *bench_document(const struct bench_case *c);
 
+/* ---- Children (bench_child.c) ---- */
+
+/* A folder of its own below TMPDIR. */
+WHIT_CHECK whit_result bench_scratch_make(char folder[BENCH_SCRATCH]);
+void bench_scratch_remove(const char *folder); /* with all that is in it */
+
+struct bench_child {
+    const char *program;          /* NULL: whit */
+    const char *const *arguments; /* from its name on, ended by NULL */
+    const char *folder;           /* that it works in; NULL: here */
+    bool is_tried;                /* what goes wrong is not said */
+    const char *out, *err; /* files that take what it prints; NULL: it prints where whit does */
+};
+/* Waits for its end: an error unless that was exit code 0. *cpu_ms, or NULL: all its threads and
+   children took. */
+WHIT_CHECK whit_result bench_child_run(const struct bench_child *child, double *cpu_ms);
+
 /* ---- Tables ---- */
 
 enum { TABLE_COLUMNS_MOST = 12, TABLE_ROWS_MOST = 20, TABLE_CELL = 56 };
@@ -105,10 +128,22 @@ void table_ms(struct table *table, const struct bench_times *times);
 /* As Markdown, aligned: the first column to the left, all others to the right. */
 void table_print(const struct table *table);
 
-/* ---- The report ---- */
+/* ---- The viewer (bench_view.c) ---- */
+
+struct bench_view_case {
+    const char *scene, *label, *depth; /* --depth, or NULL */
+    double first_ms;                   /* from the command to the first picture */
+    json_t *whole, *moving, *idle;     /* "measure" of states */
+};
+/* By replay, in a process of its own, in the bench's size, on the display that there is. */
+WHIT_CHECK whit_result bench_view_measure(const struct bench *bench, struct bench_view_case *c,
+                                          const char *folder);
+void bench_view_finish(struct bench_view_case *c);
+double bench_view_number(const json_t *measure, const char *key, const char *part);
+
+/* ---- The benches ---- */
 
 whit_result bench_report(struct bench *bench);
-/* bench_view.c: the viewer, by replay. It needs a display. */
 whit_result bench_view(struct bench *bench);
 
 #endif

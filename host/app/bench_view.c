@@ -1,24 +1,13 @@
 /* What it is like to look: `whit view` by replay, in a process of its own, on the display that
    there is. Its states carry the figures. */
-#include <fcntl.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "app/bench_section.h"
 
-extern char **environ;
-
 enum { MOVES = 120, MOVES_QUICK = 8, STEP_MS = 16, IDLE_MS = 5000, IDLE_MS_QUICK = 300 };
 static const double BLINK_MS = 100.0; /* a frame that takes longer is seen to */
-
-struct view_case {
-    const char *scene, *label, *depth; /* --depth, or NULL */
-    double first_ms;                   /* from the command to the first picture */
-    json_t *whole, *moving, *idle;     /* "measure" of states */
-};
 
 static whit_result write_replay(const struct bench *bench, const char *path, bool only_first)
 {
@@ -46,13 +35,10 @@ static whit_result write_replay(const struct bench *bench, const char *path, boo
 }
 
 /* Runs `whit view`; what it prints goes into the file `out`. */
-static whit_result run_viewer(const struct bench *bench, const struct view_case *c,
+static whit_result run_viewer(const struct bench *bench, const struct bench_view_case *c,
                               const char *replay, const char *out)
 {
     char scene[BENCH_PATH], size[32];
-    posix_spawn_file_actions_t actions;
-    pid_t pid;
-    int status = 0;
     whit_result result = bench_find(bench, c->scene, scene, sizeof scene);
     if (result != WHIT_OK)
         return result;
@@ -68,26 +54,8 @@ static whit_result run_viewer(const struct bench *bench, const struct view_case 
         arguments[count++] = "--device";
         arguments[count++] = bench->device_name;
     }
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_TRUNC,
-                                     0600);
-    int failed = posix_spawn(&pid, "/proc/self/exe", &actions, NULL,
-                             (char *const *)(uintptr_t)arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed || waitpid(pid, &status, 0) != pid) {
-        cli_error("`whit view` cannot be run: %s", strerror(failed));
-        return WHIT_ERROR_FAILED;
-    }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == EXIT_FINE)
-        return WHIT_OK;
-    if (cli_cancel)
-        return WHIT_ERROR_CANCELLED;
-    if (WIFEXITED(status))
-        cli_error("`whit view` ended with exit code %d", WEXITSTATUS(status));
-    else
-        cli_error("`whit view` died of signal %d", WTERMSIG(status));
-    return WIFEXITED(status) && WEXITSTATUS(status) == EXIT_DEVICE ? WHIT_ERROR_NO_DEVICE
-                                                                   : WHIT_ERROR_FAILED;
+    const struct bench_child child = {.arguments = arguments, .out = out};
+    return bench_child_run(&child, NULL);
 }
 
 /* The "measure" of the state with this name, NULL: none. */
@@ -106,13 +74,14 @@ static json_t *find_measure(const char *path, const char *name)
     return found;
 }
 
-static double number(const json_t *measure, const char *key, const char *part)
+double bench_view_number(const json_t *measure, const char *key, const char *part)
 {
     const json_t *value = json_object_get(measure, key);
     return json_number_value(part ? json_object_get(value, part) : value);
 }
 
-static whit_result measure_case(const struct bench *bench, struct view_case *c, const char *folder)
+whit_result bench_view_measure(const struct bench *bench, struct bench_view_case *c,
+                               const char *folder)
 {
     char replay[BENCH_PATH], out[BENCH_PATH];
     snprintf(replay, sizeof replay, "%s/replay", folder);
@@ -127,7 +96,7 @@ static whit_result measure_case(const struct bench *bench, struct view_case *c, 
         result = run_viewer(bench, c, replay, out);
     json_t *first = result == WHIT_OK ? find_measure(out, "first") : NULL;
     if (result == WHIT_OK) {
-        c->first_ms = number(first, "first_ms", NULL) - start_ms;
+        c->first_ms = bench_view_number(first, "first_ms", NULL) - start_ms;
         c->whole = find_measure(out, "whole");
         c->moving = find_measure(out, "moving");
         c->idle = find_measure(out, "idle");
@@ -137,39 +106,44 @@ static whit_result measure_case(const struct bench *bench, struct view_case *c, 
         }
     }
     json_decref(first);
-    remove(replay);
-    remove(out);
     return result;
 }
 
-static double idle_share(const struct view_case *c)
+void bench_view_finish(struct bench_view_case *c)
 {
-    double ms = number(c->idle, "ms", NULL);
-    return ms > 0.0 ? number(c->idle, "cpu_ms", NULL) / ms : 0.0;
+    json_decref(c->whole);
+    json_decref(c->moving);
+    json_decref(c->idle);
 }
 
-static void row(struct section *section, const struct view_case *c)
+static double idle_share(const struct bench_view_case *c)
+{
+    double ms = bench_view_number(c->idle, "ms", NULL);
+    return ms > 0.0 ? bench_view_number(c->idle, "cpu_ms", NULL) / ms : 0.0;
+}
+
+static void row(struct section *section, const struct bench_view_case *c)
 {
     struct table *table = &section->table;
-    double whole_ms = number(c->whole, "whole_ms", "median");
+    double whole_ms = bench_view_number(c->whole, "whole_ms", "median");
     table_row(table);
     table_cell(table, "%s, %s", c->scene, c->label);
     table_cell(table, "%.0f", c->first_ms);
     table_cell(table, "%.1f", whole_ms);
     table_cell(table, "%.1f", whole_ms > 0.0 ? 1e3 / whole_ms : 0.0);
-    table_cell(table, "%.1f", number(c->moving, "quick_ms", "median"));
-    table_cell(table, "1/%.0f", number(c->moving, "divisor", "median"));
-    table_cell(table, "%.0f, %.0f", number(c->moving, "gap_ms", "median"),
-               number(c->moving, "gap_ms", "most"));
-    table_cell(table, "%.0f of %.0f", number(c->moving, "gaps_over_100_ms", NULL),
-               number(c->moving, "gap_ms", "count"));
-    table_cell(table, "%.0f, %.0f", number(c->moving, "latency_ms", "median"),
-               number(c->moving, "latency_ms", "p95"));
-    table_cell(table, "%.1f", number(c->moving, "present_ms", "median"));
+    table_cell(table, "%.1f", bench_view_number(c->moving, "quick_ms", "median"));
+    table_cell(table, "1/%.0f", bench_view_number(c->moving, "divisor", "median"));
+    table_cell(table, "%.0f, %.0f", bench_view_number(c->moving, "gap_ms", "median"),
+               bench_view_number(c->moving, "gap_ms", "most"));
+    table_cell(table, "%.0f of %.0f", bench_view_number(c->moving, "gaps_over_100_ms", NULL),
+               bench_view_number(c->moving, "gap_ms", "count"));
+    table_cell(table, "%.0f, %.0f", bench_view_number(c->moving, "latency_ms", "median"),
+               bench_view_number(c->moving, "latency_ms", "p95"));
+    table_cell(table, "%.1f", bench_view_number(c->moving, "present_ms", "median"));
     table_cell(table, "%.2f %%", 100.0 * idle_share(c));
 }
 
-static void keep(struct section *section, const struct view_case *c)
+static void keep(struct section *section, const struct bench_view_case *c)
 {
     json_t *object = document_object();
     document_text(object, "case", c->label);
@@ -216,36 +190,29 @@ whit_result bench_view(struct bench *bench)
                                         "present, ms",
                                         "idle, of a core",
                                         NULL};
-    struct view_case cases[] = {
+    struct bench_view_case cases[] = {
         {.scene = "cube", .label = "full"},
         {.scene = "34k", .label = "with shadows", .depth = "0"},
         {.scene = "34k", .label = "full"},
         {.scene = "54k", .label = "full"},
     };
     struct section section;
-    char folder[512];
-    const char *scratch = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%.480s/whit-bench-XXXXXX",
-             scratch && scratch[0] ? scratch : "/tmp");
-    if (!mkdtemp(folder)) {
-        cli_error("%s cannot be made", folder);
-        return WHIT_ERROR_OUTPUT;
-    }
+    char folder[BENCH_SCRATCH];
+    whit_result result = bench_scratch_make(folder);
+    if (result != WHIT_OK)
+        return result;
     section_begin(&section, bench, "view", CASES(cases));
     table_begin(&section.table, heads);
-    whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < CASES(cases); ++i) {
-        result = cli_cancel ? WHIT_ERROR_CANCELLED : measure_case(bench, &cases[i], folder);
+        result = cli_cancel ? WHIT_ERROR_CANCELLED : bench_view_measure(bench, &cases[i], folder);
         if (result == WHIT_OK) {
             row(&section, &cases[i]);
             keep(&section, &cases[i]);
         }
-        json_decref(cases[i].whole);
-        json_decref(cases[i].moving);
-        json_decref(cases[i].idle);
+        bench_view_finish(&cases[i]);
         bench_step(bench);
     }
-    rmdir(folder);
+    bench_scratch_remove(folder);
     if (result == WHIT_OK)
         say_circumstances(&section);
     return section_end(&section, "The viewer", result);

@@ -4,7 +4,7 @@ add_executable(whit_program
   app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
   app/receipt.c app/receipt_output.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
-  app/bench_section.c app/bench_table.c app/hard_command.c app/hard_output.c app/compare_command.c
+  app/bench_section.c app/bench_table.c app/bench_child.c app/hard_command.c app/hard_output.c app/compare_command.c
   app/probe_command.c app/probe_output.c
   app/cost_command.c app/cost_table.c app/cost_json.c app/cost_page.c app/cost_compare.c
   app/cost_choice.c
