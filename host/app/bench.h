@@ -8,7 +8,7 @@
 
 enum {
     BENCH_RUNS_MOST = 99,
-    BENCH_NOTES_MOST = 12,
+    BENCH_NOTES_MOST = 32,
     BENCH_PATH = 2200,
     BENCH_SCRATCH = 512,
     BENCH_GRACE_MS = 3000
@@ -19,6 +19,9 @@ struct bench {
     const char *scenes; /* the folder, or NULL: where whit finds it */
     const char *json;   /* NULL: text only */
     const char *device_name;
+    const char *const *names; /* models or scenes that were asked for */
+    uint32_t name_count;
+    const char *against, *plot, *keep; /* of benches of speed; or NULL */
     bool quick, quiet, no_cache;
     uint32_t runs;
     uint32_t width, height;
@@ -115,9 +118,10 @@ WHIT_CHECK whit_result bench_child_run(const struct bench_child *child, double *
 
 /* ---- Tables ---- */
 
-enum { TABLE_COLUMNS_MOST = 12, TABLE_ROWS_MOST = 20, TABLE_CELL = 56 };
+enum { TABLE_COLUMNS_MOST = 12, TABLE_ROWS_MOST = 64, TABLE_CELL = 56 };
 struct table {
     uint32_t column_count, row_count, cell;
+    bool is_open; /* a line ends in its last cell, without a rule behind it */
     char cells[TABLE_ROWS_MOST][TABLE_COLUMNS_MOST][TABLE_CELL];
 };
 /* Heads of columns, ended by NULL. */
@@ -145,5 +149,8 @@ double bench_view_number(const json_t *measure, const char *key, const char *par
 
 whit_result bench_report(struct bench *bench);
 whit_result bench_view(struct bench *bench);
+/* tools/bench/: rays beside Embree; whole pictures beside POV-Ray, another whit and more. */
+whit_result bench_rays(struct bench *bench);
+whit_result bench_frame(struct bench *bench);
 
 #endif

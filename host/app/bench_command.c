@@ -5,7 +5,18 @@
 #include "app/cache.h"
 #include "app/commands.h"
 
-enum bench_id { ID_QUICK = 256, ID_RUNS, ID_JSON, ID_SCENES, ID_NAIVE, ID_DEVICE, ID_NO_CACHE };
+enum bench_id {
+    ID_QUICK = 256,
+    ID_RUNS,
+    ID_JSON,
+    ID_SCENES,
+    ID_NAIVE,
+    ID_PLOT,
+    ID_AGAINST,
+    ID_KEEP,
+    ID_DEVICE,
+    ID_NO_CACHE,
+};
 
 static const struct cli_option options[] = {
     {ID_QUICK, "quick", NULL, "tiny pictures and few runs: shows that it works, no more"},
@@ -15,20 +26,32 @@ static const struct cli_option options[] = {
     {ID_NAIVE, "naive-limit", "S",
      "seconds for sweep-naive, which is estimated beyond (60;\n"
      "quick: 0.2)"},
+    {ID_PLOT, "plot", "FILE.svg",
+     "rays and frame: also draw how far each row is from what it must"},
+    {ID_AGAINST, "against", "PROGRAM", "frame: another whit, whose pictures are timed in turns"},
+    {ID_KEEP, "keep", "FOLDER", "rays: leave rays, triangles and hits there"},
     {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},
     {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP},
     {'q', "quiet", NULL, "no progress"},
     {0, NULL, NULL, NULL},
 };
 
-static const struct {
+static const struct bench_kind {
     const char *name, *summary;
     whit_result (*run)(struct bench *bench);
+    uint32_t width, height; /* of its pictures */
+    bool is_speed;          /* takes models or scenes, and the options of speed */
 } benches[] = {
-    {"report", "the tables of the report that whit comes from, beside its figures", bench_report},
+    {"report", "the tables of the report that whit comes from, beside its figures", bench_report,
+     640, 480, false},
 #ifdef WHIT_VIEWER
     {"view", "the viewer: pictures a second, waits, what it takes when idle; on a display",
-     bench_view},
+     bench_view, 640, 480, false},
+#endif
+#ifdef WHIT_BENCH
+    {"rays", "[MODEL...]: rays beside Embree's on the same ray files", bench_rays, 1280, 720, true},
+    {"frame", "[SCENE...]: whole pictures beside POV-Ray, another whit, and the levels",
+     bench_frame, 1280, 720, true},
 #endif
 };
 enum { BENCH_COUNT = sizeof benches / sizeof benches[0] };
@@ -51,6 +74,15 @@ static void read_option(struct cli_reader *reader, int id, struct bench *bench)
     case ID_NAIVE:
         cli_number(reader, 1e-3, 1e6, &bench->naive_limit_s);
         break;
+    case ID_PLOT:
+        bench->plot = reader->value;
+        break;
+    case ID_AGAINST:
+        bench->against = reader->value;
+        break;
+    case ID_KEEP:
+        bench->keep = reader->value;
+        break;
     case ID_DEVICE:
         bench->device_name = reader->value;
         break;
@@ -65,10 +97,10 @@ static void read_option(struct cli_reader *reader, int id, struct bench *bench)
     }
 }
 
-static void complete(struct bench *bench)
+static void complete(struct bench *bench, const struct bench_kind *kind)
 {
-    bench->width = bench->quick ? 64 : 640;
-    bench->height = bench->quick ? 48 : 480;
+    bench->width = bench->quick ? kind->width / 10 : kind->width;
+    bench->height = bench->quick ? kind->height / 10 : kind->height;
     if (bench->runs == 0)
         bench->runs = bench->quick ? 2 : 7;
     if (bench->naive_limit_s == 0.0)
@@ -101,19 +133,21 @@ static uint32_t find_bench(struct cli_reader *reader)
 }
 
 /* Takes over the sections. */
-static whit_result write_json(struct bench *bench, const char *name)
+static whit_result write_json(struct bench *bench, uint32_t index)
 {
     json_t *root = document_object(), *device = document_object(), *settings = document_object();
     document_text(root, "whit", WHIT_VERSION);
-    document_text(root, "bench", name);
+    document_text(root, "bench", benches[index].name);
     document_text(device, "name", bench->device_info.name);
     document_text(device, "driver", bench->device_info.driver);
     document_put(root, "device", device);
     document_flag(settings, "quick", bench->quick);
     document_count(settings, "width", bench->width);
     document_count(settings, "height", bench->height);
-    document_count(settings, "samples", 1);
-    document_count(settings, "depth", 0);
+    if (!benches[index].is_speed) {
+        document_count(settings, "samples", 1);
+        document_count(settings, "depth", 0);
+    }
     document_count(settings, "runs", bench->runs);
     document_put(root, "settings", settings);
     document_put(root, "tables", bench->sections);
@@ -138,10 +172,33 @@ static int work(struct bench *bench, uint32_t index)
         result = benches[index].run(bench);
     }
     if (result == WHIT_OK && bench->json)
-        result = write_json(bench, benches[index].name);
+        result = write_json(bench, index);
     json_decref(bench->sections);
     whit_device_destroy(bench->device);
     return result == WHIT_OK ? cli_finish_stdout(EXIT_FINE) : cli_exit_of(result);
+}
+
+/* Misuse, and false, where the bench does not take what is given. */
+static bool check_request(struct cli_reader *reader, struct bench *bench, uint32_t index)
+{
+    const struct bench_kind *kind = &benches[index];
+    bool is_rays = strcmp(kind->name, "rays") == 0, is_frame = strcmp(kind->name, "frame") == 0;
+    bench->names = reader->others;
+    bench->name_count = reader->other_count;
+    if (!kind->is_speed && bench->name_count)
+        return cli_misuse(reader, "`%s` is one argument too many", bench->names[0]);
+    if (bench->plot && !kind->is_speed)
+        return cli_misuse(reader, "--plot: `whit bench %s` draws none", kind->name);
+    if (bench->against && !is_frame)
+        return cli_misuse(reader, "--against is an option of `whit bench frame`");
+    if (bench->keep && !is_rays)
+        return cli_misuse(reader, "--keep is an option of `whit bench rays`");
+    if (!cli_no_dash(reader, "--json", bench->json, "figures go to a file; tables are printed") ||
+        !cli_no_dash(reader, "--plot", bench->plot, "the drawing goes to a file"))
+        return false;
+    reader->status = EXIT_USAGE;
+    return (!bench->json || cli_can_write(bench->json)) &&
+           (!bench->plot || cli_can_write(bench->plot));
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
@@ -156,19 +213,17 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (!reader.positional)
         return list_benches();
     uint32_t index = find_bench(&reader);
-    if (index == BENCH_COUNT ||
-        !cli_no_dash(&reader, "--json", bench.json, "figures go to a file; tables are printed"))
+    if (index == BENCH_COUNT || !check_request(&reader, &bench, index))
         return reader.status;
-    if (bench.json && !cli_can_write(bench.json))
-        return EXIT_USAGE;
-    complete(&bench);
+    complete(&bench, &benches[index]);
     cache_prepare(bench.no_cache);
     return work(&bench, index);
 }
 
 const struct cli_command command_bench = {
     .name = "bench",
-    .arguments = "[BENCH] [options]",
+    .arguments = "[BENCH] [MODEL or SCENE...] [options]",
+    .takes_many = true,
     .summary = "Measures what choices cost on this machine, and prints the tables.",
     .details = "Without BENCH it lists the benches. Tables are Markdown, on standard output.\n",
     .options = options,

@@ -60,14 +60,14 @@ static void print_spaces(size_t count)
         putchar(' ');
 }
 
-static void print_padded(const char *text, size_t width, bool right)
+static void print_padded(const char *text, size_t width, bool right, bool ends)
 {
     size_t pad = width - count_letters(text);
     putchar(' ');
     print_spaces(right ? pad : 0);
     fputs(text, stdout);
     print_spaces(right ? 0 : pad);
-    fputs(" |", stdout);
+    fputs(ends ? "" : " |", stdout);
 }
 
 static void print_rule(const struct table *table, const size_t *widths)
@@ -76,7 +76,8 @@ static void print_rule(const struct table *table, const size_t *widths)
     for (uint32_t c = 0; c < table->column_count; ++c) {
         for (size_t i = 0; i < widths[c] + 1; ++i)
             putchar('-');
-        fputs(c ? ":|" : "-|", stdout);
+        putchar(c ? ':' : '-');
+        fputs(table->is_open && c + 1 == table->column_count ? "" : "|", stdout);
     }
     putchar('\n');
 }
@@ -93,7 +94,8 @@ void table_print(const struct table *table)
     for (uint32_t r = 0; r < table->row_count; ++r) {
         putchar('|');
         for (uint32_t c = 0; c < table->column_count; ++c)
-            print_padded(table->cells[r][c], widths[c], c > 0);
+            print_padded(table->cells[r][c], widths[c], c > 0,
+                         table->is_open && c + 1 == table->column_count);
         putchar('\n');
         if (r == 0)
             print_rule(table, widths);

@@ -34,9 +34,12 @@ struct cli_command {
     const char *summary;   /* one line, for the list of commands */
     const char *details;   /* paragraphs below the options; may be NULL */
     const struct cli_option *options;
-    bool takes_two; /* arguments that are no options; else one */
+    bool takes_two;  /* arguments that are no options; else one */
+    bool takes_many; /* after the first one: CLI_OTHERS_MOST */
     int (*run)(const struct cli_command *command, int argc, char **argv);
 };
+
+enum { CLI_OTHERS_MOST = 64 };
 
 /* Reads the arguments of one command. */
 struct cli_reader {
@@ -45,12 +48,14 @@ struct cli_reader {
     char **argv;
     const struct cli_option *option; /* the current one */
     const char *value;
-    const char *positional; /* the first argument that is not an option, or NULL */
-    const char *second;     /* the second one, where the command takes two */
-    bool done;              /* with `status`: no more options, or an error, or help was printed */
-    int status;             /* < 0: go on with the work; else exit with it */
-    const char *where;      /* "FILE:LINE" of options that are not of the command line, or NULL */
-    char *said;             /* gets what is wrong, in place of standard error; or NULL */
+    const char *positional;              /* the first argument that is not an option, or NULL */
+    const char *second;                  /* the second one, where the command takes two */
+    const char *others[CLI_OTHERS_MOST]; /* from the second one on, where it takes many */
+    uint32_t other_count;
+    bool done;         /* with `status`: no more options, or an error, or help was printed */
+    int status;        /* < 0: go on with the work; else exit with it */
+    const char *where; /* "FILE:LINE" of options that are not of the command line, or NULL */
+    char *said;        /* gets what is wrong, in place of standard error; or NULL */
     size_t said_bytes;
 };
 

@@ -26,6 +26,9 @@ if(WHIT_VIEWER)
     PkgConfig::IMGUI)
   add_dependencies(whit_program_needs whit_view)
 endif()
+if(WHIT_BENCH) # with what tools/CMakeLists.txt adds
+  target_compile_definitions(whit_program PRIVATE WHIT_BENCH)
+endif()
 # In front of the library, which it calls.
 target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_cost>)
 add_dependencies(whit_program_needs whit_cost)

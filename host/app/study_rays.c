@@ -100,22 +100,39 @@ static whit_ray camera_ray(const struct view *view, double x, double y)
     return make_ray(view->eye, add(view->ahead, aside, 1.0), 0.0, INFINITY);
 }
 
+/* Ray `i` goes through this pixel: line by line, or by tiles of 8x8, and in these by 4x2 pixels,
+   which is how a subgroup of 8 takes them. */
+static void pixel_of(uint32_t i, uint32_t width, bool tiles, uint32_t *x, uint32_t *y)
+{
+    uint32_t across = width / 8, tile = i / 64, k = i % 64;
+    *x = tiles ? tile % across * 8 + ((k & 3) | (k >> 1 & 4)) : i % width;
+    *y = tiles ? tile / across * 8 + ((k >> 2 & 1) | (k >> 3 & 6)) : i / width;
+}
+
+whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t height, bool tiles,
+                              struct study_rays *rays)
+{
+    whit_result result = alloc_rays(rays, width * height);
+    if (result != WHIT_OK)
+        return result;
+    whit_camera_info camera;
+    whit_scene_get_camera(scene, 0, &camera);
+    struct view view = camera_view(&camera, (double)width / height);
+    for (uint32_t i = 0; i < rays->count; ++i) {
+        uint32_t x, y;
+        pixel_of(i, width, tiles, &x, &y);
+        rays->rays[i] =
+            camera_ray(&view, 2.0 * (x + 0.5) / width - 1.0, 1.0 - 2.0 * (y + 0.5) / height);
+    }
+    return WHIT_OK;
+}
+
 whit_result study_primary_rays(struct study *study)
 {
     uint32_t width = (uint32_t)sqrt((double)study->ray_count * 4.0 / 3.0);
     width = width ? width : 1;
     uint32_t height = study->ray_count / width ? study->ray_count / width : 1;
-    struct study_rays *rays = &study->rays[STUDY_PRIMARY];
-    whit_result result = alloc_rays(rays, width * height);
-    if (result != WHIT_OK)
-        return result;
-    whit_camera_info camera;
-    whit_scene_get_camera(study->job.scene, 0, &camera);
-    struct view view = camera_view(&camera, (double)width / height);
-    for (uint32_t i = 0; i < rays->count; ++i)
-        rays->rays[i] = camera_ray(&view, 2.0 * (i % width + 0.5) / width - 1.0,
-                                   1.0 - 2.0 * (i / width + 0.5) / height);
-    return WHIT_OK;
+    return study_camera_rays(study->job.scene, width, height, false, &study->rays[STUDY_PRIMARY]);
 }
 
 /* ---- From hits ---- */
@@ -174,21 +191,36 @@ static whit_ray diffuse_ray(const struct surface *surface, uint64_t index, doubl
     return make_ray(surface->point, dir, LEAVE, INFINITY);
 }
 
-static double scene_size(const whit_scene *scene, uint32_t *light_count)
+double study_scene_size(const whit_scene *scene)
 {
     whit_scene_info info;
     whit_scene_get_info(scene, &info);
     struct vector across = add(make(info.hi), make(info.lo), -1.0);
     double size = sqrt(dot(across, across));
-    *light_count = info.light_count;
     return info.hi[0] >= info.lo[0] && size > 0.0 ? size : 1.0;
+}
+
+whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t index, double size)
+{
+    struct surface surface = surface_at(ray, hit);
+    return diffuse_ray(&surface, index, size);
+}
+
+whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit)
+{
+    struct surface surface = surface_at(ray, hit);
+    struct vector from = make(light);
+    return make_ray(from, add(surface.point, from, -1.0), 0.0, 1.0 - LEAVE);
 }
 
 whit_result study_secondary_rays(struct study *study, const whit_hit *hits)
 {
     const struct study_rays *primary = &study->rays[STUDY_PRIMARY];
-    uint32_t hit_count = 0, light_count, done = 0;
-    double size = scene_size(study->job.scene, &light_count);
+    uint32_t hit_count = 0, done = 0;
+    double size = study_scene_size(study->job.scene);
+    whit_scene_info info;
+    whit_scene_get_info(study->job.scene, &info);
+    uint32_t light_count = info.light_count;
     for (uint32_t i = 0; i < primary->count; ++i)
         hit_count += hits[i].primitive != WHIT_NONE;
     if (hit_count == 0)

@@ -1,0 +1,201 @@
+#define _GNU_SOURCE
+#include "peer.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static bool find_program(char *path, size_t bytes)
+{
+    char program[2048];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(program, '/');
+    if (slash)
+        snprintf(path, bytes, "%.*s/whit-embree", (int)(slash - program), program);
+    return slash && access(path, X_OK) == 0;
+}
+
+bool peer_is_here(void)
+{
+    char path[BENCH_PATH];
+    return find_program(path, sizeof path);
+}
+
+/* ---- Files ---- */
+
+static whit_result open_in(const char *folder, const char *name, FILE **to)
+{
+    char path[BENCH_PATH];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    *to = fopen(path, "wb");
+    if (*to)
+        return WHIT_OK;
+    cli_error("%s: cannot write: %s", path, strerror(errno));
+    return WHIT_ERROR_OUTPUT;
+}
+
+static whit_result close_whole(FILE *to, const char *folder, const char *name)
+{
+    bool whole = !ferror(to);
+    if (fclose(to) == 0 && whole)
+        return WHIT_OK;
+    cli_error("%s/%s: cannot write: %s", folder, name, strerror(errno));
+    return WHIT_ERROR_OUTPUT;
+}
+
+static bool write_triangle(void *user, const whit_triangle *triangle)
+{
+    return fwrite(triangle, sizeof *triangle, 1, user) == 1 && !cli_cancel;
+}
+
+whit_result peer_write_triangles(const whit_scene *scene, const char *folder, const char *name)
+{
+    FILE *to;
+    whit_result result = open_in(folder, name, &to);
+    if (result != WHIT_OK)
+        return result;
+    result = whit_scene_triangles(scene, 0.0, write_triangle, to);
+    whit_result closed = close_whole(to, folder, name);
+    return closed != WHIT_OK ? closed : result;
+}
+
+whit_result peer_write_rays(const char *folder, const char *name, const whit_ray *rays,
+                            uint64_t count)
+{
+    FILE *to;
+    whit_result result = open_in(folder, name, &to);
+    if (result != WHIT_OK)
+        return result;
+    fwrite(rays, sizeof *rays, (size_t)count, to);
+    return close_whole(to, folder, name);
+}
+
+/* ---- The program ---- */
+
+/* Waits for its end, which may be on its way already. */
+static whit_result lost(struct peer *peer)
+{
+    int status = 0;
+    waitpid((pid_t)peer->pid, &status, 0);
+    peer->pid = 0;
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    if (WIFSIGNALED(status))
+        cli_error("`whit-embree` died of signal %d", WTERMSIG(status));
+    else
+        cli_error("`whit-embree` ended with exit code %d", WEXITSTATUS(status));
+    return WHIT_ERROR_FAILED;
+}
+
+static whit_result read_answer(struct peer *peer, char *answer, size_t bytes, const char *word)
+{
+    if (!fgets(answer, (int)bytes, peer->answers))
+        return lost(peer);
+    if (strncmp(answer, word, strlen(word)) == 0 || strcmp(answer, "none\n") == 0)
+        return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+    cli_error("`whit-embree` answers `%s`", cli_shown(answer));
+    return WHIT_ERROR_FAILED;
+}
+
+static whit_result WHIT_PRINTF(4, 5)
+    ask(struct peer *peer, char answer[128], const char *word, const char *format, ...)
+{
+    char line[1024];
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    if (send(peer->socket, line, (size_t)length, MSG_NOSIGNAL) != length)
+        return lost(peer);
+    return read_answer(peer, answer, 128, word);
+}
+
+static whit_result spawn(struct peer *peer, int theirs, const char *folder, const char *triangles)
+{
+    char path[BENCH_PATH];
+    posix_spawn_file_actions_t actions;
+    pid_t pid;
+    if (!find_program(path, sizeof path)) {
+        cli_error("%s: is not there", path);
+        return WHIT_ERROR_INPUT;
+    }
+    const char *const arguments[] = {"whit-embree", triangles, NULL};
+    posix_spawn_file_actions_init(&actions);
+    int failed = posix_spawn_file_actions_addchdir_np(&actions, folder);
+    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, theirs, STDIN_FILENO);
+    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, theirs, STDOUT_FILENO);
+    if (!failed)
+        failed =
+            posix_spawn(&pid, path, &actions, NULL, (char *const *)(uintptr_t)arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed) {
+        cli_error("%s: cannot be run: %s", path, strerror(failed));
+        return WHIT_ERROR_INPUT;
+    }
+    peer->pid = pid;
+    return WHIT_OK;
+}
+
+whit_result peer_begin(struct peer *peer, const char *folder, const char *triangles)
+{
+    int ends[2];
+    char answer[128];
+    *peer = (struct peer){.socket = -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        cli_error("no socket for `whit-embree`: %s", strerror(errno));
+        return WHIT_ERROR_MEMORY;
+    }
+    peer->socket = ends[0];
+    peer->answers = fdopen(ends[0], "r");
+    whit_result result =
+        peer->answers ? spawn(peer, ends[1], folder, triangles) : WHIT_ERROR_MEMORY;
+    close(ends[1]);
+    if (result == WHIT_OK)
+        result = read_answer(peer, answer, sizeof answer, "embree ");
+    if (result == WHIT_OK)
+        sscanf(answer, "embree %31s", peer->version);
+    return result;
+}
+
+void peer_end(struct peer *peer)
+{
+    if (peer->answers)
+        fclose(peer->answers);
+    else if (peer->socket >= 0)
+        close(peer->socket);
+    if (peer->pid) /* it ends with its input */
+        waitpid((pid_t)peer->pid, NULL, 0);
+    *peer = (struct peer){.socket = -1};
+}
+
+whit_result peer_rays(struct peer *peer, const char *name, bool any)
+{
+    char answer[128];
+    return ask(peer, answer, "rays ", "rays %s %s\n", name, any ? "any" : "closest");
+}
+
+whit_result peer_hits(struct peer *peer, const char *name)
+{
+    char answer[128];
+    return ask(peer, answer, "hits ", "hits %s\n", name);
+}
+
+whit_result peer_trace(struct peer *peer, const char *way, bool back, bool coherent, double ms[2])
+{
+    char answer[128];
+    ms[0] = ms[1] = -1.0;
+    whit_result result = ask(peer, answer, "time ", "trace %s %s %s\n", way,
+                             back ? "back" : "forth", coherent ? "coherent" : "scattered");
+    if (result == WHIT_OK && answer[0] == 't')
+        sscanf(answer, "time %lf %lf", &ms[0], &ms[1]);
+    return result;
+}

@@ -1,0 +1,53 @@
+/* Rays of one kind in one order, through whit and Embree in turns. */
+#ifndef BENCH_RAYS_H
+#define BENCH_RAYS_H
+
+#include "app/study.h"
+#include "figures.h"
+#include "peer.h"
+
+enum rays_side { RAYS_WHIT, RAYS_SINGLE, RAYS_PACKETS, RAYS_STREAM, RAYS_BACK, RAYS_SIDES = 7 };
+enum rays_kind { RAYS_CAMERA, RAYS_SHADOW, RAYS_BOUNCE, RAYS_KINDS };
+
+/* One set of rays in one order, and what it took each side in ms. */
+struct batch {
+    char rays_name[96], whit_name[96], peer_name[96];
+    struct bench_times sides[RAYS_SIDES];
+    bool any, coherent; /* any: any hit will do; coherent: neighbours go the same way */
+};
+
+/* Hits of both sides beside each other. Of two triangles that a ray meets at once, at an edge, each
+   side may name another one. */
+struct agreement {
+    uint64_t rays, one_alone, other_ids, other_t;
+};
+
+struct model {
+    struct bench *bench;
+    struct figures *figures;
+    char name[40]; /* letters and digits of the file's, which is a name in the folder */
+    char folder[BENCH_PATH];
+    struct bench_scene loaded;
+    whit_accel *accel;
+    whit_renderer *renderer;
+    struct peer peer;
+    bool has_peer, is_cpu;
+    struct study_rays camera;
+    whit_hit *hits; /* of camera rays: there the others begin */
+    /* Of the batch that is on, with room for as many as there are camera rays: */
+    struct batch *batch;
+    whit_ray *rays;
+    whit_hit *traced;
+    uint64_t count;
+};
+
+extern const char *const rays_kind_names[RAYS_KINDS];
+
+/* Makes the rays, in tiles of 8x8 pixels or shuffled, and their file; times all sides; compares
+   their hits. With --keep the files stay. */
+WHIT_CHECK whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind,
+                                 bool shuffled, struct agreement *agreement);
+/* Shadow rays go both ways: the times of the one that Embree is quicker in. */
+const struct bench_times *batch_quicker(const struct batch *batch, enum rays_side side);
+
+#endif

@@ -1,0 +1,222 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "app/ray_file.h"
+#include "rays.h"
+
+const char *const rays_kind_names[RAYS_KINDS] = {"camera", "shadow", "bounce"};
+static const char *const ways[] = {"single", "packets", "stream"};
+
+/* ---- Rays ---- */
+
+/* splitmix64 (Steele, Lea and Flood 2014), as a walk. */
+static uint64_t next_random(uint64_t *state)
+{
+    uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+static void shuffle(whit_ray *rays, uint64_t count)
+{
+    uint64_t state = 1;
+    for (uint64_t i = count; i > 1; --i) {
+        uint64_t j = next_random(&state) % i;
+        whit_ray kept = rays[i - 1];
+        rays[i - 1] = rays[j];
+        rays[j] = kept;
+    }
+}
+
+/* Rays of a kind, in tiles: all of the camera, or one for each of its hits. The light is above one
+   corner of the scene's box. */
+static uint64_t make_rays(const struct model *model, enum rays_kind kind, whit_ray *rays)
+{
+    static const double where[3] = {0.7, 1.8, 0.6};
+    const whit_scene_info *info = &model->loaded.info;
+    double light[3], size = study_scene_size(model->loaded.scene);
+    for (int k = 0; k < 3; ++k)
+        light[k] = (double)(float)(info->lo[k] + where[k] * (info->hi[k] - info->lo[k]));
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < model->camera.count; ++i) {
+        const whit_ray *ray = &model->camera.rays[i];
+        const whit_hit *hit = &model->hits[i];
+        if (kind == RAYS_CAMERA)
+            rays[count++] = *ray;
+        else if (hit->primitive != WHIT_NONE)
+            rays[count++] = kind == RAYS_SHADOW ? study_light_ray(light, ray, hit)
+                                                : study_bounce_ray(ray, hit, i, size);
+    }
+    return count;
+}
+
+static whit_result read_rays(struct model *model)
+{
+    char path[BENCH_PATH + 100];
+    struct ray_file file;
+    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->rays_name);
+    whit_result result = ray_file_open(path, &file);
+    if (result == WHIT_OK)
+        result = ray_file_read(&file, model->rays, model->camera.count, &model->count);
+    ray_file_close(&file);
+    return result;
+}
+
+/* ---- Sides ---- */
+
+static double thread_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+/* From rays in device memory to hits in device memory: this thread puts them in and takes them out,
+   a driver on the CPU computes in threads of its own. Of other devices it is their own time. */
+static whit_result trace_here(struct model *model, double *ms)
+{
+    double all = figures_cpu_ms(), own = thread_ms();
+    whit_result result = whit_trace(model->renderer, WHIT_TRACE_DEVICE, model->rays, model->count,
+                                    model->batch->any, model->traced, NULL);
+    *ms = model->is_cpu ? figures_cpu_ms() - all - (thread_ms() - own)
+                        : whit_trace_device_ms(model->renderer);
+    return result;
+}
+
+/* Round 0 warms up. */
+static whit_result run_side(void *user, uint32_t side, uint32_t round)
+{
+    struct model *model = user;
+    double ms[2] = {0.0}; /* of the processor, by the clock */
+    whit_result result = side == RAYS_WHIT
+                             ? trace_here(model, ms)
+                             : peer_trace(&model->peer, ways[(side - RAYS_SINGLE) % 3],
+                                          side >= RAYS_BACK, model->batch->coherent, ms);
+    double time_ms = side == RAYS_WHIT || model->is_cpu ? ms[0] : ms[1];
+    if (result == WHIT_OK && round > 0 && time_ms >= 0.0)
+        bench_add(&model->batch->sides[side], time_ms);
+    if (side == RAYS_WHIT)
+        bench_step(model->bench);
+    return cli_cancel ? WHIT_ERROR_CANCELLED : result;
+}
+
+static uint32_t count_sides(const struct model *model)
+{
+    return !model->has_peer ? 1 : model->batch->any ? RAYS_SIDES : RAYS_BACK;
+}
+
+const struct bench_times *batch_quicker(const struct batch *batch, enum rays_side side)
+{
+    const struct bench_times *forth = &batch->sides[side], *back = &batch->sides[side + 3];
+    return batch->any && back->count && bench_median(back) < bench_median(forth) ? back : forth;
+}
+
+static whit_result run_sides(struct model *model, enum rays_kind kind, bool shuffled)
+{
+    struct batch *batch = model->batch;
+    const char *order = shuffled ? "-shuffled" : "";
+    batch->any = kind == RAYS_SHADOW;
+    batch->coherent = kind != RAYS_BOUNCE && !shuffled;
+    snprintf(batch->rays_name, sizeof batch->rays_name, "%s-%s%s.rays", model->name,
+             rays_kind_names[kind], order);
+    snprintf(batch->whit_name, sizeof batch->whit_name, "%s-%s%s.whit.hits", model->name,
+             rays_kind_names[kind], order);
+    snprintf(batch->peer_name, sizeof batch->peer_name, "%s-%s%s.embree.hits", model->name,
+             rays_kind_names[kind], order);
+    uint64_t count = make_rays(model, kind, model->rays);
+    if (shuffled)
+        shuffle(model->rays, count);
+    whit_result result = peer_write_rays(model->folder, batch->rays_name, model->rays, count);
+    if (result == WHIT_OK)
+        result = read_rays(model);
+    if (result == WHIT_OK && model->has_peer)
+        result = peer_rays(&model->peer, batch->rays_name, batch->any);
+    if (result == WHIT_OK)
+        result = sample_in_turns(count_sides(model), model->bench->runs + 1, run_side, model);
+    return result;
+}
+
+/* ---- Hits ---- */
+
+static void compare_hits(const struct model *model, const whit_hit *theirs,
+                         struct agreement *agreement)
+{
+    double size = study_scene_size(model->loaded.scene);
+    for (uint64_t i = 0; i < model->count; ++i) {
+        const whit_hit *a = &model->traced[i], *b = &theirs[i];
+        const float *d = model->rays[i].dir;
+        bool met = a->primitive != WHIT_NONE;
+        ++agreement->rays;
+        agreement->one_alone += met != (b->primitive != WHIT_NONE);
+        if (model->batch->any || !met || b->primitive == WHIT_NONE)
+            continue;
+        double length = sqrt((double)(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+        double apart = fabs((double)a->t - (double)b->t) * length;
+        agreement->other_ids += a->primitive != b->primitive || a->instance != b->instance;
+        agreement->other_t += apart > 1e-4 * (double)a->t * length + 1e-6 * size;
+    }
+}
+
+static whit_result read_hits(const char *path, whit_hit *hits, uint64_t count)
+{
+    FILE *from = fopen(path, "rb");
+    bool whole = from && fread(hits, sizeof *hits, (size_t)count, from) == count;
+    if (from)
+        fclose(from);
+    if (whole)
+        return WHIT_OK;
+    cli_error("%s: cannot read", path);
+    return WHIT_ERROR_INPUT;
+}
+
+/* Writes what both sides met, and compares it. */
+static whit_result keep_hits(struct model *model, struct agreement *agreement)
+{
+    char path[BENCH_PATH + 100];
+    double ms[2];
+    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->whit_name);
+    whit_result result =
+        whit_file_write(path, model->traced, (size_t)model->count * sizeof(whit_hit), &cli_log);
+    if (result != WHIT_OK || !model->has_peer)
+        return result;
+    whit_hit *theirs = malloc((size_t)(model->count + 1) * sizeof *theirs);
+    if (!theirs) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    result = peer_trace(&model->peer, ways[0], false, false, ms);
+    if (result == WHIT_OK)
+        result = peer_hits(&model->peer, model->batch->peer_name);
+    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->peer_name);
+    if (result == WHIT_OK)
+        result = read_hits(path, theirs, model->count);
+    if (result == WHIT_OK)
+        compare_hits(model, theirs, agreement);
+    free(theirs);
+    return result;
+}
+
+static void remove_files(const struct model *model)
+{
+    const struct batch *batch = model->batch;
+    const char *const names[] = {batch->rays_name, batch->whit_name, batch->peer_name};
+    for (size_t i = 0; i < 3 && !model->bench->keep; ++i) {
+        char path[BENCH_PATH + 100];
+        snprintf(path, sizeof path, "%s/%s", model->folder, names[i]);
+        remove(path);
+    }
+}
+
+whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind, bool shuffled,
+                      struct agreement *agreement)
+{
+    model->batch = batch;
+    whit_result result = run_sides(model, kind, shuffled);
+    if (result == WHIT_OK)
+        result = keep_hits(model, agreement);
+    remove_files(model);
+    return result;
+}
