@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit bench rays` and `whit bench frame`: rows, verdicts, JSON, the drawing, ray files and hits, peers
+# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays` and `whit bench frame`: rows, verdicts, JSON, the drawing, ray files and hits, peers
 # that are not here, refusals. No figure is judged: they belong to the machine.
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -30,6 +30,36 @@ schema='(.whit | type == "string") and (.device | has("name") and has("driver"))
     (.tables | length == 1) and (.tables[0] | .table == $bench and (.sentences | length > 2) and
         (.left_out | all(has("name") and has("why"))) and (.rows | all('$row_schema')))'
 times='has("median") and has("spread") and .runs == 1'
+
+# `all`: every row of `whit bench frame`, with all peers and on a display, and what each must reach.
+if [ "${3:-}" = all ]; then
+    needs povray
+    needs "$(dirname "$WHIT")/whit-embree"
+    unset WHIT_VALIDATION # of a hundred processes
+    J=$OUT/files/all.json
+    expect 0 "frame, quick, all" bench frame --quick --runs 1 --scenes "$SCENES" --against "$WHIT" \
+        --json "$J"
+    check "the JSON is as documented" jq -e --arg bench frame "$schema" "$J"
+    check "verdicts at the ends of rows alone" verdicts
+    check "nobody is left out" holds '.tables[0].left_out == []'
+    jq -r '.tables[0].rows[] | [.picture, .beside, .level, .must, .aim] | map(. // "-") | join(" ")' \
+        "$J" >"$OUT/rows"
+    {
+        printf '%s POV-Ray watertight %s\n' glass '0.5 0.25' wine '0.5 0.25' flake '0.5 0.25' \
+            hollow '0.58 0.3' mesh '0.19 0.08'
+        printf '%s whit watertight %s\n' whitted '0.32 0.15' default '0.48 0.25' 34k '0.6 0.35' \
+            room '0.7 0.4'
+        echo "34k Embree, its rays watertight 1.9 1"
+        for scene in whitted default 34k room; do
+            printf '%s\n' "$scene watertight exact 1.1 1.05" "$scene fast watertight 1.1 1.05" \
+                "$scene, device memory - - 110 60"
+        done
+        printf 'viewer, %s\n' "34k, whole pictures - - 8 17" "default moving - - 30 30" \
+            "default moving, size 1/N - - 6 4"
+    } | sort >"$OUT/musts"
+    check "every row, with its goal" sh -c "sort '$OUT/rows' | diff '$OUT/musts' -"
+    finish
+fi
 
 # --- Refusals ---
 
