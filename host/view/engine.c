@@ -20,6 +20,12 @@ static void wake_window(struct engine *engine)
 
 /* ---- Sessions in the making ---- */
 
+static void keep_error(char error[ENGINE_MESSAGE], whit_log_level level, const char *message)
+{
+    if (level == WHIT_LOG_ERROR && !error[0])
+        snprintf(error, ENGINE_MESSAGE, "%s", message);
+}
+
 /* The first error is the reason; what follows from it is not. One that nobody wants any more, as
    its scene was left, keeps its errors. The validation layers speak to whoever asked for them. */
 static void session_message(void *user, whit_log_level level, const char *message)
@@ -33,9 +39,17 @@ static void session_message(void *user, whit_log_level level, const char *messag
         return;
     }
     pthread_mutex_lock(&engine->lock);
-    char *error = session->ready ? engine->error : session->error;
-    if (level == WHIT_LOG_ERROR && !error[0])
-        snprintf(error, ENGINE_MESSAGE, "%s", message);
+    keep_error(session->ready ? engine->error : session->error, level, message);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* Of a scene, which outlives the session that it was loaded for: trees of other sessions speak
+   through it as well, while they are built. */
+static void scene_message(void *user, whit_log_level level, const char *message)
+{
+    struct engine *engine = user;
+    pthread_mutex_lock(&engine->lock);
+    keep_error(engine->job ? engine->job->session->error : engine->error, level, message);
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -45,7 +59,8 @@ static void run_job(void *context)
     struct engine *engine = job->engine;
     whit_result result =
         session_open(job->session, &job->settings, job->scene,
-                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING}, &job->progress);
+                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING},
+                     &(whit_log){scene_message, engine, WHIT_LOG_WARNING}, &job->progress);
     pthread_mutex_lock(&engine->lock);
     job->result = result;
     job->done = true;

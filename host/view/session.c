@@ -37,7 +37,7 @@ static void tell(struct session_progress *progress, enum session_stage stage)
         atomic_store(&progress->stage, (int)stage);
 }
 
-static whit_result load(struct session *session)
+static whit_result load(struct session *session, const whit_log *log)
 {
     const struct view_settings *settings = &session->settings;
     const char *allowed[VIEW_ALLOWED];
@@ -59,7 +59,7 @@ static whit_result load(struct session *session)
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
     double start_ms = whit_clock_ms();
-    whit_result result = whit_scene_load(settings->scene, &params, &session->log, &ref->scene);
+    whit_result result = whit_scene_load(settings->scene, &params, log, &ref->scene);
     ref->load_ms = whit_clock_ms() - start_ms;
     if (strlen(refused.folder) < sizeof session->refused)
         memcpy(session->refused, refused.folder, strlen(refused.folder) + 1);
@@ -133,7 +133,7 @@ static whit_result check_time(const struct session *session)
 }
 
 whit_result session_open(struct session *session, const struct view_settings *settings,
-                         struct scene_ref *scene, const whit_log *log,
+                         struct scene_ref *scene, const whit_log *log, const whit_log *scene_log,
                          struct session_progress *progress)
 {
     const whit_device_params device = {.selector =
@@ -146,7 +146,7 @@ whit_result session_open(struct session *session, const struct view_settings *se
     whit_result result = WHIT_OK;
     tell(progress, SESSION_LOADING);
     if (!session->scene)
-        result = load(session);
+        result = load(session, scene_log);
     tell(progress, SESSION_BUILDING);
     if (result == WHIT_OK)
         result = build(session);

@@ -53,11 +53,12 @@ struct session_progress {
 };
 
 /* Loads, builds, opens and compiles. `scene`: that of the settings, where it is loaded already;
-   else NULL. Reasons are logged. `session` is zeroed but for `cancel` and what is its owner's;
-   session_close ends it, also after a failure. */
+   else NULL. Reasons are logged: those of the scene and its trees by `scene_log`, which lives as
+   long as the scene. `session` is zeroed but for `cancel` and what is its owner's; session_close
+   ends it, also after a failure. */
 WHIT_CHECK whit_result session_open(struct session *session, const struct view_settings *settings,
                                     struct scene_ref *scene, const whit_log *log,
-                                    struct session_progress *progress);
+                                    const whit_log *scene_log, struct session_progress *progress);
 /* How many messages the validation layers had of its device. */
 uint32_t session_close(struct session *session);
 
