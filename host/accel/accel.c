@@ -1,5 +1,4 @@
 /* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -170,20 +169,6 @@ static struct bvh_box node_box(const struct gpu_bvh_node *node)
     return box;
 }
 
-/* What the root of its tree would be. */
-static struct bvh_box mesh_box(const struct scene_mesh *mesh)
-{
-    struct bvh_box box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i) {
-        struct bvh_box own = accel_primitive_box(mesh, i);
-        for (int k = 0; k < 3; ++k) {
-            box.lo[k] = own.lo[k] < box.lo[k] ? own.lo[k] : box.lo[k];
-            box.hi[k] = own.hi[k] > box.hi[k] ? own.hi[k] : box.hi[k];
-        }
-    }
-    return box;
-}
-
 /* Gives every mesh its place; the totals must fit the bits of a ref. */
 static whit_result meshes_place(struct creation *creation)
 {
@@ -213,8 +198,8 @@ static whit_result meshes_place(struct creation *creation)
                       accel->scene->name, BVH_FIRST_MASK);
             return WHIT_ERROR_INPUT;
         }
-        mesh->box =
-            tree->node_count > 0 ? node_box(&tree->nodes[0]) : mesh_box(&accel->scene->meshes[i]);
+        if (tree->node_count > 0)
+            mesh->box = node_box(&tree->nodes[0]);
         if (tree->depth > accel->mesh_depth)
             accel->mesh_depth = tree->depth;
         uint32_t larger =
@@ -319,6 +304,28 @@ static void creation_finish(struct creation *creation)
     free(creation->spans);
 }
 
+/* What a ray does at most: a turn for each record, two more for each leaf and three for each
+ * instance. */
+static whit_result bare_check(struct accel *accel)
+{
+    const struct scene *scene = accel->scene;
+    uint64_t primitives = scene->triangle_total + scene->sphere_total, turns = 0;
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        uint32_t count = scene_mesh_primitives(&scene->meshes[scene->instances[i].mesh]);
+        turns += count + 2 * ((uint64_t)count / BVH_LEAF_MAX + 1) + 3;
+    }
+    if (accel->params.flatten)
+        turns = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
+    accel->turns = (uint32_t)turns;
+    if (primitives <= ACCEL_BARE_MOST && turns <= ACCEL_TURNS_MOST)
+        return WHIT_OK;
+    log_error(&accel->log,
+              "%s: without trees every ray tests every primitive, and %llu in %u instances are too "
+              "many: %u are possible, fewer in thousands of instances",
+              scene->name, (unsigned long long)primitives, scene->instance_count, ACCEL_BARE_MOST);
+    return WHIT_ERROR_USAGE;
+}
+
 static whit_result pose_at_start(struct accel *accel)
 {
     struct scene_pose pose;
@@ -346,8 +353,15 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
     accel->params.instances.leaf_limit = 1;
     accel->no_trees = accel->params.mesh.builder == BVH_NONE && !accel->params.tree_file;
     struct creation creation = {.accel = accel};
-    whit_result result = accel->params.flatten ? no_memory(accel, accel_flat_create(accel))
-                                               : creation_run(&creation);
+    whit_result result = WHIT_OK;
+    if (accel->no_trees) {
+        accel->params.mesh.leaf_limit = BVH_LEAF_MAX;
+        accel->params.instances.builder = BVH_NONE;
+        result = bare_check(accel);
+    }
+    if (result == WHIT_OK)
+        result = accel->params.flatten ? no_memory(accel, accel_flat_create(accel))
+                                       : creation_run(&creation);
     creation_finish(&creation);
     accel->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK)

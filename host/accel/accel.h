@@ -22,7 +22,7 @@ enum bvh_builder {
     BVH_SWEEP,       /* SAH over every position, sorted once */
     BVH_SPATIAL,     /* SAH over object and spatial splits (SBVH): needs `triangles` */
     BVH_SWEEP_NAIVE, /* SAH over every position, each summed up anew: the report's, quadratic */
-    BVH_NONE,        /* no tree: `order` alone, in the order of the input */
+    BVH_NONE, /* no choice: the order of the input, full leaves, every box that of everything */
 };
 
 /* The triangles that the boxes are of. */
@@ -53,7 +53,7 @@ struct bvh_params {
 struct bvh {
     struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
     uint32_t *order;            /* free() */
-    uint32_t node_count;        /* with the unused one; 0: no primitives, or BVH_NONE */
+    uint32_t node_count;        /* with the unused one; 0: no primitives */
     uint32_t primitive_count, leaf_count;
     uint32_t
         reference_count; /* length of `order`; beyond primitive_count where triangles were split */
@@ -109,6 +109,10 @@ struct accel_mesh {
 
 enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
+/* With BVH_NONE: primitives over all instances; and turns of loops of one ray, of which lavapipe
+   grants an invocation 65,535. */
+enum { ACCEL_BARE_MOST = 40000, ACCEL_TURNS_MOST = 65000 };
+
 struct accel_params {
     struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */
     /* What accel_pose does with the tree over instances when it has one: a new one, or new boxes
@@ -142,7 +146,8 @@ struct accel {
     bool flat;     /* one tree over the triangles of all instances: meshes[0], the only mesh, is the
                       world; accel_pose builds it anew. Instances say mesh and shade_base of the
                       scene's meshes, but root, centre and reach of the world */
-    bool no_trees; /* BVH_NONE: mesh roots are BVH_EMPTY_REF, rays test every triangle */
+    bool no_trees; /* BVH_NONE: rays that meet the box of everything test every primitive */
+    uint32_t turns; /* of loops that a ray takes at most then: ACCEL_TURNS_MOST */
     double build_ms, instance_build_ms;
     struct accel_posing *posing; /* buffers of accel_pose */
     struct accel_flat *world;    /* flat: what its builds share */
@@ -183,8 +188,7 @@ struct traverse_params {
 /* The twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
    and the same costs on a device whose arithmetic is IEEE. Tests t_min <= t <= t_max; equal t goes
    to the smaller instance, then primitive. The ray's cost is added to *cost (stack and depth: the
-   larger one), which may be NULL; STATUS_* bits are or-ed into *status. An accel without trees is
-   always walked by brute force. */
+   larger one), which may be NULL; STATUS_* bits are or-ed into *status. */
 void traverse_ray(const struct accel *accel, const struct traverse_params *params,
                   const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
                   uint32_t *status);

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "accel/build.h"
-#include "base/array.h"
 #include "base/clock.h"
 #include "base/threads.h"
 
@@ -52,25 +51,11 @@ static whit_result params_check(const struct log *log, const struct bvh_params *
     return result;
 }
 
-/* The input as it is. */
-static whit_result none_build(const struct log *log, uint32_t count, struct bvh *out)
-{
-    out->order = array_alloc(count, sizeof *out->order);
-    if (!out->order) {
-        log_error(log, "list of %u boxes: out of memory", count);
-        return WHIT_ERROR_MEMORY;
-    }
-    for (uint32_t i = 0; i < count; ++i)
-        out->order[i] = i;
-    return WHIT_OK;
-}
-
 static whit_result build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                          const struct bvh_params *params, struct bvh *out)
 {
     switch (params->builder) {
     case BVH_NONE:
-        return none_build(log, count, out);
     case BVH_BINNED:
     case BVH_MEDIAN:
     case BVH_SWEEP_NAIVE:

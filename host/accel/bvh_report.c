@@ -141,7 +141,7 @@ static void measure_line(const struct measuring *measuring, uint32_t index, stru
     double total = measuring->area_ends[measuring->mesh_count - 1];
     uint32_t mesh_index = mesh_at(measuring, ((double)index + 0.5) / measuring->ray_count * total);
     struct accel_mesh *mesh = &measuring->accel->meshes[mesh_index];
-    struct gpu_instance instance = {.root = mesh->root, .record_count = mesh->record_count};
+    struct gpu_instance instance = {.root = mesh->root};
     struct accel alone = *measuring->accel;
     if (!alone.flat) { /* which is one mesh in its own space already */
         alone.meshes = mesh;

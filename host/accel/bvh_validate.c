@@ -371,18 +371,6 @@ static bool triangles_match(const struct view *view, const struct mesh_user *use
     return true;
 }
 
-/* Without a tree: every primitive, in the order of the input. */
-static bool bare_check(const struct view *view)
-{
-    if (view->slot_count != view->primitive_count)
-        REFUSE(view, "records of other primitives; count", view->slot_count);
-    for (uint32_t i = 0; i < view->slot_count; ++i) {
-        if (view->primitive(view->user, view->first_slot + i) != i)
-            REFUSE(view, "a record is out of order", view->first_slot + i);
-    }
-    return true;
-}
-
 static whit_result parts_check(const struct view *view, const struct accel *accel)
 {
     if (!view->split)
@@ -420,12 +408,6 @@ static whit_result validate_mesh(const struct accel *accel, uint32_t index)
     if (!placed) {
         refuse(&view, "its nodes or triangles are out of range, mesh", index);
         return WHIT_ERROR_FAILED;
-    }
-    if (accel->no_trees) {
-        bool bare = stated(&view, "number of nodes", m->node_count, 0) &&
-                    stated(&view, "root", m->root, BVH_EMPTY_REF) && bare_check(&view) &&
-                    triangles_match(&view, &user);
-        return bare ? WHIT_OK : WHIT_ERROR_FAILED;
     }
     struct walk found;
     whit_result result = view_check(&view, &found);
@@ -528,10 +510,8 @@ static whit_result validate_flat(const struct accel *accel)
             return WHIT_ERROR_FAILED;
         }
     }
-    struct walk found = {0};
-    whit_result result = !accel->no_trees    ? view_check(&view, &found)
-                         : bare_check(&view) ? WHIT_OK
-                                             : WHIT_ERROR_FAILED;
+    struct walk found;
+    whit_result result = view_check(&view, &found);
     if (result != WHIT_OK)
         return result;
     uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
@@ -580,25 +560,18 @@ static bool instance_box(const void *user, uint32_t slot, struct bvh_box *box)
     return true;
 }
 
-/* Of a mesh, in its instances. */
-static uint32_t expected_root(const struct accel *accel, const struct accel_mesh *mesh)
-{
-    return accel->no_trees && mesh->record_count > 0 ? mesh->first_triangle : mesh->root;
-}
-
 /* Numbers the instances that are not empty; false when one does not refer to its mesh. */
 static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_t *count)
 {
     *count = 0;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
         const struct gpu_instance *in = &accel->instances[i];
-        if (in->mesh >= accel->mesh_count ||
-            in->root != expected_root(accel, &accel->meshes[in->mesh]) ||
+        if (in->mesh >= accel->mesh_count || in->root != accel->meshes[in->mesh].root ||
             in->shade_base != accel->meshes[in->mesh].shade_base) {
             log_error(&accel->log, "instances: %u does not refer to its mesh", i);
             return false;
         }
-        dense[i] = accel->no_trees || in->root == BVH_EMPTY_REF ? UINT32_MAX : (*count)++;
+        dense[i] = in->root == BVH_EMPTY_REF ? UINT32_MAX : (*count)++;
     }
     return true;
 }

@@ -117,12 +117,9 @@ static void visit_node(struct query *q, const struct gpu_bvh_node *node)
     visit_node(q, &pair[!second]);
 }
 
-static void visit_tree(struct query *q, uint32_t ref, uint32_t first, uint32_t record_count)
+static void visit_tree(struct query *q, uint32_t ref)
 {
-    if (q->accel->no_trees) {
-        for (uint32_t i = 0; i < record_count; ++i)
-            visit_record(q, first + i);
-    } else if (ref != BVH_EMPTY_REF && ref >> BVH_COUNT_SHIFT) {
+    if (ref != BVH_EMPTY_REF && ref >> BVH_COUNT_SHIFT) {
         for (uint32_t i = 0; i < ref >> BVH_COUNT_SHIFT; ++i)
             visit_record(q, (ref & BVH_FIRST_MASK) + i);
     } else if (ref != BVH_EMPTY_REF) {
@@ -135,16 +132,14 @@ double accel_distance(const struct accel *accel, const struct scene_pose *pose, 
 {
     struct query q = {
         .accel = accel, .placed = affine_identity(), .p = {p[0], p[1], p[2]}, .best2 = DBL_MAX};
-    if (accel->flat) {
-        const struct accel_mesh *world = &accel->meshes[0];
-        visit_tree(&q, world->root, world->first_triangle, world->record_count);
-    }
+    if (accel->flat)
+        visit_tree(&q, accel->meshes[0].root);
     for (uint32_t i = 0; !accel->flat && i < accel->instance_count; ++i) {
         const struct gpu_instance *instance = &accel->instances[i];
         const struct accel_mesh *mesh = &accel->meshes[instance->mesh];
         q.placed = pose->instances[i];
         if (box_distance2(&q, mesh->box.lo, mesh->box.hi) < q.best2)
-            visit_tree(&q, instance->root, mesh->first_triangle, mesh->record_count);
+            visit_tree(&q, instance->root);
     }
     return q.best2 < DBL_MAX ? sqrt(q.best2) : INFINITY;
 }

@@ -93,11 +93,9 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
         .origin_x = (float)forward->m[3],
         .origin_y = (float)forward->m[7],
         .origin_z = (float)forward->m[11],
-        /* Without a tree: the first record. */
-        .root = mesh->node_count == 0 && mesh->record_count > 0 ? mesh->first_triangle : mesh->root,
+        .root = mesh->root,
         .shade_base = mesh->shade_base,
         .mesh = mesh_index,
-        .record_count = mesh->record_count,
         .center_x = mesh->box.lo[0] * 0.5f + mesh->box.hi[0] * 0.5f,
         .center_y = mesh->box.lo[1] * 0.5f + mesh->box.hi[1] * 0.5f,
         .center_z = mesh->box.lo[2] * 0.5f + mesh->box.hi[2] * 0.5f,
@@ -163,8 +161,7 @@ static bool rank_instances(const struct accel *accel, struct accel_posing *posin
     bool same = true;
     uint32_t count = 0;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
-        bool empty =
-            accel->no_trees || accel->meshes[accel->scene->instances[i].mesh].triangle_count == 0;
+        bool empty = accel->meshes[accel->scene->instances[i].mesh].triangle_count == 0;
         uint32_t rank = empty ? UINT32_MAX : count;
         same &= posing->ranks[i] == rank;
         posing->ranks[i] = rank;
@@ -276,11 +273,8 @@ static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
 static void instances_join(const struct accel_mesh *world, uint32_t count,
                            struct gpu_instance *instances)
 {
-    uint32_t root =
-        world->node_count == 0 && world->record_count > 0 ? world->first_triangle : world->root;
     for (uint32_t i = 0; i < count; ++i) {
-        instances[i].root = root;
-        instances[i].record_count = world->record_count;
+        instances[i].root = world->root;
         instances[i].center_x = world->box.lo[0] * 0.5f + world->box.hi[0] * 0.5f;
         instances[i].center_y = world->box.lo[1] * 0.5f + world->box.hi[1] * 0.5f;
         instances[i].center_z = world->box.lo[2] * 0.5f + world->box.hi[2] * 0.5f;
@@ -314,8 +308,8 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
 static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
 {
     struct accel_posing *posing = accel->posing;
-    bool keep =
-        rank_instances(accel, posing) && posing->has_tree && accel->params.update == ACCEL_REFIT;
+    bool keep = rank_instances(accel, posing) && posing->has_tree &&
+                accel->params.update == ACCEL_REFIT && !accel->no_trees;
     whit_result result = instances_fill(accel, pose, posing);
     if (result == WHIT_OK && !keep)
         result = tree_build(accel, posing);

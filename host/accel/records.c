@@ -1,4 +1,5 @@
-/* Builders that move records as they split them: binned, median, and the naive sweep. */
+/* Builders that move records as they split them: binned, median, and the naive sweep; and the one
+   that splits nothing. */
 #include <stdlib.h>
 
 #include "accel/build.h"
@@ -116,6 +117,18 @@ static void halve(void *user, const struct build_range *range, void *scratch, ui
     split_median(((const struct context *)user)->records, range, left_count, halves);
 }
 
+/* Without trees: the records stay where they are, in leaves that are full but for the last, and
+   every box is that of everything. */
+static void halve_nothing(void *user, const struct build_range *range, void *scratch,
+                          uint32_t *left_count, struct build_bounds halves[2])
+{
+    uint32_t limit = ((const struct context *)user)->params->leaf_limit;
+    uint32_t leaves = (range->count - 1) / limit + 1;
+    (void)scratch;
+    *left_count = leaves / 2 * limit;
+    halves[0] = halves[1] = range->bounds;
+}
+
 static void grow_small(void *user, const struct build_output *output,
                        const struct build_range *range)
 {
@@ -149,6 +162,8 @@ whit_result records_build(const struct log *log, const struct bvh_box *boxes, ui
         methods.small = grow_small;
         methods.small_count = resolved->bins ? SMALL_OF_BINS : BUILD_SMALL;
     }
+    if (resolved->builder == BVH_NONE)
+        methods.halve = halve_nothing;
     if (resolved->builder == BVH_SWEEP_NAIVE)
         result = naive_build(log, context.records, &bounds, count, resolved, out);
     else

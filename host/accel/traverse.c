@@ -548,7 +548,7 @@ static void traverse_all(struct walk *walk, bool brute)
 {
     if (!accel_ray_is_usable(walk->ray))
         return;
-    if (brute || walk->accel->no_trees)
+    if (brute)
         traverse_records(walk);
     else
         traverse_trees(walk);

@@ -132,8 +132,7 @@ static void visit_instance_leaf(struct wide_walk *walk, const struct gpu_bvh_nod
 void wide_walk_run(struct wide_walk *walk)
 {
     const struct accel *accel = walk->accel;
-    walk->brute |= accel->no_trees || accel->mesh_depth + 2 > STACK_SIZE ||
-                   accel->instance_depth + 2 > STACK_SIZE;
+    walk->brute |= accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;
     if (accel->flat) {
         visit_mesh(walk, &accel->meshes[0], 0);
         return;

@@ -40,8 +40,7 @@ typedef struct whit_probe_ray {
     float weight[3];     /* of what it brings to the pixel; shadow rays: of their surface */
     float added[3]; /* radiance that it added, without its branches, by weight; shadow rays: the
                        share of the light that passes */
-    /* What the device met, its twin on the CPU, and exact arithmetic. Without trees the device does
-       not know what blocks a light. */
+    /* What the device met, its twin on the CPU, and exact arithmetic. */
     whit_probe_hit device, twin, exact;
     bool equal; /* twin: ids and every bit of t, and of u and v. Whether a cut-out is solid is the
                    device's word; shadow rays: any blocker that the device may have met */

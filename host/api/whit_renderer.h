@@ -22,8 +22,7 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
     WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
                             between triangles; hits may depend on the tree */
-    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest;
-                            needs trees when on a device */
+    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest */
 } whit_numerics;
 
 typedef struct whit_renderer_params {
@@ -48,7 +47,7 @@ typedef struct whit_renderer_params {
     const char *effects;
     /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
        compiles that of the scene; the pictures are the same. Errors of that thread are logged from
-       it. Without trees: not done. */
+       it. */
     bool compile_beside;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;

@@ -1,4 +1,4 @@
-/* Lights as the kernel reads them, and the turns of its loop over them. */
+/* Lights as the kernel reads them. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -98,13 +98,10 @@ uint32_t lights_samples(const struct renderer *renderer)
     return !flat ? 1 : asked ? asked : SAMPLES_DEFAULT;
 }
 
-uint64_t lights_turns(const struct renderer *renderer)
+uint64_t lights_rays(const struct renderer *renderer)
 {
-    return (uint64_t)renderer->pose.light_count * lights_samples(renderer);
-}
-
-bool lights_take_turn(const struct renderer *renderer, uint32_t turn)
-{
-    uint32_t samples = lights_samples(renderer);
-    return turn % samples == 0 || is_flat(&renderer->pose.lights[turn / samples]);
+    uint64_t rays = 0;
+    for (uint32_t i = 0; i < renderer->pose.light_count; ++i)
+        rays += is_flat(&renderer->pose.lights[i]) ? lights_samples(renderer) : 1;
+    return rays;
 }

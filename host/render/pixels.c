@@ -18,15 +18,10 @@ static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
 static uint32_t largest_tile(const struct renderer *renderer, uint32_t tile_size)
 {
     uint32_t tile = tile_size ? tile_size : renderer->has_secondary ? TILE_STACKED_MAX : TILE_MAX;
-    if (renderer->accel->no_trees && !tile_size)
-        tile = TILE_STACKED_MAX;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
     uint64_t slot_bytes = 0;
     if (renderer->has_secondary)
         slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
-    uint64_t passed_bytes = sizeof(struct gpu_passed) * lights_turns(renderer);
-    if (renderer->accel->no_trees && passed_bytes > slot_bytes)
-        slot_bytes = passed_bytes;
     while (tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
         tile /= 2;
     return tile;
@@ -55,7 +50,7 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     uint64_t pixels = (uint64_t)width * p->band_rows;
     /* What nothing is bound to has no bytes, and is not created. */
     bool adaptive = renderer->params.adaptive > 0.0;
-    bool lists = renderer->has_secondary || adaptive || renderer->accel->no_trees;
+    bool lists = renderer->has_secondary || adaptive;
     uint64_t waiting_bytes = sizeof(struct gpu_work) + (uint64_t)p->chunk_slots * 4;
     uint64_t list_bytes = lists ? waiting_bytes : 0;
     uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;

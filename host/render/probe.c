@@ -28,8 +28,6 @@ static void exchange(struct renderer *renderer)
     renderer->pixel_buffers = probe->pixel_buffers;
     probe->pixel_buffers = kept;
     exchange_passes(&renderer->whitted, &probe->whitted);
-    exchange_passes(&renderer->brute.closest, &probe->closest);
-    exchange_passes(&renderer->brute.shadow, &probe->shadow);
     probe->active = !probe->active;
 }
 
@@ -56,11 +54,8 @@ static whit_result create_passes(struct renderer *renderer)
     whit_result result = renderer->whitted.pipeline
                              ? variant_bind_whitted(renderer, &renderer->whitted)
                              : variant_create_whitted(renderer);
-    if (result != WHIT_OK) {
+    if (result != WHIT_OK)
         pass_finish(&renderer->whitted);
-        pass_finish(&renderer->brute.closest);
-        pass_finish(&renderer->brute.shadow);
-    }
     return result;
 }
 
@@ -133,8 +128,6 @@ static whit_result run(struct renderer *renderer, uint32_t most, struct probe_re
 void probe_finish(struct probe_state *probe)
 {
     pass_finish(&probe->whitted);
-    pass_finish(&probe->closest);
-    pass_finish(&probe->shadow);
     pixels_finish(&probe->pixel_buffers);
     buffer_destroy(probe->records);
     *probe = (struct probe_state){0};
@@ -263,6 +256,8 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
                                  .samples = params->adaptive > 0.0 ? PROBE_ADAPTIVE_SAMPLES
                                                                    : params->samples};
     whit_result result = check(renderer, x, y);
+    if (result == WHIT_OK)
+        result = render_check_loops(renderer);
     if (result == WHIT_OK)
         result = run(renderer, most > 0 && most < PROBE_RAYS_MOST ? most : PROBE_RAYS_MOST, out,
                      &records);

@@ -15,7 +15,6 @@ struct asking {
     struct rational *rational;
     struct probe_ray *ray;
     struct gpu_ray line;
-    bool by_cutout; /* it came through one, as far as is known here */
     uint32_t passed_instance[PASSED_MOST], passed_primitive[PASSED_MOST];
 };
 
@@ -38,15 +37,13 @@ static bool comes_from_behind(const struct gpu_ray *line, const struct gpu_hit *
 }
 
 /* Whether the material may let the ray go on; only the device can tell whether a cut-out does. */
-static bool may_pass(struct asking *a, const struct gpu_hit *hit)
+static bool may_pass(const struct asking *a, const struct gpu_hit *hit)
 {
     const struct renderer *renderer = a->renderer;
     const bool *called = renderer->effects.called;
     uint32_t flags = accel_primitive_flags(renderer->accel, hit->instance, hit->primitive);
-    if ((flags & TRIANGLE_CUTOUT) && called[SCENE_EFFECT_CUTOUTS]) {
-        a->by_cutout = true;
+    if ((flags & TRIANGLE_CUTOUT) && called[SCENE_EFFECT_CUTOUTS])
         return true;
-    }
     if (!is_shadow(a))
         return (flags & TRIANGLE_ONE_SIDED) && called[SCENE_EFFECT_CULLING] &&
                comes_from_behind(&a->line, hit);
@@ -87,12 +84,6 @@ static bool is_device_hit(const struct gpu_probe_ray *traced, const struct gpu_h
            same_bits(traced->v, hit->v);
 }
 
-/* Without trees; it may be a cut-out that is solid where it is met. */
-static bool blocker_is_unknown(const struct gpu_probe_ray *traced)
-{
-    return traced->end == PROBE_BLOCKED && traced->primitive == HIT_NONE;
-}
-
 /* Hits from the front to the one that the device has, or for want of that to the end. */
 static void ask_twin(struct asking *a)
 {
@@ -121,9 +112,7 @@ static void ask_twin(struct asking *a)
         ray->equal = true;
     } else {
         ray->twin = first;
-        ray->equal = blocker_is_unknown(traced)
-                         ? first.primitive != HIT_NONE || a->by_cutout
-                         : first.primitive == HIT_NONE && traced->primitive == HIT_NONE;
+        ray->equal = first.primitive == HIT_NONE && traced->primitive == HIT_NONE;
     }
     ray->equal &= status == 0;
 }
@@ -147,7 +136,7 @@ static void ask_exactly(struct asking *a)
                                      .primitive = ray->traced.skip_primitive};
     struct rational_query query = {.own = &own};
     struct rational_hit hit, before;
-    if (ray->passed > PASSED_MOST || (blocker_is_unknown(&ray->traced) && a->by_cutout))
+    if (ray->passed > PASSED_MOST)
         return;
     rational_trace(a->rational, &a->line, &query, &hit);
     while (hit.primitive != HIT_NONE && take_passed(a, &hit)) {
@@ -172,7 +161,6 @@ whit_result probe_ask_twin(const struct renderer *renderer, struct probe_report 
         a.ray = &report->rays[i];
         a.ray->twin = (struct gpu_hit){.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
         a.ray->equal = true;
-        a.by_cutout = false;
         if (traced->end == PROBE_DEPTH || traced->end == PROBE_BAILOUT)
             continue;
         a.line = (struct gpu_ray){.t_max = traced->t_max};

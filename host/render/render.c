@@ -227,10 +227,11 @@ whit_result render_finish_submission(struct renderer *renderer)
     return submit(renderer);
 }
 
-static whit_result sample_by_trees(struct renderer *renderer, const struct gpu_chunk *chunk,
-                                   const struct progress *progress, double *longest_ms)
+whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                          const struct progress *progress, double *longest_ms)
 {
-    uint32_t passes = renderer->has_secondary ? PASSES_FIRST : 0, first = 0;
+    uint32_t several = renderer->accel->no_trees ? 1 : PASSES_FIRST, first = 0;
+    uint32_t passes = renderer->has_secondary ? several : 0;
     double start_ms = clock_ms();
     whit_result result = record_primary(renderer, chunk);
     if (result == WHIT_OK) {
@@ -262,13 +263,6 @@ static whit_result sample_by_trees(struct renderer *renderer, const struct gpu_c
         record_passes(renderer, chunk, first, passes);
         result = render_finish_submission(renderer);
     }
-}
-
-whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                          const struct progress *progress, double *longest_ms)
-{
-    return renderer->accel->no_trees ? brute_sample(renderer, chunk, progress, longest_ms)
-                                     : sample_by_trees(renderer, chunk, progress, longest_ms);
 }
 
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
@@ -399,6 +393,21 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     return result;
 }
 
+whit_result render_check_loops(const struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    const struct scene *scene = renderer->scene;
+    uint64_t shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS] ? lights_rays(renderer) : 0;
+    if (!accel->no_trees || (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
+        return WHIT_OK;
+    log_error(&renderer->log,
+              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
+              "asks for %llu shadow rays: fewer lights or --light-samples are possible",
+              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
+              (unsigned long long)shadows);
+    return WHIT_ERROR_USAGE;
+}
+
 static whit_result render_picture(struct renderer *renderer, struct progress *progress)
 {
     const struct render_params *params = &renderer->params;
@@ -425,9 +434,9 @@ whit_result renderer_render(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     costs_clear(renderer);
-    whit_result result = renderer_compile(renderer);
+    whit_result result = render_check_loops(renderer);
     if (result == WHIT_OK)
-        result = brute_check_time(renderer);
+        result = renderer_compile(renderer);
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))

@@ -28,8 +28,6 @@ static whit_result create_parts(struct renderer *renderer)
     if (result == WHIT_OK)
         result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
                               "frame", &renderer->scene_buffers.frame);
-    if (result == WHIT_OK)
-        result = brute_create(renderer);
     renderer->stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
@@ -41,11 +39,11 @@ static whit_result create_parts(struct renderer *renderer)
 /* Renderers that only trace batches never need the large kernel. */
 whit_result renderer_compile(struct renderer *renderer)
 {
-    bool beside = renderer->params.compile_beside && !renderer->accel->no_trees;
     if (renderer->whitted.pipeline && !renderer->beside.general)
         return WHIT_OK;
     double start_ms = clock_ms();
-    whit_result result = beside ? beside_prepare(renderer) : variant_create_whitted(renderer);
+    whit_result result = renderer->params.compile_beside ? beside_prepare(renderer)
+                                                         : variant_create_whitted(renderer);
     if (result == WHIT_OK) {
         struct pipeline_info info;
         pipeline_get_info(renderer->whitted.pipeline, &info);
@@ -104,7 +102,6 @@ void renderer_destroy(struct renderer *renderer)
     passes_finish(renderer);
     beside_finish(renderer);
     trace_finish(&renderer->trace);
-    brute_finish(&renderer->brute);
     probe_finish(&renderer->probe);
     pixels_finish(&renderer->pixel_buffers);
     costs_clear(renderer);

@@ -54,22 +54,6 @@ struct trace_state {
     uint32_t waits; /* rays of the last batch that floats left open */
 };
 
-/* A run of dispatches without trees: runs from `first_run` up to an empty one. */
-struct brute_range {
-    uint32_t first_run, turns; /* of loops */
-};
-
-/* Without trees only. */
-struct brute_state {
-    struct buffer *runs;           /* gpu_run */
-    struct buffer *found, *passed; /* of a chunk */
-    struct brute_range *ranges;
-    uint32_t range_count;
-    uint64_t bytes;              /* of these, also counted in scene_buffers.bytes */
-    struct pass closest, shadow; /* renderer->whitted: the phase that shades */
-    bool time_checked;
-};
-
 /* What one picture in the making knows. An adaptive one is made in several passes. */
 struct progress {
     double start_ms;
@@ -92,7 +76,7 @@ struct beside_state {
 struct probe_state {
     bool active;
     struct pixel_buffers pixel_buffers; /* of a row of blocks */
-    struct pass whitted, closest, shadow;
+    struct pass whitted;
     struct buffer *records; /* gpu_probe, and gpu_probe_ray */
 };
 
@@ -107,7 +91,6 @@ struct renderer {
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
     struct pass whitted;
-    struct brute_state brute;
     struct trace_state trace;
     struct beside_state beside;
     struct probe_state probe;
@@ -162,16 +145,6 @@ void costs_clear(struct renderer *renderer);
 /* Takes over what the kernel counted for one sample of a chunk. */
 WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
 
-/* brute.c: pictures without trees. */
-WHIT_CHECK whit_result brute_create(struct renderer *renderer);
-void brute_finish(struct brute_state *brute);
-/* All rays of one sample of one chunk. *longest_ms: of its submissions. */
-WHIT_CHECK whit_result brute_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                                    const struct progress *progress, double *longest_ms);
-/* With trees WHIT_OK. Else WHIT_ERROR_TIME_LIMIT when a part of the picture tells that all of it
-   will take longer than allowed. */
-WHIT_CHECK whit_result brute_check_time(struct renderer *renderer);
-
 /* upload.c */
 /* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
@@ -198,10 +171,8 @@ WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 uint32_t lights_kinds(const struct scene_pose *pose);
 /* Of a flat emitter; 1 where the pose has none. */
 uint32_t lights_samples(const struct renderer *renderer);
-/* The kernel's loop over lights counts light * lights_samples + sample up to lights_turns; lights
-   that are no flat emitters take the first of their turns alone. */
-uint64_t lights_turns(const struct renderer *renderer);
-bool lights_take_turn(const struct renderer *renderer, uint32_t turn);
+/* Shadow rays that a hit asks for at most. */
+uint64_t lights_rays(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 /* media.c: of renderer->frame the media that the camera is in, and whether media meet, for the pose
@@ -233,7 +204,7 @@ WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
 bool variant_waits(const struct renderer *renderer);
-/* What is needed to make the pipelines of the Whitted kernel with trees; stands alone, and is not
+/* What is needed to make the pipelines of the Whitted kernel; stands alone, and is not
    to be copied or moved. */
 struct variant_job {
     struct gpu_spec spec;
@@ -302,10 +273,14 @@ WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct pro
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* render.c: all rays of one sample of one chunk, with trees or without. *longest_ms: of its
+/* render.c: all rays of one sample of one chunk. *longest_ms: of its
    submissions, if longer. */
 WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
                                      const struct progress *progress, double *longest_ms);
+
+/* render.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
+   traces take more turns of loops together than drivers grant it; else WHIT_OK. */
+WHIT_CHECK whit_result render_check_loops(const struct renderer *renderer);
 
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,

@@ -41,13 +41,6 @@ static whit_result replace_pixels(struct renderer *renderer)
     probe_drop_pixels(renderer);
     whit_result result =
         pixels_create(renderer, renderer->params.height, renderer->params.tile_size);
-    if (result == WHIT_OK && renderer->accel->no_trees) {
-        passes_finish(renderer);
-        renderer->scene_buffers.bytes -= renderer->brute.bytes;
-        brute_finish(&renderer->brute);
-        renderer->brute = (struct brute_state){0};
-        result = brute_create(renderer);
-    }
     if (result != WHIT_OK)
         drop_pixels(renderer);
     renderer->stats.device_bytes = renderer->scene_buffers.bytes;

@@ -4,9 +4,9 @@
 #include "base/clock.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20,    /* rays in device memory */
-    TRACE_FIRST = 1 << 14,       /* rays of the first dispatch, whose time sets the next one's */
-    TRACE_FIRST_BRUTE = 1 << 10, /* the same without trees */
+    TRACE_CAPACITY = 1 << 20,   /* rays in device memory */
+    TRACE_FIRST = 1 << 14,      /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
 };
 /* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
@@ -91,23 +91,13 @@ static whit_result cancelled(const struct renderer *renderer)
     return renderer->params.cancel && *renderer->params.cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-/* Rays [0, count) of the ray buffer, through the trees or, without any, all ranges of records. */
+/* Rays [0, count) of the ray buffer. */
 static whit_result trace_piece(struct renderer *renderer, bool any, uint32_t count)
 {
-    const struct accel *accel = renderer->accel;
-    const struct brute_state *brute = &renderer->brute;
-    struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root, .begin = 1};
-    if (accel->instance_count == 0)
+    struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root};
+    if (renderer->accel->instance_count == 0)
         batch.root = BVH_EMPTY_REF;
-    whit_result result = dispatch(renderer, any, &batch);
-    for (uint32_t i = 1; result == WHIT_OK && i < brute->range_count; ++i) {
-        batch.begin = 0;
-        batch.first_run = brute->ranges[i].first_run;
-        result = cancelled(renderer);
-        if (result == WHIT_OK)
-            result = dispatch(renderer, any, &batch);
-    }
-    return result;
+    return dispatch(renderer, any, &batch);
 }
 
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
@@ -121,7 +111,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     whit_result result = prepare(renderer, any);
     if (result == WHIT_OK)
         result = waits_clear(renderer);
-    uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BRUTE : TRACE_FIRST;
+    uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BARE : TRACE_FIRST;
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
         result = cancelled(renderer);
         if (result != WHIT_OK)

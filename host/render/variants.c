@@ -18,7 +18,7 @@ uint32_t variant_camera(const struct renderer *renderer)
 bool variant_waits(const struct renderer *renderer)
 {
     return renderer->params.numerics == NUMERICS_EXACT && !renderer->params.count &&
-           !renderer->probe.active && !renderer->accel->no_trees;
+           !renderer->probe.active;
 }
 
 static bool only_spheres(const struct scene *scene)
@@ -200,9 +200,6 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     bind(&bindings, BIND_WORK_IN, BINDING_STORAGE, pixels->work[0]);
     bind(&bindings, BIND_WORK_OUT, BINDING_STORAGE, pixels->work[1]);
     bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
-    bind(&bindings, BIND_RUNS, BINDING_STORAGE, renderer->brute.runs);
-    bind(&bindings, BIND_FOUND, BINDING_STORAGE, renderer->brute.found);
-    bind(&bindings, BIND_PASSED, BINDING_STORAGE, renderer->brute.passed);
     bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, pixels->ray_media);
     bind(&bindings, BIND_PROBE, BINDING_STORAGE,
          renderer->probe.active ? renderer->probe.records : NULL);
@@ -266,27 +263,13 @@ whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
     return result;
 }
 
-/* `brute`: BRUTE_*. */
-static whit_result create_whitted(struct renderer *renderer, uint32_t brute, struct pass *pass)
+whit_result variant_create_whitted(struct renderer *renderer)
 {
     struct variant_job job;
     struct gpu_spec spec = variant_spec(renderer);
-    spec.SPEC_BRUTE = brute;
-    spec.SPEC_PROBE &= brute == BRUTE_OFF || brute == BRUTE_SHADE;
     variant_job_init(renderer, &spec, &job);
-    whit_result result = variant_job_run(renderer->device, &job, pass);
-    return result == WHIT_OK ? variant_bind_whitted(renderer, pass) : result;
-}
-
-whit_result variant_create_whitted(struct renderer *renderer)
-{
-    struct brute_state *brute = &renderer->brute;
-    if (!renderer->accel->no_trees)
-        return create_whitted(renderer, BRUTE_OFF, &renderer->whitted);
-    whit_result result = create_whitted(renderer, BRUTE_CLOSEST, &brute->closest);
-    if (result == WHIT_OK && renderer->effects.called[SCENE_EFFECT_SHADOWS])
-        result = create_whitted(renderer, BRUTE_SHADOW, &brute->shadow);
-    return result == WHIT_OK ? create_whitted(renderer, BRUTE_SHADE, &renderer->whitted) : result;
+    whit_result result = variant_job_run(renderer->device, &job, &renderer->whitted);
+    return result == WHIT_OK ? variant_bind_whitted(renderer, &renderer->whitted) : result;
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
@@ -296,9 +279,7 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
-    bind(&bindings, BIND_TRACE_RUNS, BINDING_STORAGE, renderer->brute.runs);
     struct gpu_spec spec = variant_spec(renderer);
-    spec.SPEC_BRUTE = renderer->accel->no_trees ? BRUTE_CLOSEST : BRUTE_OFF;
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;
     spec.SPEC_FILTERS = 0;
@@ -328,7 +309,6 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
 {
     struct bindings bindings = bind_whitted(renderer);
     struct gpu_spec own = variant_spec(renderer), general = variant_general_spec(renderer);
-    own.SPEC_BRUTE = general.SPEC_BRUTE = renderer->accel->no_trees ? BRUTE_SHADE : BRUTE_OFF;
     const struct pipeline_params own_params = whitted_params(&own, &bindings);
     const struct pipeline_params general_params = whitted_params(&general, &bindings);
     struct pipeline_info own_info, general_info;
@@ -368,11 +348,7 @@ void passes_finish(struct renderer *renderer)
 {
     renderer->beside.general = false;
     pass_finish(&renderer->whitted);
-    pass_finish(&renderer->brute.closest);
-    pass_finish(&renderer->brute.shadow);
     pass_finish(&renderer->probe.whitted);
-    pass_finish(&renderer->probe.closest);
-    pass_finish(&renderer->probe.shadow);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);
 }

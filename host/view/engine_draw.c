@@ -127,7 +127,7 @@ static whit_result read_boxes(const struct engine_task *task, struct engine_fram
 /* Camera rays whose visits are counted on the CPU, which is some 3 ms for a whole picture. */
 enum { VISITS_MOVING = 512, VISITS_WHOLE = 4096 };
 
-/* As the kernel counted, or its twin; without trees there is nothing to count. */
+/* As the kernel counted, or its twin. */
 static whit_result count_visits(const struct engine_task *task, struct engine_frame *frame)
 {
     const whit_stats *stats = &frame->stats;
@@ -135,8 +135,6 @@ static whit_result count_visits(const struct engine_task *task, struct engine_fr
     uint32_t pixels = task->quality == ENGINE_WHOLE ? VISITS_WHOLE : VISITS_MOVING;
     whit_result result = WHIT_OK;
     frame->visits = -1.0;
-    if (task->settings.trees.build == WHIT_BUILD_NONE)
-        return WHIT_OK;
     if (cost.rays == 0)
         result = whit_renderer_sample_costs(task->session->renderer, pixels, &cost);
     if (result != WHIT_OK || cost.rays == 0)

@@ -47,8 +47,6 @@ static void draw_figures(const struct view *view)
     ui_text("%.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
     if (frame->visits >= 0.0)
         ui_text_beside(COLOR_TEXT, " %.1f visits a camera ray", frame->visits);
-    else
-        ui_text_beside(COLOR_TEXT, " every triangle is tested");
 }
 
 static void draw_names(const struct view *view)

@@ -5,9 +5,6 @@
 #include <string.h>
 
 enum { WARM_WIDTH = 32, WARM_HEIGHT = 24 };
-/* The smallest picture that the window can do with, without trees: longer, and it is refused. */
-static const double BRUTE_LIMIT_MS = 3000.0;
-enum { BRUTE_DIVISOR = 8 };
 
 struct scene_ref *scene_ref_take(struct scene_ref *ref)
 {
@@ -105,31 +102,8 @@ static whit_result warm_up(struct session *session)
         whit_renderer_create(session->device, session->accel, &params, &session->renderer);
     if (result == WHIT_OK)
         result = whit_renderer_render(session->renderer);
-    double compiled_ms = whit_clock_ms();
-    session->compile_ms = compiled_ms - start_ms;
-    if (result == WHIT_OK && session->settings.trees.build == WHIT_BUILD_NONE) {
-        result = whit_renderer_render(session->renderer);
-        session->warm_ms_per_pixel = (whit_clock_ms() - compiled_ms) / (WARM_WIDTH * WARM_HEIGHT);
-    }
+    session->compile_ms = whit_clock_ms() - start_ms;
     return result;
-}
-
-/* Without trees a window may never get its picture. */
-static whit_result check_time(const struct session *session)
-{
-    const whit_renderer_params *picture = &session->settings.picture;
-    double pixels = (double)picture->width * picture->height / (BRUTE_DIVISOR * BRUTE_DIVISOR);
-    double least_ms = pixels * session->warm_ms_per_pixel;
-    if (session->settings.trees.build != WHIT_BUILD_NONE || least_ms < BRUTE_LIMIT_MS)
-        return WHIT_OK;
-    char text[160];
-    snprintf(text, sizeof text,
-             "without trees a picture would take some %.0f s, at an eighth of its size %.1f s: not "
-             "done",
-             least_ms * BRUTE_DIVISOR * BRUTE_DIVISOR * 1e-3, least_ms * 1e-3);
-    if (session->log.fn)
-        session->log.fn(session->log.user, WHIT_LOG_ERROR, text);
-    return WHIT_ERROR_TIME_LIMIT;
 }
 
 whit_result session_open(struct session *session, const struct view_settings *settings,
@@ -162,8 +136,6 @@ whit_result session_open(struct session *session, const struct view_settings *se
         whit_device_get_info(session->device, &session->device_info);
         result = warm_up(session);
     }
-    if (result == WHIT_OK)
-        result = check_time(session);
     tell(progress, SESSION_DONE);
     return result;
 }

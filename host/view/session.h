@@ -42,7 +42,6 @@ struct session {
     whit_accel_info accel_info;
     whit_device_info device_info;
     double build_ms, compile_ms; /* of the trees; until the first pixels were there */
-    double warm_ms_per_pixel;    /* of a small picture */
     _Atomic(float) part;         /* of the picture that is being drawn, 0..1; from any thread */
     uint64_t last_use;
 };

@@ -16,8 +16,7 @@
 #define BIND_RAYS        8
 #define BIND_HITS        9
 #define BIND_TRACE_COSTS 10
-#define BIND_TRACE_RUNS  11
-#define BIND_TRACE_COUNT 12 /* bindings of that kernel */
+#define BIND_TRACE_COUNT 11 /* bindings of that kernel */
 
 /* The Whitted kernel. */
 #define BIND_SHADING        8
@@ -33,11 +32,8 @@
 #define BIND_WORK_IN        18
 #define BIND_WORK_OUT       19
 #define BIND_COSTS          20
-#define BIND_RUNS           21
-#define BIND_FOUND          22
-#define BIND_PASSED         23
-#define BIND_RAY_MEDIA      24
-#define BIND_PROBE          25
-#define BIND_WHITTED_COUNT  26
+#define BIND_RAY_MEDIA      21
+#define BIND_PROBE          22
+#define BIND_WHITTED_COUNT  23
 
 #endif

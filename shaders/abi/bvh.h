@@ -79,7 +79,7 @@ struct gpu_instance {
     gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
     gpu_uint shade_base; /* of primitive 0: index among the triangles of all meshes */
     gpu_uint mesh;
-    gpu_uint record_count; /* without trees: triangle records, the first of them in `root` */
+    gpu_uint pad3;
     gpu_vec3 forward0; /* object to world, rows */
     gpu_float center_x; /* of the mesh's box, object space */
     gpu_vec3 forward1;
@@ -136,23 +136,11 @@ GPU_ASSERT_AT(gpu_cost, triangles, 16)
 #define RAY_REFRACTED  3u
 #define RAY_KIND_COUNT 4u
 
-/* Without trees: records of one instance that a dispatch tests. A range of runs ends with an empty
-   one, so that no loop depends on push constants (see bind/shading.glsl). */
-struct gpu_run {
-    gpu_uint instance; /* without instances to go through: 0 */
-    gpu_uint first;    /* record */
-    gpu_uint count;    /* 0: end of the range */
-    gpu_uint begins;   /* 1: the first run of its instance */
-};
-GPU_ASSERT_SIZE(gpu_run, 16)
-
 /* Push constants of the ray batch kernel. */
 struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
-    gpu_uint first_run; /* without trees: of the range */
-    gpu_uint begin;     /* 1: it is the first range */
-    gpu_uint waiting;   /* 1: of the rays on the waiting list */
+    gpu_uint waiting; /* 1: of the rays on the waiting list */
 };
 
 /* Head of a work list, followed by the items: pixels (slots within the chunk), or rays of a batch.

@@ -191,35 +191,14 @@ struct gpu_chunk {
     gpu_vec2 sample_xy; /* within the pixel, 0..1 */
     gpu_uint sample_index;
     gpu_float sample_weight;
+    gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
+                         distance of the focus */
     gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
-    gpu_uint begin;     /* without trees: 1: the first range of runs */
-    gpu_uint first_run; /* of the range */
-    gpu_uint light;     /* BRUTE_SHADOW: turn of the loop over lights: light * light_samples + sample */
-    gpu_vec2 lens_xy;   /* CAMERA_LENS: a point of the lens, in units of right and up times the
-                           distance of the focus */
-    gpu_uint listed;    /* camera rays of so many pixels, in the work list; 0: of all */
-    gpu_uint waiting;   /* 1: the pixels on the waiting list */
-};
-GPU_ASSERT_SIZE(gpu_chunk, 64)
-
-/* Without trees, of a slot: its ray's hit so far. */
-struct gpu_found {
-    gpu_float t, u, v;
-    gpu_uint triangle;  /* record */
-    gpu_uint primitive; /* HIT_NONE: none */
-    gpu_uint instance;
+    gpu_uint listed;  /* camera rays of so many pixels, in the work list; 0: of all */
+    gpu_uint waiting; /* 1: the pixels on the waiting list */
     gpu_uint pad0;
-    gpu_uint pad1;
 };
-GPU_ASSERT_SIZE(gpu_found, 32)
-GPU_ASSERT_AT(gpu_found, primitive, 16)
-
-/* Without trees, of a slot and a light: what is in between so far. */
-struct gpu_passed {
-    gpu_uint red, green, blue; /* optical depth */
-    gpu_uint blocked;          /* 1: no light passes */
-};
-GPU_ASSERT_SIZE(gpu_passed, 16)
+GPU_ASSERT_SIZE(gpu_chunk, 56)
 
 /* What the kernel counted for a pixel. */
 struct gpu_counts {

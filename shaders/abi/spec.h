@@ -10,13 +10,6 @@
 #define LOAD_STORAGE 0u
 #define LOAD_TEXEL   1u
 
-/* Without trees rays test runs of triangle records, as many in one dispatch as a driver that ends
-   long loops grants. So the work on a ray is cut in phases of several dispatches each. */
-#define BRUTE_OFF     0u
-#define BRUTE_CLOSEST 1u /* the hit so far, one range of runs further */
-#define BRUTE_SHADOW  2u /* what passes to a light so far, one range of runs further */
-#define BRUTE_SHADE   3u /* with both known: light, and the rays that the surface calls for */
-
 /* Which camera rays start at the lens. */
 #define CAMERA_PERSPECTIVE  0u
 #define CAMERA_ORTHOGRAPHIC 1u
@@ -70,20 +63,19 @@
     X(23, SPEC_ORDER, 0)              /* ORDER_* */                                                \
     X(24, SPEC_COUNT, 0)              /* count what traversals cost */                             \
     X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
-    X(26, SPEC_BRUTE, 0)              /* BRUTE_*: no trees, every triangle of every instance */    \
-    X(27, SPEC_FLAT, 0)               /* one tree over all instances, in world space */            \
-    X(28, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of what they are in */        \
-    X(29, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
-    X(30, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
-    X(31, SPEC_FILTER_DETAIL, 1)      /* filters that textures pattern, or that absorb */          \
-    X(32, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
-    X(33, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
-    X(34, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
-    X(35, SPEC_EMISSION, 1)                                                                        \
-    X(36, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
-    X(37, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
-    X(38, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
-    X(39, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */
+    X(26, SPEC_FLAT, 0)               /* one tree over all instances, in world space */            \
+    X(27, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of what they are in */        \
+    X(28, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
+    X(29, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
+    X(30, SPEC_FILTER_DETAIL, 1)      /* filters that textures pattern, or that absorb */          \
+    X(31, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
+    X(32, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
+    X(33, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
+    X(34, SPEC_EMISSION, 1)                                                                        \
+    X(35, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
+    X(36, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
+    X(37, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
+    X(38, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -190,7 +190,7 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
     }
     Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uvec4(hit.instance, 0u, 0u, 0u),
                               uint(inside), 1u);
-    if (SPEC_BRUTE == BRUTE_OFF && SPEC_MEDIA == MEDIA_TOUCH) {
+    if (SPEC_MEDIA == MEDIA_TOUCH) {
         gather_touching(slot, ray, hit, crossed, c, s, inside, status);
         m = fetch_material(s.material);
     }

@@ -16,33 +16,15 @@ struct Receiver {
     uint instance, primitive;
 };
 
-// What the shadow ray of a turn meets. Without trees: in the ranges so far.
-Hit find_blocker(uint slot, uint turn, vec3 origin, vec3 to_light, float distance,
-                 uint skip_instance, uint skip_primitive)
+// What a shadow ray meets.
+Hit find_blocker(uint slot, vec3 origin, vec3 to_light, float distance, uint skip_instance,
+                 uint skip_primitive)
 {
-    Hit blocker;
     if (SPEC_FILTER_DETAIL != 0u)
         filter_end = distance < FLOAT_LARGEST ? distance : 0.0;
-    if (SPEC_BRUTE == BRUTE_OFF) {
-        blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
+    Hit blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
                            skip_instance, skip_primitive);
-        add_cost(slot, RAY_SHADOW);
-        return blocker;
-    }
-    uint at = slot * (frame.light_count * turns_each()) + turn;
-    blocker = make_hit(distance);
-    if (SPEC_BRUTE == BRUTE_SHADE || chunk.begin == 0u) {
-        gpu_passed before = passed[at];
-        blocker.filter_depth = ivec3(uvec3(before.red, before.green, before.blue));
-        blocker.primitive = before.blocked != 0u ? 0u : HIT_NONE;
-    }
-    if (SPEC_BRUTE == BRUTE_SHADOW) {
-        traverse_runs(TRAVERSE_SHADOW, origin, to_light, 0.0, chunk.first_run, chunk.begin,
-                      skip_instance, skip_primitive, blocker);
-        add_cost(slot, RAY_SHADOW);
-        passed[at] = gpu_passed(uint(blocker.filter_depth.r), uint(blocker.filter_depth.g),
-                                uint(blocker.filter_depth.b), uint(blocker.primitive != HIT_NONE));
-    }
+    add_cost(slot, RAY_SHADOW);
     return blocker;
 }
 
@@ -62,7 +44,7 @@ vec3 light_share(uint slot, uint turn, Surface s, Receiver at, LightTurn light, 
         distance = length(way);
         to_light = way / distance;
     }
-    Hit blocker = find_blocker(slot, turn, origin, to_light, distance, at.instance,
+    Hit blocker = find_blocker(slot, origin, to_light, distance, at.instance,
                                above ? at.primitive : HIT_NONE);
     status |= blocker.status;
     if (SPEC_PROBE != 0u)
@@ -156,9 +138,8 @@ void add_turn(uint slot, uint turn, gpu_light light, uint point, Surface s, Opti
 }
 
 // Light from all lights, towards the eye. The inner loop is over the points of a flat emitter; all
-// rays go through the same lights and points, so none waits for another. The phase BRUTE_SHADOW has
-// one turn. `media`: around the surface, on its side. `open`: what the lights would add without
-// shadows.
+// rays go through the same lights and points, so none waits for another. `media`: around the
+// surface, on its side. `open`: what the lights would add without shadows.
 vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media,
                  out vec3 open, inout uint shadow_rays, inout uint status)
 {
@@ -174,9 +155,8 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media
     lit.lifted = SPEC_TERMINATOR != 0u && lit.receiver.lift != vec3(0.0);
     const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
     uint each = turns_each();
-    uint turn = SPEC_BRUTE == BRUTE_SHADOW ? chunk.light : 0u;
-    uint index = flats ? turn >> uint(findMSB(each)) : turn;
-    if (index >= frame.light_count)
+    uint turn = 0u, index = 0u;
+    if (frame.light_count == 0u)
         return sum;
     do {
         gpu_light light = fetch_light(index);
@@ -188,19 +168,19 @@ vec3 local_light(uint slot, Surface s, Optics o, vec3 view, Hit hit, uvec4 media
             add_turn(slot, turn, light, point, s, o, lit, emitter, sum, open, shadow_rays, status);
             point++;
             turn++;
-            more = flats && SPEC_BRUTE != BRUTE_SHADOW && point < points;
+            more = flats && point < points;
         } while (more);
         if (more)
             status |= STATUS_UNFINISHED_LOOP;
-        if (flats && SPEC_BRUTE != BRUTE_SHADOW && is_flat(light)) {
+        if (flats && is_flat(light)) {
             vec3 emitter_open;
             sum += emitter_light(light, s, o, emitter, emitter_open);
             open += emitter_open;
         }
         index++;
         turn = index * each;
-    } while (SPEC_BRUTE != BRUTE_SHADOW && index < frame.light_count);
-    if (SPEC_BRUTE != BRUTE_SHADOW && index < frame.light_count)
+    } while (index < frame.light_count);
+    if (index < frame.light_count)
         status |= STATUS_UNFINISHED_LOOP;
     return sum;
 }

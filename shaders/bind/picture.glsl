@@ -2,8 +2,8 @@
 #ifndef BIND_PICTURE_GLSL
 #define BIND_PICTURE_GLSL
 
-#include "runs.glsl"
 #include "shading.glsl"
+#include "traverse.glsl"
 
 layout(push_constant) uniform Chunk { gpu_chunk chunk; };
 layout(set = 0, binding = BIND_PIXELS, std430) buffer PixelBuffer { vec4 pixels[]; };
@@ -22,18 +22,6 @@ layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
 
 // RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
 layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
-
-layout(set = 0, binding = BIND_RUNS, std430) readonly buffer RunBuffer { gpu_run runs[]; };
-layout(set = 0, binding = BIND_FOUND, std430) buffer FoundBuffer { gpu_found found[]; };
-layout(set = 0, binding = BIND_PASSED, std430) buffer PassedBuffer
-{
-    gpu_passed passed[]; // frame.light_count per slot of the chunk
-};
-
-gpu_run fetch_run(uint index)
-{
-    return runs[index];
-}
 
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 

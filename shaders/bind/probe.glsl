@@ -135,7 +135,6 @@ uint probe_pop(uint state)
     return state & ((1u << STATE_PROBE_SHIFT) - 1u);
 }
 
-// Without trees it is not known what blocks a light.
 void probe_blocker(uint turn, vec3 origin, vec3 dir, float distance, uint skip_instance,
                    uint skip_primitive, Hit blocker)
 {
@@ -144,8 +143,7 @@ void probe_blocker(uint turn, vec3 origin, vec3 dir, float distance, uint skip_i
                                 origin, dir, distance, probe_weight, skip_instance, skip_primitive);
     if (probe_shadow != PROBE_NONE)
         probe_rays[probe_shadow].turn = turn;
-    if (SPEC_BRUTE == BRUTE_OFF)
-        probe_meet(probe_shadow, origin, dir, blocker);
+    probe_meet(probe_shadow, origin, dir, blocker);
 }
 
 void probe_share(vec3 share)

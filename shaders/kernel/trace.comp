@@ -1,7 +1,7 @@
 // A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "../bind/runs.glsl"
+#include "../bind/traverse.glsl"
 
 layout(local_size_x_id = 0) in;
 
@@ -12,15 +12,6 @@ layout(set = 0, binding = BIND_TRACE_COSTS, std430) buffer CostBuffer
 {
     gpu_cost costs[]; // with SPEC_COUNT
 };
-layout(set = 0, binding = BIND_TRACE_RUNS, std430) readonly buffer RunBuffer
-{
-    gpu_run runs[]; // with SPEC_BRUTE
-};
-
-gpu_run fetch_run(uint index)
-{
-    return runs[index];
-}
 
 bool cutout_is_solid(uint instance, uint primitive, float u, float v)
 {
@@ -67,31 +58,13 @@ vec3 geometric_normal(Hit hit)
     return rotate_rows(c0, c1, c2, n);
 }
 
-// The ray's hit; without trees that within the ranges so far, whose `triangle` is HIT_NONE unless it
-// is in this one.
 Hit trace(const uint mode, uint index)
 {
     gpu_ray ray = rays[index];
-    Hit hit;
-    if (SPEC_BRUTE == BRUTE_OFF) {
-        hit = traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
+    Hit hit = traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
                        HIT_NONE);
-        if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
-            finish_hit(ray.origin, ray.dir, hit);
-        return hit;
-    }
-    hit = make_hit(ray.t_max);
-    hit.triangle = HIT_NONE;
-    gpu_hit before = hits[index];
-    if (batch.begin == 0u && before.primitive != HIT_NONE) {
-        hit.t = before.t;
-        hit.u = before.u;
-        hit.v = before.v;
-        hit.primitive = before.primitive;
-        hit.instance = before.instance;
-    }
-    traverse_runs(mode, ray.origin, ray.dir, ray.t_min, batch.first_run, batch.begin, HIT_NONE,
-                  HIT_NONE, hit);
+    if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
+        finish_hit(ray.origin, ray.dir, hit);
     return hit;
 }
 
@@ -109,11 +82,8 @@ void main()
         return;
     }
     report_status(hit.status);
-    bool resumed = SPEC_BRUTE != BRUTE_OFF && batch.begin == 0u;
     if (SPEC_COUNT != 0u)
-        costs[index] = resumed ? add_up(costs[index], traversal_cost) : traversal_cost;
-    if (resumed && hit.triangle == HIT_NONE)
-        return;
+        costs[index] = traversal_cost;
     bool met = hit.primitive != HIT_NONE;
     gpu_hit answer;
     answer.t = met ? hit.t : uintBitsToFloat(0x7f800000u);

@@ -1,7 +1,6 @@
 // One ray of each pixel's ray tree (Whitted 1980): a camera ray, or the top of the pixel's ray
 // stack. Local light with shadows goes to the pixel, the rays it calls for go on the stack. Pixels
-// with rays left are listed for the next dispatch, so that no dispatch runs long. Without trees one
-// ray is several dispatches, see BRUTE_*.
+// with rays left are listed for the next dispatch, so that no dispatch runs long.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../bind/camera.glsl"
@@ -42,8 +41,6 @@ void push_beyond(uint slot, Crossing c, vec3 dir, vec3 weight, uint steps, uvec4
 void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
                    inout gpu_counts count, inout uint status)
 {
-    if (SPEC_BRUTE == BRUTE_SHADOW)
-        return;
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(ray.steps) >= frame.depth;
     uint steps = ray.steps + STEPS_OF_BOUNCE;
     float solid = 1.0 - o.straight;
@@ -89,8 +86,6 @@ void push_children(uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
 // Straight on, where both sides of a surface are the same medium. Counted as refracted.
 void push_through(uint slot, Ray ray, Crossing c, inout gpu_counts count, inout uint status)
 {
-    if (SPEC_BRUTE == BRUTE_SHADOW)
-        return;
     uint steps = ray.steps + 1u;
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(steps) > frame.depth;
     if (SPEC_PROBE != 0u)
@@ -126,42 +121,6 @@ vec3 shade_hit(uint slot, Ray ray, Hit hit, inout gpu_counts count, inout uint s
         ray.weight *= caught_share(light, open);
     push_children(slot, ray, s, o, c, hit, count, status);
     return radiance;
-}
-
-Hit found_hit(uint slot)
-{
-    gpu_found before = found[slot];
-    Hit hit = make_hit(FLOAT_LARGEST);
-    if (before.primitive == HIT_NONE)
-        return hit;
-    hit.t = before.t;
-    hit.u = before.u;
-    hit.v = before.v;
-    hit.triangle = before.triangle;
-    hit.primitive = before.primitive;
-    hit.instance = before.instance;
-    return hit;
-}
-
-// Without trees: the phases before BRUTE_SHADE. Leaves the pixel alone.
-void extend_ranges(uint slot, Ray ray)
-{
-    Hit hit = make_hit(FLOAT_LARGEST);
-    if (SPEC_BRUTE == BRUTE_SHADOW || chunk.begin == 0u)
-        hit = found_hit(slot);
-    if (SPEC_BRUTE == BRUTE_CLOSEST) {
-        traverse_runs(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, chunk.first_run, chunk.begin,
-                      ray.skip_instance, ray.skip_primitive, hit);
-        add_cost(slot, ray.kind);
-        found[slot] = gpu_found(hit.t, hit.u, hit.v, hit.triangle, hit.primitive, hit.instance,
-                                0u, 0u);
-        report_status(hit.status);
-    } else if (hit.primitive != HIT_NONE) {
-        gpu_counts ignored = NO_COUNTS;
-        uint status = 0u;
-        shade_hit(slot, ray, hit, ignored, status);
-        report_status(status);
-    }
 }
 
 void list_for_next(uint slot)
@@ -202,21 +161,11 @@ void main()
         ray = stacked_ray(slot * frame.stack_size + count.stack);
     } else {
         count.stack = 0u;
-        if (SPEC_BRUTE == BRUTE_OFF || (SPEC_BRUTE == BRUTE_CLOSEST && chunk.begin != 0u))
-            clear_costs(slot);
+        clear_costs(slot);
     }
-    if (SPEC_BRUTE == BRUTE_CLOSEST || SPEC_BRUTE == BRUTE_SHADOW) {
-        extend_ranges(slot, ray);
-        return;
-    }
-    Hit hit;
-    if (SPEC_BRUTE == BRUTE_SHADE) {
-        hit = found_hit(slot);
-    } else {
-        hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
+    Hit hit = traverse(TRAVERSE_CLOSEST, ray.origin, ray.dir, 0.0, FLOAT_LARGEST, frame.root,
                        ray.skip_instance, ray.skip_primitive);
-        add_cost(slot, ray.kind);
-    }
+    add_cost(slot, ray.kind);
     uint status = hit.status;
     bool met = hit.primitive != HIT_NONE;
     ray.weight *= medium_transmittance(ray.media, hit.t); // the largest float for a miss

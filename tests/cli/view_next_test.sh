@@ -126,7 +126,8 @@ still
 state no_trees
 END
 is no_trees keys.trees off
-is no_trees frame.visits_rays 0
+is no_trees frame.visits_rays 1536
+is no_trees frame.visits 1
 # Of a larger picture a part of them.
 play "visits of some" "$SCENES/34k.json" --size 320x240 <<END
 still

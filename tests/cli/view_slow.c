@@ -2,9 +2,7 @@
    as a test wants, on any machine. WHIT_TEST_SLOW says what:
    kernel    a kernel without trees is never done: it waits until nobody wants it any more
    picture   so does a picture of more than 1024 pixels, behind its first part
-   told      pictures are said to have taken 1e7 ms
-   N         each picture without trees takes N ms, and nothing else takes any time */
-#include <stdatomic.h>
+   told      pictures are said to have taken 1e7 ms */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -22,26 +20,16 @@ whit_result __real_whit_renderer_set_view(whit_renderer *renderer,
                                           const whit_renderer_params *params);
 whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
                                           const whit_renderer_params *params);
-whit_result __real_whit_renderer_render(whit_renderer *renderer);
-whit_result __wrap_whit_renderer_render(whit_renderer *renderer);
 void __real_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
 void __wrap_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
-double __real_whit_clock_ms(void);
-double __wrap_whit_clock_ms(void);
 
 static whit_renderer_params asked; /* of the renderer without trees */
 static uint64_t pixels;            /* that a window asked of it; 0: none as yet */
-static atomic_uint drawn;          /* pictures without trees */
 
 static const char *slow(void)
 {
     const char *what = getenv("WHIT_TEST_SLOW");
     return what ? what : "";
-}
-
-static double step_ms(void)
-{
-    return strtod(slow(), NULL);
 }
 
 static void wait_until_cancelled(void)
@@ -80,20 +68,9 @@ whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
     return __real_whit_renderer_set_view(renderer, params);
 }
 
-whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
-{
-    drawn += renderer->accel->no_trees;
-    return __real_whit_renderer_render(renderer);
-}
-
 void __wrap_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out)
 {
     __real_whit_renderer_get_stats(renderer, out);
     if (strcmp(slow(), "told") == 0)
         out->render_ms = 1e7;
-}
-
-double __wrap_whit_clock_ms(void)
-{
-    return step_ms() > 0.0 ? drawn * step_ms() : __real_whit_clock_ms();
 }

@@ -101,7 +101,7 @@ static void run(const uint8_t *data, size_t size_bytes)
     fuzz_log_clear();
     whit_result result = accel_validate(accel);
     fuzz_check(result == WHIT_OK || result == WHIT_ERROR_FAILED, "the result is %d", (int)result);
-    if (result == WHIT_OK && !accel->no_trees)
+    if (result == WHIT_OK)
         fuzz_check_rays(accel);
     give_back(accel->nodes, kept.nodes, node_bytes);
     give_back(accel->triangles, kept.triangles, triangle_bytes);

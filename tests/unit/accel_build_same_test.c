@@ -275,19 +275,30 @@ static void sweeping_is_as_good_as_bins(void **state)
 
 /* ---- No tree ---- */
 
-static void no_tree_is_the_order_of_the_input(void **state)
+/* Full leaves but for one, in the order of the input, and not a box that leaves anything out. */
+static void no_tree_is_one_box_for_all(void **state)
 {
     (void)state;
-    struct bvh_box *boxes = soup(1000, 0.1f);
-    struct bvh bvh;
-    const struct bvh_params params = {.builder = BVH_NONE};
-    assert_int_equal(bvh_build(&silent, boxes, 1000, &params, &bvh), WHIT_OK);
-    assert_int_equal(bvh.node_count, 0);
-    assert_int_equal(bvh.reference_count, 1000);
-    for (uint32_t i = 0; i < 1000; ++i)
-        assert_int_equal(bvh.order[i], i);
-    bvh_finish(&bvh);
-    free(boxes);
+    static const uint32_t counts[] = {1, 15, 16, 1000};
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
+        uint32_t count = counts[c], leaves = (count + BVH_LEAF_MAX - 1) / BVH_LEAF_MAX;
+        struct bvh_box *boxes = soup(count, 0.1f);
+        struct bvh bvh;
+        const struct bvh_params params = {.builder = BVH_NONE, .leaf_limit = BVH_LEAF_MAX};
+        assert_int_equal(bvh_build(&silent, boxes, count, &params, &bvh), WHIT_OK);
+        assert_int_equal(bvh_validate(&silent, &bvh, boxes, BVH_LEAF_MAX), WHIT_OK);
+        assert_int_equal(bvh.leaf_count, leaves);
+        assert_int_equal(bvh.reference_count, count);
+        assert_true(1u << bvh.depth < 2 * leaves);
+        for (uint32_t i = 2; i < bvh.node_count; ++i)
+            assert_memory_equal(bvh.nodes[i].lo, bvh.nodes[0].lo, sizeof bvh.nodes->lo);
+        for (uint32_t i = 2; i < bvh.node_count; ++i)
+            assert_memory_equal(bvh.nodes[i].hi, bvh.nodes[0].hi, sizeof bvh.nodes->hi);
+        for (uint32_t i = 0; i < count; ++i)
+            assert_int_equal(bvh.order[i], i);
+        bvh_finish(&bvh);
+        free(boxes);
+    }
 }
 
 int main(void)
@@ -299,7 +310,7 @@ int main(void)
         cmocka_unit_test(naive_sweep_stops_when_told),
         cmocka_unit_test(sah_is_better_than_medians),
         cmocka_unit_test(sweeping_is_as_good_as_bins),
-        cmocka_unit_test(no_tree_is_the_order_of_the_input),
+        cmocka_unit_test(no_tree_is_one_box_for_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,8 @@
 
 enum { RAYS = 500 };
 
-static const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
+/* As deep a stack as with trees, for the same kernels. */
+static const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
 
 static void make_rays(const struct fixture *f, struct gpu_ray *rays)
 {
@@ -27,7 +28,7 @@ static void make_rays(const struct fixture *f, struct gpu_ray *rays)
     scene_pose_finish(&pose);
 }
 
-/* Against the C twin without trees, hits and costs, and against another one's trees. */
+/* Against the C twin, hits and costs, and against another one's trees. */
 static void check_rays(struct fixture *f, const struct accel *trees)
 {
     struct gpu_ray rays[RAYS];
@@ -38,7 +39,7 @@ static void check_rays(struct fixture *f, const struct accel *trees)
     assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, hits, costs), WHIT_OK);
     assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any, any_costs), WHIT_OK);
     for (uint32_t i = 0; i < RAYS; ++i) {
-        struct gpu_hit twin, tree, twin_any;
+        struct gpu_hit twin, tree, brute, twin_any;
         struct gpu_cost cost = {0}, any_cost = {0};
         traverse_float(f->accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, &cost,
                        &status);
@@ -46,14 +47,21 @@ static void check_rays(struct fixture *f, const struct accel *trees)
                        &any_cost, &status);
         traverse_float(trees, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &tree, NULL,
                        &status);
+        traverse_brute_float(f->accel, &rays[i], &brute);
         bad += memcmp(&twin, &hits[i], sizeof twin) != 0;
         bad += memcmp(&tree, &hits[i], sizeof twin) != 0;
+        bad += memcmp(&brute, &hits[i], sizeof twin) != 0;
         any_bad += memcmp(&twin_any, &any[i], sizeof twin) != 0;
         costs_bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
         costs_bad += memcmp(&any_cost, &any_costs[i], sizeof cost) != 0;
         met += twin.primitive != HIT_NONE;
-        assert_int_equal(cost.pairs + cost.leaves + cost.stack + cost.depth, 0);
-        assert_int_equal(cost.triangles, i == 1 ? 0 : f->scene->triangle_total);
+        /* Nothing in front of a box is met, so no hit takes it out: all of a mesh, or none of it.
+         */
+        const struct scene_mesh *mesh = &f->scene->meshes[0];
+        assert_int_equal(cost.triangles % mesh->triangle_count, 0);
+        assert_int_equal(cost.leaves * BVH_LEAF_MAX / mesh->triangle_count,
+                         cost.triangles / mesh->triangle_count);
+        assert_true(twin.primitive == HIT_NONE || cost.triangles > 0);
     }
     assert_true(met > RAYS / 10 && met < RAYS);
     assert_int_equal(bad, 0);
@@ -62,14 +70,34 @@ static void check_rays(struct fixture *f, const struct accel *trees)
     assert_int_equal(status, 0);
 }
 
+/* Every node of [first, first + count) but the unused one has this box. */
+static void check_boxes(const struct accel *accel, uint32_t first, uint32_t count)
+{
+    const struct gpu_bvh_node *nodes = &accel->nodes[first];
+    for (uint32_t i = 2; i < count; ++i) {
+        assert_memory_equal(nodes[i].lo, nodes[0].lo, sizeof nodes->lo);
+        assert_memory_equal(nodes[i].hi, nodes[0].hi, sizeof nodes->hi);
+    }
+}
+
+/* All in one plane, and so is the box. */
+static struct scene *plain_scene(void)
+{
+    struct scene *scene = scene_begin(&fixture_log, "plain");
+    scene_put(scene, mesh_terrain(10.0, 1e-30, 40, 3), NULL);
+    return scene;
+}
+
 static void rays_equal_those_of_trees(void **state)
 {
     (void)state;
-    struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
-    for (int i = 0; i < 2; ++i) {
+    struct scene *(*const make[])(void) = {terrain_scene, plain_scene, ring_scene};
+    for (int i = 0; i < 3; ++i) {
         const struct render_params params = {.width = 16, .height = 16, .count = true};
         struct fixture f = fixture_open(make[i](), &no_trees, &params);
-        assert_true(f.accel->no_trees);
+        const struct accel_mesh *mesh = &f.accel->meshes[0];
+        check_boxes(f.accel, 0, f.accel->instance_node_count);
+        check_boxes(f.accel, mesh->first_node, mesh->node_count);
         struct accel *trees;
         assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &trees), WHIT_OK);
         check_rays(&f, trees);
@@ -78,41 +106,108 @@ static void rays_equal_those_of_trees(void **state)
     }
 }
 
-/* More triangles than a driver grants loop turns, the nearest hit in any range. */
-static void long_lists_are_cut(void **state)
+/* Triangles one behind the other, all in one box that all of them meet: in a mesh of their own
+   each, or in one. The nearest is anywhere. */
+static struct scene *stack_scene(uint32_t count, bool apart)
 {
-    (void)state;
-    uint32_t count = 70000;
-    struct scene_mesh mesh = mesh_zeroed(3 * count, count);
-    for (uint32_t i = 0; i < count; ++i) {
-        float z = (float)(i * 7919 % count); /* each once, in every range far and near ones */
+    struct scene *scene = scene_begin(&fixture_log, "stack");
+    uint32_t in_mesh = apart ? 1 : count;
+    struct scene_mesh mesh = mesh_zeroed(3 * in_mesh, in_mesh);
+    for (uint32_t i = 0; i < in_mesh; ++i) {
+        float z = (float)(i * 7919 % count);
         const float corners[9] = {0, 0, z, 1, 1, z, 0.5f, 1, z};
         memcpy(&mesh.positions[9 * (size_t)i], corners, sizeof corners);
         for (uint32_t k = 0; k < 3; ++k)
             mesh.indices[3 * i + k] = 3 * i + k;
     }
-    struct scene *scene = scene_begin(&fixture_log, "ranges");
-    scene_put(scene, mesh, NULL);
-    struct fixture f = fixture_open(scene, &no_trees, NULL);
-    assert_true(f.renderer->brute.range_count >= 4);
+    uint32_t index = scene_put_mesh(scene, mesh);
+    for (uint32_t i = 0; i < count / in_mesh; ++i) {
+        double t[3] = {0, 0, apart ? (double)(i * 7919 % count) : 0}, q[4] = {0, 0, 0, 1};
+        struct affine placed = affine_from_trs(t, q, (double[3]){1, 1, 1});
+        scene_put_again(scene, index, &(struct put){.matrix = &placed});
+    }
+    return scene;
+}
+
+/* Rays whose hit is anywhere in the stack, the last of them a miss: as the twin has them. */
+static whit_result trace_stack(const struct fixture *f, uint32_t count)
+{
     struct gpu_ray rays[16];
-    struct gpu_hit hits[16];
-    for (int i = 0; i < 16; ++i) /* a hit in each range, or none at all */
+    struct gpu_hit hits[16], twin;
+    for (int i = 0; i < 16; ++i)
         rays[i] = (struct gpu_ray){{i == 15 ? 0.9f : 0.5f, i == 15 ? 0.1f : 0.75f, -1},
-                                   4999.0f * (float)i,
+                                   (float)(count / 15 * (uint32_t)i),
                                    {0, 0, 1},
                                    INFINITY};
     for (int any = 0; any < 2; ++any) {
-        assert_int_equal(renderer_trace(f.renderer, rays, 16, any, hits, NULL), WHIT_OK);
+        whit_result result = renderer_trace(f->renderer, rays, 16, any, hits, NULL);
+        if (result != WHIT_OK)
+            return result;
         for (int i = 0; i < 16; ++i) {
-            struct gpu_hit twin;
             uint32_t status = 0;
-            traverse_float(f.accel, ORDER_DISTANCE, &rays[i], any, HIT_NONE, HIT_NONE, &twin, NULL,
+            traverse_float(f->accel, ORDER_DISTANCE, &rays[i], any, HIT_NONE, HIT_NONE, &twin, NULL,
                            &status);
             assert_memory_equal(&hits[i], &twin, sizeof twin);
             assert_int_equal(hits[i].primitive == HIT_NONE, i == 15);
         }
     }
+    return WHIT_OK;
+}
+
+static char last_error[512];
+
+static void keep_error(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (level == WHIT_LOG_ERROR)
+        snprintf(last_error, sizeof last_error, "%s", message);
+}
+
+static void check_refused(struct scene *scene, const char *why)
+{
+    const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+    struct accel *accel;
+    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    assert_int_equal(accel_create(&log, scene, &no_trees, &accel), WHIT_ERROR_USAGE);
+    assert_null(accel);
+    assert_non_null(strstr(last_error, why));
+    scene_destroy(scene);
+}
+
+/* As many primitives, or instances, as are possible, to the last of them: within the turns that a
+   driver grants. */
+static void most_are_drawn_and_more_are_refused(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t most;
+        bool apart;
+    } stacks[] = {{40000, false}, {10833, true}};
+    for (int i = 0; i < 2; ++i) {
+        uint32_t most = stacks[i].most;
+        struct fixture f = fixture_open(stack_scene(most, stacks[i].apart), &no_trees, NULL);
+        assert_int_equal(trace_stack(&f, most), WHIT_OK);
+        fixture_close(&f);
+        char why[128];
+        snprintf(why, sizeof why, "stack: without trees every ray tests every primitive, and %u in",
+                 most + 1);
+        check_refused(stack_scene(most + 1, stacks[i].apart), why);
+    }
+}
+
+/* What a driver does not grant is an error, where nothing has refused it before. */
+static void lost_turns_are_noticed(void **state)
+{
+    (void)state;
+    const struct accel_params flat = {.mesh = {.builder = BVH_MEDIAN, .leaf_limit = BVH_LEAF_MAX}};
+    struct scene *scene = stack_scene(70000, false);
+    for (uint32_t i = 0; i < 3 * 70000; ++i)
+        scene->meshes[0].positions[3 * (size_t)i + 2] = (float)(i % 3);
+    struct fixture f = fixture_open(scene, &flat, NULL);
+    struct gpu_ray ray = {{0.9f, 0.1f, -1}, 0, {0, 0, 1}, INFINITY};
+    struct gpu_hit hit;
+    whit_result result = renderer_trace(f.renderer, &ray, 1, false, &hit, NULL);
+    assert_true(result == WHIT_ERROR_STATUS || (result == WHIT_OK && hit.primitive == HIT_NONE));
     fixture_close(&f);
 }
 
@@ -148,7 +243,7 @@ static void check_picture(struct scene *scene, const struct render_params *param
 {
     struct fixture f = {.scene = scene};
     struct accel *trees;
-    assert_int_equal(accel_create(&fixture_log, scene, NULL, &trees), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, scene, &fixture_accel, &trees), WHIT_OK);
     assert_int_equal(accel_create(&fixture_log, scene, &no_trees, &f.accel), WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
     f.device = fixture_device();
@@ -165,9 +260,7 @@ static void check_picture(struct scene *scene, const struct render_params *param
                   (unsigned long long)without.stats.rays_refracted, without.stats.dispatches);
     for (uint32_t k = 0; params->count && k < RAY_KIND_COUNT; ++k) {
         const struct cost_sum *a = &with.stats.costs[k], *b = &without.stats.costs[k];
-        assert_true(a->rays == b->rays && b->pairs == 0 && a->triangles < b->triangles);
-        if (k != RAY_SHADOW) /* which end at what blocks them */
-            assert_true(b->triangles == b->rays * scene->triangle_total);
+        assert_true(a->rays == b->rays && a->triangles < b->triangles);
     }
     picture_finish(&with);
     picture_finish(&without);
@@ -188,60 +281,36 @@ static void glass_equals_that_of_trees(void **state)
     check_picture(scene, &params);
 }
 
-/* Hits and shadows that go on from one dispatch to the next. */
-static void many_ranges_equal_trees(void **state)
+/* Cut-outs, blending and thin glass; media that touch; balls, and shadows through filters. */
+static void scenes_equal_those_of_trees(void **state)
 {
     (void)state;
-    struct scene *scene = glass_scene_of(130, 4);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_true(scene->triangle_total > 2 * 16384);
-    const struct render_params params = {
-        .width = 9, .height = 7, .depth = 3, .camera = glass_camera, .count = true};
-    check_picture(scene, &params);
+    static const char *const names[] = {"layers", "glass-of-water", "whitted"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        char path[256];
+        struct scene *scene;
+        snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, names[i]);
+        assert_int_equal(load_scene(&fixture_log, path, NULL, &scene), WHIT_OK);
+        const struct render_params params = {.width = 12, .height = 9, .depth = 6};
+        check_picture(scene, &params);
+    }
 }
 
-/* Cut-outs, blending, thin glass. */
-static void layers_equal_those_of_trees(void **state)
+/* All rays of an invocation share what a driver grants: refused where they are too many, and
+   noticed by the kernel. */
+static void many_shadows_are_refused(void **state)
 {
     (void)state;
-    struct scene *scene;
-    assert_int_equal(load_scene(&fixture_log, WHIT_SCENES_DIR "/layers.json", NULL, &scene),
-                     WHIT_OK);
-    const struct render_params params = {.width = 12, .height = 9, .depth = 6};
-    check_picture(scene, &params);
-}
-
-/* The clock of this program goes on by this much whenever it is looked at (-Wl,--wrap=clock_ms). */
-static double step_ms;
-double __wrap_clock_ms(void);
-
-double __wrap_clock_ms(void)
-{
-    static double now_ms;
-    return now_ms += step_ms;
-}
-
-/* Refused from a part of it, before anything long begins; where that part takes no time, or with
-   room for all of it, not refused. */
-static void long_pictures_are_refused(void **state)
-{
-    (void)state;
-    struct fixture f = fixture_open(terrain_scene(), &no_trees, NULL);
-    struct render_params params = {.width = 2000, .height = 2000, .samples = 64};
+    const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+    struct fixture f = fixture_open(glass_scene_of(120, 4), &no_trees, NULL);
+    const struct render_params params = {.width = 8, .height = 8, .camera = glass_camera};
     renderer_destroy(f.renderer);
-    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                     WHIT_OK);
-    struct image image;
-    step_ms = 1000.0;
-    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_TIME_LIMIT);
-    assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_ERROR_USAGE);
-    assert_int_equal(brute_check_time(f.renderer), WHIT_ERROR_TIME_LIMIT);
-    f.renderer->params.time_limit_s = 1e9;
-    assert_int_equal(brute_check_time(f.renderer), WHIT_OK);
-    f.renderer->params.time_limit_s = 0.0;
-    f.renderer->brute.time_checked = false;
-    step_ms = 0.0;
-    assert_int_equal(brute_check_time(f.renderer), WHIT_OK);
+    assert_int_equal(renderer_create(&log, f.device, f.accel, &params, &f.renderer), WHIT_OK);
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(last_error, "glass: without trees every ray tests 28992 primitives"));
+    f.accel->turns = 0;
+    whit_result result = renderer_render(f.renderer);
+    assert_true(result == WHIT_OK || result == WHIT_ERROR_STATUS);
     fixture_close(&f);
 }
 
@@ -266,11 +335,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_equal_those_of_trees),
-        cmocka_unit_test(long_lists_are_cut),
+        cmocka_unit_test(most_are_drawn_and_more_are_refused),
+        cmocka_unit_test(lost_turns_are_noticed),
         cmocka_unit_test(glass_equals_that_of_trees),
-        cmocka_unit_test(layers_equal_those_of_trees),
-        cmocka_unit_test(many_ranges_equal_trees),
-        cmocka_unit_test(long_pictures_are_refused),
+        cmocka_unit_test(scenes_equal_those_of_trees),
+        cmocka_unit_test(many_shadows_are_refused),
         cmocka_unit_test(empty_scenes_have_a_picture),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));

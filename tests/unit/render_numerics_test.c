@@ -182,21 +182,6 @@ static void only_fast_leaks(void **state)
     free(hits);
 }
 
-static void refused_without_trees(void **state)
-{
-    (void)state;
-    struct scene *scene = terrain_scene();
-    struct fixture f =
-        fixture_open(scene, &(struct accel_params){.mesh = {.builder = BVH_NONE}}, NULL);
-    const struct render_params params = {.width = 16, .height = 16, .numerics = NUMERICS_EXACT};
-    struct renderer *renderer;
-    const struct log silent = {0};
-    assert_int_equal(renderer_create(&silent, f.device, f.accel, &params, &renderer),
-                     WHIT_ERROR_USAGE);
-    assert_null(renderer);
-    fixture_close(&f);
-}
-
 /* Glass rings over ground: shadows through filters, media, all kinds of traversals. */
 static void pictures_agree(void **state)
 {
@@ -232,6 +217,32 @@ static void pictures_agree(void **state)
     fixture_close(&f);
 }
 
+/* Neither integers nor what waits for them mind that every box is that of everything. */
+static void trees_do_not_matter(void **state)
+{
+    (void)state;
+    const struct accel_params none = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
+    const struct render_params params = {.width = 24,
+                                         .height = 16,
+                                         .depth = 6,
+                                         .camera = glass_camera,
+                                         .bailout = -1.0,
+                                         .numerics = NUMERICS_EXACT};
+    struct image pictures[2];
+    for (int i = 0; i < 2; ++i) {
+        struct fixture f = fixture_open(glass_scene(), i ? &none : NULL, &params);
+        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+        assert_int_equal(renderer_read_color(f.renderer, &pictures[i]), WHIT_OK);
+        struct render_stats stats;
+        renderer_get_stats(f.renderer, &stats);
+        assert_true(stats.waits > 0);
+        fixture_close(&f);
+    }
+    assert_memory_equal(pictures[0].pixels, pictures[1].pixels, 16 * 24 * 16);
+    image_finish(&pictures[0]);
+    image_finish(&pictures[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,8 +253,8 @@ int main(void)
         cmocka_unit_test(ties),
         cmocka_unit_test(spheres),
         cmocka_unit_test(only_fast_leaks),
-        cmocka_unit_test(refused_without_trees),
         cmocka_unit_test(pictures_agree),
+        cmocka_unit_test(trees_do_not_matter),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
