@@ -320,9 +320,9 @@ static whit_result bare_check(struct accel *accel)
     if (primitives <= ACCEL_BARE_MOST && turns <= ACCEL_TURNS_MOST)
         return WHIT_OK;
     log_error(&accel->log,
-              "%s: without trees every ray tests every primitive, and %llu in %u instances are too "
-              "many: %u are possible, fewer in thousands of instances",
-              scene->name, (unsigned long long)primitives, scene->instance_count, ACCEL_BARE_MOST);
+              "%s: without trees every ray tests every primitive, and %llu over all instances are "
+              "too many: %u are possible, fewer in thousands of instances",
+              scene->name, (unsigned long long)primitives, ACCEL_BARE_MOST);
     return WHIT_ERROR_USAGE;
 }
 

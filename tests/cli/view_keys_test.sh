@@ -132,7 +132,7 @@ END
 is refused keys.trees on
 same frame.number placed refused
 same frame.pixels placed refused
-is refused toast "$SCENES/54k.json: without trees every ray tests every primitive, and 54450 in 1 instances are too many: 40000 are possible, fewer in thousands of instances"
+is refused toast "$SCENES/54k.json: without trees every ray tests every primitive, and 54450 over all instances are too many: 40000 are possible, fewer in thousands of instances"
 
 # ---- Bounces and samples, and what is painted ----
 

@@ -189,8 +189,8 @@ static void most_are_drawn_and_more_are_refused(void **state)
         assert_int_equal(trace_stack(&f, most), WHIT_OK);
         fixture_close(&f);
         char why[128];
-        snprintf(why, sizeof why, "stack: without trees every ray tests every primitive, and %u in",
-                 most + 1);
+        snprintf(why, sizeof why,
+                 "stack: without trees every ray tests every primitive, and %u over", most + 1);
         check_refused(stack_scene(most + 1, stacks[i].apart), why);
     }
 }
