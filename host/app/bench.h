@@ -50,6 +50,7 @@ struct bench_case {
     struct bench_scene *scene;
     whit_accel_params accel_params;
     whit_traversal traversal;
+    const char *effects;    /* NULL: what the scene calls for */
     uint32_t width, height; /* 0: the bench's */
     whit_accel *accel;
     whit_accel_info accel_info;

@@ -244,6 +244,7 @@ static whit_result create_renderer(struct bench *bench, struct bench_case *c, bo
         .no_bounces = true,
         .bailout = -1.0,
         .traversal = c->traversal,
+        .effects = c->effects,
         .count = counting,
         .cancel = &cli_cancel,
     };
