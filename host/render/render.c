@@ -398,7 +398,8 @@ whit_result render_check_loops(const struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
     uint64_t shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS] ? lights_rays(renderer) : 0;
-    if (!accel->no_trees || (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
+    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
+        (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
         return WHIT_OK;
     log_error(&renderer->log,
               "%s: without trees every ray tests %llu primitives, which is too much where each hit "

@@ -279,7 +279,7 @@ WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu
                                      const struct progress *progress, double *longest_ms);
 
 /* render.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
-   traces take more turns of loops together than drivers grant it; else WHIT_OK. */
+   traces take more turns of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result render_check_loops(const struct renderer *renderer);
 
 /* render.c: what submissions are made of. */
