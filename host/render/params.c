@@ -47,3 +47,19 @@ whit_result params_check(const struct log *log, struct render_params *params)
     }
     return WHIT_OK;
 }
+
+whit_result params_check_loops(const struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    const struct scene *scene = renderer->scene;
+    uint64_t shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS] ? lights_rays(renderer) : 0;
+    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
+        (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
+        return WHIT_OK;
+    log_error(&renderer->log,
+              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
+              "asks for %llu shadow rays: fewer lights or --light-samples are possible",
+              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
+              (unsigned long long)shadows);
+    return WHIT_ERROR_USAGE;
+}

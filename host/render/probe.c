@@ -257,7 +257,7 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
                                                                    : params->samples};
     whit_result result = check(renderer, x, y);
     if (result == WHIT_OK)
-        result = render_check_loops(renderer);
+        result = params_check_loops(renderer);
     if (result == WHIT_OK)
         result = run(renderer, most > 0 && most < PROBE_RAYS_MOST ? most : PROBE_RAYS_MOST, out,
                      &records);

@@ -393,22 +393,6 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     return result;
 }
 
-whit_result render_check_loops(const struct renderer *renderer)
-{
-    const struct accel *accel = renderer->accel;
-    const struct scene *scene = renderer->scene;
-    uint64_t shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS] ? lights_rays(renderer) : 0;
-    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
-        (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
-        return WHIT_OK;
-    log_error(&renderer->log,
-              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
-              "asks for %llu shadow rays: fewer lights or --light-samples are possible",
-              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
-              (unsigned long long)shadows);
-    return WHIT_ERROR_USAGE;
-}
-
 static whit_result render_picture(struct renderer *renderer, struct progress *progress)
 {
     const struct render_params *params = &renderer->params;
@@ -435,7 +419,7 @@ whit_result renderer_render(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     costs_clear(renderer);
-    whit_result result = render_check_loops(renderer);
+    whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
         result = renderer_compile(renderer);
     if (result == WHIT_OK && !readback_is_late(renderer))

@@ -278,9 +278,9 @@ bool adaptive_draws(const struct progress *progress, size_t index);
 WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
                                      const struct progress *progress, double *longest_ms);
 
-/* render.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
+/* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
    traces take more turns of loops together than the driver grants it; else WHIT_OK. */
-WHIT_CHECK whit_result render_check_loops(const struct renderer *renderer);
+WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
