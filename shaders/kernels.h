@@ -5,7 +5,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum kernel { KERNEL_TRACE, KERNEL_WHITTED, KERNEL_PRESENT, KERNEL_COUNT };
+enum kernel {
+    KERNEL_TRACE,
+    KERNEL_WHITTED,
+    KERNEL_PRESENT,
+    KERNEL_CLOSEST,
+    KERNEL_SHADE,
+    KERNEL_SHADOW,
+    KERNEL_RESOLVE,
+    KERNEL_COUNT
+};
 
 struct kernel_code {
     const char *name;

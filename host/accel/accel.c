@@ -386,6 +386,7 @@ void accel_destroy(struct accel *accel)
     free(accel->triangles);
     free(accel->instances);
     free(accel->meshes);
+    accel_bvh8_finish(&accel->bvh8);
     accel_posing_destroy(accel->posing);
     accel_flat_destroy(accel->world);
     free(accel);

@@ -125,6 +125,17 @@ struct accel_params {
     const char *tree_file; /* mesh trees from bvh_file.c instead of building them; NULL: build */
 };
 
+/* The same trees with up to eight children a node, for kernels of which each lane tests one child.
+   Node i is nodes[8 i] to nodes[8 i + 7]; `first` of an inner child is the number of its node, and
+   empty children come last. Mesh trees first, that over instances behind them. */
+struct accel_bvh8 {
+    struct gpu_bvh_node *nodes;
+    uint32_t *mesh_roots; /* refs, as instance_root: BVH_EMPTY_REF where nothing is */
+    uint32_t node_count, mesh_node_count, capacity;
+    uint32_t instance_root;
+    uint32_t mesh_depth, instance_depth; /* inner nodes on the longest path */
+};
+
 /* nodes: [0, instance_node_count) is the tree over instances, rebuilt by accel_pose within
    [0, instance_node_capacity); mesh trees follow. */
 struct accel {
@@ -149,6 +160,7 @@ struct accel {
     bool no_trees; /* BVH_NONE: rays that meet the box of everything test every primitive */
     uint32_t turns; /* of loops that a ray takes at most then: ACCEL_TURNS_MOST */
     double build_ms, instance_build_ms;
+    struct accel_bvh8 bvh8;      /* after accel_widen */
     struct accel_posing *posing; /* buffers of accel_pose */
     struct accel_flat *world;    /* flat: what its builds share */
 };
@@ -165,13 +177,22 @@ WHIT_CHECK whit_result accel_flat_suits(const struct scene *scene, const struct 
                                         bool *out);
 /* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
 WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
+/* Makes bvh8 of the trees that there are now, to be called again after accel_pose: mesh trees that
+   did not change are kept. */
+WHIT_CHECK whit_result accel_widen(struct accel *accel);
+void accel_bvh8_finish(struct accel_bvh8 *bvh8);
 /* bvh_validate over everything. */
 WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
 /* Refs that a traversal may have to keep: at least 1. */
 uint32_t accel_stack_size(const struct accel *accel);
+/* The same of rays that walk together through bvh8, a multiple of 4. */
+uint32_t accel_packet_stack_size(const struct accel *accel);
 /* Whether any record has TRIANGLE_FILTER_DETAIL. */
 bool accel_filters_vary(const struct accel *accel);
+/* Whether textures or vertex colours have a say in any of them; else these absorb, and that is all.
+ */
+bool accel_filters_patterned(const struct accel *accel);
 /* TRIANGLE_* that the records of a primitive have, but those of its place in a tree. */
 uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uint32_t primitive);
 

@@ -102,7 +102,8 @@ static inline struct gpu_ray accel_local_ray(const struct gpu_instance *instance
 /* What a material means to traversal. */
 struct material_bits {
     uint32_t flags, shadow;
-    bool masked; /* SCENE_ALPHA_MASK: colours of vertices may cut it out */
+    bool masked;    /* SCENE_ALPHA_MASK: colours of vertices may cut it out */
+    bool patterned; /* a filter that textures or vertex colours have a say in */
 };
 
 /* One for each material of the scene. */

@@ -32,8 +32,8 @@ static void filter_bits(const struct scene_material *m, bool colors, struct mate
     bool absorbs = any_channel(m->absorption) && !m->thin_walled;
     bool varies = blends && (colors || has_texture(m, SCENE_SLOT_OPACITY) ||
                              has_texture(m, SCENE_SLOT_DIFFUSE));
-    bool detail =
-        varies || (glassy && (absorbs || tints || has_texture(m, SCENE_SLOT_TRANSMISSION)));
+    bool patterned = varies || (glassy && (tints || has_texture(m, SCENE_SLOT_TRANSMISSION)));
+    bool detail = patterned || (glassy && absorbs);
     double cover = blends ? fmin(fmax((double)m->opacity, 0.0), 1.0) : 1.0;
     uint32_t shadow = 0;
     for (int c = 0; c < 3; ++c) {
@@ -47,6 +47,7 @@ static void filter_bits(const struct scene_material *m, bool colors, struct mate
     if (filters || varies) {
         bits->flags |= TRIANGLE_FILTER | (detail ? TRIANGLE_FILTER_DETAIL : 0);
         bits->shadow = shadow;
+        bits->patterned = patterned;
     }
 }
 
@@ -65,6 +66,8 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
         bits.flags |= TRIANGLE_NO_SHADOW;
     if (m->one_sided && !any_channel(m->transmission))
         bits.flags |= TRIANGLE_ONE_SIDED;
+    if (any_channel(m->transmission))
+        bits.flags |= TRIANGLE_GLASS;
     filter_bits(m, colors, &bits);
     return bits;
 }
@@ -145,6 +148,15 @@ uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uin
     struct material_bits bits =
         material_bits(&scene->materials[material], has_area_lights(scene), has_colors(scene));
     return flags | mesh_flags(&bits, mesh);
+}
+
+bool accel_filters_patterned(const struct accel *accel)
+{
+    const struct scene *scene = accel->scene;
+    bool area_lights = has_area_lights(scene), colors = has_colors(scene), some = false;
+    for (uint32_t i = 0; i < scene->material_count; ++i)
+        some |= material_bits(&scene->materials[i], area_lights, colors).patterned;
+    return some;
 }
 
 bool accel_filters_vary(const struct accel *accel)

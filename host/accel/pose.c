@@ -351,3 +351,9 @@ uint32_t accel_stack_size(const struct accel *accel)
     uint32_t least = accel->params.stack_floor > 1 ? accel->params.stack_floor : 1;
     return depth > least ? depth : least;
 }
+
+uint32_t accel_packet_stack_size(const struct accel *accel)
+{
+    uint32_t depth = accel->bvh8.mesh_depth + accel->bvh8.instance_depth;
+    return depth <= 8 ? 8 : (depth + 3) / 4 * 4;
+}

@@ -244,6 +244,7 @@ whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_
         *info = (whit_kernel_info){
             .instructions = inner.instructions,
             .general_instructions = inner.general_instructions,
+            .largest_instructions = inner.largest_instructions,
             .bindings = inner.bindings,
             .general_bindings = inner.general_bindings,
         };

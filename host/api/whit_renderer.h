@@ -93,7 +93,8 @@ bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect);
 
 /* What is left of the kernel for this renderer, and of the same with every effect. */
 typedef struct whit_kernel_info {
-    uint32_t instructions, general_instructions; /* SPIR-V, in functions */
+    uint32_t instructions, general_instructions; /* SPIR-V, in functions of all kernels */
+    uint32_t largest_instructions;               /* of the largest of the scene's own kernels */
     uint32_t bindings, general_bindings;         /* descriptors */
 } whit_kernel_info;
 /* Takes some 50 ms. WHIT_ERROR_USAGE without a device, WHIT_ERROR_DEVICE when the kernel cannot be

@@ -110,6 +110,7 @@ static json_t *kernel_document(const struct figures *figures)
 {
     json_t *kernel = document_object();
     document_count(kernel, "instructions", figures->kernel.instructions);
+    document_count(kernel, "largest_instructions", figures->kernel.largest_instructions);
     document_count(kernel, "general_instructions", figures->kernel.general_instructions);
     document_count(kernel, "bindings", figures->kernel.bindings);
     document_count(kernel, "general_bindings", figures->kernel.general_bindings);
@@ -264,9 +265,10 @@ static void print_kernel(const struct figures *figures)
 {
     const whit_kernel_info *kernel = &figures->kernel;
     if (kernel->general_instructions)
-        printf("kernel\n  %u of %u instructions, %u of %u bindings%s\n", kernel->instructions,
-               kernel->general_instructions, kernel->bindings, kernel->general_bindings,
-               figures->render->general ? "; drawn by the general one" : "");
+        printf("kernels\n  %u of %u instructions, %u in the largest, %u of %u bindings%s\n",
+               kernel->instructions, kernel->general_instructions, kernel->largest_instructions,
+               kernel->bindings, kernel->general_bindings,
+               figures->render->general ? "; drawn by the general ones" : "");
 }
 
 static void print_frame(const char *name, const struct frame_times *times)

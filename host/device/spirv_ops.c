@@ -20,7 +20,12 @@ struct spirv_shape spirv_shape(uint32_t op)
         return (struct spirv_shape){true, true, false, all};
     if (op >= OP_ATOMIC_LOAD && op <= OP_ATOMIC_XOR && op != OP_ATOMIC_STORE)
         return (struct spirv_shape){true, true, true, all};
+    if (op >= OP_GROUP_ELECT && op <= OP_GROUP_SHUFFLE_XOR && op != OP_GROUP_BALLOT_BIT_COUNT)
+        return (struct spirv_shape){true, true, true, all};
     switch (op) {
+    case OP_GROUP_BALLOT_BIT_COUNT: /* scope, kind of count, value */
+    case OP_GROUP_I_ADD:
+        return (struct spirv_shape){true, true, true, all & ~2u};
     case OP_EXT_INST: /* a set and a number first */
         return (struct spirv_shape){true, true, false, all & ~2u};
     case OP_VARIABLE: /* a storage class first */

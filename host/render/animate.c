@@ -49,8 +49,13 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
     whit_result result = take_pose(renderer, time_s);
     double posed_ms = clock_ms();
     if (result == WHIT_OK) {
+        uint32_t stack_size = renderer->packet_stack_size;
         passes_check(renderer);
         result = upload_all(renderer);
+        if (renderer->packet_stack_size != stack_size) { /* known when nodes of eight are made */
+            beside_finish(renderer);
+            passes_finish(renderer);
+        }
         renderer->between_times = result != WHIT_OK;
     }
     renderer->stats.upload_ms = clock_ms() - posed_ms;

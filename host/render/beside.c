@@ -1,6 +1,6 @@
-/* The general kernel draws while a thread compiles the one for the scene. The thread touches
-   nothing of the renderer: it takes a job that stands alone and leaves a pipeline in it; all else
-   happens in calls of the renderer. Both kernels give the same picture, byte for byte. */
+/* General kernels draw while a thread compiles those for the scene. The thread touches nothing of
+   the renderer: it takes a job that stands alone and leaves pipelines in it; all else happens in
+   calls of the renderer. Both sets of kernels give the same picture, byte for byte. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,17 +10,17 @@
 
 struct beside_job {
     struct device *device;
-    struct variant_job variant;
+    struct stages_job stages;
     struct thread *thread;
-    struct pass pass; /* pipelines alone; of the thread until it is done; empty when it failed */
+    struct stage_set set; /* not bound; of the thread until it is done; empty when it failed */
     atomic_bool done;
 };
 
 static void compile_job(void *context)
 {
     struct beside_job *job = context;
-    if (variant_job_run(job->device, &job->variant, &job->pass) != WHIT_OK)
-        pass_finish(&job->pass);
+    if (stages_job_run(job->device, &job->stages, &job->set) != WHIT_OK)
+        job->set = (struct stage_set){0};
     atomic_store(&job->done, true);
 }
 
@@ -29,18 +29,18 @@ static void job_destroy(struct beside_job *job)
     if (!job)
         return;
     thread_join(job->thread);
-    pass_finish(&job->pass);
+    stage_set_finish(&job->set);
     free(job);
 }
 
-/* NULL when memory or threads run out: then the general kernel stays until the next picture. */
+/* NULL when memory or threads run out: then the general kernels stay until the next picture. */
 static struct beside_job *job_start(const struct renderer *renderer, const struct gpu_spec *spec)
 {
     struct beside_job *job = calloc(1, sizeof *job);
     if (!job)
         return NULL;
     job->device = renderer->device;
-    variant_job_init(renderer, spec, &job->variant);
+    stages_job_init(renderer, spec, true, &job->stages);
     job->thread = thread_start(compile_job, job);
     if (job->thread)
         return job;
@@ -50,36 +50,25 @@ static struct beside_job *job_start(const struct renderer *renderer, const struc
 
 static whit_result create_general(struct renderer *renderer, const struct gpu_spec *spec)
 {
-    struct variant_job variant;
-    struct pass pass = {0};
-    variant_job_init(renderer, spec, &variant);
-    whit_result result = variant_job_run(renderer->device, &variant, &pass);
+    struct stages_job job;
+    struct stage_set set;
+    stages_job_init(renderer, spec, false, &job);
+    whit_result result = stages_job_run(renderer->device, &job, &set);
     if (result == WHIT_OK)
-        result = variant_bind_whitted(renderer, &pass);
-    if (result != WHIT_OK) {
-        pass_finish(&pass);
-        return result;
-    }
-    renderer->whitted = pass;
-    renderer->beside.general = true;
-    return WHIT_OK;
+        result = stages_take(renderer, &set);
+    renderer->beside.general = result == WHIT_OK;
+    return result;
 }
 
-/* The job is done: its kernel in place of the general one. */
+/* The job is done: its kernels in place of the general ones. */
 static whit_result take_over(struct renderer *renderer)
 {
     struct beside_job *job = renderer->beside.job;
-    struct pass pass = job->pass;
-    if (!pass.pipeline)
+    if (!job->set.passes[STAGE_CAMERA].pipeline)
         return WHIT_OK;
-    job->pass = (struct pass){0};
-    whit_result result = variant_bind_whitted(renderer, &pass);
-    if (result != WHIT_OK) {
-        pass_finish(&pass);
+    whit_result result = stages_take(renderer, &job->set);
+    if (result != WHIT_OK)
         return result;
-    }
-    pass_finish(&renderer->whitted);
-    renderer->whitted = pass;
     renderer->beside.general = false;
     job_destroy(job);
     renderer->beside.job = NULL;
@@ -90,10 +79,10 @@ whit_result beside_prepare(struct renderer *renderer)
 {
     struct beside_state *beside = &renderer->beside;
     struct gpu_spec own = variant_spec(renderer), general = variant_beside_spec(renderer);
-    if (renderer->whitted.pipeline && !beside->general)
-        return WHIT_OK;
+    if (stages_are_made(renderer) && !beside->general)
+        return stages_bind(renderer);
     /* Another time may ask for other constants than those that are being compiled. */
-    if (beside->job && memcmp(&beside->job->variant.spec, &own, sizeof own) != 0) {
+    if (beside->job && memcmp(&beside->job->stages.spec, &own, sizeof own) != 0) {
         job_destroy(beside->job);
         beside->job = NULL;
     }
@@ -104,7 +93,7 @@ whit_result beside_prepare(struct renderer *renderer)
         if (result != WHIT_OK || !beside->general)
             return result;
     }
-    return renderer->whitted.pipeline ? WHIT_OK : create_general(renderer, &general);
+    return stages_are_made(renderer) ? stages_bind(renderer) : create_general(renderer, &general);
 }
 
 void beside_finish(struct renderer *renderer)

@@ -28,12 +28,16 @@ whit_result frame_fill(struct renderer *renderer)
     frame->light_samples = lights_samples(renderer);
     frame->environment_size = renderer->scene_buffers.environment_size;
     frame->root = accel->instance_root;
+    frame->root8 = accel->bvh8.instance_root;
     frame->shade_base = 0;
     if (accel->flat) {
         frame->root = accel->meshes[0].root;
+        frame->root8 = renderer->packets ? accel->bvh8.mesh_roots[0] : 0;
     } else if (accel->single_identity) {
         const struct accel_mesh *mesh = &accel->meshes[renderer->scene->instances[0].mesh];
         frame->root = mesh->root;
+        frame->root8 =
+            renderer->packets ? accel->bvh8.mesh_roots[renderer->scene->instances[0].mesh] : 0;
         frame->shade_base = mesh->shade_base;
     }
     frame->depth = renderer->params.depth;

@@ -52,14 +52,17 @@ whit_result params_check_loops(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
-    uint64_t shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS] ? lights_rays(renderer) : 0;
+    bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
+    uint64_t rays = renderer->probe.active ? 1 + (shadows ? lights_rays(renderer) : 0)
+                    : shadows              ? lights_samples(renderer)
+                                           : 1;
     if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
-        (1 + shadows) * accel->turns <= ACCEL_TURNS_MOST)
+        rays * accel->turns <= ACCEL_TURNS_MOST)
         return WHIT_OK;
     log_error(&renderer->log,
               "%s: without trees every ray tests %llu primitives, which is too much where each hit "
-              "asks for %llu shadow rays: fewer lights or --light-samples are possible",
+              "takes %llu rays at once: fewer lights or --light-samples are possible",
               scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
-              (unsigned long long)shadows);
+              (unsigned long long)rays);
     return WHIT_ERROR_USAGE;
 }

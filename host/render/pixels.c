@@ -1,8 +1,9 @@
 /* The buffers of pixels: as many rows and ray trees as the device holds at once. */
 #include "render/renderer.h"
 
-/* Ray stacks cost memory; larger only when asked for. */
-enum { TILE_STACKED_MAX = 128 };
+/* What the stages of a tile leave to each other should stay in caches; larger only when asked for.
+ */
+enum { TILE_USUAL = 192 };
 
 uint32_t pixels_blocks_across(uint32_t pixels)
 {
@@ -17,7 +18,7 @@ static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
 
 static uint32_t largest_tile(const struct renderer *renderer, uint32_t tile_size)
 {
-    uint32_t tile = tile_size ? tile_size : renderer->has_secondary ? TILE_STACKED_MAX : TILE_MAX;
+    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
     uint64_t slot_bytes = 0;
     if (renderer->has_secondary)
@@ -46,14 +47,16 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     uint32_t tile = largest_tile(renderer, tile_size);
     uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
     uint64_t slots = (uint64_t)tile * tile;
+    if (stages_wanted(renderer) && slots > QUEUED_SLOTS_MOST)
+        slots = QUEUED_SLOTS_MOST;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
     /* What nothing is bound to has no bytes, and is not created. */
     bool adaptive = renderer->params.adaptive > 0.0;
-    bool lists = renderer->has_secondary || adaptive;
-    uint64_t waiting_bytes = sizeof(struct gpu_work) + (uint64_t)p->chunk_slots * 4;
-    uint64_t list_bytes = lists ? waiting_bytes : 0;
-    uint64_t stacked = renderer->has_secondary ? (uint64_t)p->chunk_slots * p->stack_size : 0;
+    bool stacks = renderer->has_secondary && !stages_wanted(renderer);
+    bool lists = stacks || adaptive;
+    uint64_t list_bytes = lists ? sizeof(struct gpu_work) + (uint64_t)p->chunk_slots * 4 : 0;
+    uint64_t stacked = stacks ? (uint64_t)p->chunk_slots * p->stack_size : 0;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     const struct {
@@ -67,11 +70,10 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
         {&p->counts, pixels * sizeof(struct gpu_counts), BUFFER_STORAGE | BUFFER_HOST, "counts"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
         {&p->work[0], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
-        {&p->work[1], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 1"},
+        {&p->work[1], stacks ? list_bytes : 0, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST,
+         "work list 1"},
         {&p->work_head, lists ? 16 : 0, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
         {&p->listed, adaptive ? list_bytes : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
-        {&p->waiting, variant_waits(renderer) ? waiting_bytes : 0, BUFFER_STORAGE | BUFFER_INDIRECT,
-         "waiting pixels"},
         {&p->ray_stacks, stacked * sizeof(struct gpu_stacked_ray), BUFFER_STORAGE, "ray stacks"},
         {&p->ray_media,
          renderer->effects.called[SCENE_EFFECT_MEDIA] ? stacked * sizeof(struct gpu_media) : 0,
@@ -85,6 +87,8 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
         if (result == WHIT_OK)
             renderer->scene_buffers.bytes += all[i].bytes;
     }
+    if (result == WHIT_OK && stages_wanted(renderer))
+        result = queues_create(renderer, p);
     if (result == WHIT_OK)
         result = costs_create(renderer);
     p->bytes = renderer->scene_buffers.bytes - before;
@@ -98,8 +102,9 @@ void pixels_finish(struct pixel_buffers *p)
 {
     struct buffer *all[] = {p->pixels,  p->ids,       p->counts,    p->status,
                             p->work[0], p->work[1],   p->work_head, p->ray_stacks,
-                            p->costs,   p->ray_media, p->listed,    p->waiting};
+                            p->costs,   p->ray_media, p->listed};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
+    queues_finish(&p->queues);
     *p = (struct pixel_buffers){0};
 }

@@ -1,6 +1,6 @@
-/* The order of a picture: chunks of pixel blocks; for each sample of a chunk one dispatch of camera
-   rays and, as long as a pixel has rays left, one dispatch a ray. A chunk's size follows measured
-   time, so that no submission runs long. */
+/* The order of a picture: chunks of pixel blocks, each sample of a chunk in stages (stages.c). A
+   chunk's size follows measured time, so that no submission runs long. A pixel that is probed has
+   one dispatch of its camera ray and one a ray as long as there are any left. */
 #include "render/render.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 #include "render/renderer.h"
 
 enum {
-    TILE_FIRST = 64,
+    TILE_FIRST = 96,
     PASSES_FIRST = 8,
     PASSES_MAX = 64,
 };
@@ -37,6 +37,8 @@ whit_result status_check(struct renderer *renderer)
 {
     uint32_t word = 0;
     whit_result result = buffer_read(renderer->pixel_buffers.status, 0, &word, sizeof word);
+    renderer->stages.full = (word & STATUS_QUEUE_FULL) != 0;
+    word &= ~STATUS_QUEUE_FULL;
     if (result != WHIT_OK || word == 0)
         return result;
     const struct {
@@ -144,16 +146,6 @@ void render_take_waiting(struct renderer *renderer, const struct pass *pass, int
     ++renderer->stats.dispatches;
 }
 
-/* The pixels that wait for `chunk`'s dispatch. */
-static void take_waiting_pixels(struct renderer *renderer, const struct gpu_chunk *chunk, int set)
-{
-    struct gpu_chunk waiting = *chunk;
-    waiting.waiting = 1;
-    if (renderer->whitted.looks)
-        render_take_waiting(renderer, &renderer->whitted, set, renderer->pixel_buffers.waiting,
-                            &waiting, sizeof waiting);
-}
-
 void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk)
 {
     const struct pixel_buffers *p = &renderer->pixel_buffers;
@@ -186,7 +178,6 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
         return result;
     commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
     render_clear_work(renderer, 1);
-    render_clear_waiting(renderer, renderer->pixel_buffers.waiting);
     render_take_list(renderer, chunk);
     commands_barrier(commands);
     commands_span_begin(commands, "sample");
@@ -194,7 +185,6 @@ static whit_result record_primary(struct renderer *renderer, const struct gpu_ch
     commands_push(commands, chunk, sizeof *chunk);
     commands_dispatch(commands, render_groups(chunk), 1, 1);
     ++renderer->stats.dispatches;
-    take_waiting_pixels(renderer, chunk, 0);
     return WHIT_OK;
 }
 
@@ -210,25 +200,22 @@ static void record_passes(struct renderer *renderer, const struct gpu_chunk *chu
         uint32_t in = (i + 1) % 2;
         commands_barrier(commands);
         render_clear_work(renderer, 1 - in);
-        render_clear_waiting(renderer, renderer->pixel_buffers.waiting);
         commands_barrier(commands);
         commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[in]);
         commands_push(commands, &stacked, sizeof stacked);
         commands_dispatch_indirect(commands, renderer->pixel_buffers.work[in], 0);
         ++renderer->stats.dispatches;
-        take_waiting_pixels(renderer, &stacked, (int)in);
     }
 }
 
 whit_result render_finish_submission(struct renderer *renderer)
 {
-    commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     return submit(renderer);
 }
 
-whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                          const struct progress *progress, double *longest_ms)
+static whit_result sample_by_stacks(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                    const struct progress *progress, double *longest_ms)
 {
     uint32_t several = renderer->accel->no_trees ? 1 : PASSES_FIRST, first = 0;
     uint32_t passes = renderer->has_secondary ? several : 0;
@@ -263,6 +250,14 @@ whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chu
         record_passes(renderer, chunk, first, passes);
         result = render_finish_submission(renderer);
     }
+}
+
+whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                          const struct progress *progress, double *longest_ms)
+{
+    if (renderer->pixel_buffers.queues.generations)
+        return stages_sample(renderer, chunk, progress, longest_ms);
+    return sample_by_stacks(renderer, chunk, progress, longest_ms);
 }
 
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
@@ -332,6 +327,8 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
         uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;
         uint32_t held = renderer->pixel_buffers.chunk_slots / RENDER_BLOCK_PIXELS;
         blocks = blocks < held ? blocks : held;
+        uint32_t most = renderer->stages.blocks_most;
+        blocks = most && most < blocks ? most : blocks;
         struct gpu_chunk chunk = {.first_block = block,
                                   .block_count = end - block < blocks ? end - block : blocks,
                                   .band_y = band_y,

@@ -54,7 +54,7 @@ struct render_stats {
     double weight_cut_depth, weight_cut_bailout; /* largest sum of one pixel */
     double bailout_bound;                        /* < 0: not known */
     uint64_t pixels_by_samples[4];
-    uint32_t kernel_instructions;
+    uint32_t kernel_instructions, largest_instructions; /* of all kernels; of the largest */
     bool general;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
@@ -94,8 +94,9 @@ WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uin
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
 /* What is left of the kernel for this renderer, and of the same with every effect. */
 struct render_kernel_info {
-    uint32_t instructions, general_instructions;
-    uint32_t bindings, general_bindings; /* counts */
+    uint32_t instructions, general_instructions; /* of all kernels that draw together */
+    uint32_t largest_instructions;               /* of the largest of the scene's own */
+    uint32_t bindings, general_bindings;         /* counts */
 };
 /* WHIT_ERROR_DEVICE when the kernel cannot be specialized. */
 WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer,

@@ -36,22 +36,18 @@ static whit_result create_parts(struct renderer *renderer)
     return result;
 }
 
-/* Renderers that only trace batches never need the large kernel. */
+/* Renderers that only trace batches never need the kernels of pictures. */
 whit_result renderer_compile(struct renderer *renderer)
 {
-    if (renderer->whitted.pipeline && !renderer->beside.general)
-        return WHIT_OK;
+    if (stages_are_made(renderer) && !renderer->beside.general)
+        return stages_bind(renderer);
     double start_ms = clock_ms();
-    whit_result result = renderer->params.compile_beside ? beside_prepare(renderer)
-                                                         : variant_create_whitted(renderer);
-    if (result == WHIT_OK) {
-        struct pipeline_info info;
-        pipeline_get_info(renderer->whitted.pipeline, &info);
-        renderer->stats.kernel_instructions = info.instructions;
+    whit_result result =
+        renderer->params.compile_beside ? beside_prepare(renderer) : stages_compile(renderer);
+    if (result == WHIT_OK)
         renderer->stats.general = renderer->beside.general;
-    } else {
+    else
         passes_finish(renderer);
-    }
     renderer->stats.compile_ms = clock_ms() - start_ms;
     return result;
 }

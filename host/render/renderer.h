@@ -3,6 +3,7 @@
 #define RENDER_RENDERER_H
 
 #include "abi/bindings.h"
+#include "abi/queues.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
 #include "render/bodies.h"
@@ -17,6 +18,19 @@ struct scene_buffers {
     uint32_t environment_size, uv_sets;
     bool smooth_normals, colors; /* what the shading rows hold */
     bool texel_loads;
+    struct buffer *nodes8; /* with renderer->packets */
+    uint64_t bytes;
+};
+
+/* What the stages of a picture leave to each other, of one tile (abi/queues.h). */
+struct queue_buffers {
+    struct buffer *generations, *empty; /* gpu_tally and gpu_generation; as they begin */
+    struct buffer *rays, *media, *hits, *lit, *sums, *children, *hit_list, *cuts;
+    struct buffer *lit_list;
+    struct buffer
+        *waiting;         /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+    struct buffer *kinds; /* RAY_*, with params.count */
+    uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
 };
 
@@ -26,23 +40,51 @@ struct pixel_buffers {
     struct buffer *ray_stacks;          /* NULL: surfaces leave no rays */
     struct buffer *ray_media;           /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
     struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
-    struct buffer *costs;   /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
-    struct buffer *listed;  /* work list of camera rays; NULL when not adaptive */
-    struct buffer *waiting; /* work list of pixels whose rays wait; NULL where none does */
+    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
+    struct buffer *listed; /* work list of camera rays; NULL when not adaptive */
     struct buffer *status;
-    uint32_t band_y;      /* first row that they hold now */
-    uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
-    uint32_t chunk_slots; /* pixels that ray stacks and work lists hold */
-    uint32_t stack_size;  /* rays of one pixel */
-    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
+    struct queue_buffers queues; /* nothing without stages */
+    uint32_t band_y;             /* first row that they hold now */
+    uint32_t band_rows;          /* rows the pixel buffers hold, a multiple of 8 */
+    uint32_t chunk_slots;        /* pixels that ray stacks and work lists hold */
+    uint32_t stack_size;         /* rays of one pixel */
+    uint64_t bytes;              /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
    waiting list, else NULL. */
 struct pass {
     struct pipeline *pipeline, *looks;
+    uint32_t rays_each; /* items that an invocation takes */
     /* What they work on. [1]: with the two work lists exchanged. */
     struct binding_set *sets[2], *looks_sets[2];
+};
+
+/* In the order in which a generation of rays goes through them; the last one from the youngest
+   generation back to the first. */
+enum stage {
+    STAGE_CAMERA,
+    STAGE_CLOSEST,
+    STAGE_SHADE,
+    STAGE_SHADE_GLASS,
+    STAGE_SHADOW,
+    STAGE_SHADOW_LATER,
+    STAGE_RESOLVE,
+    STAGE_COUNT
+};
+
+/* The kernels that draw a picture together. */
+struct stage_set {
+    struct pass passes[STAGE_COUNT]; /* empty where a stage has nothing to do */
+    uint32_t classes;                /* of materials, each with a shading kernel of its own */
+};
+
+struct stages {
+    struct stage_set set;
+    uint32_t expected;    /* generations of the last tile */
+    bool full;            /* a queue was, in the last submission */
+    uint32_t blocks_most; /* of tiles, since one was too large; 0: as many as fit */
+    uint32_t rays_least;  /* that the queues have room for, since a block was too large for them */
 };
 
 struct trace_state {
@@ -68,7 +110,7 @@ struct progress {
 /* With params.compile_beside: see beside.c. */
 struct beside_state {
     struct beside_job *job; /* the specialised kernel in the making; NULL: none is */
-    bool general;           /* renderer->whitted is the general kernel */
+    bool general;           /* renderer->stages.set is of general kernels */
 };
 
 /* What one probed pixel is traced with (probe.c); nothing before the first one. While `active`, the
@@ -91,6 +133,8 @@ struct renderer {
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
     struct pass whitted;
+    struct stages stages;
+    bool packets; /* rays may walk in packets, through nodes of eight children */
     struct trace_state trace;
     struct beside_state beside;
     struct probe_state probe;
@@ -102,7 +146,7 @@ struct renderer {
     struct render_stats stats;
     double create_ms;
     /* What the pipelines were made for. */
-    uint32_t node_stack_size;
+    uint32_t node_stack_size, packet_stack_size;
     bool single_identity;
     bool has_secondary; /* the scene calls for more than camera rays */
     bool between_times; /* another time was only set in part */
@@ -144,6 +188,14 @@ WHIT_CHECK whit_result costs_create(struct renderer *renderer);
 void costs_clear(struct renderer *renderer);
 /* Takes over what the kernel counted for one sample of a chunk. */
 WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
+
+/* queues.c: of p->chunk_slots slots. */
+WHIT_CHECK whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p);
+void queues_finish(struct queue_buffers *queues);
+/* Room for more rays of a tile, where the device has it. What is bound to the queues must be bound
+   anew. */
+bool queues_can_grow(const struct renderer *renderer);
+WHIT_CHECK whit_result queues_grow(struct renderer *renderer);
 
 /* upload.c */
 /* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
@@ -203,20 +255,23 @@ struct gpu_spec variant_beside_spec(const struct renderer *renderer);
 WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
+uint32_t variant_classes(const struct renderer *renderer);
 bool variant_waits(const struct renderer *renderer);
-/* What is needed to make the pipelines of the Whitted kernel; stands alone, and is not
-   to be copied or moved. */
+/* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.
+ */
 struct variant_job {
     struct gpu_spec spec;
-    enum binding_kind kinds[BIND_WHITTED_COUNT];
+    enum binding_kind kinds[BIND_STAGES_COUNT];
     struct pipeline_params params;
 };
 /* pass->pipeline and, where rays wait, pass->looks. */
 WHIT_CHECK whit_result variant_job_run(struct device *device, const struct variant_job *job,
                                        struct pass *pass);
+/* `spec`: of the set of stages, which has `classes` shading kernels. */
 void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
-                      struct variant_job *job);
+                      uint32_t classes, enum stage stage, struct variant_job *job);
 /* Makes the binding sets of the pass. */
+WHIT_CHECK whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 /* CAMERA_* that kernels are made for. */
@@ -225,6 +280,33 @@ void pass_finish(struct pass *pass);
 /* Keeps the pipeline. */
 void pass_unbind(struct pass *pass);
 void passes_finish(struct renderer *renderer);
+
+/* stages.c: pictures in stages. */
+/* What is needed to make a set of kernels; stands alone, and is not to be copied or moved. */
+struct stages_job {
+    struct gpu_spec spec;
+    uint32_t classes;
+    bool wanted[STAGE_COUNT];
+    struct variant_job stages[STAGE_COUNT];
+};
+bool stages_wanted(const struct renderer *renderer);
+/* `own`: the kernels for the scene, else general ones with `spec`. */
+void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
+                     struct stages_job *job);
+WHIT_CHECK whit_result stages_job_run(struct device *device, const struct stages_job *job,
+                                      struct stage_set *out);
+/* Takes over a set, which is empty afterwards, in place of the one that there was. */
+WHIT_CHECK whit_result stages_take(struct renderer *renderer, struct stage_set *set);
+/* Makes the scene's own set where there is none. */
+WHIT_CHECK whit_result stages_compile(struct renderer *renderer);
+/* Binds the set to the buffers that there are, where it is not bound. */
+WHIT_CHECK whit_result stages_bind(struct renderer *renderer);
+bool stages_are_made(const struct renderer *renderer);
+void stages_unbind(struct stages *stages);
+void stage_set_finish(struct stage_set *set);
+/* All rays of one sample of one chunk. *longest_ms: of its submissions. */
+WHIT_CHECK whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                     const struct progress *progress, double *longest_ms);
 
 /* beside.c: renderer->whitted is the best kernel that there is without waiting for it: at first the
    general one, while a thread compiles the specialised one, and from some later call on that. The

@@ -28,7 +28,7 @@ static void drop_pixels(struct renderer *renderer)
 {
     struct pixel_buffers *pixels = &renderer->pixel_buffers;
     struct buffer *status = pixels->status;
-    pass_unbind(&renderer->whitted);
+    stages_unbind(&renderer->stages);
     pixels->status = NULL;
     renderer->scene_buffers.bytes -= pixels->bytes;
     pixels_finish(pixels);
@@ -73,8 +73,6 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     if (result == WHIT_OK && other_kernel) {
         beside_finish(renderer);
         passes_finish(renderer);
-    } else if (result == WHIT_OK && !same && renderer->whitted.pipeline) {
-        result = variant_bind_whitted(renderer, &renderer->whitted);
     }
     renderer->between_times = result != WHIT_OK;
     return result;

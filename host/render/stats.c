@@ -38,6 +38,7 @@ void stats_clear(struct render_stats *stats)
                                    .compile_ms = stats->compile_ms,
                                    .device_bytes = stats->device_bytes,
                                    .kernel_instructions = stats->kernel_instructions,
+                                   .largest_instructions = stats->largest_instructions,
                                    .general = stats->general,
                                    .texel_loads = stats->texel_loads};
 }

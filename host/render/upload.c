@@ -93,6 +93,23 @@ static whit_result upload_instances(struct renderer *renderer)
                        &renderer->scene_buffers.instances);
 }
 
+/* Before the instances, which name their roots. */
+static whit_result upload_nodes8(struct renderer *renderer)
+{
+    const struct accel_bvh8 *bvh8 = &renderer->accel->bvh8;
+    if (!renderer->packets)
+        return WHIT_OK;
+    whit_result result = accel_widen(renderer->accel);
+    uint32_t stack_size = accel_packet_stack_size(renderer->accel);
+    if (stack_size > renderer->packet_stack_size)
+        renderer->packet_stack_size = stack_size;
+    if (result == WHIT_OK)
+        result =
+            store_words(renderer, bvh8->nodes, (uint64_t)bvh8->node_count * 8 * sizeof *bvh8->nodes,
+                        "nodes of eight", &renderer->scene_buffers.nodes8);
+    return result;
+}
+
 static whit_result upload_trees(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -100,6 +117,8 @@ static whit_result upload_trees(struct renderer *renderer)
     whit_result result =
         store_words(renderer, accel->nodes, (uint64_t)accel->node_count * sizeof *accel->nodes,
                     "nodes", &buffers->nodes);
+    if (result == WHIT_OK)
+        result = upload_nodes8(renderer);
     if (result == WHIT_OK)
         result = store_words(renderer, accel->triangles,
                              (uint64_t)accel->record_count * sizeof *accel->triangles, "triangles",
@@ -287,6 +306,10 @@ whit_result upload_scene(struct renderer *renderer)
 {
     struct scene_buffers *buffers = &renderer->scene_buffers;
     buffers->texel_loads = choose_texel_loads(renderer);
+    renderer->packets =
+        stages_wanted(renderer) && buffers->texel_loads && !renderer->accel->no_trees &&
+        device_get_info(renderer->device)->subgroup_size == 8 && !renderer->params.count &&
+        renderer->params.order == ORDER_DISTANCE && renderer->params.numerics != NUMERICS_FAST;
     whit_result result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS,
                                        "nothing", &buffers->none);
     if (result == WHIT_OK)
@@ -310,6 +333,8 @@ whit_result upload_pose(struct renderer *renderer)
         if (bytes > 0)
             result = buffer_write(renderer->scene_buffers.nodes, 0, accel->nodes, bytes);
         if (result == WHIT_OK)
+            result = upload_nodes8(renderer);
+        if (result == WHIT_OK)
             result = upload_instances(renderer);
     }
     return result == WHIT_OK ? lights_write(renderer) : result;
@@ -318,8 +343,9 @@ whit_result upload_pose(struct renderer *renderer)
 void upload_finish(struct scene_buffers *buffers)
 {
     struct buffer *all[] = {
-        buffers->nodes,       buffers->triangles, buffers->instances, buffers->shading,
-        buffers->environment, buffers->texels,    buffers->frame,     buffers->none,
+        buffers->nodes,     buffers->nodes8,  buffers->triangles,
+        buffers->instances, buffers->shading, buffers->environment,
+        buffers->texels,    buffers->frame,   buffers->none,
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);

@@ -1,4 +1,5 @@
 /* Which specialization constants a scene gets, and the pipelines made with them. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/renderer.h"
@@ -37,9 +38,10 @@ static void refine_effects(const struct renderer *renderer, const struct scene_e
     const bool *called = effects->called;
     if (spec->SPEC_FRESNEL != FRESNEL_NONE && renderer->params.schlick)
         spec->SPEC_FRESNEL = FRESNEL_SCHLICK;
-    spec->SPEC_FILTER_DETAIL = called[SCENE_EFFECT_TINTED_SHADOWS] &&
-                               (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_ABSORPTION] ||
-                                called[SCENE_EFFECT_VERTEX_COLORS] || called[SCENE_EFFECT_CUTOUTS]);
+    bool detail = called[SCENE_EFFECT_TINTED_SHADOWS] &&
+                  (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_ABSORPTION] ||
+                   called[SCENE_EFFECT_VERTEX_COLORS] || called[SCENE_EFFECT_CUTOUTS]);
+    spec->SPEC_FILTER_DETAIL = detail ? FILTERS_PATTERNED : FILTERS_PLAIN;
 }
 
 static struct gpu_spec make_spec(const struct renderer *renderer,
@@ -90,7 +92,10 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     if (!renderer->params.all_effects)
         spec.SPEC_LIGHTS &= lights_kinds(&renderer->pose) | added_lights(renderer);
     if (!renderer->params.all_effects && spec.SPEC_FILTER_DETAIL)
-        spec.SPEC_FILTER_DETAIL = accel_filters_vary(renderer->accel);
+        spec.SPEC_FILTER_DETAIL = !accel_filters_vary(renderer->accel)       ? FILTERS_PLAIN
+                                  : accel_filters_patterned(renderer->accel) ? FILTERS_PATTERNED
+                                  : spec.SPEC_ABSORPTION                     ? FILTERS_ABSORB
+                                                                             : FILTERS_PLAIN;
     if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_touch(renderer))
         spec.SPEC_MEDIA = MEDIA_ALONE;
     return spec;
@@ -126,8 +131,8 @@ struct gpu_spec variant_beside_spec(const struct renderer *renderer)
 
 /* What a kernel is bound to, while it is put together. */
 struct bindings {
-    enum binding_kind kinds[BIND_WHITTED_COUNT];
-    struct buffer *buffers[BIND_WHITTED_COUNT];
+    enum binding_kind kinds[BIND_STAGES_COUNT];
+    struct buffer *buffers[BIND_STAGES_COUNT];
     struct buffer *none; /* in place of what the scene lacks */
 };
 
@@ -190,7 +195,6 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     bool texels = scene->texel_loads;
     bind_loads(&bindings, BIND_SHADING, BIND_SHADING_TEXELS, texels, scene->shading);
     bind_loads(&bindings, BIND_TEXELS, BIND_TEXEL_TEXELS, texels, scene->texels);
-    bind(&bindings, BIND_WAITING, BINDING_STORAGE, pixels->waiting);
     bind(&bindings, BIND_FRAME, BINDING_STORAGE, scene->frame);
     bind(&bindings, BIND_ENVIRONMENT, BINDING_STORAGE, scene->environment);
     bind(&bindings, BIND_PIXELS, BINDING_STORAGE, pixels->pixels);
@@ -206,14 +210,34 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     return bindings;
 }
 
-void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
-                      struct variant_job *job)
+/* Those of the stages too. */
+static struct bindings bind_stages(const struct renderer *renderer)
 {
+    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
     struct bindings bindings = bind_whitted(renderer);
-    *job = (struct variant_job){.spec = *spec};
-    memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
-    job->params = whitted_params(&job->spec, &bindings);
-    job->params.bindings = job->kinds;
+    bind(&bindings, BIND_GENERATIONS, BINDING_STORAGE, queues->generations);
+    bind(&bindings, BIND_GENERATION_TEXELS, BINDING_TEXELS, queues->generations);
+    bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
+    bind(&bindings, BIND_RAY_TEXELS, BINDING_TEXELS, queues->rays);
+    bind(&bindings, BIND_WAITING, BINDING_STORAGE, queues->waiting);
+    bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, queues->media);
+    bind(&bindings, BIND_RAY_KINDS, BINDING_STORAGE, queues->kinds);
+    bind(&bindings, BIND_HIT_ROWS, BINDING_STORAGE, queues->hits);
+    bind(&bindings, BIND_HIT_TEXELS, BINDING_TEXELS, queues->hits);
+    bind(&bindings, BIND_HIT_LIST, BINDING_STORAGE, queues->hit_list);
+    bind(&bindings, BIND_LIT_ROWS, BINDING_STORAGE, queues->lit);
+    bind(&bindings, BIND_LIT_TEXELS, BINDING_TEXELS, queues->lit);
+    bind(&bindings, BIND_SUMS, BINDING_STORAGE, queues->sums);
+    bind(&bindings, BIND_SUM_TEXELS, BINDING_TEXELS, queues->sums);
+    bind(&bindings, BIND_CHILDREN, BINDING_STORAGE, queues->children);
+    bind(&bindings, BIND_MEDIA_TEXELS, BINDING_TEXELS, queues->media);
+    bind(&bindings, BIND_CHILD_TEXELS, BINDING_TEXELS, queues->children);
+    bind(&bindings, BIND_LIST_TEXELS, BINDING_TEXELS, queues->hit_list);
+    bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
+    bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
+    bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
+    bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, renderer->scene_buffers.nodes8);
+    return bindings;
 }
 
 /* Both pipelines of the pass, of which `params` tells the first. */
@@ -227,6 +251,8 @@ static whit_result create_pipelines(struct device *device, const struct pipeline
         return result;
     struct pipeline_params looks = *params;
     spec.SPEC_LOOKS = 1;
+    spec.SPEC_PACKETS = 0; /* few rays */
+    spec.SPEC_PACKET_RAYS = 1;
     looks.spec = (const uint32_t *)&spec;
     return pipeline_create(device, &looks, &pass->looks);
 }
@@ -244,6 +270,7 @@ static whit_result create_sets(struct pass *pass, const struct bindings *binding
 
 whit_result variant_job_run(struct device *device, const struct variant_job *job, struct pass *pass)
 {
+    pass->rays_each = job->spec.SPEC_PACKET_RAYS;
     return create_pipelines(device, &job->params, pass);
 }
 
@@ -265,11 +292,131 @@ whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
 
 whit_result variant_create_whitted(struct renderer *renderer)
 {
-    struct variant_job job;
+    struct bindings bindings = bind_whitted(renderer);
     struct gpu_spec spec = variant_spec(renderer);
-    variant_job_init(renderer, &spec, &job);
-    whit_result result = variant_job_run(renderer->device, &job, &renderer->whitted);
+    const struct pipeline_params params = whitted_params(&spec, &bindings);
+    whit_result result = create_pipelines(renderer->device, &params, &renderer->whitted);
     return result == WHIT_OK ? variant_bind_whitted(renderer, &renderer->whitted) : result;
+}
+
+/* Classes of materials that have kernels of their own. */
+uint32_t variant_classes(const struct renderer *renderer)
+{
+    struct scene_effects none = {.called = {false}};
+    bool both = !renderer->params.all_effects &&
+                scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
+                scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;
+    return both ? CLASSES_MOST : 1;
+}
+
+/* Takes out of a shading kernel what the materials of its class do not call for. */
+static void narrow_to_class(const struct renderer *renderer, uint32_t material_class,
+                            struct gpu_spec *spec)
+{
+    static const struct {
+        enum scene_effect effect;
+        uint32_t constant;
+    } all[] = {
+        {SCENE_EFFECT_REFLECTION, offsetof(struct gpu_spec, SPEC_REFLECTION)},
+        {SCENE_EFFECT_REFRACTION, offsetof(struct gpu_spec, SPEC_REFRACTION)},
+        {SCENE_EFFECT_MEDIA, offsetof(struct gpu_spec, SPEC_CROSSINGS)},
+        {SCENE_EFFECT_FRESNEL, offsetof(struct gpu_spec, SPEC_FRESNEL)},
+        {SCENE_EFFECT_TEXTURES, offsetof(struct gpu_spec, SPEC_TEXTURES)},
+        {SCENE_EFFECT_NORMAL_MAPS, offsetof(struct gpu_spec, SPEC_NORMAL_MAPS)},
+        {SCENE_EFFECT_EMISSION, offsetof(struct gpu_spec, SPEC_EMISSION)},
+        {SCENE_EFFECT_HIGHLIGHTS, offsetof(struct gpu_spec, SPEC_HIGHLIGHTS)},
+        {SCENE_EFFECT_METAL_ROUGH, offsetof(struct gpu_spec, SPEC_METAL_ROUGH)},
+        {SCENE_EFFECT_CATCHERS, offsetof(struct gpu_spec, SPEC_CATCHERS)},
+        /* A walk to what touches a surface may meet them too. */
+        {SCENE_EFFECT_CUTOUTS, offsetof(struct gpu_spec, SPEC_CUTOUTS)},
+    };
+    struct scene_effects own = {.called = {false}};
+    bool glass = material_class == CLASS_GLASS;
+    scene_effects_scan_materials(renderer->scene,
+                                 glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE, &own);
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+        bool added = renderer->params.effects_added >> all[i].effect & 1;
+        bool walks =
+            glass && spec->SPEC_MEDIA == MEDIA_TOUCH && all[i].effect == SCENE_EFFECT_CUTOUTS;
+        if (!own.called[all[i].effect] && !added && !walks)
+            memset((char *)spec + all[i].constant, 0, sizeof(uint32_t));
+    }
+}
+
+static uint32_t lit_parts(const struct gpu_spec *spec)
+{
+    bool bent = spec->SPEC_SMOOTH_NORMALS || spec->SPEC_NORMAL_MAPS;
+    bool absorbing = spec->SPEC_FILTER_DETAIL && spec->SPEC_ABSORPTION && spec->SPEC_MEDIA;
+    return (bent ? LIT_HAS_NG : 0) | (spec->SPEC_HIGHLIGHTS ? LIT_HAS_HIGHLIGHT : 0) |
+           (absorbing ? LIT_HAS_ABSORPTION : 0);
+}
+
+/* Of rays that go about the same way. */
+enum { PACKET_RAYS = 4 };
+
+/* As has_looks of shaders/bind/traverse.glsl: a record that waits is looked at for one ray a lane.
+ */
+static bool packets_look(const struct gpu_spec *spec, bool shadow)
+{
+    return (spec->SPEC_NUMERICS == NUMERICS_EXACT && spec->SPEC_LOOKS) || spec->SPEC_CUTOUTS ||
+           (shadow && spec->SPEC_FILTERS && spec->SPEC_FILTER_DETAIL == FILTERS_PATTERNED) ||
+           (!shadow && spec->SPEC_SPHERES != SPHERES_NONE && spec->SPEC_CULLING);
+}
+
+/* The camera's rays and the shadow rays of what they meet go in packets, on lavapipe; what goes
+   all ways is quicker ray by ray. */
+static void choose_packets(const struct renderer *renderer, enum stage stage, struct gpu_spec *spec)
+{
+    uint32_t stack = renderer->packet_stack_size;
+    spec->SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
+    if (!renderer->packets || stack > PACKET_STACK_MOST)
+        return;
+    spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
+    if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
+        return;
+    spec->SPEC_PACKETS = spec->SPEC_BOUNDED = 1;
+    spec->SPEC_PACKET_STACK = stack;
+    spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
+}
+
+void variant_job_init(const struct renderer *renderer, const struct gpu_spec *set_spec,
+                      uint32_t classes, enum stage stage, struct variant_job *job)
+{
+    static const struct {
+        enum kernel kernel;
+        const char *name;
+        bool waits;
+        uint32_t generations;
+    } stages[STAGE_COUNT] = {
+        [STAGE_CAMERA] = {KERNEL_CLOSEST, "camera", true, 1},
+        [STAGE_CLOSEST] = {KERNEL_CLOSEST, "closest", true, 2},
+        [STAGE_SHADE] = {KERNEL_SHADE, "shade", true, 3},
+        [STAGE_SHADE_GLASS] = {KERNEL_SHADE, "shade glass", true, 3},
+        [STAGE_SHADOW] = {KERNEL_SHADOW, "shadow", true, 1},
+        [STAGE_SHADOW_LATER] = {KERNEL_SHADOW, "shadow later", true, 2},
+        [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 3},
+    };
+    struct bindings bindings = bind_stages(renderer);
+    *job = (struct variant_job){.spec = *set_spec};
+    struct gpu_spec *spec = &job->spec;
+    memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
+    spec->SPEC_LOOKS |= !stages[stage].waits;
+    spec->SPEC_LIT_PARTS = lit_parts(spec);
+    spec->SPEC_CLASSES = classes;
+    spec->SPEC_SEGMENTS = spec->SPEC_INTERLEAVE ? 2 : 1;
+    spec->SPEC_GENERATIONS = renderer->has_secondary ? stages[stage].generations : 1;
+    choose_packets(renderer, stage, spec);
+    if (classes > 1 && stages[stage].kernel == KERNEL_SHADE)
+        narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
+    job->params = pass_params(stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
+                              sizeof(struct gpu_chunk), stages[stage].name);
+    job->params.bindings = job->kinds;
+}
+
+whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass)
+{
+    struct bindings bindings = bind_stages(renderer);
+    return create_sets(pass, &bindings, BIND_STAGES_COUNT, 0);
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
@@ -292,39 +439,9 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT, 0) : result;
 }
 
-static uint32_t count_bits(uint64_t bits)
-{
-    uint32_t count = 0;
-    for (; bits; bits &= bits - 1)
-        ++count;
-    return count;
-}
-
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect)
 {
     return (unsigned)effect < SCENE_EFFECT_COUNT && renderer->effects.called[effect];
-}
-
-whit_result renderer_get_kernel(const struct renderer *renderer, struct render_kernel_info *info)
-{
-    struct bindings bindings = bind_whitted(renderer);
-    struct gpu_spec own = variant_spec(renderer), general = variant_general_spec(renderer);
-    const struct pipeline_params own_params = whitted_params(&own, &bindings);
-    const struct pipeline_params general_params = whitted_params(&general, &bindings);
-    struct pipeline_info own_info, general_info;
-    *info = (struct render_kernel_info){0};
-    if (!pipeline_count(&own_params, &own_info) ||
-        !pipeline_count(&general_params, &general_info)) {
-        log_error(&renderer->log, "SPIRV-Tools cannot specialize the kernel");
-        return WHIT_ERROR_DEVICE;
-    }
-    *info = (struct render_kernel_info){
-        .instructions = own_info.instructions,
-        .general_instructions = general_info.instructions,
-        .bindings = count_bits(own_info.bindings),
-        .general_bindings = count_bits(general_info.bindings),
-    };
-    return WHIT_OK;
 }
 
 void pass_unbind(struct pass *pass)
@@ -348,6 +465,7 @@ void passes_finish(struct renderer *renderer)
 {
     renderer->beside.general = false;
     pass_finish(&renderer->whitted);
+    stage_set_finish(&renderer->stages.set);
     pass_finish(&renderer->probe.whitted);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);

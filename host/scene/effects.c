@@ -247,17 +247,29 @@ static bool *worn_materials(const struct scene *scene)
     return worn;
 }
 
+uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
+                                      struct scene_effects *out)
+{
+    bool *worn = worn_materials(scene);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        bool glass = any(scene->materials[i].transmission);
+        if ((worn && !worn[i]) ||
+            (which != SCENE_MATERIALS_ALL && glass != (which == SCENE_MATERIALS_GLASS)))
+            continue;
+        scan_material(scene, out, &scene->materials[i]);
+        ++count;
+    }
+    free(worn);
+    return count;
+}
+
 void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < scene->light_count; ++i) /* first: tinted shadows need shadows */
         scan_light(out, &scene->lights[i]);
-    bool *worn = worn_materials(scene);
-    for (uint32_t i = 0; i < scene->material_count; ++i) {
-        if (!worn || worn[i])
-            scan_material(scene, out, &scene->materials[i]);
-    }
-    free(worn);
+    scene_effects_scan_materials(scene, SCENE_MATERIALS_ALL, out);
     scan_geometry(scene, out);
     const struct scene_environment *sky = &scene->environment;
     if (sky->kind == SCENE_ENVIRONMENT_MAP && sky->rgb)

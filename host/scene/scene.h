@@ -374,4 +374,13 @@ struct scene_effects {
 const char *scene_effect_name(enum scene_effect effect);
 void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
 
+enum scene_materials {
+    SCENE_MATERIALS_ALL,
+    SCENE_MATERIALS_OPAQUE, /* nothing passes through them */
+    SCENE_MATERIALS_GLASS,  /* the others */
+};
+/* Adds what these materials call for; gives how many of them some primitive wears. */
+uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
+                                      struct scene_effects *out);
+
 #endif

@@ -36,4 +36,27 @@
 #define BIND_PROBE          22
 #define BIND_WHITTED_COUNT  23
 
+/* The stages of a picture: those of the Whitted kernel, and what one stage leaves to the next. */
+#define BIND_GENERATIONS         23
+#define BIND_RAY_ROWS            24
+#define BIND_RAY_TEXELS          25
+#define BIND_HIT_ROWS            26
+#define BIND_HIT_TEXELS          27
+#define BIND_LIT_ROWS            28
+#define BIND_LIT_TEXELS          29
+#define BIND_SUMS                30
+#define BIND_SUM_TEXELS          31
+#define BIND_CHILDREN            32
+#define BIND_HIT_LIST            33
+#define BIND_RAY_KINDS           34
+#define BIND_CUTS                35
+#define BIND_NODE8_TEXELS        36
+#define BIND_MEDIA_TEXELS        37
+#define BIND_CHILD_TEXELS        38
+#define BIND_LIST_TEXELS         39
+#define BIND_LIT_LIST            40
+#define BIND_LIT_LIST_TEXELS     41
+#define BIND_GENERATION_TEXELS   42
+#define BIND_STAGES_COUNT        43
+
 #endif

@@ -64,7 +64,8 @@ GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 #define TRIANGLE_SPHERE        16u
 #define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, but by shadow rays */
 #define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth is a matter of the point met */
-#define TRIANGLE_INSTANCE_SHIFT 7u /* flat: its instance is in the bits from here up */
+#define TRIANGLE_GLASS         128u /* light passes through it */
+#define TRIANGLE_INSTANCE_SHIFT 8u /* flat: its instance is in the bits from here up */
 #define SHADOW_DEPTH_SCALE 64.0
 
 /* An object placed in the world. t is the same in both spaces: directions are not renormalised.
@@ -87,7 +88,7 @@ struct gpu_instance {
     gpu_vec3 forward2;
     gpu_float center_z;
     gpu_float reach; /* half the longest side of that box */
-    gpu_float pad0;
+    gpu_uint root8;  /* ref of the mesh tree of eight children a node */
     gpu_float pad1;
     gpu_float pad2;
 };
@@ -162,6 +163,8 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MOST media */
+/* No reason but to draw the tile in smaller ones: a queue between stages was full. */
+#define STATUS_QUEUE_FULL 128u
 /* Of one ray, never in the word: without SPEC_LOOKS floats leave it open, and nothing else counts. */
 #define STATUS_RAY_WAITS 64u
 

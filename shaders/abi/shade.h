@@ -154,7 +154,8 @@ struct gpu_frame {
     gpu_uint light_samples;   /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
     gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
-    gpu_float pad0, pad1;
+    gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
+    gpu_float pad0;
 };
 GPU_ASSERT_SIZE(gpu_frame, 208)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
@@ -196,9 +197,12 @@ struct gpu_chunk {
     gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
     gpu_uint listed;  /* camera rays of so many pixels, in the work list; 0: of all */
     gpu_uint waiting; /* 1: the pixels on the waiting list */
-    gpu_uint pad0;
+    gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty */
+    gpu_uint generation;                 /* of rays */
+    gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
+    gpu_uint list;                       /* LIST_* that the dispatch works on */
 };
-GPU_ASSERT_SIZE(gpu_chunk, 56)
+GPU_ASSERT_SIZE(gpu_chunk, 72)
 
 /* What the kernel counted for a pixel. */
 struct gpu_counts {

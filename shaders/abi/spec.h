@@ -30,6 +30,23 @@
 #define SPHERES_SOME 1u
 #define SPHERES_ONLY 2u /* no triangle at all */
 
+/* Classes of materials. */
+#define CLASS_PLAIN 0u
+#define CLASS_GLASS 1u /* light passes through it */
+
+/* What a hit that lights are asked for has besides the parts that all have. */
+#define LIT_HAS_NG         1u /* a normal that is not the shading normal */
+#define LIT_HAS_HIGHLIGHT  2u
+#define LIT_HAS_ABSORPTION 4u /* of the media around */
+
+/* SPEC_PACKET_STACK at most. */
+#define PACKET_STACK_MOST 32u
+
+/* Filters whose depth is not that of their record alone. */
+#define FILTERS_PLAIN     0u
+#define FILTERS_ABSORB    1u
+#define FILTERS_PATTERNED 2u /* by textures or vertex colours, too */
+
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
 #define NUMERICS_FAST       1u /* Moeller and Trumbore, plain slabs: leaks */
@@ -67,7 +84,7 @@
     X(27, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of what they are in */        \
     X(28, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
     X(29, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
-    X(30, SPEC_FILTER_DETAIL, 1)      /* filters that textures pattern, or that absorb */          \
+    X(30, SPEC_FILTER_DETAIL, 2)      /* FILTERS_*: whose depth is a matter of the place */        \
     X(31, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
     X(32, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
     X(33, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
@@ -75,7 +92,18 @@
     X(35, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
     X(36, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
     X(37, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
-    X(38, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */
+    X(38, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */    \
+    X(39, SPEC_PACKETS, 0)            /* the rays of a subgroup of 8 lanes walk together */        \
+    X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes, and are slow to add them up */    \
+    X(41, SPEC_PACKET_RAYS, 1)        /* rays of a lane */                                         \
+    X(42, SPEC_PACKET_STACK, 16)      /* nodes on the stack of a packet */                         \
+    X(43, SPEC_BOUNDED, 0)            /* rays of a packet go about the same way */                 \
+    X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays where camera rays are */  \
+    X(45, SPEC_GENERATIONS, 3)        /* bit 0: camera rays; bit 1: later generations */           \
+    X(46, SPEC_CLASSES, 1)            /* kernels for what materials call for */                    \
+    X(47, SPEC_CROSSINGS, 1)          /* surfaces of the class bound media */                      \
+    X(48, SPEC_LIT_PARTS, 7)          /* LIT_HAS_* */                                              \
+    X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -182,7 +182,7 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
     c.ng = s.ng;
     c.instance = hit.instance;
     c.primitive = hit.primitive;
-    if (SPEC_MEDIA == 0u || !bounds_medium(m))
+    if (SPEC_MEDIA == 0u || SPEC_CROSSINGS == 0u || !bounds_medium(m))
         return c;
     if (is_crossed_already(ray, hit, s, inside)) {
         c.seen = false;

@@ -7,21 +7,18 @@
 #include "media.glsl"
 #include "surface.glsl"
 
-// Where the shadow ray in hand ends, at the light; 0 for suns. Set before each traversal. Absorption
-// is told from there: a surface that enters a body adds what the body would absorb from there on to
+// Absorption is told from where the shadow ray ends, at the light, or for suns at 0: a surface that enters a body adds what the body would absorb from there on to
 // the end, one that leaves it takes that away again, and where the ray starts in a body it starts
 // with all of it (surrounding_absorption). So what remains is the path inside, wherever the ray's
 // ends are. No sun is inside anything, so the end may lie at 0, before the ray.
 // Open meshes: who enters and never leaves is absorbed up to the light, as seen by the eye, whose ray
 // stays in the medium; who leaves without having entered comes out below 0, which counts as 0.
-float filter_end;
-
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
 const float DEPTH_MOST = 1073741824.0;        // 2^30; sums wrap around, and back
 
-ivec3 absorption_depth(vec3 absorption, float t)
+ivec3 absorption_depth(vec3 absorption, float way)
 {
-    vec3 depth = absorption * ((filter_end - t) * DEPTH_OF_ABSORPTION);
+    vec3 depth = absorption * (way * DEPTH_OF_ABSORPTION);
     return ivec3(floor(clamp(depth, vec3(-DEPTH_MOST), vec3(DEPTH_MOST)) + 0.5));
 }
 
@@ -49,12 +46,14 @@ ivec3 filter_depth(vec3 kept)
 }
 
 // As surface_optics has it for the straight and the refracted ray, without Fresnel.
-ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front, ivec3 own)
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front, ivec3 own)
 {
     if (SPEC_FILTER_DETAIL == 0u)
         return own;
     uint index = shade_index_of(instance, primitive);
     gpu_material m = fetch_material(fetch_material_index(index));
+    if (SPEC_FILTER_DETAIL == FILTERS_ABSORB)
+        return own + (front ? absorption_depth(m.absorption, way) : -absorption_depth(m.absorption, way));
     vec4 color = vertex_color(index, u, v);
     vec3 passes = m.transmission;
     vec3 base = m.diffuse * color.rgb;
@@ -75,7 +74,7 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bo
     float cover = blends ? clamp(opacity * color.a, 0.0, 1.0) : 1.0;
     ivec3 depth = filter_depth(1.0 - cover + cover * passes);
     if (SPEC_ABSORPTION != 0u && (m.flags & MATERIAL_THIN) == 0u) {
-        ivec3 absorbed = absorption_depth(m.absorption, t);
+        ivec3 absorbed = absorption_depth(m.absorption, way);
         depth += front ? absorbed : -absorbed;
     }
     return depth;

@@ -20,8 +20,6 @@ struct Receiver {
 Hit find_blocker(uint slot, vec3 origin, vec3 to_light, float distance, uint skip_instance,
                  uint skip_primitive)
 {
-    if (SPEC_FILTER_DETAIL != 0u)
-        filter_end = distance < FLOAT_LARGEST ? distance : 0.0;
     Hit blocker = traverse(TRAVERSE_SHADOW, origin, to_light, 0.0, distance, frame.root,
                            skip_instance, skip_primitive);
     add_cost(slot, RAY_SHADOW);
@@ -56,7 +54,7 @@ vec3 light_share(uint slot, uint turn, Surface s, Receiver at, LightTurn light, 
         return vec3(1.0);
     ivec3 depth = blocker.filter_depth;
     if (SPEC_FILTER_DETAIL != 0u && SPEC_ABSORPTION != 0u)
-        depth = max(depth + absorption_depth(at.absorption, 0.0), ivec3(0));
+        depth = max(depth + absorption_depth(at.absorption, distance < FLOAT_LARGEST ? distance : 0.0), ivec3(0));
     return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
 }
 

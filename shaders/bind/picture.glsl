@@ -47,13 +47,19 @@ uvec2 slot_pixel(uint slot)
     return uvec2(block % blocks_x, block / blocks_x) * 8u + uvec2(x, y);
 }
 
-// Adds what the last traverse() cost to the pixel's rays of `kind`.
+// Adds what the last traverse() cost to the pixel's rays of `kind`. HIT_NONE: of no pixel.
 void add_cost(uint slot, uint kind)
 {
-    if (SPEC_COUNT == 0u)
+    if (SPEC_COUNT == 0u || slot == HIT_NONE)
         return;
-    uint at = slot * RAY_KIND_COUNT + kind;
-    costs[at] = add_up(costs[at], traversal_cost);
+    uint at = slot * RAY_KIND_COUNT + kind; // rays of a pixel may end at the same time
+    atomicAdd(costs[at].rays, traversal_cost.rays);
+    atomicAdd(costs[at].pairs, traversal_cost.pairs);
+    atomicAdd(costs[at].leaves, traversal_cost.leaves);
+    atomicAdd(costs[at].instances, traversal_cost.instances);
+    atomicAdd(costs[at].triangles, traversal_cost.triangles);
+    atomicMax(costs[at].stack, traversal_cost.stack);
+    atomicMax(costs[at].depth, traversal_cost.depth);
 }
 
 void clear_costs(uint slot)

@@ -66,16 +66,34 @@ struct Primitive {
     bool is_sphere;
 };
 
+struct RecordRows {
+    uvec4 r0, r1, r2;
+};
+
+bool has_third_row()
+{
+    return SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u;
+}
+
+RecordRows fetch_record(uint record)
+{
+    RecordRows rows;
+    rows.r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
+    rows.r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
+    rows.r2 = uvec4(0u);
+    if (has_third_row())
+        rows.r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    return rows;
+}
+
 // With SPEC_FLAT the record names its instance.
-Primitive fetch_primitive(const uint mode, uint record, uint instance, uint skip_instance,
-                          uint skip_primitive)
+Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint skip_instance,
+                         uint skip_primitive)
 {
     Primitive p;
-    p.r0 = fetch_triangle_row(record * TRIANGLE_ROWS);
-    p.r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
-    p.r2 = uvec4(0u);
-    if (SPEC_SPHERES != SPHERES_ONLY || SPEC_FILTERS != 0u)
-        p.r2 = fetch_triangle_row(record * TRIANGLE_ROWS + 2u);
+    p.r0 = rows.r0;
+    p.r1 = rows.r1;
+    p.r2 = rows.r2;
     p.index = p.r0.w;
     p.flags = p.r1.w;
     p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;

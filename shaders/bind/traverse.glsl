@@ -1,6 +1,6 @@
 // Stackful traversal: the one traversal source for every order of children (SPEC_ORDER). Two loops
 // side by side, one over nodes and one over records, both do-while: on lavapipe an `if` costs both
-// its sides and only the end of a loop branches (docs/benchmarks.md). accel/traverse.c is this file
+// its sides and only the end of a loop branches (docs/performance.md). accel/traverse.c is this file
 // in C.
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
@@ -13,9 +13,9 @@
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // Defined by the kernel: the optical depth that a filter with TRIANGLE_FILTER_DETAIL adds to a shadow
-// ray that meets it at `t` from the front or from behind, in units of 1/64 stop. `own` is that of its
-// record. What enters and leaves a medium adds with either sign: only the sum need not be negative.
-ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
+// ray that meets it from the front or from behind, in units of 1/64 stop. `way`: from there to the light;
+// for suns to the ray's origin, which is less than 0. `own` is that of its record. What enters and leaves a medium adds with either sign: only the sum need not be negative.
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
 
 // Whether a hit comes behind the one that is known; at NUMERICS_EXACT it goes by keys.
@@ -24,6 +24,20 @@ bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint
     return t > hit_before ||
            (t == hit_before && (instance > known_instance || (instance == known_instance &&
                                                               primitive > known_primitive)));
+}
+
+// Of the 8 lanes of a packet, which all must be here: shuffles are single instructions on lavapipe, ballots
+// and the like loops over lanes.
+uint gather_lanes(uint bits)
+{
+    bits |= subgroupShuffleXor(bits, 1u);
+    bits |= subgroupShuffleXor(bits, 2u);
+    return bits | subgroupShuffleXor(bits, 4u);
+}
+
+bool any_lane(bool wanted)
+{
+    return gather_lanes(uint(wanted)) != 0u;
 }
 
 const uint REF_DONE = 0xffffffffu;
@@ -207,10 +221,26 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
     return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
+bool has_integers()
+{
+    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u;
+}
+
+// Filters that need not be looked at: what they add is told by the record, or by it and the distance.
+bool filters_in_passing()
+{
+    return SPEC_FILTER_DETAIL != FILTERS_PATTERNED && SPEC_CUTOUTS == 0u && !has_integers();
+}
+
+bool looks_at_filters(const uint mode)
+{
+    return mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && !filters_in_passing();
+}
+
 // Whether rays may go on through a sphere's near end where nothing is marked at it.
 bool goes_through(const uint mode)
 {
-    return SPEC_CUTOUTS != 0u || (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+    return SPEC_CUTOUTS != 0u || looks_at_filters(mode) ||
            mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
 }
 
@@ -239,6 +269,17 @@ bool is_reached(const uint mode, Meeting m, uint flags, uint instance, uint prim
     return reached;
 }
 
+void add_filter(Meeting m, vec2 uv, uint flags, uint shadow, uint instance, uint primitive,
+                inout Hit hit)
+{
+    ivec3 depth = ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
+    float end = hit.t < FLOAT_LARGEST ? hit.t : 0.0; // of the ray: so far it met nothing that ends it
+    if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
+        depth = filter_detail(instance, primitive, uv.x, uv.y, end - m.t, m.front, depth);
+    if (m.owned) // an edge within glass counts once
+        hit.filter_depth += depth;
+}
+
 // What is reached, unless something about it says no; filters add up and are not hits. `uv`: where
 // textures are read. `refused`: the ray goes on through the point.
 bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow, uint instance,
@@ -251,12 +292,7 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
         accepted = cutout_is_solid(instance, primitive, uv.x, uv.y);
     if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && accepted &&
         (flags & TRIANGLE_FILTER) != 0u) {
-        ivec3 depth =
-            ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
-        if (SPEC_FILTER_DETAIL != 0u && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
-            depth = filter_detail(instance, primitive, uv.x, uv.y, m.t, m.front, depth);
-        if (m.owned) // an edge within glass counts once
-            hit.filter_depth += depth;
+        add_filter(m, uv, flags, shadow, instance, primitive, hit);
         accepted = false;
     }
     refused = is_nearer(m, instance, primitive, hit) && !accepted;
@@ -283,16 +319,11 @@ bool is_unsure(const uint mode, Meeting m, Hit hit)
     return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);
 }
 
-bool has_integers()
-{
-    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u;
-}
-
 // Whether some record may have to be looked at before it counts: see look_at_record.
 bool has_looks(const uint mode)
 {
     return has_integers() || SPEC_CUTOUTS != 0u ||
-           (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u) ||
+           looks_at_filters(mode) ||
            (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
 }
 
@@ -302,14 +333,41 @@ bool is_over(const uint mode, bool accepted, Hit hit)
     return (accepted && !finds_closest(mode)) || must_wait(hit.status);
 }
 
+// NUMERICS_EXACT without SPEC_LOOKS: whether the ray waits as floats leave open how it meets this.
+bool leaves_open(const uint mode, bool reached, Meeting m, inout Hit hit)
+{
+    bool open = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u && reached &&
+                is_unsure(mode, m, hit);
+    hit.status |= open ? STATUS_RAY_WAITS : 0u;
+    return open;
+}
+
+// A filter that is met, at both its ends where it is a sphere. False: it is none.
+bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit, Meeting m,
+                 inout Hit hit)
+{
+    if ((p.flags & TRIANGLE_FILTER) == 0u)
+        return false;
+    add_filter(m, vec2(0.0), p.flags, p.r2.w, p.instance, p.index, hit);
+    if (SPEC_SPHERES != SPHERES_NONE && p.is_sphere && !at_exit) {
+        Meeting far = meet_sphere(ray, chord, t_min, true, p.own);
+        bool reached = is_reached(TRAVERSE_SHADOW, far, p.flags, p.instance, p.index, HIT_NONE,
+                                  HIT_NONE, hit);
+        if (reached && !leaves_open(TRAVERSE_SHADOW, reached, far, hit))
+            add_filter(far, vec2(0.0), p.flags, p.r2.w, p.instance, p.index, hit);
+    }
+    return true;
+}
+
 // Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal
 // may end. `waits`: it is met, but has to be looked at first.
-bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
-                 uint skip_instance, uint skip_primitive, inout Hit hit, out bool waits)
+bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRows rows,
+               uint instance, uint skip_instance, uint skip_primitive, inout Hit hit,
+               out bool waits)
 {
     if (SPEC_COUNT != 0u)
         traversal_cost.triangles++;
-    Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
+    Primitive p = make_primitive(mode, rows, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
     bool at_exit = starts_at_exit(mode, p, chord, t_min);
     Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
@@ -318,8 +376,7 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
     waits = false;
     if (has_looks(mode)) {
         bool marked = (SPEC_CUTOUTS != 0u && (p.flags & TRIANGLE_CUTOUT) != 0u) ||
-                      (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u &&
-                       (p.flags & TRIANGLE_FILTER) != 0u);
+                      (looks_at_filters(mode) && (p.flags & TRIANGLE_FILTER) != 0u);
         waits = accepted && marked;
         if (SPEC_SPHERES != SPHERES_NONE && goes_through(mode))
             waits = waits || (p.is_sphere && chord.met);
@@ -327,26 +384,41 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
             waits = waits || (accepted && is_unsure(mode, m, hit));
         accepted = accepted && !waits;
     }
-    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u && accepted &&
-        is_unsure(mode, m, hit)) {
-        hit.status |= STATUS_RAY_WAITS;
+    if (leaves_open(mode, accepted, m, hit))
         return true;
-    }
+    if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && filters_in_passing() && accepted)
+        accepted = !pass_filter(ray, t_min, p, chord, at_exit, m, hit);
     if (accepted)
         keep_hit(m, at_exit, record, p.index, p.instance, hit);
-    return !finds_closest(mode) && accepted;
+    return (!finds_closest(mode) && accepted) || must_wait(hit.status);
+}
+
+bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
+                 uint skip_instance, uint skip_primitive, inout Hit hit, out bool waits)
+{
+    return test_rows(mode, ray, t_min, record, fetch_record(record), instance, skip_instance,
+                     skip_primitive, hit, waits);
+}
+
+// Whether a loop has another turn: in a packet for all lanes alike. There lavapipe 22.3 added a filter twice
+// in lanes that had left the loop before others.
+bool goes_on(bool again)
+{
+    return SPEC_PACKETS != 0u ? any_lane(again) : again;
 }
 
 // Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
 // end of a sphere behind an end that does. `origin`, `dir`: of the ray in world space.
-bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
-                    uint instance, uint skip_instance, uint skip_primitive, inout Hit hit)
+bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
+                  RecordRows rows, uint instance, uint skip_instance, uint skip_primitive,
+                  inout Hit hit)
 {
-    Primitive p = fetch_primitive(mode, record, instance, skip_instance, skip_primitive);
+    Primitive p = make_primitive(mode, rows, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
     bool at_exit = starts_at_exit(mode, p, chord, t_min);
-    bool accepted = false, again;
+    bool accepted = false, again = true;
     do {
+        bool own_turn = again;
         again = false;
         Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
         bool open = SPEC_NUMERICS == NUMERICS_EXACT &&
@@ -363,16 +435,25 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
             p.is_sphere)
             uv = sphere_uv(dir_from_square(uv));
         bool refused;
-        accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index, skip_instance,
-                                  skip_primitive, hit, refused);
-        if (accepted)
-            keep_hit(m, at_exit, record, p.index, p.instance, hit);
-        again = p.is_sphere && goes_through(mode) && refused && !at_exit;
+        if (own_turn) {
+            accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index,
+                                      skip_instance, skip_primitive, hit, refused);
+            if (accepted)
+                keep_hit(m, at_exit, record, p.index, p.instance, hit);
+            again = p.is_sphere && goes_through(mode) && refused && !at_exit;
+        }
         at_exit = true;
-    } while (again);
+    } while (goes_on(again));
     if (again) // the driver has ended the loop
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
     return is_over(mode, accepted, hit);
+}
+
+bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
+                    uint instance, uint skip_instance, uint skip_primitive, inout Hit hit)
+{
+    return look_at_rows(mode, ray, origin, dir, t_min, record, fetch_record(record), instance,
+                        skip_instance, skip_primitive, hit);
 }
 
 // The ref behind a leaf's record that was tested.

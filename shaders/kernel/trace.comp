@@ -1,6 +1,8 @@
 // A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/traverse.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -18,7 +20,7 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     return true;
 }
 
-ivec3 filter_detail(uint instance, uint primitive, float u, float v, float t, bool front,
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own)
 {
     return own;

@@ -3,6 +3,8 @@
 // with rays left are listed for the next dispatch, so that no dispatch runs long.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/camera.glsl"
 #include "../bind/crossing.glsl"
 #include "../bind/lighting.glsl"

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "abi/bvh.h"
+#include "abi/queues.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
 #include "kernels.h"

@@ -28,7 +28,7 @@ check "its recipe says so" jq -e '.picture.effects == "-point-lights"' "$OUT/std
 expect 0 "all but one" render "$CUBE" -o "$OUT/less2.pfm" $small --effects all,-point-lights
 check "left out of the general kernel too" cmp "$OUT/less.pfm" "$OUT/less2.pfm"
 expect 0 "--stats" render "$CUBE" -o "$OUT/auto.pfm" --size 48x36 --stats text
-check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ of [0-9]+ bindings" \
+check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ in the largest, [0-9]+ of [0-9]+ bindings" \
     "$OUT/stdout"
 
 expect 0 "scene --effects --json" scene "$CUBE" --effects --size 32x24 --quiet --json

@@ -53,16 +53,14 @@ nest 8 >"$OUT/eight.json"
 expect 0 "eight media" render "$OUT/eight.json" -o p.exr --size 8x8 --depth 20 --quiet
 rm p.exr
 
-# More points of lights than a driver lets a loop have turns: lavapipe 65,535.
+# More points of lights than a driver lets a loop have turns (lavapipe 65,535): each light is a dispatch.
 awk 'BEGIN {
     printf "{ \"camera\": { \"eye\": [0, 2, 3], \"target\": [0, 0, 0] }, \"lights\": ["
     for (i = 0; i < 1100; ++i)
         printf "%s{ \"kind\": \"rectangle\", \"position\": [0, 2, 0], \"u\": [1, 0, 0], \"v\": [0, 0, 1] }", i ? "," : ""
     printf "], \"objects\": [{ \"shape\": \"plane\", \"size\": 4 }] }" }' >"$OUT/lights.json"
-distrust "too many points of lights" "a loop over lights was cut short" \
-    "$OUT/lights.json" --size 8x8 --no-shadows --light-samples 64
-expect 0 "fewer points" \
-    render "$OUT/lights.json" -o p.exr --size 8x8 --no-shadows --light-samples 1 --quiet
+expect 0 "many points of lights" \
+    render "$OUT/lights.json" -o p.exr --size 8x8 --no-shadows --light-samples 64 --quiet
 rm p.exr
 
 # More nodes on the way of a ray than that. From the other end it meets the nearest first.
@@ -97,9 +95,6 @@ expect 0 "stacks as they should be" render "$SCENES/default.json" -o p.exr --siz
 SMALL_STACKS=nodes
 export SMALL_STACKS
 distrust "a small node stack" "the node stack overflowed" "$SCENES/default.json" --size 32x24
-SMALL_STACKS=rays
-distrust "a small ray stack" "the ray stack overflowed" "$SCENES/default.json" --size 32x24
-SMALL_STACKS=nodes
 refuse 1 "trace with a small node stack" "not to be trusted: the node stack overflowed" \
     trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --quiet
 check "leaves the old hits" test "$(cat p.exr)" = old

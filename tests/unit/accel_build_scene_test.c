@@ -557,9 +557,9 @@ static void materials_become_bits(void **state)
 {
     (void)state;
     assert_bits(set_plain, 0, 0);
-    assert_bits(set_glass, TRIANGLE_FILTER, 64u | 0u << 10 | 1023u << 20);
+    assert_bits(set_glass, TRIANGLE_FILTER | TRIANGLE_GLASS, 64u | 0u << 10 | 1023u << 20);
     assert_bits(set_blend, TRIANGLE_FILTER, 128u | 128u << 10 | 128u << 20);
-    assert_bits(set_blend_glass, TRIANGLE_FILTER, 128u | 128u << 10 | 0u << 20);
+    assert_bits(set_blend_glass, TRIANGLE_FILTER | TRIANGLE_GLASS, 128u | 128u << 10 | 0u << 20);
     assert_bits(set_blend_opaque, 0, 0);
     assert_bits(set_opacity_ignored, 0, 0);
     assert_bits(set_mask, TRIANGLE_CUTOUT, 0);

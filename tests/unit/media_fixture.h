@@ -106,7 +106,7 @@ static inline double fresnel(double cos1, double n1, double n2)
     return 0.5 * (s * s + p * p);
 }
 
-/* What the kernel counted for a pixel of a picture of one sample a pixel. */
+/* What a pixel of a picture of one sample a pixel lost by rays that were not traced. */
 static inline struct gpu_counts pixel_counts(const struct fixture *f, size_t pixel)
 {
     struct gpu_counts counts;

@@ -282,22 +282,29 @@ static void scenes_equal_those_of_trees(void **state)
     }
 }
 
-/* All rays of an invocation share what a driver grants: refused where they are too many, and
+/* All points of an area light share what a driver grants: refused where they are too many, and
    noticed by the kernel. */
 static void many_shadows_are_refused(void **state)
 {
     (void)state;
     const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
-    struct fixture f = fixture_open(glass_scene_of(120, 4), &no_trees, NULL);
-    const struct render_params params = {.width = 8, .height = 8, .camera = glass_camera};
+    struct scene *scene = scene_begin(&fixture_log, "ground");
+    scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+                                                .node = SCENE_NONE,
+                                                .color = {1, 1, 1},
+                                                .position = {0, 5, 0},
+                                                .edge_u = {1, 0, 0},
+                                                .edge_v = {0, 0, 1}});
+    struct fixture f = fixture_open(scene, &no_trees, NULL);
+    const struct render_params params = {.width = 8, .height = 8, .light_samples = 64};
     renderer_destroy(f.renderer);
     assert_int_equal(renderer_create(&log, f.device, f.accel, &params, &f.renderer), WHIT_OK);
     bool limited = device_get_info(f.device)->loop_limited;
     assert_int_equal(renderer_render(f.renderer), limited ? WHIT_ERROR_USAGE : WHIT_OK);
     if (limited) {
         struct probe_report report;
-        assert_non_null(
-            strstr(last_error, "glass: without trees every ray tests 28992 primitives"));
+        assert_non_null(strstr(last_error, "without trees every ray tests 28800 primitives"));
         assert_int_equal(renderer_probe(f.renderer, 4, 4, 0, &report), WHIT_ERROR_USAGE);
         f.accel->turns = 0;
         assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);

@@ -407,10 +407,16 @@ static void every_effect_has_its_code(void **state)
 
 static uint64_t bindings_of(const struct fixture *f)
 {
-    struct pipeline_info info;
-    pipeline_get_info(f->renderer->whitted.pipeline, &info);
-    assert_true(info.specialized);
-    return info.bindings;
+    uint64_t bindings = 0;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        const struct pass *pass = &f->renderer->stages.set.passes[i];
+        struct pipeline_info info = {.specialized = true};
+        if (pass->pipeline)
+            pipeline_get_info(pass->pipeline, &info);
+        assert_true(info.specialized);
+        bindings |= info.bindings;
+    }
+    return bindings;
 }
 
 static bool has(uint64_t bindings, int binding)
@@ -424,18 +430,20 @@ static void plain_scenes_bind_little(void **state)
     struct fixture f = fixture_open(plain_scene(), NULL, &small);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     uint64_t plain = bindings_of(&f);
-    static const int absent[] = {BIND_TEXELS,     BIND_TEXEL_TEXELS, BIND_ENVIRONMENT,
-                                 BIND_RAY_STACKS, BIND_RAY_MEDIA,    BIND_WORK_OUT,
-                                 BIND_COSTS};
+    static const int absent[] = {BIND_TEXELS,   BIND_TEXEL_TEXELS, BIND_ENVIRONMENT,
+                                 BIND_RAY_ROWS, BIND_RAY_TEXELS,   BIND_RAY_MEDIA,
+                                 BIND_CHILDREN, BIND_WORK_IN,      BIND_COSTS};
     for (size_t i = 0; i < sizeof absent / sizeof *absent; ++i)
-        assert_false(has(plain, absent[i]));
+        if (has(plain, absent[i]))
+            fail_msg("binding %d", absent[i]);
     assert_true(has(plain, BIND_PIXELS) && has(plain, BIND_FRAME));
     const struct scene_buffers *scene = &f.renderer->scene_buffers;
     const struct pixel_buffers *pixels = &f.renderer->pixel_buffers;
     assert_null(scene->texels);
     assert_null(scene->environment);
-    assert_null(pixels->ray_stacks);
-    assert_null(pixels->ray_media);
+    assert_null(pixels->queues.rays);
+    assert_null(pixels->queues.media);
+    assert_null(pixels->queues.children);
     assert_null(pixels->work[0]);
     assert_null(pixels->work_head);
     assert_null(pixels->costs);
@@ -444,8 +452,8 @@ static void plain_scenes_bind_little(void **state)
     f = fixture_open(rich_scene(), NULL, &small);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     uint64_t rich = bindings_of(&f);
-    assert_true(has(rich, BIND_ENVIRONMENT) && has(rich, BIND_RAY_STACKS));
-    assert_true(has(rich, BIND_RAY_MEDIA) && has(rich, BIND_WORK_OUT));
+    assert_true(has(rich, BIND_ENVIRONMENT) && has(rich, BIND_RAY_ROWS));
+    assert_true(has(rich, BIND_RAY_MEDIA) && has(rich, BIND_CHILDREN));
     assert_true(has(rich, BIND_TEXELS) || has(rich, BIND_TEXEL_TEXELS));
     fixture_close(&f);
 }
@@ -476,27 +484,31 @@ static struct scene *quarters_scene(void)
     return scene;
 }
 
+/* What the rays of each pixel's one sample cost tells which it has. */
 static void only_pixels_that_see_glass_refract(void **state)
 {
     (void)state;
-    struct fixture f = fixture_open(quarters_scene(), NULL, &small);
+    struct render_params params = small;
+    params.count = true;
+    struct fixture f = fixture_open(quarters_scene(), NULL, &params);
+    struct image reflected = {0}, refracted = {0};
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    struct gpu_counts *counts = malloc(small.width * small.height * sizeof *counts);
-    assert_non_null(counts);
-    assert_int_equal(buffer_read(f.renderer->pixel_buffers.counts, 0, counts,
-                                 small.width * small.height * sizeof *counts),
-                     WHIT_OK);
+    assert_int_equal(renderer_read_costs(f.renderer, RAY_REFLECTED, &reflected), WHIT_OK);
+    assert_int_equal(renderer_read_costs(f.renderer, RAY_REFRACTED, &refracted), WHIT_OK);
+    const struct gpu_cost *mirrored = (const struct gpu_cost *)reflected.words;
+    const struct gpu_cost *passed = (const struct gpu_cost *)refracted.words;
     for (uint32_t y = 0; y < small.height; ++y) {
         for (uint32_t x = 0; x < small.width; ++x) {
             bool sees = (x < small.width / 2) == (y < small.height / 2);
-            const struct gpu_counts *count = &counts[y * small.width + x];
-            if ((count->refracted > 0) != sees)
-                fail_msg("pixel %u, %u: %u refracted rays", x, y, count->refracted);
+            uint32_t at = y * small.width + x;
+            if ((passed[at].rays > 0) != sees)
+                fail_msg("pixel %u, %u: %u refracted rays", x, y, passed[at].rays);
             if (x < small.width / 2)
-                assert_true(count->reflected > 0);
+                assert_true(mirrored[at].rays > 0);
         }
     }
-    free(counts);
+    image_finish(&reflected);
+    image_finish(&refracted);
     fixture_close(&f);
 }
 

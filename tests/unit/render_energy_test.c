@@ -22,7 +22,7 @@ static void check_furnace(const char *name, struct scene *scene)
     for (size_t i = 0; i < 32 * 32; ++i) {
         struct gpu_counts counts = pixel_counts(&f, i);
         double value = (double)image.pixels[4 * i], lost = (double)counts.cut_depth_weight;
-        assert_true(counts.cut_bailout == 0 && (counts.cut_depth > 0) == (lost > 0));
+        assert_true(counts.cut_bailout_weight == 0);
         highest = fmax(highest, value);
         worst = fmax(worst, fabs(value + lost - 1));
         cut = fmax(cut, lost);
@@ -33,6 +33,7 @@ static void check_furnace(const char *name, struct scene *scene)
     struct render_stats stats;
     renderer_get_stats(f.renderer, &stats);
     assert_true(fabs(stats.weight_cut_depth - cut) < 1e-6 && stats.weight_cut_bailout == 0);
+    assert_true(stats.rays_cut_bailout == 0 && (stats.rays_cut_depth > 0) == (cut > 0));
     image_finish(&image);
     fixture_close(&f);
 }

@@ -1,5 +1,6 @@
 /* Pictures whose radiance is known by formula, and what must not change a picture. */
 #include "picture_fixture.h"
+#include "render/renderer.h"
 
 static void diffuse_follows_the_cosine(void **state)
 {
@@ -353,19 +354,82 @@ static void unused_effects_do_not_matter(void **state)
     assert_same_picture(plain_scene, &a, &b);
 }
 
-/* More loop turns than lavapipe grants: an error, never a silently wrong picture. */
+/* More loop turns than lavapipe grants: an error, never a silently wrong picture. Here a shadow ray
+   passes all panes of a stack. */
 static void cut_loops_are_reported(void **state)
 {
     (void)state;
-    struct scene *scene = plain_scene();
-    for (int i = 0; i < 40000; ++i)
-        scene_put_lamp(scene, 3 + 0.001 * i, 4, 3, 0.001f);
-    struct render_params params = {.width = 32, .height = 32, .depth = 0};
+    enum { PANES = 70000 };
+    float *corners = calloc(PANES, 9 * sizeof *corners);
+    assert_non_null(corners);
+    for (int i = 0; i < PANES; ++i) {
+        float y = 2.0f + 1e-5f * (float)i;
+        const float own[9] = {-5, y, -5, 5, y, -5, 0, y, 9};
+        memcpy(&corners[9 * i], own, sizeof own);
+    }
+    struct scene *scene = dark_scene((double[]){0, 1, 0}, (double[]){0, 0, 0});
+    struct scene_material floor = material_plain("floor"), pane = material_plain("pane");
+    set_rgb(floor.diffuse, 1, 1, 1);
+    set_rgb(pane.transmission, 1, 1, 1);
+    pane.thin_walled = true;
+    add_object(scene, mesh_plane(10), floor, 0, 0, 0);
+    add_object(scene, mesh_triangles(corners, PANES), pane, 0, 0, 0);
+    scene_put_sun(scene, 0, -1, 0, 1.0f);
+    free(corners);
+    struct render_params params = {.width = 8, .height = 8, .depth = 0};
     struct fixture f = fixture_open(scene, NULL, &params);
     whit_result result = renderer_render(f.renderer);
-    print_message("  40000 lights: %s\n", whit_result_name(result));
+    print_message("  70000 panes: %s\n", whit_result_name(result));
     assert_int_equal(result, device_get_info(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
     fixture_close(&f);
+}
+
+/* Each light is a dispatch of its own. */
+static void many_lights_are_drawn(void **state)
+{
+    (void)state;
+    struct scene *scene = plain_scene();
+    for (int i = 0; i < 4000; ++i)
+        scene_put_lamp(scene, 3 + 0.01 * i, 4, 3, 0.001f);
+    struct render_params params = {.width = 8, .height = 8, .depth = 0};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    struct render_stats stats;
+    renderer_get_stats(f.renderer, &stats);
+    assert_true(stats.rays_shadow > 4000);
+    image_finish(&image);
+    fixture_close(&f);
+}
+
+static struct image glass_picture(uint32_t tile_size, bool *was_full)
+{
+    struct scene *scene = dark_scene((double[]){0, 0, 3.5}, (double[]){0, 0, 0});
+    struct scene_material glass = material_plain("glass");
+    set_rgb(scene->environment.zenith, 0.3f, 0.6f, 1.0f);
+    set_rgb(glass.transmission, 1, 1, 1);
+    glass.fresnel = true;
+    glass.ior = 1.5f;
+    add_object(scene, mesh_icosphere(1, 2), glass, 0, 0, 0);
+    const struct render_params params = {
+        .width = 64, .height = 64, .depth = 13, .bailout = -1.0, .tile_size = tile_size};
+    struct fixture f = fixture_open(scene, NULL, &params);
+    struct image image = render(&f);
+    *was_full = f.renderer->stages.blocks_most > 0;
+    fixture_close(&f);
+    return image;
+}
+
+/* Each of these rays calls for two others. */
+static void full_queues_end_in_smaller_tiles(void **state)
+{
+    (void)state;
+    bool large_was_full, small_was_full;
+    struct image large = glass_picture(64, &large_was_full);
+    struct image small = glass_picture(16, &small_was_full);
+    assert_true(large_was_full && !small_was_full);
+    assert_memory_equal(large.pixels, small.pixels, sizeof(float) * 4 * 64 * 64);
+    image_finish(&large);
+    image_finish(&small);
 }
 
 /* The clock of this program stands still but where the test turns it (-Wl,--wrap=clock_ms). */
@@ -455,6 +519,8 @@ int main(void)
         cmocka_unit_test(load_paths_do_not_matter),
         cmocka_unit_test(unused_effects_do_not_matter),
         cmocka_unit_test(cut_loops_are_reported),
+        cmocka_unit_test(many_lights_are_drawn),
+        cmocka_unit_test(full_queues_end_in_smaller_tiles),
         cmocka_unit_test(cancel_and_time_limit_stop),
         cmocka_unit_test(pictures_may_be_dropped),
         cmocka_unit_test(nonsense_is_refused),

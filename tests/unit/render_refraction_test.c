@@ -187,12 +187,13 @@ static void leave_mirrors(double turn)
     const struct render_params params = {.width = 1, .height = 1, .depth = 255, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
-    struct gpu_counts counts = pixel_counts(&f, 0);
+    struct render_stats stats;
+    renderer_get_stats(f.renderer, &stats);
     double off = (double)image.pixels[0] / (double)image.pixels[2] - out[1] / way;
     print_message("  %u reflections, mirrors turned by %g: up is off by %.2g, the weight by %.2g\n",
-                  counts.reflected, turn, off, (double)image.pixels[2] - 1);
-    assert_int_equal(counts.reflected, 65);
-    assert_int_equal(counts.cut_depth, 0);
+                  (unsigned)stats.rays_reflected, turn, off, (double)image.pixels[2] - 1);
+    assert_int_equal(stats.rays_reflected, 65);
+    assert_int_equal(stats.rays_cut_depth, 0);
     assert_true(fabs(off) <= 1e-6); /* NUMERICS O6 */
     assert_true(image.pixels[2] == 1.0f);
     image_finish(&image);

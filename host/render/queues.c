@@ -1,0 +1,124 @@
+/* The buffers between the stages of a picture. */
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "render/renderer.h"
+
+/* How many rays of a tile there is room for, and hits of one generation that lights are asked for;
+   where that is too little, tiles get smaller. Generations: as many as a ray may bounce, and then
+   some, as surfaces that are passed unseen take one too. */
+enum {
+    RAYS_A_SLOT = 12,
+    LIT_A_SLOT = 2,
+    RAYS_LEAST = 1 << 16,
+    GENERATIONS_MOST = 640,
+    QUEUE_GROWTH = 4
+};
+
+static whit_result write_empty(struct renderer *renderer, const struct queue_buffers *queues)
+{
+    struct gpu_generation *empty = array_alloc_zeroed(queues->generation_count, sizeof *empty);
+    if (!empty)
+        return render_no_memory(renderer, "generations of rays");
+    for (uint32_t i = 0; i < queues->generation_count; ++i) {
+        struct gpu_generation *g = &empty[i];
+        for (uint32_t list = 0; list < LISTS_COUNT; ++list)
+            g->lists[list].groups_y = g->lists[list].groups_z = 1;
+    }
+    const struct gpu_tally none = {0};
+    whit_result result = buffer_write(queues->empty, 0, &none, sizeof none);
+    if (result == WHIT_OK)
+        result = buffer_write(queues->empty, sizeof none, empty,
+                              queues->generation_count * sizeof *empty);
+    free(empty);
+    return result;
+}
+
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
+{
+    struct queue_buffers *queues = &p->queues;
+    bool secondary = renderer->has_secondary;
+    queues->generation_count = secondary ? GENERATIONS_MOST : 2;
+    queues->ray_capacity = p->chunk_slots;
+    queues->lit_capacity =
+        p->chunk_slots * 2; /* each half of a list is of one half of a dispatch */
+    if (secondary) {
+        uint32_t least = larger(renderer->stages.rays_least, RAYS_LEAST);
+        queues->ray_capacity = larger(p->chunk_slots * RAYS_A_SLOT, least);
+        queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, least / 4);
+    }
+    uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
+    uint64_t heads = sizeof(struct gpu_tally) +
+                     (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
+    bool media = renderer->effects.called[SCENE_EFFECT_MEDIA];
+    uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
+    const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS;
+    const struct {
+        struct buffer **buffer;
+        uint64_t bytes;
+        uint32_t uses;
+        const char *name;
+    } all[] = {
+        {&queues->generations, heads,
+         BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT | BUFFER_HOST, "generations"},
+        {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
+        {&queues->rays, sent * RAY_ROWS * 16, loaded, "rays"},
+        {&queues->media, media ? sent * sizeof(struct gpu_media) : 0, loaded, "media of rays"},
+        {&queues->hits, rays * HIT_ROWS * 16, loaded, "hits"},
+        {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
+        {&queues->sums, rays * 16, loaded, "sums"},
+        {&queues->children, sent * 16, loaded, "children of rays"},
+        {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},
+        {&queues->hit_list, rays * 4 * CLASSES_MOST, loaded, "hits to shade"},
+        {&queues->cuts, (uint64_t)p->chunk_slots * 8, BUFFER_STORAGE, "weights that are cut"},
+        {&queues->waiting,
+         variant_waits(renderer) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
+         BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
+        {&queues->kinds, renderer->params.count ? sent * 4 : 0, BUFFER_STORAGE, "kinds of rays"},
+    };
+    whit_result result = WHIT_OK;
+    for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
+        if (all[i].bytes == 0)
+            continue;
+        result =
+            buffer_create(renderer->device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
+        queues->bytes += result == WHIT_OK ? all[i].bytes : 0;
+    }
+    renderer->scene_buffers.bytes += queues->bytes;
+    return result == WHIT_OK ? write_empty(renderer, queues) : result;
+}
+
+bool queues_can_grow(const struct renderer *renderer)
+{
+    uint64_t rays = (uint64_t)renderer->pixel_buffers.queues.ray_capacity * QUEUE_GROWTH;
+    uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
+    return renderer->has_secondary && rays * RAY_ROWS * 16 <= limit;
+}
+
+whit_result queues_grow(struct renderer *renderer)
+{
+    struct pixel_buffers *p = &renderer->pixel_buffers;
+    renderer->stages.rays_least = p->queues.ray_capacity * QUEUE_GROWTH;
+    renderer->scene_buffers.bytes -= p->queues.bytes;
+    p->bytes -= p->queues.bytes;
+    queues_finish(&p->queues);
+    whit_result result = queues_create(renderer, p);
+    p->bytes += p->queues.bytes;
+    return result;
+}
+
+void queues_finish(struct queue_buffers *queues)
+{
+    struct buffer *all[] = {queues->generations, queues->empty, queues->rays,  queues->media,
+                            queues->hits,        queues->lit,   queues->sums,  queues->children,
+                            queues->hit_list,    queues->cuts,  queues->kinds, queues->lit_list,
+                            queues->waiting};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+        buffer_destroy(all[i]);
+    *queues = (struct queue_buffers){0};
+}

@@ -1,0 +1,342 @@
+/* One sample of a tile in stages: what its rays meet, what the surfaces there do with light, what
+   comes from each light; then the same for the rays that these call for, generation by generation;
+   last the sums, from the youngest generation to the camera rays. */
+#include <stddef.h>
+
+#include "base/clock.h"
+#include "render/renderer.h"
+
+/* Generations of the first tile, before it is known how many there are. */
+enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };
+
+bool stages_wanted(const struct renderer *renderer)
+{
+    return !renderer->probe.active;
+}
+
+void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
+                     struct stages_job *job)
+{
+    *job = (struct stages_job){.spec = *spec};
+    job->classes = own ? variant_classes(renderer) : 1;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER;
+        job->wanted[i] = (!later || renderer->has_secondary) &&
+                         (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MOST);
+        if (job->wanted[i])
+            variant_job_init(renderer, spec, job->classes, (enum stage)i, &job->stages[i]);
+    }
+}
+
+whit_result stages_job_run(struct device *device, const struct stages_job *job,
+                           struct stage_set *out)
+{
+    whit_result result = WHIT_OK;
+    *out = (struct stage_set){.classes = job->classes};
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
+        if (job->wanted[i])
+            result = variant_job_run(device, &job->stages[i], &out->passes[i]);
+    }
+    if (result != WHIT_OK)
+        stage_set_finish(out);
+    return result;
+}
+
+void stage_set_finish(struct stage_set *set)
+{
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        pass_finish(&set->passes[i]);
+    *set = (struct stage_set){0};
+}
+
+bool stages_are_made(const struct renderer *renderer)
+{
+    return renderer->stages.set.passes[STAGE_CAMERA].pipeline != NULL;
+}
+
+whit_result stages_bind(struct renderer *renderer)
+{
+    struct stages *stages = &renderer->stages;
+    whit_result result = WHIT_OK;
+    if (stages->set.passes[STAGE_CAMERA].sets[0])
+        return WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
+        if (stages->set.passes[i].pipeline)
+            result = variant_bind_stage(renderer, &stages->set.passes[i]);
+    }
+    stages->expected = renderer->has_secondary ? EXPECTED_FIRST : 1;
+    if (result != WHIT_OK)
+        stages_unbind(stages);
+    return result;
+}
+
+whit_result stages_take(struct renderer *renderer, struct stage_set *set)
+{
+    stage_set_finish(&renderer->stages.set);
+    renderer->stages.set = *set;
+    *set = (struct stage_set){0};
+    renderer->stats.kernel_instructions = renderer->stats.largest_instructions = 0;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        const struct pass *pass = &renderer->stages.set.passes[i];
+        struct pipeline_info info = {0};
+        if (pass->pipeline)
+            pipeline_get_info(pass->pipeline, &info);
+        renderer->stats.kernel_instructions += info.instructions;
+        if (info.instructions > renderer->stats.largest_instructions)
+            renderer->stats.largest_instructions = info.instructions;
+    }
+    return stages_bind(renderer);
+}
+
+whit_result stages_compile(struct renderer *renderer)
+{
+    struct stages_job job;
+    struct stage_set set;
+    struct gpu_spec spec = variant_spec(renderer);
+    if (stages_are_made(renderer))
+        return stages_bind(renderer);
+    stages_job_init(renderer, &spec, true, &job);
+    whit_result result = stages_job_run(renderer->device, &job, &set);
+    return result == WHIT_OK ? stages_take(renderer, &set) : result;
+}
+
+static uint32_t count_bits(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (; bits; bits &= bits - 1)
+        ++count;
+    return count;
+}
+
+/* Of all kernels of a set: instructions added up, bindings of any. */
+static bool count_set(const struct stages_job *job, struct pipeline_info *sum, uint32_t *largest)
+{
+    *sum = (struct pipeline_info){0};
+    *largest = 0;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        struct pipeline_info info = {0};
+        if (job->wanted[i] && !pipeline_count(&job->stages[i].params, &info))
+            return false;
+        sum->instructions += info.instructions;
+        sum->bindings |= info.bindings;
+        *largest = info.instructions > *largest ? info.instructions : *largest;
+    }
+    return true;
+}
+
+whit_result renderer_get_kernel(const struct renderer *renderer, struct render_kernel_info *info)
+{
+    struct gpu_spec own = variant_spec(renderer), general = variant_general_spec(renderer);
+    struct stages_job job;
+    struct pipeline_info own_info, general_info;
+    uint32_t largest, general_largest;
+    *info = (struct render_kernel_info){0};
+    stages_job_init(renderer, &own, true, &job);
+    bool counted = count_set(&job, &own_info, &largest);
+    stages_job_init(renderer, &general, false, &job);
+    if (!counted || !count_set(&job, &general_info, &general_largest)) {
+        log_error(&renderer->log, "SPIRV-Tools cannot specialize the kernels");
+        return WHIT_ERROR_DEVICE;
+    }
+    *info = (struct render_kernel_info){
+        .instructions = own_info.instructions,
+        .largest_instructions = largest,
+        .general_instructions = general_info.instructions,
+        .bindings = count_bits(own_info.bindings),
+        .general_bindings = count_bits(general_info.bindings),
+    };
+    return WHIT_OK;
+}
+
+void stages_unbind(struct stages *stages)
+{
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        pass_unbind(&stages->set.passes[i]);
+    stages->expected = stages->blocks_most = 0;
+}
+
+static uint64_t generation_offset(uint32_t generation)
+{
+    return sizeof(struct gpu_tally) + (uint64_t)generation * sizeof(struct gpu_generation);
+}
+
+static size_t list_offset(uint32_t list)
+{
+    return offsetof(struct gpu_generation, lists) + list * sizeof(struct gpu_items);
+}
+
+/* Over what waits in the generation of `chunk`: the arguments are at `offset` of it. Those of
+   camera rays follow from the chunk. */
+static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chunk *chunk,
+                     uint32_t list)
+{
+    struct commands *commands = renderer->commands;
+    const struct pass *pass = &renderer->stages.set.passes[stage];
+    chunk->list = list;
+    struct buffer *waiting = renderer->pixel_buffers.queues.waiting;
+    if (pass->looks) {
+        render_clear_waiting(renderer, waiting);
+        commands_barrier(commands);
+    }
+    commands_bind(commands, pass->pipeline, pass->sets[0]);
+    commands_push(commands, chunk, sizeof *chunk);
+    if (chunk->generation == 0 && list == LIST_RAYS)
+        commands_dispatch(commands, (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each,
+                          1, 1);
+    else
+        commands_dispatch_indirect(commands, renderer->pixel_buffers.queues.generations,
+                                   generation_offset(chunk->generation) + list_offset(list));
+    ++renderer->stats.dispatches;
+    if (pass->looks) {
+        struct gpu_chunk waits = *chunk;
+        waits.waiting = 1;
+        render_take_waiting(renderer, pass, 0, waiting, &waits, sizeof waits);
+    }
+    commands_barrier(commands);
+}
+
+static void record_generation(struct renderer *renderer, struct gpu_chunk *chunk)
+{
+    dispatch(renderer, chunk->generation == 0 ? STAGE_CAMERA : STAGE_CLOSEST, chunk, LIST_RAYS);
+    dispatch(renderer, STAGE_SHADE, chunk, LIST_HITS);
+    if (renderer->stages.set.classes > 1)
+        dispatch(renderer, STAGE_SHADE_GLASS, chunk, LIST_HITS + CLASS_GLASS);
+    bool by_light = renderer->frame.light_count <= LIGHT_LISTS;
+    for (uint32_t i = 0; i < renderer->frame.light_count; ++i) {
+        chunk->light = i;
+        dispatch(renderer, chunk->generation == 0 ? STAGE_SHADOW : STAGE_SHADOW_LATER, chunk,
+                 LIST_LIGHTS + (by_light ? i : 0));
+    }
+}
+
+/* From the last generation to the camera rays. Does nothing where generation `count` has rays. */
+static void record_resolve(struct renderer *renderer, struct gpu_chunk *chunk, uint32_t count)
+{
+    chunk->light = count;
+    for (chunk->generation = count; chunk->generation-- > 0;) {
+        bool camera = chunk->generation == 0;
+        for (uint32_t i = 0; i < (camera ? 1 : renderer->stages.set.classes); ++i)
+            dispatch(renderer, STAGE_RESOLVE, chunk, camera ? LIST_RAYS : LIST_HITS + i);
+    }
+}
+
+/* Generations `first` to `end` of a tile in one submission, and what they sum up to. */
+static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk *chunk,
+                                     uint32_t first, uint32_t end)
+{
+    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
+    struct commands *commands = renderer->commands;
+    whit_result result = commands_begin(commands);
+    if (result != WHIT_OK)
+        return result;
+    if (first == 0) {
+        commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
+        commands_copy(commands, queues->empty, 0, queues->generations, 0,
+                      generation_offset(queues->generation_count));
+        commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
+        render_take_list(renderer, chunk);
+    }
+    commands_barrier(commands);
+    commands_span_begin(commands, "tile");
+    for (chunk->generation = first; chunk->generation < end; ++chunk->generation)
+        record_generation(renderer, chunk);
+    record_resolve(renderer, chunk, end);
+    return render_finish_submission(renderer);
+}
+
+static whit_result take_tally(struct renderer *renderer)
+{
+    struct render_stats *stats = &renderer->stats;
+    struct gpu_tally tally;
+    whit_result result =
+        buffer_read(renderer->pixel_buffers.queues.generations, 0, &tally, sizeof tally);
+    if (result != WHIT_OK)
+        return result;
+    stats->rays_shadow += tally.shadow;
+    stats->rays_reflected += tally.reflected;
+    stats->rays_refracted += tally.refracted;
+    stats->rays_cut_depth += tally.cut_depth;
+    stats->rays_cut_bailout += tally.cut_bailout;
+    return WHIT_OK;
+}
+
+/* How many rays wait in a generation that was not traced yet. */
+static whit_result count_left(struct renderer *renderer, uint32_t generation, uint32_t *rays)
+{
+    struct gpu_generation head = {0};
+    whit_result result = WHIT_OK;
+    if (renderer->has_secondary)
+        result = buffer_read(renderer->pixel_buffers.queues.generations,
+                             generation_offset(generation), &head, sizeof head);
+    *rays = head.lists[LIST_RAYS].front + head.lists[LIST_RAYS].back;
+    return result;
+}
+
+/* Leaves the pixels alone where a queue gets full. */
+static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *tile,
+                             const struct progress *progress, double *longest_ms)
+{
+    struct stages *stages = &renderer->stages;
+    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
+    struct gpu_chunk chunk = *tile;
+    chunk.ray_capacity = queues->ray_capacity;
+    chunk.lit_capacity = queues->lit_capacity;
+    uint32_t done = 0, end = stages->expected, left = 1;
+    while (left > 0) {
+        whit_result result = done > 0 ? render_stop_asked(renderer, progress) : WHIT_OK;
+        if (result == WHIT_OK && end >= queues->generation_count) {
+            log_error(&renderer->log, "a ray passes more than %u surfaces",
+                      queues->generation_count - 1);
+            result = WHIT_ERROR_STATUS;
+        }
+        double start_ms = clock_ms();
+        if (result == WHIT_OK)
+            result = trace_generations(renderer, &chunk, done, end);
+        double spent_ms = clock_ms() - start_ms;
+        *longest_ms = spent_ms > *longest_ms ? spent_ms : *longest_ms;
+        if (result == WHIT_OK && !stages->full)
+            result = count_left(renderer, end, &left);
+        if (result != WHIT_OK || stages->full)
+            return result;
+        done = end;
+        end += MORE_AT_ONCE;
+    }
+    stages->expected = done;
+    return take_tally(renderer);
+}
+
+/* Where a queue gets full, in halves. */
+whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+                          const struct progress *progress, double *longest_ms)
+{
+    whit_result result = draw_tile(renderer, chunk, progress, longest_ms);
+    if (result != WHIT_OK || !renderer->stages.full)
+        return result;
+    if (chunk->block_count == 1 && queues_can_grow(renderer)) {
+        result = queues_grow(renderer);
+        stages_unbind(&renderer->stages);
+        if (result == WHIT_OK)
+            result = stages_bind(renderer);
+        return result == WHIT_OK ? stages_sample(renderer, chunk, progress, longest_ms) : result;
+    }
+    if (chunk->block_count == 1) {
+        log_error(&renderer->log, "there is no room for the rays of %d pixels",
+                  RENDER_BLOCK_PIXELS);
+        return WHIT_ERROR_STATUS;
+    }
+    uint32_t end = chunk->first_block + chunk->block_count;
+    uint32_t most = (chunk->block_count + 1) / 2;
+    struct gpu_chunk part = *chunk;
+    renderer->stages.blocks_most = most;
+    for (; result == WHIT_OK && part.first_block < end; part.first_block += most) {
+        part.block_count = end - part.first_block < most ? end - part.first_block : most;
+        if (progress->listed)
+            result = adaptive_list(renderer, progress, &part);
+        if (result == WHIT_OK && (!progress->listed || part.listed > 0))
+            result = stages_sample(renderer, &part, progress, longest_ms);
+    }
+    part = *chunk;
+    if (result == WHIT_OK && progress->listed) /* for the next sample */
+        result = adaptive_list(renderer, progress, &part);
+    return result;
+}

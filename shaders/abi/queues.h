@@ -1,0 +1,69 @@
+/* The rays of a picture between its stages: generations of rays, what they met, what is lit there.
+
+   A ray has a number (id) within its tile. Camera rays are generation 0, and their ids are those of
+   the pixels' slots; a ray that is called for by one of generation g belongs to generation g + 1, whose
+   ids follow those of g. Nothing depends on which of its generation's ids a ray gets. */
+#ifndef ABI_QUEUES_H
+#define ABI_QUEUES_H
+
+#include "base.h"
+
+/* Rows of 16 bytes. */
+#define RAY_ROWS 3u /* origin, state; dir, skip_primitive; weight, skip_instance */
+#define HIT_ROWS 2u /* t, u, v, record; primitive, instance, lo, hi */
+#define LIT_ROWS 7u /* see bind/lit.glsl */
+
+/* Of a queued ray: its steps, and above them the slot of its pixel. */
+#define STATE_SLOT_SHIFT  16u
+#define QUEUED_SLOTS_MOST 65536u
+
+/* Of the buffer of gpu_tally and gpu_generation. */
+#define TALLY_ROWS      2u
+#define GENERATION_ROWS 25u
+#define ITEMS_ROWS      2u
+
+/* Bit of the record of a hit: NUMERICS_EXACT, it is the far end of a sphere. */
+#define HIT_AT_EXIT 0x80000000u
+
+/* sums[].w of a ray, as bits. */
+#define SUM_HAS_CHILDREN 1u
+#define SUM_IS_CATCHER   2u /* its light, unweighted; without shadows in the first row of its hit */
+
+/* What is waiting in a generation, list by list. */
+#define LIST_RAYS      0u
+#define LIST_HITS      1u /* to be shaded, class by class */
+#define LIST_LIT       3u /* that lights are asked for */
+#define LIST_LIGHTS    4u /* of these those that a light may reach, light by light */
+#define LISTS_COUNT    12u
+#define CLASSES_MOST   2u /* of materials, CLASS_* */
+#define LIGHT_LISTS    8u /* with more lights than that the first list is of all */
+
+/* The arguments of an indirect dispatch, and the items that it is for. Lists have two segments where
+   SPEC_SEGMENTS is 2: one is filled from the front by the first half of a dispatch's workgroups, the
+   other from the back by the rest. lavapipe gives each half to a thread of its own; so threads do not
+   contend, and what was near stays near. */
+struct gpu_items {
+    gpu_uint groups, groups_y, groups_z, pad;
+    gpu_uint front, back, pad0, pad1;
+};
+GPU_ASSERT_SIZE(gpu_items, 32)
+#ifdef __STDC_VERSION__
+typedef struct gpu_items gpu_items;
+#endif
+
+struct gpu_generation {
+    gpu_items lists[LISTS_COUNT];
+    gpu_uint first, before; /* ids: of its first ray in front; how many are behind those at the back */
+    gpu_uint pad0, pad1;
+};
+GPU_ASSERT_SIZE(gpu_generation, 400)
+
+/* Of all rays of the tile so far. */
+struct gpu_tally {
+    gpu_uint shadow, reflected, refracted;
+    gpu_uint cut_depth, cut_bailout;
+    gpu_uint pad0, pad1, pad2;
+};
+GPU_ASSERT_SIZE(gpu_tally, 32)
+
+#endif

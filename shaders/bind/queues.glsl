@@ -1,0 +1,382 @@
+// What one stage of a picture leaves to the next: rays, hits, sums (abi/queues.h). Written through storage
+// buffers, read in later dispatches through texel buffers where SPEC_LOAD_PATH says so.
+#ifndef BIND_QUEUES_GLSL
+#define BIND_QUEUES_GLSL
+
+#include "../abi/queues.h"
+#include "camera.glsl"
+
+layout(set = 0, binding = BIND_GENERATIONS, std430) buffer GenerationBuffer
+{
+    gpu_tally tally;
+    gpu_generation generations[];
+};
+layout(set = 0, binding = BIND_GENERATION_TEXELS) uniform usamplerBuffer generation_texels;
+layout(set = 0, binding = BIND_RAY_ROWS, std430) buffer RayRowBuffer { uvec4 ray_rows[]; };
+layout(set = 0, binding = BIND_RAY_TEXELS) uniform usamplerBuffer ray_texels;
+layout(set = 0, binding = BIND_HIT_ROWS, std430) buffer HitRowBuffer { uvec4 hit_rows[]; };
+layout(set = 0, binding = BIND_HIT_TEXELS) uniform usamplerBuffer hit_texels;
+layout(set = 0, binding = BIND_SUM_TEXELS) uniform usamplerBuffer sum_texels;
+layout(set = 0, binding = BIND_SUMS, std430) buffer SumBuffer
+{
+    vec4 sums[]; // radiance that a ray brings, weighted; SUM_*
+};
+layout(set = 0, binding = BIND_CHILDREN, std430) buffer ChildBuffer
+{
+    uvec4 children[]; // ids of refracted, straight, reflected, or HIT_NONE
+};
+layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit_list[]; };
+layout(set = 0, binding = BIND_MEDIA_TEXELS) uniform usamplerBuffer media_texels;
+layout(set = 0, binding = BIND_CHILD_TEXELS) uniform usamplerBuffer child_texels;
+layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
+layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
+{
+    uint cuts[]; // of a slot: weights that are not traced for --depth, and for --bailout, in CUT_PARTS
+};
+layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
+{
+    uint ray_kinds[]; // with SPEC_COUNT
+};
+
+// Whether surfaces call for rays, be they traced or not.
+const bool CALLS_RAYS = SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u || SPEC_CUTOUTS != 0u ||
+                        SPEC_CATCHERS != 0u;
+
+// Whole parts, whose sum does not depend on an order.
+const float CUT_PARTS = 16777216.0;
+
+uvec4 fetch_ray_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(ray_texels, int(row));
+    return ray_rows[row];
+}
+
+uvec4 fetch_hit_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(hit_texels, int(row));
+    return hit_rows[row];
+}
+
+uvec4 fetch_media(uint id)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(media_texels, int(id));
+    return ray_media[id];
+}
+
+vec4 fetch_sum(uint id)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return uintBitsToFloat(texelFetch(sum_texels, int(id)));
+    return sums[id];
+}
+
+uvec4 fetch_children(uint id)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(child_texels, int(id));
+    return children[id];
+}
+
+// Four words share a row.
+uint word_of_row(uvec4 row, uint item)
+{
+    uvec2 pair = (item & 2u) != 0u ? row.zw : row.xy;
+    return (item & 1u) != 0u ? pair.y : pair.x;
+}
+
+// Whether a queue of the tile is full: then nothing more is made of it, and it is drawn in smaller ones.
+bool is_queue_full()
+{
+    return (status_word & STATUS_QUEUE_FULL) != 0u;
+}
+
+// Of a camera ray.
+uint slot_of(uint id)
+{
+    return SPEC_LISTED != 0u && chunk.listed != 0u ? slots_in[id] : id;
+}
+
+uint camera_ray_count()
+{
+    return SPEC_LISTED != 0u && chunk.listed != 0u ? chunk.listed : chunk.block_count * BLOCK_PIXELS;
+}
+
+Ray queued_ray(uint id, out uint slot)
+{
+    uvec4 r0 = fetch_ray_row(id * RAY_ROWS), r1 = fetch_ray_row(id * RAY_ROWS + 1u);
+    uvec4 r2 = fetch_ray_row(id * RAY_ROWS + 2u);
+    Ray ray;
+    ray.origin = row_vec3(r0);
+    ray.dir = row_vec3(r1);
+    ray.weight = row_vec3(r2);
+    ray.media = uvec4(0u);
+    if (SPEC_MEDIA != 0u) {
+        ray.media = fetch_media(id);
+    }
+    ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
+    slot = r0.w >> STATE_SLOT_SHIFT;
+    ray.kind = SPEC_COUNT != 0u ? ray_kinds[id] : 0u;
+    ray.skip_primitive = r1.w;
+    ray.skip_instance = r2.w;
+    return ray;
+}
+
+// Whether the dispatch is that of camera rays.
+bool is_primary()
+{
+    return SPEC_GENERATIONS == 1u || (SPEC_GENERATIONS == 3u && chunk.generation == 0u);
+}
+
+Ray fetch_ray(uint id, out uint slot)
+{
+    bool queued = SPEC_SECONDARY != 0u && !is_primary();
+    Ray ray;
+    if (SPEC_GENERATIONS != 2u) {
+        slot = slot_of(queued ? 0u : id);
+        ray = camera_ray(slot_pixel(slot));
+    }
+    if (SPEC_SECONDARY != 0u && queued)
+        ray = queued_ray(id, slot);
+    return ray;
+}
+
+// In whole rows: lavapipe writes the four words of one in little more time than a single word.
+void store_ray(uint id, Ray ray, uint slot)
+{
+    uint state = ray.steps | slot << STATE_SLOT_SHIFT;
+    ray_rows[id * RAY_ROWS] = uvec4(floatBitsToUint(ray.origin), state);
+    ray_rows[id * RAY_ROWS + 1u] = uvec4(floatBitsToUint(ray.dir), ray.skip_primitive);
+    ray_rows[id * RAY_ROWS + 2u] = uvec4(floatBitsToUint(ray.weight), ray.skip_instance);
+    if (SPEC_MEDIA != 0u)
+        ray_media[id] = ray.media;
+    if (SPEC_COUNT != 0u)
+        ray_kinds[id] = ray.kind;
+}
+
+void store_hit(uint id, Hit hit)
+{
+    uint record = hit.triangle | (hit.at_exit ? HIT_AT_EXIT : 0u);
+    hit_rows[id * HIT_ROWS] = uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), record);
+    if (SPEC_NUMERICS == NUMERICS_EXACT)
+        hit_rows[id * HIT_ROWS + 1u] =
+            uvec4(hit.instance, floatBitsToUint(hit.lo), floatBitsToUint(hit.hi), 0u);
+    else if (SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
+        hit_rows[id * HIT_ROWS + 1u].x = hit.instance;
+}
+
+// The instance and the primitive of a hit.
+uvec2 fetch_hit_ids(uint id, uint record)
+{
+    uint instance = 0u;
+    if (SPEC_NUMERICS == NUMERICS_EXACT || SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
+        instance = fetch_hit_row(id * HIT_ROWS + 1u).x;
+    return uvec2(instance, fetch_triangle_row(record * TRIANGLE_ROWS).w);
+}
+
+Hit fetch_hit(uint id)
+{
+    uvec4 r0 = fetch_hit_row(id * HIT_ROWS);
+    Hit hit = make_hit(uintBitsToFloat(r0.x));
+    hit.u = uintBitsToFloat(r0.y);
+    hit.v = uintBitsToFloat(r0.z);
+    hit.triangle = r0.w & ~HIT_AT_EXIT;
+    hit.at_exit = SPEC_NUMERICS == NUMERICS_EXACT && (r0.w & HIT_AT_EXIT) != 0u;
+    uvec2 own = fetch_hit_ids(id, hit.triangle);
+    hit.instance = own.x;
+    hit.primitive = own.y;
+    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+        uvec4 r1 = fetch_hit_row(id * HIT_ROWS + 1u);
+        hit.lo = uintBitsToFloat(r1.y);
+        hit.hi = uintBitsToFloat(r1.z);
+    }
+    return hit;
+}
+
+// Items of a list in front and at the back.
+uvec2 fetch_counts(uint generation, uint list)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL) {
+        uint row = TALLY_ROWS + generation * GENERATION_ROWS + list * ITEMS_ROWS + 1u;
+        return texelFetch(generation_texels, int(row)).xy;
+    }
+    gpu_items items = generations[generation].lists[list];
+    return uvec2(items.front, items.back);
+}
+
+// Ids in front are below that, those at the back are not. Camera rays are all in front.
+uint middle_id()
+{
+    return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
+                               : chunk.ray_capacity;
+}
+
+// `first` and `before` of a generation.
+uvec2 fetch_firsts(uint generation)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL) {
+        uint row = TALLY_ROWS + generation * GENERATION_ROWS + LISTS_COUNT * ITEMS_ROWS;
+        return texelFetch(generation_texels, int(row)).xy;
+    }
+    return uvec2(generations[generation].first, generations[generation].before);
+}
+
+// Of an item of the dispatch's generation among those of all generations.
+uint place_in_tile(uint item)
+{
+    uvec2 firsts = fetch_firsts(chunk.generation);
+    return SPEC_SEGMENTS == 2u && item >= middle_id() ? item - firsts.y : item + firsts.x;
+}
+
+// Ray that met something, of the class that the dispatch works on.
+uint fetch_listed_hit(uint item)
+{
+    uint at = (chunk.list - LIST_HITS) * chunk.ray_capacity + place_in_tile(item);
+    return SPEC_LOAD_PATH == LOAD_TEXEL ? word_of_row(texelFetch(list_texels, int(at >> 2)), at)
+                                        : hit_list[at];
+}
+
+// Where the lane's ray `r` is among those of its workgroup: those of a subgroup follow each other.
+uint own_place(uint r)
+{
+    uint lane = gl_LocalInvocationID.x;
+    return SPEC_PACKET_RAYS == 1u ? lane : (lane / 8u * SPEC_PACKET_RAYS + r) * 8u + lane % 8u;
+}
+
+const uint ITEM_NONE = 0xffffffffu;
+
+// Which segment the invocation takes its items from, and appends to.
+bool is_back = false;
+
+// An item of the list that the dispatch works on: where it is in front, or beyond `capacity` - 1 back
+// from the end.
+uint own_item(uint r, uint capacity)
+{
+    uint each = SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, group = gl_WorkGroupID.x;
+    uvec2 counts = fetch_counts(chunk.generation, chunk.list);
+    uint front_groups = (counts.x + each - 1u) / each;
+    is_back = SPEC_SEGMENTS == 2u && group >= front_groups;
+    uint at = (group - (is_back ? front_groups : 0u)) * each + own_place(r);
+    if (is_queue_full() || at >= (is_back ? counts.y : counts.x))
+        return ITEM_NONE;
+    return is_back ? capacity - 1u - at : at;
+}
+
+// Item of the waiting list, where items are rays, or nothing is appended.
+uint waiting_item(uint r)
+{
+    uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
+    uint item = at < waiting.count && r == 0u ? waiting_items[at] : ITEM_NONE;
+    is_back = SPEC_SEGMENTS == 2u && item != ITEM_NONE && item >= middle_id();
+    return item;
+}
+
+// Slot of a camera ray.
+uint camera_item(uint r)
+{
+    uint each = SPEC_GROUP_SIZE * SPEC_PACKET_RAYS;
+    uint at = own_slot() / SPEC_GROUP_SIZE * each + own_place(r);
+    is_back = SPEC_SEGMENTS == 2u && gl_WorkGroupID.x >= (gl_NumWorkGroups.x + 1u) / 2u;
+    return !is_queue_full() && at < camera_ray_count() ? at : ITEM_NONE;
+}
+
+// How many of `wanted` the invocations of the subgroup before this one have, and all of it. All
+// invocations must be here.
+uint count_before(uint wanted, out uint all)
+{
+    uint sum = wanted;
+    if (SPEC_EIGHT_LANES != 0u) { // lavapipe has no faster way to add up lanes
+        uint lane = gl_SubgroupInvocationID;
+        uint other = subgroupShuffle(sum, (lane - 1u) & 7u);
+        sum += lane >= 1u ? other : 0u;
+        other = subgroupShuffle(sum, (lane - 2u) & 7u);
+        sum += lane >= 2u ? other : 0u;
+        other = subgroupShuffle(sum, (lane - 4u) & 7u);
+        sum += lane >= 4u ? other : 0u;
+        all = subgroupShuffle(sum, 7u);
+    } else {
+        sum = subgroupInclusiveAdd(wanted);
+        all = subgroupAdd(wanted);
+    }
+    return sum - wanted;
+}
+
+uint from_first(uint value)
+{
+    return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
+}
+
+// `back` is the same for all invocations of the subgroup.
+uint append_segment(uint generation, uint list, uint wanted, uint each, bool back)
+{
+    uint all, at = 0u;
+    uint before = count_before(wanted, all);
+    if (subgroupElect() && all != 0u) {
+        at = back ? atomicAdd(generations[generation].lists[list].back, all)
+                  : atomicAdd(generations[generation].lists[list].front, all);
+        uint more = (at + all + each - 1u) / each - (at + each - 1u) / each;
+        if (more != 0u)
+            atomicAdd(generations[generation].lists[list].groups, more);
+    }
+    return from_first(at) + before;
+}
+
+// Room for `wanted` items of the invocation in a list of a generation: where in its segment. `each`:
+// items of a workgroup that works on the list.
+uint append_items(uint generation, uint list, uint wanted, uint each)
+{
+    if (SPEC_SEGMENTS == 2u && SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u) {
+        // What has waited is of both segments.
+        uint front = append_segment(generation, list, is_back ? 0u : wanted, each, false);
+        uint back = append_segment(generation, list, is_back ? wanted : 0u, each, true);
+        return is_back ? back : front;
+    }
+    return append_segment(generation, list, wanted, each, is_back);
+}
+
+// Of item `at` of the segment, in a list of that many items.
+uint item_place(uint at, uint capacity)
+{
+    return is_back ? capacity - 1u - at : at;
+}
+
+void list_hit(bool wanted, uint material_class, uint id)
+{
+    for (uint k = 0u; k < SPEC_CLASSES; k++) {
+        bool own = wanted && material_class == k;
+        uint at = append_items(chunk.generation, LIST_HITS + k, uint(own), SPEC_GROUP_SIZE);
+        if (own)
+            hit_list[k * chunk.ray_capacity + place_in_tile(item_place(at, chunk.ray_capacity))] = id;
+    }
+}
+
+// Ids of `wanted` rays of the next generation, one after the other; HIT_NONE where there is no room.
+uint reserve_rays(uint wanted, inout uint status)
+{
+    uint next = chunk.generation + 1u;
+    uint at = append_items(next, LIST_RAYS, wanted, SPEC_GROUP_SIZE);
+    if (wanted == 0u)
+        return HIT_NONE;
+    uvec2 firsts = fetch_firsts(next);
+    at += is_back ? firsts.y : firsts.x;
+    uint room = is_back ? chunk.ray_capacity - middle_id() : middle_id();
+    if (at + wanted > room) {
+        status |= STATUS_QUEUE_FULL;
+        return HIT_NONE;
+    }
+    return is_back ? chunk.ray_capacity - at - wanted : at;
+}
+
+// Adds to the tally: two numbers below 2^16 a subgroup.
+uint add_up_lanes(uint value)
+{
+    if (SPEC_EIGHT_LANES == 0u)
+        return subgroupAdd(value);
+    value += subgroupShuffleXor(value, 1u);
+    value += subgroupShuffleXor(value, 2u);
+    return value + subgroupShuffleXor(value, 4u);
+}
+
+#endif

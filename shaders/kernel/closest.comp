@@ -1,0 +1,118 @@
+// What the rays of a generation meet: those that meet something are listed to be shaded, the others see
+// the sky.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/light.glsl"
+#include "../bind/media.glsl"
+#include "../bind/packet.glsl"
+#include "../bind/queues.glsl"
+#include "../bind/surface.glsl"
+
+layout(local_size_x_id = 0) in;
+
+ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front, ivec3 own)
+{
+    return own;
+}
+
+uint ray_slot[SPEC_PACKET_RAYS], ray_id[SPEC_PACKET_RAYS], ray_kind[SPEC_PACKET_RAYS];
+uvec4 ray_media_of[SPEC_PACKET_RAYS];
+vec3 ray_weight[SPEC_PACKET_RAYS];
+
+bool is_in_picture(uvec2 at)
+{
+    return at.x < frame.width && at.y < min(frame.height, chunk.band_y + chunk.band_rows);
+}
+
+// The ray's id; ITEM_NONE: there is none.
+uint own_ray(uint r)
+{
+    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u)
+        return waiting_item(r);
+    if (is_primary())
+        return camera_item(r);
+    uint item = own_item(r, chunk.ray_capacity);
+    return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
+}
+
+void take_ray(uint r)
+{
+    uint id = own_ray(r);
+    bool primary = is_primary(), alive = id != ITEM_NONE;
+    id = alive ? id : 0u;
+    alive = alive && (!primary || is_in_picture(slot_pixel(slot_of(id))));
+    uint slot;
+    Ray ray = fetch_ray(id, slot);
+    if (SPEC_COUNT != 0u && primary && alive)
+        clear_costs(slot);
+    ray_slot[r] = slot;
+    ray_id[r] = id;
+    ray_kind[r] = ray.kind;
+    ray_media_of[r] = ray.media;
+    ray_weight[r] = ray.weight;
+    packet_alive[r] = alive;
+    packet_origin[r] = ray.origin;
+    packet_dir[r] = ray.dir;
+    packet_t_max[r] = FLOAT_LARGEST;
+    packet_skip[r] = uvec2(ray.skip_instance, ray.skip_primitive);
+}
+
+uint class_of_hit(Hit hit)
+{
+    if (SPEC_CLASSES == 1u)
+        return 0u;
+    uint flags = fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w;
+    return (flags & TRIANGLE_GLASS) != 0u ? CLASS_GLASS : CLASS_PLAIN;
+}
+
+// Whether ray `r` met something to be shaded.
+bool leave_ray(uint r, bool alive)
+{
+    Hit hit = packet_hits[r];
+    bool primary = is_primary();
+    if (alive)
+        add_cost(ray_slot[r], ray_kind[r]);
+    bool waits = alive && must_wait(hit.status);
+    if (waits)
+        list_waiting(ray_id[r]);
+    alive = alive && !waits;
+    bool met = alive && hit.primitive != HIT_NONE;
+    if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
+        uvec2 at = slot_pixel(ray_slot[r]);
+        ids[(at.y - chunk.band_y) * frame.width + at.x] = uvec2(hit.instance, hit.primitive);
+    }
+    if (met)
+        store_hit(ray_id[r], hit);
+    vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
+    if (alive && !met)
+        sums[ray_id[r]] = vec4(environment_radiance(packet_dir[r]) * weight, 0.0);
+    report_status(alive ? hit.status : 0u);
+    return met;
+}
+
+void main()
+{
+    if (SPEC_SECONDARY != 0u && own_slot() == 0u) {
+        bool primary = is_primary();
+        uint g = chunk.generation;
+        generations[g + 1u].first =
+            primary ? camera_ray_count() : generations[g].first + generations[g].lists[LIST_RAYS].front;
+        generations[g + 1u].before =
+            primary ? 0u : generations[g].before + generations[g].lists[LIST_RAYS].back;
+    }
+    bool alive[SPEC_PACKET_RAYS];
+    EACH_RAY {
+        take_ray(r);
+        alive[r] = packet_alive[r];
+    }
+    traverse_packets(TRAVERSE_CLOSEST, 0.0, frame.root, frame.root8);
+    EACH_RAY {
+        bool met = leave_ray(r, alive[r]);
+        list_hit(met, class_of_hit(packet_hits[r]), ray_id[r]);
+    }
+}

@@ -1,0 +1,245 @@
+// What surfaces do with the rays of a generation that met one: light of their own, what lights are asked
+// for, and the rays that go on.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/queues.glsl"
+#include "../bind/crossing.glsl"
+#include "../bind/filter.glsl"
+#include "../bind/lit.glsl"
+#include "../bind/optics.glsl"
+#include "../bind/terminator.glsl"
+
+layout(local_size_x_id = 0) in;
+
+// The rays that a surface calls for, in the order in which their light is added.
+struct Calls {
+    vec3 dir[3], weight[3]; // refracted, straight, reflected
+    bool wanted[3];
+    uint steps;
+    uint cuts; // for --depth, and above bit 16 for --bailout
+    float cut; // largest channels of what is not traced, summed up
+    bool deep; // for --depth
+    bool lost; // a ray whose weight is no number is not traced, so the sum must tell
+};
+
+// Whether a ray of this weight is traced.
+bool traced(vec3 weight, bool deep, inout Calls calls, inout uint status)
+{
+    float largest = largest_of(weight);
+    calls.lost = calls.lost || any(isnan(weight));
+    bool small = !(largest >= frame.bailout);
+    bool counts = (deep || small) && largest > 0.0 && !must_wait(status);
+    calls.cuts += counts ? (deep ? 1u : 1u << 16) : 0u;
+    calls.cut += counts ? largest : 0.0;
+    calls.deep = deep;
+    return !deep && !small && !must_wait(status);
+}
+
+void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout uint status)
+{
+    calls.dir[which] = dir;
+    calls.weight[which] = weight;
+    calls.wanted[which] = traced(weight, deep, calls, status);
+}
+
+// What the surface reflects and lets through.
+Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
+{
+    Calls calls;
+    calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
+    calls.cut = 0.0;
+    calls.cuts = 0u;
+    calls.lost = false;
+    calls.steps = ray.steps + STEPS_OF_BOUNCE;
+    bool deep = SPEC_SECONDARY == 0u || ray_bounces(ray.steps) >= frame.depth;
+    float solid = 1.0 - o.straight;
+    if (SPEC_REFRACTION != 0u) {
+        vec3 dir = ray.dir;
+        bool passes = o.thin || refract_dir(ray.dir, s.ns, o.eta, dir);
+        // A shading normal may bend the ray back to its own side: then straight on.
+        if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
+            dir = ray.dir;
+        if (passes)
+            call(0u, dir, ray.weight * o.refracted * solid, deep, calls, status);
+    }
+    if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u)
+        call(1u, ray.dir, ray.weight * o.straight, deep, calls, status);
+    if (SPEC_REFLECTION != 0u) {
+        vec3 dir = reflect(ray.dir, s.ns);
+        if (dot(dir, s.ng) <= 0.0)
+            dir = reflect(ray.dir, s.ng);
+        call(2u, normalize(dir), ray.weight * o.reflected * solid, deep, calls, status);
+    }
+    return calls;
+}
+
+// Straight on, where both sides of a surface are the same medium. Counted as refracted.
+Calls call_through(Ray ray, inout uint status)
+{
+    Calls calls;
+    calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
+    calls.cut = 0.0;
+    calls.cuts = 0u;
+    calls.lost = false;
+    calls.steps = ray.steps + 1u;
+    bool deep = SPEC_SECONDARY == 0u || ray_bounces(calls.steps) > frame.depth;
+    call(0u, ray.dir, ray.weight, deep, calls, status);
+    return calls;
+}
+
+// Puts a ray into the next generation.
+uint send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next)
+{
+    uint id = next;
+    next++;
+    ray.dir = dir;
+    ray.weight = weight;
+    ray.steps = steps;
+    store_ray(id, ray, slot);
+    return id;
+}
+
+uvec4 send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
+                 Calls calls, inout uint status)
+{
+    uvec4 sent = uvec4(HIT_NONE);
+    uint next = reserve_rays(alive ? uint(calls.wanted[0]) + uint(calls.wanted[1]) +
+                                         uint(calls.wanted[2])
+                                   : 0u,
+                             status);
+    uint sum = add_up_lanes(next != HIT_NONE ? uint(calls.wanted[0]) | uint(calls.wanted[2]) << 16 : 0u);
+    if (subgroupElect() && (sum & 0xffffu) != 0u)
+        atomicAdd(tally.refracted, sum & 0xffffu);
+    if (subgroupElect() && sum >> 16 != 0u)
+        atomicAdd(tally.reflected, sum >> 16);
+    if (next == HIT_NONE)
+        return sent;
+    Ray beyond = ray;
+    beyond.origin = offset_origin(c.p, c.error, -c.ng);
+    beyond.skip_instance = c.instance;
+    beyond.skip_primitive = c.primitive;
+    if ((SPEC_REFRACTION != 0u || SPEC_MEDIA != 0u) && calls.wanted[0]) {
+        beyond.media = o.thin ? ray.media : c.after;
+        beyond.kind = RAY_REFRACTED;
+        sent.x = send(slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
+    }
+    if ((SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) && calls.wanted[1]) {
+        beyond.media = ray.media;
+        beyond.kind = ray.kind;
+        sent.y = send(slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);
+    }
+    if (SPEC_REFLECTION != 0u && calls.wanted[2]) {
+        Ray back = ray;
+        back.origin = offset_origin(s.p, s.error, s.ng);
+        back.skip_instance = hit.instance;
+        back.skip_primitive = hit.primitive;
+        back.media = c.before;
+        back.kind = RAY_REFLECTED;
+        sent.z = send(slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
+    }
+    return sent;
+}
+
+void count_cut(uint slot, Calls calls)
+{
+    atomicAdd(cuts[slot * 2u + uint(!calls.deep)], uint(min(calls.cut, 64.0) * CUT_PARTS + 0.5));
+}
+
+// A shadow catcher reflects nothing: light goes straight on, see caught_share.
+void make_catcher(inout Optics o)
+{
+    o.diffuse = vec3(1.0);
+    o.ambient = vec3(0.0);
+    o.highlight = vec3(0.0);
+    o.emission = vec3(0.0);
+    o.reflected = vec3(0.0);
+    o.refracted = vec3(0.0);
+    o.straight = 1.0;
+    o.unlit = false;
+    o.metal_rough = false;
+}
+
+void ask_lights(bool alive, uint id, Ray ray, Surface s, Optics o, Crossing c, bool catcher,
+                inout uint status)
+{
+    vec3 weight = catcher ? vec3(1.0) : ray.weight * (1.0 - o.straight);
+    vec3 lift = smooth_lift(s);
+    Lit lit;
+    lit.p = s.p;
+    lit.origin = offset_origin(s.p + lift, s.error, s.ng);
+    lit.error = largest_of(s.error);
+    lit.ns = s.ns;
+    lit.ng = s.ng;
+    lit.diffuse = o.diffuse * weight;
+    lit.highlight = o.highlight * weight;
+    lit.gloss = o.metal_rough ? o.alpha : o.shininess;
+    lit.absorption = surrounding_absorption(c.before);
+    lit.flags = (lift != vec3(0.0) ? LIT_LIFTED : 0u) | (o.metal_rough ? LIT_METAL_ROUGH : 0u) |
+                (catcher ? LIT_CATCHER : 0u);
+    lit.id = id;
+    bool some = largest_of(lit.diffuse + lit.highlight) > 0.0 ||
+                any(isnan(lit.diffuse + lit.highlight));
+    list_lit(alive && some, lit, status);
+}
+
+void main()
+{
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
+    uint item = waited ? waiting_item(0u) : own_item(0u, chunk.ray_capacity);
+    bool alive = item != ITEM_NONE;
+    item = alive ? item : 0u;
+    uint id = waited ? item : fetch_listed_hit(item);
+    id = alive ? id : 0u;
+    uint slot;
+    Ray ray = fetch_ray(id, slot);
+    Hit hit = fetch_hit(id);
+    uint status = 0u;
+    ray.weight *= medium_transmittance(ray.media, hit.t);
+    Surface s = fetch_surface(hit);
+    gpu_material m = fetch_material(s.material);
+    bool inside = face_ray(s, ray.dir);
+    Crossing c = cross_surface(alive ? slot : HIT_NONE, ray, hit, s, m, inside, status);
+    if (alive && must_wait(status))
+        list_waiting(id);
+    alive = alive && !must_wait(status);
+    Optics o = surface_optics(s, m, ray.dir, c.eta);
+    if (dot(s.ns, ray.dir) > 0.0)
+        s.ns = s.ng;
+    bool seen = SPEC_MEDIA == 0u || c.seen;
+    bool catcher = SPEC_CATCHERS != 0u && (m.flags & MATERIAL_CATCHER) != 0u;
+    if (catcher)
+        make_catcher(o);
+    Calls calls = call_children(ray, s, o, c, status);
+    if (SPEC_MEDIA != 0u && !seen) {
+        calls = call_through(ray, status);
+        o.thin = false;
+    }
+    uint cuts = add_up_lanes(alive ? calls.cuts : 0u);
+    if (subgroupElect() && (cuts & 0xffffu) != 0u)
+        atomicAdd(tally.cut_depth, cuts & 0xffffu);
+    if (subgroupElect() && cuts >> 16 != 0u)
+        atomicAdd(tally.cut_bailout, cuts >> 16);
+    uvec4 sent = uvec4(HIT_NONE);
+    if (SPEC_SECONDARY != 0u)
+        sent = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
+    vec3 own = o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
+    own *= ray.weight * (1.0 - o.straight);
+    bool some = sent.x != HIT_NONE || sent.y != HIT_NONE || sent.z != HIT_NONE;
+    uint has = (some ? SUM_HAS_CHILDREN : 0u) | (catcher && some ? SUM_IS_CATCHER : 0u);
+    own = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : own;
+    if (alive)
+        sums[id] = vec4(calls.lost || (seen && !catcher) ? own : vec3(0.0), uintBitsToFloat(has));
+    if (SPEC_SECONDARY != 0u && alive && some)
+        children[id] = sent;
+    if (CALLS_RAYS && alive && calls.cut > 0.0)
+        count_cut(slot, calls);
+    if (alive && catcher)
+        hit_rows[id * HIT_ROWS] = uvec4(0u);
+    if (SPEC_LIGHTS != 0u)
+        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, ray, s, o, c, catcher, status);
+    report_status(alive ? status : 0u);
+}

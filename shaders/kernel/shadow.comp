@@ -1,0 +1,205 @@
+// Light that reaches the lit hits of a generation from one light, with shadows.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/queues.glsl"
+#include "../bind/filter.glsl"
+#include "../bind/light.glsl"
+#include "../bind/lit.glsl"
+#include "../bind/packet.glsl"
+#include "../lib/optics.glsl"
+
+layout(local_size_x_id = 0) in;
+
+Lit lit_of[SPEC_PACKET_RAYS];
+LightTurn turn_of[SPEC_PACKET_RAYS];
+
+// A shadow ray from `lit`, of packet ray `r`. What is lifted off the triangle may be met by light from
+// below the triangle's plane, which then must pass beside the triangle itself.
+void ask_light(uint r, bool wanted, Lit lit, LightTurn light, bool above)
+{
+    vec3 to_light = light.to_light;
+    float distance = light.distance;
+    if (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u && distance < FLOAT_LARGEST) {
+        vec3 way = lit.p + to_light * distance - lit.origin;
+        distance = length(way);
+        to_light = way / distance;
+    }
+    packet_alive[r] = wanted;
+    packet_origin[r] = lit.origin;
+    packet_dir[r] = to_light;
+    packet_t_max[r] = distance;
+    packet_skip[r] = uvec2(lit.skip_instance, above ? lit.skip_primitive : HIT_NONE);
+}
+
+// How much of a light passes to the surface: 1 less opaque things in between, times the filters.
+vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
+{
+    Hit blocker = packet_hits[r];
+    if (SPEC_SHADOWS == 0u)
+        return vec3(1.0);
+    if (SPEC_COUNT != 0u && wanted) {
+        uint slot;
+        fetch_ray(lit.id, slot);
+        add_cost(slot, RAY_SHADOW);
+    }
+    status |= wanted ? blocker.status : 0u;
+    if (blocker.primitive != HIT_NONE)
+        return vec3(0.0);
+    if (SPEC_FILTERS == 0u)
+        return vec3(1.0);
+    ivec3 depth = blocker.filter_depth;
+    float end = packet_t_max[r] < FLOAT_LARGEST ? packet_t_max[r] : 0.0;
+    if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && SPEC_ABSORPTION != 0u)
+        depth = max(depth + absorption_depth(lit.absorption, end), ivec3(0));
+    return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
+}
+
+// What the points of a flat emitter add up to. Its diffuse light is that of the whole polygon, of
+// which the points only tell the visible share, weighted by what each of them would send.
+struct EmitterSum {
+    float weight;  // cos cos / distance^2
+    vec3 visible;  // the same, times the share that passes
+    vec3 highlight;
+};
+
+// The highlight is not scaled up where points miss most of what is above the horizon. `open`: the
+// diffuse light without shadows.
+vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
+{
+    open = vec3(0.0);
+    if (!(sum.weight > 0.0))
+        return open;
+    float factor = emitter_form_factor(light, lit.p, vec3(lit.error), lit.ns);
+    float sampled = light.area_share * sum.weight;
+    vec3 radiance = min(light.color, vec3(LIGHT_MOST));
+    vec3 diffuse = lit.diffuse * (factor * (sum.visible / sum.weight));
+    vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
+    open = radiance * (lit.diffuse * factor);
+    return radiance * (diffuse + highlight);
+}
+
+// Of one point of the light, at one lit hit.
+struct Arrival {
+    bool faces, wanted;
+    float cos_light, strength;
+    vec3 highlight, reflected, arriving;
+};
+Arrival arrival_of[SPEC_PACKET_RAYS];
+
+void face_light(uint r, bool alive, gpu_light light, uint point)
+{
+    Lit lit = lit_of[r];
+    LightTurn at;
+    bool arrives = light_at(light, point, lit.p, at);
+    Arrival a;
+    a.cos_light = dot(at.to_light, lit.ns);
+    a.faces = alive && arrives && a.cos_light > 0.0;
+    a.strength = at.strength;
+    a.arriving = at.arriving;
+    bool above = dot(at.to_light, lit.ng) > 0.0;
+    bool wanted = a.faces && (above || (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u));
+    a.highlight = vec3(0.0);
+    a.reflected = lit.diffuse * a.cos_light;
+    if (SPEC_HIGHLIGHTS != 0u) {
+        vec3 middle = normalize_or(at.to_light + lit.view, lit.ns);
+        float cos_half = clamp(dot(middle, lit.ns), 0.0, 1.0);
+        float cos_view = max(dot(lit.view, lit.ns), 0.0);
+        bool metal_rough = SPEC_METAL_ROUGH != 0u && (lit.flags & LIT_METAL_ROUGH) != 0u;
+        a.highlight = metal_rough ? lit.highlight * a.cos_light *
+                                        ggx_highlight(cos_half, a.cos_light, cos_view, lit.gloss)
+                                  : lit.highlight * blinn_highlight(cos_half, lit.gloss);
+        a.reflected += a.highlight;
+    }
+    // NaN is: it must be seen
+    a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= 0.0);
+    arrival_of[r] = a;
+    ask_light(r, a.wanted, lit, at, above);
+}
+
+EmitterSum emitter_of[SPEC_PACKET_RAYS];
+vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS];
+uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
+
+void add_arrival(uint r, gpu_light light)
+{
+    Arrival a = arrival_of[r];
+    vec3 share = light_share(r, a.wanted, lit_of[r], status_of[r]);
+    share = a.wanted ? share : vec3(0.0);
+    rays_of[r] += uint(a.wanted);
+    if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
+        float weight = a.faces ? a.cos_light * a.strength : 0.0;
+        emitter_of[r].weight += weight;
+        emitter_of[r].visible += share * weight;
+        emitter_of[r].highlight += a.wanted ? a.highlight * share * a.strength : vec3(0.0);
+    } else if (a.wanted) {
+        sum_of[r] += a.reflected * a.arriving * share;
+        if (SPEC_CATCHERS != 0u)
+            open_of[r] += a.reflected * a.arriving;
+    }
+}
+
+// Adds what has come to the sums of the ray; gives the shadow rays that took.
+uint leave_lit(uint r, bool alive, uint item, gpu_light light)
+{
+    bool waits = alive && must_wait(status_of[r]);
+    if (waits)
+        list_waiting(item);
+    if (waits || !alive)
+        return 0u;
+    vec3 sum = sum_of[r], open = open_of[r];
+    if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
+        vec3 emitter_open;
+        sum += emitter_light(light, lit_of[r], emitter_of[r], emitter_open);
+        open += emitter_open;
+    }
+    uint id = lit_of[r].id;
+    vec4 own = fetch_sum(id);
+    sums[id] = vec4(own.rgb + sum, own.w);
+    if (SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u)
+        hit_rows[id * HIT_ROWS].xyz =
+            floatBitsToUint(uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz) + open);
+    report_status(status_of[r]);
+    return rays_of[r];
+}
+
+void main()
+{
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
+    bool alive[SPEC_PACKET_RAYS];
+    uint item[SPEC_PACKET_RAYS];
+    EACH_RAY {
+        item[r] = waited ? waiting_item(r) : own_item(r, chunk.lit_capacity);
+        alive[r] = item[r] != ITEM_NONE;
+        item[r] = alive[r] ? item[r] : 0u;
+        uint lit = fetch_listed_lit(item[r]);
+        lit_of[r] = fetch_lit(alive[r] ? lit : 0u);
+        emitter_of[r] = EmitterSum(0.0, vec3(0.0), vec3(0.0));
+        sum_of[r] = open_of[r] = vec3(0.0);
+        rays_of[r] = status_of[r] = 0u;
+    }
+    gpu_light light = fetch_light(chunk.light);
+    const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
+    uint points = flats && is_flat(light) ? turns_each() : 1u;
+    uint point = 0u;
+    bool more = false;
+    do {
+        EACH_RAY face_light(r, alive[r], light, point);
+        if (SPEC_SHADOWS != 0u)
+            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8);
+        EACH_RAY add_arrival(r, light);
+        point++;
+        more = flats && point < points;
+    } while (more);
+    if (more)
+        report_status(STATUS_UNFINISHED_LOOP);
+    uint rays = 0u;
+    EACH_RAY rays += leave_lit(r, alive[r], item[r], light);
+    rays = add_up_lanes(rays);
+    if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
+        atomicAdd(tally.shadow, rays);
+}

@@ -1,0 +1,114 @@
+/* Trees of eight children a node have the leaves of the trees of two, each once, boxes and all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../random.h"
+#include "../scenes.h"
+#include "accel/accel.h"
+
+static void ignore(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    (void)message;
+}
+
+static const struct log quiet = {.fn = ignore, .level = WHIT_LOG_ERROR};
+
+struct leaves {
+    struct gpu_bvh_node all[20000];
+    uint32_t count, depth;
+};
+
+static void add_leaf(struct leaves *leaves, const struct gpu_bvh_node *leaf)
+{
+    assert_true(leaves->count < sizeof leaves->all / sizeof *leaves->all);
+    leaves->all[leaves->count] = *leaf;
+    leaves->all[leaves->count++].count = bvh_count(leaf);
+}
+
+/* `width` children a node: refs of two are those of the first child, of eight those of the node. */
+static void collect(const struct gpu_bvh_node *nodes, uint32_t ref, uint32_t width, uint32_t depth,
+                    struct leaves *leaves)
+{
+    const struct gpu_bvh_node *children = &nodes[width == 8 ? (size_t)ref * 8 : ref];
+    leaves->depth = depth > leaves->depth ? depth : leaves->depth;
+    for (uint32_t i = 0; i < width; ++i) {
+        bool absent = width == 8 && children[i].lo[0] == 3e38f;
+        if (bvh_count(&children[i]) > 0 && !absent)
+            add_leaf(leaves, &children[i]);
+        else if (!absent)
+            collect(nodes, children[i].first, width, depth + 1, leaves);
+    }
+}
+
+static int compare_leaves(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(struct gpu_bvh_node));
+}
+
+static void check_tree(const struct accel *accel, uint32_t root, uint32_t root8, uint32_t depth8)
+{
+    struct leaves *two = calloc(1, sizeof *two), *eight = calloc(1, sizeof *eight);
+    assert_true(two && eight);
+    collect(accel->nodes, root, 2, 1, two);
+    collect(accel->bvh8.nodes, root8, 8, 1, eight);
+    assert_int_equal(two->count, eight->count);
+    qsort(two->all, two->count, sizeof *two->all, compare_leaves);
+    qsort(eight->all, eight->count, sizeof *eight->all, compare_leaves);
+    assert_memory_equal(two->all, eight->all, two->count * sizeof *two->all);
+    assert_true(eight->depth <= depth8 && (two->count <= 8 || eight->depth < two->depth));
+    print_message("  %u leaves, depth %u of two, %u of eight\n", two->count, two->depth,
+                  eight->depth);
+    free(two);
+    free(eight);
+}
+
+static void leaves_are_those_of_two(void **state)
+{
+    (void)state;
+    for (int flat = 0; flat < 2; ++flat) {
+        struct scene *scene = scene_begin(&quiet, "wide");
+        scene_put(scene, mesh_terrain(10.0, 2.0, 60, 3), NULL);
+        uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+        uint64_t random = 5;
+        for (int i = 0; i < 30; ++i) {
+            struct affine placed = placement_random(&random, 4.0, i % 3 == 0);
+            scene_put_again(scene, ring, &(struct put){.matrix = &placed});
+        }
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        const struct accel_params params = {.flatten = flat != 0};
+        struct scene_pose pose;
+        struct accel *accel;
+        assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+        assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_OK);
+        assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+        /* Again: what moves is made anew, the rest stays. */
+        for (int again = 0; again < 2; ++again) {
+            assert_int_equal(accel_widen(accel), WHIT_OK);
+            for (uint32_t i = 0; i < (flat ? 1 : accel->mesh_count); ++i)
+                check_tree(accel, accel->meshes[i].root, accel->bvh8.mesh_roots[i],
+                           accel->bvh8.mesh_depth);
+            if (!flat)
+                check_tree(accel, accel->instance_root, accel->bvh8.instance_root,
+                           accel->bvh8.instance_depth);
+        }
+        accel_destroy(accel);
+        scene_pose_finish(&pose);
+        scene_destroy(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(leaves_are_those_of_two),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
