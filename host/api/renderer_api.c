@@ -392,6 +392,12 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
     memcpy(stats->pixels_by_samples, inner.pixels_by_samples, sizeof stats->pixels_by_samples);
     for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
         stats->costs[kind] = cost_to_public(&inner.costs[kind]);
+    _Static_assert(WHIT_STAGES == RENDER_STAGE_COUNT, "a row for each");
+    for (uint32_t i = 0; i < WHIT_STAGES; ++i) {
+        stats->stages[i].rays = inner.stages[i].items;
+        stats->stages[i].ms = inner.stages[i].ms;
+        memcpy(stats->stages[i].name, inner.stages[i].name, sizeof stats->stages[i].name);
+    }
     uint64_t rays =
         inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
     if (inner.render_ms > 0.0)

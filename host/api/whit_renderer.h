@@ -141,6 +141,15 @@ typedef enum whit_view {
 WHIT_CHECK whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view,
                                                 whit_ray_kind kind, whit_image **out);
 
+/* What a stage of the kernels took. Time stamps are around the work of one tile in eight: `ms` is
+   that of all `rays`, by what one took there. */
+typedef struct whit_stage {
+    char name[24];
+    uint64_t rays; /* hits where they are shaded, sums where they are added up */
+    double ms;     /* < 0: not measured */
+} whit_stage;
+#define WHIT_STAGES 14
+
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
@@ -159,6 +168,7 @@ typedef struct whit_stats {
     uint32_t waits;        /* exact numerics: steps of pixels' rays that took more than floats */
     const char *load_path; /* "storage" or "texel" */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
+    whit_stage stages[WHIT_STAGES];  /* those that had rays; the others have none */
 } whit_stats;
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 

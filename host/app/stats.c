@@ -118,6 +118,25 @@ static json_t *kernel_document(const struct figures *figures)
     return kernel;
 }
 
+static json_t *stages_document(const struct figures *figures)
+{
+    json_t *stages = document_array();
+    for (int i = 0; i < WHIT_STAGES; ++i) {
+        const whit_stage *stage = &figures->render->stages[i];
+        if (!stage->rays)
+            continue;
+        json_t *object = document_object();
+        document_text(object, "name", stage->name);
+        document_count(object, "rays", stage->rays);
+        if (stage->ms >= 0.0)
+            document_ms(object, "ms", stage->ms);
+        else
+            document_put(object, "ms", json_null());
+        document_append(stages, object);
+    }
+    return stages;
+}
+
 static json_t *pixels_document(const struct figures *figures)
 {
     static const char *const samples[] = {"1", "4", "16", "64"};
@@ -182,6 +201,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
+    document_put(root, "stages", stages_document(figures));
     document_put(root, "kernel", kernel_document(figures));
     if (request->picture.adaptive > 0.0)
         document_put(root, "pixels_by_samples", pixels_document(figures));
@@ -254,6 +274,20 @@ static void print_rays(const struct figures *figures)
         puts("  how far off a pixel can be because of --bailout is not known for this scene");
 }
 
+static void print_stages(const struct figures *figures)
+{
+    puts("stages                     ms       rays  ns a ray   of one tile in eight, by time "
+         "stamps");
+    for (int i = 0; i < WHIT_STAGES; ++i) {
+        const whit_stage *stage = &figures->render->stages[i];
+        if (stage->rays && stage->ms >= 0.0)
+            printf("  %-18s %8.1f %10llu %9.1f\n", stage->name, stage->ms,
+                   (unsigned long long)stage->rays, stage->ms * 1e6 / (double)stage->rays);
+        else if (stage->rays)
+            printf("  %-18s %8s %10llu\n", stage->name, "-", (unsigned long long)stage->rays);
+    }
+}
+
 static void print_samples(const struct figures *figures)
 {
     const uint64_t *pixels = figures->render->pixels_by_samples;
@@ -312,6 +346,7 @@ static int print_text(const struct job *job, const struct render_request *reques
            cli_shown(stats_driver(&figures->device)));
     print_times(job, figures);
     print_rays(figures);
+    print_stages(figures);
     if (request->picture.adaptive > 0.0)
         print_samples(figures);
     print_kernel(figures);

@@ -111,11 +111,14 @@ static whit_result submit(struct renderer *renderer)
         result = commands_wait(renderer->commands, -1.0);
     if (result != WHIT_OK)
         return result;
-    double device_ms = commands_span_ms(renderer->commands, 0);
-    if (device_ms < 0.0 || renderer->stats.render_device_ms < 0.0)
-        renderer->stats.render_device_ms = -1.0;
-    else
-        renderer->stats.render_device_ms += device_ms;
+    uint32_t span = 0;
+    do {
+        double device_ms = commands_span_ms(renderer->commands, span);
+        if (device_ms < 0.0 || renderer->stats.render_device_ms < 0.0)
+            renderer->stats.render_device_ms = -1.0;
+        else
+            renderer->stats.render_device_ms += device_ms;
+    } while (++span < commands_span_count(renderer->commands));
     return status_check(renderer);
 }
 

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "abi/queues.h"
 #include "abi/shade.h"
 #include "accel/accel.h"
 #include "accel/cost.h"
@@ -47,6 +48,25 @@ struct render_params {
 bool render_effect_can_add(enum scene_effect effect);
 bool render_effect_can_remove(enum scene_effect effect);
 
+/* Rows of render_stats.stages. */
+enum {
+    RENDER_STAGE_CAMERA,
+    RENDER_STAGE_CLOSEST,
+    RENDER_STAGE_SHADE, /* of CLASS_PLAIN, or of all */
+    RENDER_STAGE_SHADE_GLASS,
+    RENDER_STAGE_RESOLVE,
+    RENDER_STAGE_DEFERRED, /* NUMERICS_EXACT: what floats left open, of all stages */
+    RENDER_STAGE_SHADOW,   /* of light 0, and so on; where more than LIGHT_LISTS: of all */
+    RENDER_STAGE_COUNT = RENDER_STAGE_SHADOW + LIGHT_LISTS
+};
+struct render_stage {
+    char name[24];
+    uint64_t items; /* rays; hits where they are shaded; sums where they are resolved */
+    double ms;      /* < 0: not known; from those items that were timed: */
+    uint64_t timed_items;
+    double timed_ms;
+};
+
 struct render_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms;
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
@@ -62,6 +82,7 @@ struct render_stats {
                        floats left open */
     bool texel_loads;
     struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
+    struct render_stage stages[RENDER_STAGE_COUNT];
 };
 
 struct renderer;

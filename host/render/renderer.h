@@ -79,8 +79,18 @@ struct stage_set {
     uint32_t classes;                /* of materials, each with a shading kernel of its own */
 };
 
+/* Of the tile in hand, see stage_times.c. */
+struct stage_times {
+    uint32_t tiles; /* so far */
+    bool on;        /* the tile is timed */
+    uint32_t row;   /* of the span that is open; RENDER_STAGE_COUNT: none */
+    uint32_t rows[COMMANDS_SPANS], span_count;
+    double ms[RENDER_STAGE_COUNT];
+};
+
 struct stages {
     struct stage_set set;
+    struct stage_times times;
     uint32_t expected;    /* generations of the last tile */
     bool full;            /* a queue was, in the last submission */
     uint32_t blocks_most; /* of tiles, since one was too large; 0: as many as fit */
@@ -307,6 +317,22 @@ void stage_set_finish(struct stage_set *set);
 /* All rays of one sample of one chunk. *longest_ms: of its submissions. */
 WHIT_CHECK whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
                                      const struct progress *progress, double *longest_ms);
+
+uint64_t stages_generation_offset(uint32_t generation);
+
+/* stage_times.c: renderer->stats.stages, and rays_shadow with it. */
+void stage_times_begin(struct renderer *renderer);
+/* A submission begins, whose first span is open. */
+void stage_times_submission(struct renderer *renderer);
+/* What is recorded from here on belongs to `row`. */
+void stage_times_next(struct renderer *renderer, uint32_t row);
+/* The submission is done. */
+void stage_times_take(struct renderer *renderer);
+/* A tile is done, of `generations`, with so many items that waited. */
+WHIT_CHECK whit_result stage_times_end(struct renderer *renderer, const struct gpu_chunk *chunk,
+                                       uint32_t generations, uint32_t waits);
+/* Fills in names, and the times of all items. */
+void stage_times_scale(const struct renderer *renderer, struct render_stats *stats);
 
 /* beside.c: renderer->whitted is the best kernel that there is without waiting for it: at first the
    general one, while a thread compiles the specialised one, and from some later call on that. The

@@ -155,7 +155,7 @@ void stages_unbind(struct stages *stages)
     stages->expected = stages->blocks_most = 0;
 }
 
-static uint64_t generation_offset(uint32_t generation)
+uint64_t stages_generation_offset(uint32_t generation)
 {
     return sizeof(struct gpu_tally) + (uint64_t)generation * sizeof(struct gpu_generation);
 }
@@ -163,6 +163,21 @@ static uint64_t generation_offset(uint32_t generation)
 static size_t list_offset(uint32_t list)
 {
     return offsetof(struct gpu_generation, lists) + list * sizeof(struct gpu_items);
+}
+
+/* A row of the prices of stages. */
+static uint32_t row_of(enum stage stage, uint32_t list)
+{
+    static const uint32_t rows[STAGE_COUNT] = {
+        [STAGE_CAMERA] = RENDER_STAGE_CAMERA,
+        [STAGE_CLOSEST] = RENDER_STAGE_CLOSEST,
+        [STAGE_SHADE] = RENDER_STAGE_SHADE,
+        [STAGE_SHADOW] = RENDER_STAGE_SHADOW,
+        [STAGE_SHADE_GLASS] = RENDER_STAGE_SHADE_GLASS,
+        [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
+        [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,
+    };
+    return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
 
 /* Over what waits in the generation of `chunk`: the arguments are at `offset` of it. Those of
@@ -174,6 +189,7 @@ static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chu
     const struct pass *pass = &renderer->stages.set.passes[stage];
     chunk->list = list;
     struct buffer *waiting = renderer->pixel_buffers.queues.waiting;
+    stage_times_next(renderer, row_of(stage, list));
     if (pass->looks) {
         render_clear_waiting(renderer, waiting);
         commands_barrier(commands);
@@ -185,11 +201,12 @@ static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chu
                           1, 1);
     else
         commands_dispatch_indirect(commands, renderer->pixel_buffers.queues.generations,
-                                   generation_offset(chunk->generation) + list_offset(list));
+                                   stages_generation_offset(chunk->generation) + list_offset(list));
     ++renderer->stats.dispatches;
     if (pass->looks) {
         struct gpu_chunk waits = *chunk;
         waits.waiting = 1;
+        stage_times_next(renderer, RENDER_STAGE_DEFERRED);
         render_take_waiting(renderer, pass, 0, waiting, &waits, sizeof waits);
     }
     commands_barrier(commands);
@@ -232,16 +249,19 @@ static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk
     if (first == 0) {
         commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
         commands_copy(commands, queues->empty, 0, queues->generations, 0,
-                      generation_offset(queues->generation_count));
+                      stages_generation_offset(queues->generation_count));
         commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
         render_take_list(renderer, chunk);
     }
     commands_barrier(commands);
     commands_span_begin(commands, "tile");
+    stage_times_submission(renderer);
     for (chunk->generation = first; chunk->generation < end; ++chunk->generation)
         record_generation(renderer, chunk);
     record_resolve(renderer, chunk, end);
-    return render_finish_submission(renderer);
+    result = render_finish_submission(renderer);
+    stage_times_take(renderer);
+    return result;
 }
 
 static whit_result take_tally(struct renderer *renderer)
@@ -252,7 +272,6 @@ static whit_result take_tally(struct renderer *renderer)
         buffer_read(renderer->pixel_buffers.queues.generations, 0, &tally, sizeof tally);
     if (result != WHIT_OK)
         return result;
-    stats->rays_shadow += tally.shadow;
     stats->rays_reflected += tally.reflected;
     stats->rays_refracted += tally.refracted;
     stats->rays_cut_depth += tally.cut_depth;
@@ -267,7 +286,7 @@ static whit_result count_left(struct renderer *renderer, uint32_t generation, ui
     whit_result result = WHIT_OK;
     if (renderer->has_secondary)
         result = buffer_read(renderer->pixel_buffers.queues.generations,
-                             generation_offset(generation), &head, sizeof head);
+                             stages_generation_offset(generation), &head, sizeof head);
     *rays = head.lists[LIST_RAYS].front + head.lists[LIST_RAYS].back;
     return result;
 }
@@ -281,9 +300,13 @@ static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *
     struct gpu_chunk chunk = *tile;
     chunk.ray_capacity = queues->ray_capacity;
     chunk.lit_capacity = queues->lit_capacity;
-    uint32_t done = 0, end = stages->expected, left = 1;
+    uint32_t done = 0, end = stages->expected, left = 1, waits = 0, waits_before = 0;
+    stage_times_begin(renderer);
+    whit_result result = waits_read(renderer, &waits_before);
+    if (result != WHIT_OK)
+        return result;
     while (left > 0) {
-        whit_result result = done > 0 ? render_stop_asked(renderer, progress) : WHIT_OK;
+        result = done > 0 ? render_stop_asked(renderer, progress) : WHIT_OK;
         if (result == WHIT_OK && end >= queues->generation_count) {
             log_error(&renderer->log, "a ray passes more than %u surfaces",
                       queues->generation_count - 1);
@@ -302,7 +325,10 @@ static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *
         end += MORE_AT_ONCE;
     }
     stages->expected = done;
-    return take_tally(renderer);
+    result = waits_read(renderer, &waits);
+    if (result == WHIT_OK)
+        result = stage_times_end(renderer, tile, done, waits - waits_before);
+    return result == WHIT_OK ? take_tally(renderer) : result;
 }
 
 /* Where a queue gets full, in halves. */

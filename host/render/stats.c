@@ -46,5 +46,6 @@ void stats_clear(struct render_stats *stats)
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)
 {
     *stats = renderer->stats;
+    stage_times_scale(renderer, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
 }

@@ -44,7 +44,9 @@
    contend, and what was near stays near. */
 struct gpu_items {
     gpu_uint groups, groups_y, groups_z, pad;
-    gpu_uint front, back, pad0, pad1;
+    gpu_uint front, back;
+    gpu_uint shadow_rays; /* that the hits of the list took to its light */
+    gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_items, 32)
 #ifdef __STDC_VERSION__
@@ -60,9 +62,9 @@ GPU_ASSERT_SIZE(gpu_generation, 400)
 
 /* Of all rays of the tile so far. */
 struct gpu_tally {
-    gpu_uint shadow, reflected, refracted;
+    gpu_uint reflected, refracted;
     gpu_uint cut_depth, cut_bailout;
-    gpu_uint pad0, pad1, pad2;
+    gpu_uint pad0, pad1, pad2, pad3;
 };
 GPU_ASSERT_SIZE(gpu_tally, 32)
 

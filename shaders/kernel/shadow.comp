@@ -201,5 +201,5 @@ void main()
     EACH_RAY rays += leave_lit(r, alive[r], item[r], light);
     rays = add_up_lanes(rays);
     if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
-        atomicAdd(tally.shadow, rays);
+        atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
 }

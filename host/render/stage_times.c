@@ -1,0 +1,131 @@
+/* What the stages of a picture take. Time stamps around each dispatch would slow small tiles down
+   on drivers that end a batch of work for each stamp (lavapipe): so only some tiles are timed, and
+   what an item took there stands for all. */
+#include <stdio.h>
+
+#include "render/renderer.h"
+
+/* One tile in so many is timed, and the second. Which ones has no pattern in the picture. Never the
+   first: drivers that make machine code at the first dispatch (lavapipe) do it there. */
+enum { TIMED_ONE_IN = 8 };
+
+void stage_times_begin(struct renderer *renderer)
+{
+    struct stage_times *times = &renderer->stages.times;
+    uint32_t tile = times->tiles;
+    bool scattered = tile * 0x9e3779b9u < UINT32_MAX / TIMED_ONE_IN;
+    *times = (struct stage_times){
+        .tiles = tile + 1, .on = tile == 1 || (tile > 1 && scattered), .row = RENDER_STAGE_COUNT};
+}
+
+void stage_times_submission(struct renderer *renderer)
+{
+    struct stage_times *times = &renderer->stages.times;
+    times->span_count = 0;
+    times->row = RENDER_STAGE_COUNT;
+}
+
+void stage_times_next(struct renderer *renderer, uint32_t row)
+{
+    struct stage_times *times = &renderer->stages.times;
+    if (!times->on || times->row == row)
+        return;
+    if (times->span_count + 1 == COMMANDS_SPANS) {
+        times->on = false;
+        return;
+    }
+    times->rows[times->span_count++] = times->row;
+    times->row = row;
+    commands_span_end(renderer->commands);
+    commands_span_begin(renderer->commands, "stage");
+}
+
+void stage_times_take(struct renderer *renderer)
+{
+    struct stage_times *times = &renderer->stages.times;
+    if (!times->on)
+        return;
+    times->rows[times->span_count++] = times->row;
+    for (uint32_t i = 0; i < times->span_count; ++i) {
+        double ms = commands_span_ms(renderer->commands, i);
+        times->on = times->on && ms >= 0.0;
+        if (times->rows[i] < RENDER_STAGE_COUNT)
+            times->ms[times->rows[i]] += ms;
+    }
+}
+
+static void add_items(struct renderer *renderer, uint32_t row, uint64_t items)
+{
+    struct render_stage *stage = &renderer->stats.stages[row];
+    stage->items += items;
+    if (renderer->stages.times.on)
+        stage->timed_items += items;
+}
+
+static uint64_t items_of(const struct gpu_generation *generation, uint32_t list)
+{
+    return (uint64_t)generation->lists[list].front + generation->lists[list].back;
+}
+
+static void add_generation(struct renderer *renderer, const struct gpu_generation *generation,
+                           bool camera)
+{
+    uint32_t lights = renderer->frame.light_count;
+    uint64_t hits = 0;
+    if (!camera)
+        add_items(renderer, RENDER_STAGE_CLOSEST, items_of(generation, LIST_RAYS));
+    for (uint32_t i = 0; i < renderer->stages.set.classes; ++i) {
+        uint64_t items = items_of(generation, LIST_HITS + i);
+        add_items(renderer, RENDER_STAGE_SHADE + i, items);
+        hits += items;
+    }
+    if (!camera)
+        add_items(renderer, RENDER_STAGE_RESOLVE, hits);
+    for (uint32_t i = 0; i < (lights > LIGHT_LISTS ? 1 : lights); ++i) {
+        uint32_t rays = generation->lists[LIST_LIGHTS + i].shadow_rays;
+        add_items(renderer, RENDER_STAGE_SHADOW + i, rays);
+        renderer->stats.rays_shadow += rays;
+    }
+}
+
+whit_result stage_times_end(struct renderer *renderer, const struct gpu_chunk *chunk,
+                            uint32_t generations, uint32_t waits)
+{
+    struct stage_times *times = &renderer->stages.times;
+    uint64_t pixels = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
+    add_items(renderer, RENDER_STAGE_CAMERA, pixels);
+    add_items(renderer, RENDER_STAGE_RESOLVE, pixels);
+    add_items(renderer, RENDER_STAGE_DEFERRED, waits);
+    for (uint32_t g = 0; g < generations; ++g) {
+        struct gpu_generation generation;
+        whit_result result =
+            buffer_read(renderer->pixel_buffers.queues.generations, stages_generation_offset(g),
+                        &generation, sizeof generation);
+        if (result != WHIT_OK)
+            return result;
+        add_generation(renderer, &generation, g == 0);
+    }
+    for (uint32_t row = 0; times->on && row < RENDER_STAGE_COUNT; ++row)
+        renderer->stats.stages[row].timed_ms += times->ms[row];
+    return WHIT_OK;
+}
+
+void stage_times_scale(const struct renderer *renderer, struct render_stats *stats)
+{
+    static const char *const names[] = {"camera",      "closest", "shade",
+                                        "shade glass", "resolve", "deferred"};
+    bool several = renderer->frame.light_count > LIGHT_LISTS;
+    for (uint32_t row = 0; row < RENDER_STAGE_COUNT; ++row) {
+        struct render_stage *stage = &stats->stages[row];
+        if (row < RENDER_STAGE_SHADOW)
+            snprintf(stage->name, sizeof stage->name, "%s", names[row]);
+        else if (several)
+            snprintf(stage->name, sizeof stage->name, "shadows");
+        else
+            snprintf(stage->name, sizeof stage->name, "shadows of light %u",
+                     row - RENDER_STAGE_SHADOW);
+        stage->ms = stage->timed_items
+                        ? stage->timed_ms * (double)stage->items / (double)stage->timed_items
+                        : -1.0;
+    }
+}
