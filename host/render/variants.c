@@ -83,6 +83,27 @@ static uint32_t added_lights(const struct renderer *renderer)
     return spec.SPEC_LIGHTS;
 }
 
+/* Of textures what the worn materials of `which` call for. */
+static void narrow_textures(const struct renderer *renderer, enum scene_materials which,
+                            struct gpu_spec *spec)
+{
+    _Static_assert(TEXTURES_ALL == (1u << SCENE_SLOT_COUNT) - 1 &&
+                       TEXTURES_SPECULAR_LEVEL == 1u << SCENE_SLOT_SPECULAR_LEVEL &&
+                       TEXTURES_OPACITY == 1u << SCENE_SLOT_OPACITY,
+                   "a bit for each slot");
+    _Static_assert(SAMPLING_FILTERED == (uint32_t)SCENE_SAMPLING_FILTERED &&
+                       SAMPLING_SRGB == (uint32_t)SCENE_SAMPLING_SRGB,
+                   "the same bits");
+    struct scene_effects own = {.called = {false}};
+    uint64_t added = renderer->params.effects_added;
+    if (renderer->params.all_effects || (added >> SCENE_EFFECT_TEXTURES & 1) ||
+        (added >> SCENE_EFFECT_NORMAL_MAPS & 1))
+        return;
+    scene_effects_scan_materials(renderer->scene, which, &own);
+    spec->SPEC_TEXTURES &= own.texture_slots;
+    spec->SPEC_SAMPLING &= own.sampling;
+}
+
 struct gpu_spec variant_spec(const struct renderer *renderer)
 {
     struct gpu_spec spec = make_spec(renderer, &renderer->effects, renderer->has_secondary);
@@ -98,6 +119,7 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
                                                                              : FILTERS_PLAIN;
     if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_touch(renderer))
         spec.SPEC_MEDIA = MEDIA_ALONE;
+    narrow_textures(renderer, SCENE_MATERIALS_ALL, &spec);
     return spec;
 }
 
@@ -321,26 +343,27 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
         {SCENE_EFFECT_REFRACTION, offsetof(struct gpu_spec, SPEC_REFRACTION)},
         {SCENE_EFFECT_MEDIA, offsetof(struct gpu_spec, SPEC_CROSSINGS)},
         {SCENE_EFFECT_FRESNEL, offsetof(struct gpu_spec, SPEC_FRESNEL)},
-        {SCENE_EFFECT_TEXTURES, offsetof(struct gpu_spec, SPEC_TEXTURES)},
         {SCENE_EFFECT_NORMAL_MAPS, offsetof(struct gpu_spec, SPEC_NORMAL_MAPS)},
         {SCENE_EFFECT_EMISSION, offsetof(struct gpu_spec, SPEC_EMISSION)},
         {SCENE_EFFECT_HIGHLIGHTS, offsetof(struct gpu_spec, SPEC_HIGHLIGHTS)},
         {SCENE_EFFECT_METAL_ROUGH, offsetof(struct gpu_spec, SPEC_METAL_ROUGH)},
         {SCENE_EFFECT_CATCHERS, offsetof(struct gpu_spec, SPEC_CATCHERS)},
-        /* A walk to what touches a surface may meet them too. */
         {SCENE_EFFECT_CUTOUTS, offsetof(struct gpu_spec, SPEC_CUTOUTS)},
     };
     struct scene_effects own = {.called = {false}};
     bool glass = material_class == CLASS_GLASS;
-    scene_effects_scan_materials(renderer->scene,
-                                 glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE, &own);
+    /* To what touches a surface, which may be of the other class. */
+    bool walks = glass && spec->SPEC_MEDIA == MEDIA_TOUCH;
+    enum scene_materials which = glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE;
+    scene_effects_scan_materials(renderer->scene, which, &own);
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         bool added = renderer->params.effects_added >> all[i].effect & 1;
-        bool walks =
-            glass && spec->SPEC_MEDIA == MEDIA_TOUCH && all[i].effect == SCENE_EFFECT_CUTOUTS;
-        if (!own.called[all[i].effect] && !added && !walks)
+        bool cuts = walks && all[i].effect == SCENE_EFFECT_CUTOUTS;
+        if (!own.called[all[i].effect] && !added && !cuts)
             memset((char *)spec + all[i].constant, 0, sizeof(uint32_t));
     }
+    if (!walks || !spec->SPEC_CUTOUTS)
+        narrow_textures(renderer, which, spec);
 }
 
 static uint32_t lit_parts(const struct gpu_spec *spec)

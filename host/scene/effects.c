@@ -155,6 +155,16 @@ static bool lets_through(const struct scene *scene, const struct scene_material 
            has(m, SCENE_SLOT_DIFFUSE) || has(m, SCENE_SLOT_OPACITY);
 }
 
+static uint32_t sampling_of(const struct scene_texture_use *use)
+{
+    static const uint32_t wraps[] = {
+        [SCENE_WRAP_REPEAT] = SCENE_SAMPLING_REPEAT,
+        [SCENE_WRAP_CLAMP] = SCENE_SAMPLING_CLAMP,
+        [SCENE_WRAP_MIRROR] = SCENE_SAMPLING_MIRROR,
+    };
+    return wraps[use->wrap_u] | wraps[use->wrap_v] | (use->nearest ? 0 : SCENE_SAMPLING_FILTERED);
+}
+
 static void scan_material(const struct scene *scene, struct scene_effects *out,
                           const struct scene_material *m)
 {
@@ -163,9 +173,17 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
         "metal-rough map", "opacity map",  "transmission map", "specular level map"};
     scan_optics(out, m);
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
-        if (has(m, (enum scene_slot)slot))
-            call_by_material(out, SCENE_EFFECT_TEXTURES, m, slots[slot]);
+        if (!has(m, (enum scene_slot)slot))
+            continue;
+        call_by_material(out, SCENE_EFFECT_TEXTURES, m, slots[slot]);
+        out->texture_slots |= 1u << slot;
+        out->sampling |= sampling_of(&m->textures[slot]);
     }
+    if (has(m, SCENE_SLOT_DIFFUSE) && m->alpha != SCENE_ALPHA_OPAQUE)
+        out->texture_slots |= 1u << SCENE_SLOT_OPACITY;
+    if (has(m, SCENE_SLOT_DIFFUSE) || has(m, SCENE_SLOT_EMISSION) ||
+        (has(m, SCENE_SLOT_SPECULAR) && m->model == SCENE_MODEL_METAL_ROUGH))
+        out->sampling |= SCENE_SAMPLING_SRGB;
     if (m->model != SCENE_MODEL_UNLIT && (has(m, SCENE_SLOT_NORMAL) || has(m, SCENE_SLOT_BUMP)))
         call_by_material(out, SCENE_EFFECT_NORMAL_MAPS, m,
                          has(m, SCENE_SLOT_NORMAL) ? "normal map" : "bump map");

@@ -366,9 +366,20 @@ enum scene_effect {
     SCENE_EFFECT_COUNT
 };
 
+/* Ways in which textures are sampled. */
+enum {
+    SCENE_SAMPLING_FILTERED = 1,
+    SCENE_SAMPLING_REPEAT = 2, /* SCENE_WRAP_*, in their order */
+    SCENE_SAMPLING_CLAMP = 4,
+    SCENE_SAMPLING_MIRROR = 8,
+    SCENE_SAMPLING_SRGB = 16,
+};
+
 struct scene_effects {
     bool called[SCENE_EFFECT_COUNT];
     char reasons[SCENE_EFFECT_COUNT][160]; /* "material `glass`, illum 7, box.mtl:41" */
+    uint32_t texture_slots;                /* bits 1 << SCENE_SLOT_* of what has textures */
+    uint32_t sampling;                     /* SCENE_SAMPLING_* of these, together */
 };
 
 const char *scene_effect_name(enum scene_effect effect);

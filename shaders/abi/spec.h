@@ -30,6 +30,24 @@
 #define SPHERES_SOME 1u
 #define SPHERES_ONLY 2u /* no triangle at all */
 
+/* What has textures: bits 1 << SCENE_SLOT_*. Opacity may be the alpha of a diffuse one. */
+#define TEXTURES_DIFFUSE        1u
+#define TEXTURES_SPECULAR       2u
+#define TEXTURES_EMISSION       4u
+#define TEXTURES_METAL_ROUGH    32u
+#define TEXTURES_OPACITY        64u
+#define TEXTURES_TRANSMISSION   128u
+#define TEXTURES_SPECULAR_LEVEL 256u
+#define TEXTURES_ALL            511u
+
+/* How textures are sampled, where not all in one way: SCENE_SAMPLING_*. */
+#define SAMPLING_FILTERED 1u
+#define SAMPLING_REPEAT   2u
+#define SAMPLING_CLAMP    4u
+#define SAMPLING_MIRROR   8u
+#define SAMPLING_SRGB     16u
+#define SAMPLING_ALL      31u
+
 /* Classes of materials. */
 #define CLASS_PLAIN 0u
 #define CLASS_GLASS 1u /* light passes through it */
@@ -66,7 +84,7 @@
     X(9, SPEC_REFRACTION, 1)                                                                       \
     X(10, SPEC_ABSORPTION, 1)                                                                      \
     X(11, SPEC_CUTOUTS, 1)            /* opacity textures decide hits, or light passes straight */ \
-    X(12, SPEC_TEXTURES, 1)                                                                        \
+    X(12, SPEC_TEXTURES, 511)         /* TEXTURES_*; normal and bump maps are SPEC_NORMAL_MAPS */  \
     X(13, SPEC_NORMAL_MAPS, 1)                                                                     \
     X(14, SPEC_ENVIRONMENT_MAP, 1)                                                                 \
     X(15, SPEC_SMOOTH_NORMALS, 1)                                                                  \
@@ -103,7 +121,8 @@
     X(46, SPEC_CLASSES, 1)            /* kernels for what materials call for */                    \
     X(47, SPEC_CROSSINGS, 1)          /* surfaces of the class bound media */                      \
     X(48, SPEC_LIT_PARTS, 7)          /* LIT_HAS_* */                                              \
-    X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */
+    X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */                                       \
+    X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -58,17 +58,15 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, 
     vec3 passes = m.transmission;
     vec3 base = m.diffuse * color.rgb;
     float metallic = m.metallic, opacity = m.opacity;
-    if (SPEC_TEXTURES != 0u) {
-        if (m.tex_transmission != TEXTURE_NONE)
-            passes *= sample_use(m.tex_transmission, index, u, v).r;
-        if (m.tex_diffuse != TEXTURE_NONE)
-            base *= sample_use(m.tex_diffuse, index, u, v).rgb;
-        if (SPEC_METAL_ROUGH != 0u && m.tex_metal_rough != TEXTURE_NONE)
-            metallic *= sample_use(m.tex_metal_rough, index, u, v).b;
-    }
+    if (is_textured(TEXTURES_TRANSMISSION, m.tex_transmission))
+        passes *= sample_use(m.tex_transmission, index, u, v).r;
+    if (is_textured(TEXTURES_DIFFUSE, m.tex_diffuse))
+        base *= sample_use(m.tex_diffuse, index, u, v).rgb;
+    if (SPEC_METAL_ROUGH != 0u && is_textured(TEXTURES_METAL_ROUGH, m.tex_metal_rough))
+        metallic *= sample_use(m.tex_metal_rough, index, u, v).b;
     if (SPEC_METAL_ROUGH != 0u && m.model == MATERIAL_MODEL_METAL_ROUGH)
         passes *= base * (1.0 - metallic);
-    if (SPEC_TEXTURES != 0u && m.tex_opacity != TEXTURE_NONE)
+    if (is_textured(TEXTURES_OPACITY, m.tex_opacity))
         opacity = sample_opacity(m, index, u, v);
     bool blends = (m.flags & MATERIAL_BLEND) != 0u;
     float cover = blends ? clamp(opacity * color.a, 0.0, 1.0) : 1.0;

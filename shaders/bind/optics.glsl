@@ -36,33 +36,31 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     float opacity = m.opacity * s.color_alpha;
     float metallic = m.metallic, roughness = m.roughness, specular_level = m.specular_level;
     vec3 transmission = m.transmission, mirror = m.reflection;
-    if (SPEC_TEXTURES != 0u) {
-        vec4 texel = vec4(1.0);
-        if (m.tex_diffuse != TEXTURE_NONE)
-            texel = sample_use(s, m.tex_diffuse);
-        o.diffuse *= texel.rgb;
-        o.ambient *= texel.rgb;
-        if (m.tex_specular != TEXTURE_NONE) {
-            vec3 specular = sample_use(s, m.tex_specular).rgb;
-            o.highlight *= specular;
-            mirror *= specular;
-        }
-        if (SPEC_EMISSION != 0u && m.tex_emission != TEXTURE_NONE)
-            o.emission *= sample_use(s, m.tex_emission).rgb;
-        if ((SPEC_METAL_ROUGH != 0u || SPEC_HIGHLIGHTS != 0u) &&
-            m.tex_metal_rough != TEXTURE_NONE) {
-            vec3 rgb = sample_use(s, m.tex_metal_rough).rgb;
-            o.shininess *= rgb.r;
-            roughness *= rgb.g;
-            metallic *= rgb.b;
-        }
-        if (SPEC_METAL_ROUGH != 0u && m.tex_specular_level != TEXTURE_NONE)
-            specular_level *= sample_use(s, m.tex_specular_level).a;
-        if (SPEC_REFRACTION != 0u && m.tex_transmission != TEXTURE_NONE)
-            transmission *= sample_use(s, m.tex_transmission).r;
+    if (is_textured(TEXTURES_DIFFUSE, m.tex_diffuse)) {
+        vec3 diffuse = sample_use(s, m.tex_diffuse).rgb;
+        o.diffuse *= diffuse;
+        o.ambient *= diffuse;
     }
+    if (is_textured(TEXTURES_SPECULAR, m.tex_specular)) {
+        vec3 specular = sample_use(s, m.tex_specular).rgb;
+        o.highlight *= specular;
+        mirror *= specular;
+    }
+    if (SPEC_EMISSION != 0u && is_textured(TEXTURES_EMISSION, m.tex_emission))
+        o.emission *= sample_use(s, m.tex_emission).rgb;
+    if ((SPEC_METAL_ROUGH != 0u || SPEC_HIGHLIGHTS != 0u) &&
+        is_textured(TEXTURES_METAL_ROUGH, m.tex_metal_rough)) {
+        vec3 rgb = sample_use(s, m.tex_metal_rough).rgb;
+        o.shininess *= rgb.r;
+        roughness *= rgb.g;
+        metallic *= rgb.b;
+    }
+    if (SPEC_METAL_ROUGH != 0u && is_textured(TEXTURES_SPECULAR_LEVEL, m.tex_specular_level))
+        specular_level *= sample_use(s, m.tex_specular_level).a;
+    if (SPEC_REFRACTION != 0u && is_textured(TEXTURES_TRANSMISSION, m.tex_transmission))
+        transmission *= sample_use(s, m.tex_transmission).r;
     if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
-        if (m.tex_opacity != TEXTURE_NONE)
+        if (is_textured(TEXTURES_OPACITY, m.tex_opacity))
             opacity = sample_opacity(m, s.shade_index, s.u, s.v) * s.color_alpha;
         o.straight = clamp(1.0 - opacity, 0.0, 1.0);
     }

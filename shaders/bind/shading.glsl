@@ -99,7 +99,7 @@ vec4 fetch_texel(uint word, bool srgb)
 {
     uint texel = fetch_texel_word(word);
     vec4 linear = unpackUnorm4x8(texel);
-    if (srgb) {
+    if ((SPEC_SAMPLING & SAMPLING_SRGB) != 0u && srgb) {
         linear.r = uintBitsToFloat(fetch_texel_word(texel & 255u));
         linear.g = uintBitsToFloat(fetch_texel_word((texel >> 8) & 255u));
         linear.b = uintBitsToFloat(fetch_texel_word((texel >> 16) & 255u));
@@ -107,13 +107,23 @@ vec4 fetch_texel(uint word, bool srgb)
     return linear;
 }
 
+// Whether there are textures that wrap so, and this is one. The only way that there is need not be asked for.
+bool wraps(uint way, uint wrap)
+{
+    const uint ways = SPEC_SAMPLING & (SAMPLING_REPEAT | SAMPLING_CLAMP | SAMPLING_MIRROR);
+    uint bit = SAMPLING_REPEAT << way;
+    return (ways & bit) != 0u && (ways == bit || wrap == way);
+}
+
 int wrap_texel(int at, int size, uint wrap)
 {
-    int clamped = clamp(at, 0, size - 1);
-    int repeated = at - size * int(floor(float(at) / float(size)));
-    int period = at - 2 * size * int(floor(float(at) / float(2 * size)));
-    int mirrored = period < size ? period : 2 * size - 1 - period;
-    int chosen = wrap == WRAP_CLAMP ? clamped : wrap == WRAP_MIRROR ? mirrored : repeated;
+    int chosen = at;
+    if (wraps(WRAP_REPEAT, wrap))
+        chosen = at - size * int(floor(float(at) / float(size)));
+    if (wraps(WRAP_MIRROR, wrap)) {
+        int period = at - 2 * size * int(floor(float(at) / float(2 * size)));
+        chosen = period < size ? period : 2 * size - 1 - period;
+    }
     return clamp(chosen, 0, size - 1);
 }
 
@@ -121,7 +131,7 @@ int wrap_texel(int at, int size, uint wrap)
 // an int.
 float reduce_coordinate(float x, uint wrap)
 {
-    float reduced = wrap == WRAP_CLAMP ? clamp(x, -1.0, 2.0) : x - 2.0 * floor(x * 0.5);
+    float reduced = wraps(WRAP_CLAMP, wrap) ? clamp(x, -1.0, 2.0) : x - 2.0 * floor(x * 0.5);
     return abs(reduced) <= 2.0 ? reduced : 0.0;
 }
 
@@ -132,17 +142,27 @@ vec4 sample_texture(gpu_texture t, vec2 uv)
     vec2 at = vec2(t.matrix.x * uv.x + t.matrix.y * uv.y, t.matrix.z * uv.x + t.matrix.w * uv.y) +
               t.offset;
     at = vec2(reduce_coordinate(at.x, wrap.x), reduce_coordinate(at.y, wrap.y)) * vec2(size);
-    vec2 corner = t.nearest != 0u ? floor(at) : floor(at - 0.5);
-    vec2 part = t.nearest != 0u ? vec2(0.0) : at - 0.5 - corner;
+    bool filtered = (SPEC_SAMPLING & SAMPLING_FILTERED) != 0u && t.nearest == 0u;
+    vec2 corner = filtered ? floor(at - 0.5) : floor(at);
+    vec2 part = filtered ? at - 0.5 - corner : vec2(0.0);
     ivec2 texel = ivec2(corner);
     uint x0 = uint(wrap_texel(texel.x, size.x, wrap.x));
-    uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
     uint y0 = t.first + uint(wrap_texel(texel.y, size.y, wrap.y) * size.x);
-    uint y1 = t.first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
     bool srgb = t.srgb != 0u;
-    vec4 top = mix(fetch_texel(y0 + x0, srgb), fetch_texel(y0 + x1, srgb), part.x);
+    vec4 color = fetch_texel(y0 + x0, srgb);
+    if ((SPEC_SAMPLING & SAMPLING_FILTERED) == 0u)
+        return color;
+    uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
+    uint y1 = t.first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
+    vec4 top = mix(color, fetch_texel(y0 + x1, srgb), part.x);
     vec4 bottom = mix(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
     return mix(top, bottom, part.y);
+}
+
+// `slot`: TEXTURES_*.
+bool is_textured(uint slot, uint use)
+{
+    return (SPEC_TEXTURES & slot) != 0u && use != TEXTURE_NONE;
 }
 
 vec2 interpolate_uv(uint shade_index, uint uv_set, float u, float v)

@@ -48,8 +48,9 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     gpu_material material = fetch_material(fetch_material_index(index));
     if ((material.flags & MATERIAL_MASK) == 0u)
         return true;
-    float opacity = material.tex_opacity == TEXTURE_NONE ? material.opacity
-                                                         : sample_opacity(material, index, u, v);
+    float opacity = material.opacity;
+    if (is_textured(TEXTURES_OPACITY, material.tex_opacity))
+        opacity = sample_opacity(material, index, u, v);
     return opacity * vertex_color(index, u, v).a >= material.alpha_cutoff;
 }
 
