@@ -69,7 +69,8 @@ enum stage {
     STAGE_SHADE_GLASS,
     STAGE_SHADOW,
     STAGE_SHADOW_LATER,
-    STAGE_RESOLVE,
+    STAGE_RESOLVE, /* into pixels */
+    STAGE_RESOLVE_LATER,
     STAGE_COUNT
 };
 
@@ -77,6 +78,7 @@ enum stage {
 struct stage_set {
     struct pass passes[STAGE_COUNT]; /* empty where a stage has nothing to do */
     uint32_t classes;                /* of materials, each with a shading kernel of its own */
+    bool calls[CLASSES_MOST];        /* whether hits of a class call for rays */
 };
 
 /* Of the tile in hand, see stage_times.c. */
@@ -266,6 +268,8 @@ WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
 uint32_t variant_classes(const struct renderer *renderer);
+/* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
+bool variant_calls_rays(const struct gpu_spec *spec);
 bool variant_waits(const struct renderer *renderer);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.
  */

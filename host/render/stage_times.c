@@ -77,7 +77,7 @@ static void add_generation(struct renderer *renderer, const struct gpu_generatio
     for (uint32_t i = 0; i < renderer->stages.set.classes; ++i) {
         uint64_t items = items_of(generation, LIST_HITS + i);
         add_items(renderer, RENDER_STAGE_SHADE + i, items);
-        hits += items;
+        hits += renderer->stages.set.calls[i] ? items : 0;
     }
     if (!camera)
         add_items(renderer, RENDER_STAGE_RESOLVE, hits);

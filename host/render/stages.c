@@ -20,7 +20,7 @@ void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spe
     *job = (struct stages_job){.spec = *spec};
     job->classes = own ? variant_classes(renderer) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
-        bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER;
+        bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!later || renderer->has_secondary) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MOST);
         if (job->wanted[i])
@@ -33,6 +33,8 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     whit_result result = WHIT_OK;
     *out = (struct stage_set){.classes = job->classes};
+    for (uint32_t i = 0; i < job->classes; ++i)
+        out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec);
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         if (job->wanted[i])
             result = variant_job_run(device, &job->stages[i], &out->passes[i]);
@@ -176,6 +178,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
         [STAGE_SHADE_GLASS] = RENDER_STAGE_SHADE_GLASS,
         [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
         [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,
+        [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
     };
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
@@ -230,11 +233,13 @@ static void record_generation(struct renderer *renderer, struct gpu_chunk *chunk
 static void record_resolve(struct renderer *renderer, struct gpu_chunk *chunk, uint32_t count)
 {
     chunk->light = count;
-    for (chunk->generation = count; chunk->generation-- > 0;) {
-        bool camera = chunk->generation == 0;
-        for (uint32_t i = 0; i < (camera ? 1 : renderer->stages.set.classes); ++i)
-            dispatch(renderer, STAGE_RESOLVE, chunk, camera ? LIST_RAYS : LIST_HITS + i);
+    for (chunk->generation = count; --chunk->generation > 0;) {
+        for (uint32_t i = 0; i < renderer->stages.set.classes; ++i) {
+            if (renderer->stages.set.calls[i])
+                dispatch(renderer, STAGE_RESOLVE_LATER, chunk, LIST_HITS + i);
+        }
     }
+    dispatch(renderer, STAGE_RESOLVE, chunk, LIST_RAYS);
 }
 
 /* Generations `first` to `end` of a tile in one submission, and what they sum up to. */

@@ -366,6 +366,12 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
         narrow_textures(renderer, which, spec);
 }
 
+bool variant_calls_rays(const struct gpu_spec *spec)
+{
+    return spec->SPEC_SECONDARY && (spec->SPEC_REFLECTION || spec->SPEC_REFRACTION ||
+                                    spec->SPEC_CUTOUTS || spec->SPEC_CATCHERS);
+}
+
 static uint32_t lit_parts(const struct gpu_spec *spec)
 {
     bool bent = spec->SPEC_SMOOTH_NORMALS || spec->SPEC_NORMAL_MAPS;
@@ -417,7 +423,8 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *se
         [STAGE_SHADE_GLASS] = {KERNEL_SHADE, "shade glass", true, 3},
         [STAGE_SHADOW] = {KERNEL_SHADOW, "shadow", true, 1},
         [STAGE_SHADOW_LATER] = {KERNEL_SHADOW, "shadow later", true, 2},
-        [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 3},
+        [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 1},
+        [STAGE_RESOLVE_LATER] = {KERNEL_RESOLVE, "resolve later", false, 2},
     };
     struct bindings bindings = bind_stages(renderer);
     *job = (struct variant_job){.spec = *set_spec};

@@ -154,7 +154,17 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
             m.front = !m.rounded || m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
         return m;
     }
-    m.met = intersect_triangle(ray, a, b, c, t_min, m.t, m.u, m.v, m.front);
+    vec3 lo, hi;
+    if (SPEC_PACKET_RAYS > 1u) {
+        bound_points(row_vec3(r0), row_vec3(r1), row_vec3(r2), lo, hi);
+        precise vec3 near = lo - ray.origin;
+        precise vec3 far = hi - ray.origin;
+        lo = near;
+        hi = far;
+    } else {
+        bound_points(a, b, c, lo, hi);
+    }
+    m.met = intersect_triangle(ray, a, b, c, lo, hi, t_min, m.t, m.u, m.v, m.front);
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
     m.owned = owns_point(ray, a, b, c);

@@ -25,38 +25,34 @@ vec3 caught_share(vec3 light, vec3 open)
     return mix(vec3(1.0), share, greaterThan(open, vec3(1e-30)));
 }
 
-void main()
+// Of a ray and those that it called for.
+vec3 whole_sum(uint id, vec4 own)
 {
-    bool primary = chunk.generation == 0u;
-    uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
-    if (left.x + left.y != 0u)
-        return;
-    uint item = primary ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
-    if (item == ITEM_NONE)
-        return;
-    uint id = primary ? item : fetch_listed_hit(item);
-    uvec2 at = slot_pixel(slot_of(primary ? id : 0u));
-    if (primary && (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows)))
-        return;
-    vec4 own = fetch_sum(id);
     uint has = floatBitsToUint(own.w);
-    if (!primary && has == 0u)
-        return;
-    vec3 sum = own.rgb;
-    if (SPEC_SECONDARY != 0u && has != 0u) {
-        uvec4 from = fetch_children(id);
-        vec3 straight = child_sum(from.y);
-        if (SPEC_CATCHERS != 0u && (has & SUM_IS_CATCHER) != 0u)
-            sum = straight * caught_share(own.rgb, uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz));
-        else
-            sum = sum + child_sum(from.x) + straight + child_sum(from.z);
-        if (!primary)
-            sums[id] = vec4(sum, 0.0);
-    }
-    if (!primary)
+    if (SPEC_SECONDARY == 0u || has == 0u)
+        return own.rgb;
+    uvec4 from = fetch_children(id);
+    vec3 straight = child_sum(from.y);
+    if (SPEC_CATCHERS != 0u && (has & SUM_IS_CATCHER) != 0u)
+        return straight * caught_share(own.rgb, uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz));
+    return own.rgb + child_sum(from.x) + straight + child_sum(from.z);
+}
+
+void resolve_hit(uint item)
+{
+    uint id = fetch_listed_hit(item);
+    vec4 own = fetch_sum(id);
+    if (floatBitsToUint(own.w) != 0u)
+        sums[id] = vec4(whole_sum(id, own), 0.0);
+}
+
+void resolve_pixel(uint id)
+{
+    uvec2 at = slot_pixel(slot_of(id));
+    if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
         return;
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
-    vec4 total = vec4(sum * chunk.sample_weight, 1.0);
+    vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
     vec2 cut = vec2(0.0); // for --depth, for --bailout
     if (CALLS_RAYS) {
         uint slot = slot_of(id);
@@ -73,4 +69,18 @@ void main()
     if (any(isnan(total.rgb)) || any(isinf(total.rgb)))
         report_status(STATUS_NON_FINITE);
     pixels[pixel] = total;
+}
+
+void main()
+{
+    uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
+    if (left.x + left.y != 0u)
+        return;
+    uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
+    if (item == ITEM_NONE)
+        return;
+    if (is_primary())
+        resolve_pixel(item);
+    else
+        resolve_hit(item);
 }

@@ -144,6 +144,15 @@ uvec4 send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c
     return sent;
 }
 
+void tally_cuts(uint cuts)
+{
+    cuts = add_up_lanes(cuts);
+    if (subgroupElect() && (cuts & 0xffffu) != 0u)
+        atomicAdd(tally.cut_depth, cuts & 0xffffu);
+    if (subgroupElect() && cuts >> 16 != 0u)
+        atomicAdd(tally.cut_bailout, cuts >> 16);
+}
+
 void count_cut(uint slot, Calls calls)
 {
     atomicAdd(cuts[slot * 2u + uint(!calls.deep)], uint(min(calls.cut, 64.0) * CUT_PARTS + 0.5));
@@ -218,13 +227,10 @@ void main()
         calls = call_through(ray, status);
         o.thin = false;
     }
-    uint cuts = add_up_lanes(alive ? calls.cuts : 0u);
-    if (subgroupElect() && (cuts & 0xffffu) != 0u)
-        atomicAdd(tally.cut_depth, cuts & 0xffffu);
-    if (subgroupElect() && cuts >> 16 != 0u)
-        atomicAdd(tally.cut_bailout, cuts >> 16);
+    if (CALLS_RAYS)
+        tally_cuts(alive ? calls.cuts : 0u);
     uvec4 sent = uvec4(HIT_NONE);
-    if (SPEC_SECONDARY != 0u)
+    if (SPEC_SECONDARY != 0u && CALLS_RAYS)
         sent = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
     vec3 own = o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
     own *= ray.weight * (1.0 - o.straight);

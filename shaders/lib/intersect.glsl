@@ -134,15 +134,9 @@ Weights weigh_triangle(RaySetup ray, float az, float bz, float cz, vec3 edges)
     return Weights(det, inv_det, at, weight_b, weight_c, z);
 }
 
-// Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
-// An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
-// triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
-// other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
-// `front`: met from the side that sees the vertices go round against the clock.
-bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out float t, out float u,
-                        out float v, out bool front)
+// Bounds of three points.
+void bound_points(vec3 a, vec3 b, vec3 c, out vec3 lo, out vec3 hi)
 {
-    vec3 lo, hi;
     lo.x = a.x < b.x ? a.x : b.x;
     lo.y = a.y < b.y ? a.y : b.y;
     lo.z = a.z < b.z ? a.z : b.z;
@@ -155,6 +149,16 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, float t_min, out f
     hi.x = c.x > hi.x ? c.x : hi.x;
     hi.y = c.y > hi.y ? c.y : hi.y;
     hi.z = c.z > hi.z ? c.z : hi.z;
+}
+
+// Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
+// An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
+// triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
+// other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
+// `front`: met from the side that sees the vertices go round against the clock.
+bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, vec3 lo, vec3 hi, float t_min, out float t, out float u,
+                        out float v, out bool front)
+{
     float t_near, t_far;
     slab_interval(ray, lo, hi, t_min, t_near, t_far);
 
