@@ -364,6 +364,12 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
     }
     if (!walks || !spec->SPEC_CUTOUTS)
         narrow_textures(renderer, which, spec);
+    if (!own.lit)
+        spec->SPEC_LIGHTS = 0;
+    if (!walks && spec->SPEC_SPHERES)
+        spec->SPEC_SPHERES = !own.on_spheres     ? SPHERES_NONE
+                             : !own.on_triangles ? SPHERES_ONLY
+                                                 : SPHERES_SOME;
 }
 
 bool variant_calls_rays(const struct gpu_spec *spec)

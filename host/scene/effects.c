@@ -125,6 +125,8 @@ static void scan_optics(struct scene_effects *out, const struct scene_material *
         call_by_material(out, SCENE_EFFECT_CATCHERS, m, "");
     if (m->one_sided)
         call_by_material(out, SCENE_EFFECT_CULLING, m, "one-sided");
+    out->lit |= m->model == SCENE_MODEL_METAL_ROUGH || m->shadow_catcher ||
+                (m->model == SCENE_MODEL_PHONG && (any(m->diffuse) || any(m->specular)));
     if (m->model == SCENE_MODEL_UNLIT)
         return;
     if (any(m->reflection) || mirrors || (any(m->transmission) && m->fresnel))
@@ -252,15 +254,17 @@ static void scan_camera(struct scene_effects *out, const struct scene_camera *ca
              (double)camera->lens_radius);
 }
 
+enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
+
 /* Only what some primitive of some mesh wears counts: libraries of materials cost nothing.
    NULL (all count) when memory runs out. */
-static bool *worn_materials(const struct scene *scene)
+static uint8_t *worn_materials(const struct scene *scene)
 {
-    bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
+    uint8_t *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
     for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
         const struct scene_mesh *mesh = &scene->meshes[i];
         for (uint32_t t = 0; t < mesh->triangle_count + mesh->sphere_count; ++t)
-            worn[mesh->materials[t]] = true;
+            worn[mesh->materials[t]] |= mesh->sphere_count ? WORN_BY_SPHERES : WORN_BY_TRIANGLES;
     }
     return worn;
 }
@@ -268,7 +272,7 @@ static bool *worn_materials(const struct scene *scene)
 uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
                                       struct scene_effects *out)
 {
-    bool *worn = worn_materials(scene);
+    uint8_t *worn = worn_materials(scene);
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->material_count; ++i) {
         bool glass = any(scene->materials[i].transmission);
@@ -276,6 +280,8 @@ uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_mate
             (which != SCENE_MATERIALS_ALL && glass != (which == SCENE_MATERIALS_GLASS)))
             continue;
         scan_material(scene, out, &scene->materials[i]);
+        out->on_triangles |= !worn || (worn[i] & WORN_BY_TRIANGLES);
+        out->on_spheres |= !worn || (worn[i] & WORN_BY_SPHERES);
         ++count;
     }
     free(worn);

@@ -380,6 +380,8 @@ struct scene_effects {
     char reasons[SCENE_EFFECT_COUNT][160]; /* "material `glass`, illum 7, box.mtl:41" */
     uint32_t texture_slots;                /* bits 1 << SCENE_SLOT_* of what has textures */
     uint32_t sampling;                     /* SCENE_SAMPLING_* of these, together */
+    bool lit;                              /* materials ask what light comes */
+    bool on_triangles, on_spheres;         /* primitives that wear them */
 };
 
 const char *scene_effect_name(enum scene_effect effect);
