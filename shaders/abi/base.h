@@ -8,6 +8,7 @@
 #include <stdint.h>
 typedef float gpu_float;
 typedef uint32_t gpu_uint;
+typedef uint32_t gpu_uvec4[4];
 typedef float gpu_vec2[2];
 typedef float gpu_vec3[3];
 typedef float gpu_vec4[4];
@@ -18,6 +19,7 @@ typedef float gpu_vec4[4];
 #else
 #define gpu_float float
 #define gpu_uint  uint
+#define gpu_uvec4 uvec4
 #define gpu_vec2  vec2
 #define gpu_vec3  vec3
 #define gpu_vec4  vec4

@@ -55,8 +55,7 @@ typedef struct gpu_items gpu_items;
 
 struct gpu_generation {
     gpu_items lists[LISTS_COUNT];
-    gpu_uint first, before; /* ids: of its first ray in front; how many are behind those at the back */
-    gpu_uint pad0, pad1;
+    gpu_uvec4 firsts; /* ids: of its first ray in front; how many are behind those at the back; 0, 0 */
 };
 GPU_ASSERT_SIZE(gpu_generation, 400)
 

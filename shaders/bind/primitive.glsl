@@ -34,6 +34,7 @@ struct Hit {
     float u, v;     // of a sphere: square_from_dir of the normal, object space
     bool at_exit;   // NUMERICS_EXACT: it is the far end of a sphere
     uint triangle;  // record
+    bool glass;     // light passes through it
     uint primitive; // of its mesh, or HIT_NONE
     uint instance;
     ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
@@ -50,6 +51,7 @@ Hit make_hit(float t_max)
     hit.v = 0.0;
     hit.at_exit = false;
     hit.triangle = 0u;
+    hit.glass = false;
     hit.primitive = HIT_NONE;
     hit.instance = HIT_NONE;
     hit.filter_depth = ivec3(0);

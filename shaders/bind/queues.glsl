@@ -213,14 +213,14 @@ uint middle_id()
                                : chunk.ray_capacity;
 }
 
-// `first` and `before` of a generation.
+// `firsts` of a generation.
 uvec2 fetch_firsts(uint generation)
 {
     if (SPEC_LOAD_PATH == LOAD_TEXEL) {
         uint row = TALLY_ROWS + generation * GENERATION_ROWS + LISTS_COUNT * ITEMS_ROWS;
         return texelFetch(generation_texels, int(row)).xy;
     }
-    return uvec2(generations[generation].first, generations[generation].before);
+    return generations[generation].firsts.xy;
 }
 
 // Of an item of the dispatch's generation among those of all generations.

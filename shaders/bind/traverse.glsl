@@ -299,7 +299,7 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
     return accepted;
 }
 
-void keep_hit(Meeting m, bool at_exit, uint record, uint primitive, uint instance, inout Hit hit)
+void keep_hit(Meeting m, bool at_exit, uint record, Primitive p, inout Hit hit)
 {
     hit.at_exit = at_exit;
     hit.t = m.t;
@@ -308,8 +308,9 @@ void keep_hit(Meeting m, bool at_exit, uint record, uint primitive, uint instanc
     hit.u = m.u;
     hit.v = m.v;
     hit.triangle = record;
-    hit.primitive = primitive;
-    hit.instance = instance;
+    hit.glass = (p.flags & TRIANGLE_GLASS) != 0u;
+    hit.primitive = p.index;
+    hit.instance = p.instance;
 }
 
 // NUMERICS_EXACT: whether floats leave open if something that may be nearer is met, or which of two hits
@@ -389,7 +390,7 @@ bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRo
     if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && filters_in_passing() && accepted)
         accepted = !pass_filter(ray, t_min, p, chord, at_exit, m, hit);
     if (accepted)
-        keep_hit(m, at_exit, record, p.index, p.instance, hit);
+        keep_hit(m, at_exit, record, p, hit);
     return (!finds_closest(mode) && accepted) || must_wait(hit.status);
 }
 
@@ -439,7 +440,7 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
             accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index,
                                       skip_instance, skip_primitive, hit, refused);
             if (accepted)
-                keep_hit(m, at_exit, record, p.index, p.instance, hit);
+                keep_hit(m, at_exit, record, p, hit);
             again = p.is_sphere && goes_through(mode) && refused && !at_exit;
         }
         at_exit = true;

@@ -62,12 +62,17 @@ void take_ray(uint r)
     packet_skip[r] = uvec2(ray.skip_instance, ray.skip_primitive);
 }
 
+// Where the rays begin that those of the dispatch call for.
+uvec4 firsts_behind()
+{
+    if (is_primary())
+        return uvec4(camera_ray_count(), 0u, 0u, 0u);
+    return uvec4(fetch_firsts(chunk.generation) + fetch_counts(chunk.generation, LIST_RAYS), 0u, 0u);
+}
+
 uint class_of_hit(Hit hit)
 {
-    if (SPEC_CLASSES == 1u)
-        return 0u;
-    uint flags = fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w;
-    return (flags & TRIANGLE_GLASS) != 0u ? CLASS_GLASS : CLASS_PLAIN;
+    return SPEC_CLASSES != 1u && hit.glass ? CLASS_GLASS : CLASS_PLAIN;
 }
 
 // Whether ray `r` met something to be shaded.
@@ -97,14 +102,8 @@ bool leave_ray(uint r, bool alive)
 
 void main()
 {
-    if (SPEC_SECONDARY != 0u && own_slot() == 0u) {
-        bool primary = is_primary();
-        uint g = chunk.generation;
-        generations[g + 1u].first =
-            primary ? camera_ray_count() : generations[g].first + generations[g].lists[LIST_RAYS].front;
-        generations[g + 1u].before =
-            primary ? 0u : generations[g].before + generations[g].lists[LIST_RAYS].back;
-    }
+    if (SPEC_SECONDARY != 0u && own_slot() == 0u)
+        generations[chunk.generation + 1u].firsts = firsts_behind();
     bool alive[SPEC_PACKET_RAYS];
     EACH_RAY {
         take_ray(r);
