@@ -142,6 +142,11 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .numerics = params->numerics == WHIT_NUMERICS_FAST    ? NUMERICS_FAST
                     : params->numerics == WHIT_NUMERICS_EXACT ? NUMERICS_EXACT
                                                               : NUMERICS_WATERTIGHT,
+        .packets = params->packets == WHIT_PACKETS_ON    ? RENDER_PACKETS_ON
+                   : params->packets == WHIT_PACKETS_OFF ? RENDER_PACKETS_OFF
+                                                         : RENDER_PACKETS_AUTO,
+        .one_class = params->one_class,
+        .segments = params->segments,
         .count = params->count,
     };
     whit_result result = effects_from_text(log, params->effects, out);

@@ -28,6 +28,13 @@ typedef enum whit_instances {
     WHIT_INSTANCES_OFF,      /* one tree */
 } whit_instances;
 
+/* Whether rays walk together. */
+typedef enum whit_packets {
+    WHIT_PACKETS_AUTO = 0, /* those that it is quicker for, on devices that it is for */
+    WHIT_PACKETS_ON,       /* all */
+    WHIT_PACKETS_OFF,
+} whit_packets;
+
 /* Where messages go. Zeroed: nowhere. */
 typedef struct whit_log {
     whit_log_fn fn;

@@ -20,14 +20,18 @@ enum cli_exit {
 
 /* ---- Options ---- */
 
+/* Ids from here on are of options for those who work on whit, which --help-all alone lists. */
+enum { CLI_DEVELOPER = 1000 };
+
 /* One long option; `value` names its argument, NULL when it takes none. `help` may have several
-   lines. */
+   lines; NULL: it is never listed. */
 struct cli_option {
     int id; /* > 0; also the short option when it is a character */
     const char *name, *value, *help;
 };
 
-/* A subcommand. Its options end with a zeroed one; --help is added to them. */
+/* A subcommand. Its options end with a zeroed one; --help is added to them, and --help-all where
+   some are for developers. */
 struct cli_command {
     const char *name;
     const char *arguments; /* "SCENE -o OUT" */
@@ -78,7 +82,7 @@ bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t 
 /* Misuse when `path` is `-`, which other programs take for a pipe; `hint` says what to write. */
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);
 
-void cli_print_help(const struct cli_command *command, FILE *to);
+void cli_print_help(const struct cli_command *command, bool all, FILE *to);
 /* The name nearest to `word`, or NULL when none is near. */
 const char *cli_nearest(const char *word, const char *const *names, uint32_t count);
 

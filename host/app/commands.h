@@ -16,7 +16,9 @@ struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     struct picture picture;
     double bailout; /* 0: every ray is traced */
-    uint32_t light_samples, tile_size;
+    uint32_t light_samples, tile_size, segments;
+    whit_packets packets;
+    bool one_class;
     bool no_shadows, opaque_shadows, schlick;
     const char *effects; /* NULL: auto */
     /* 0: not asked for; else settings are chosen (cost_choice.c), none may be given. */

@@ -140,6 +140,14 @@ static void add_cost(const whit_cost *from, whit_cost *to)
     to->most_triangles = larger(from->most_triangles, to->most_triangles);
 }
 
+static void add_stage(const whit_stage *from, whit_stage *to)
+{
+    bool measured = from->ms >= 0.0 && to->ms >= 0.0;
+    memcpy(to->name, from->name, sizeof to->name);
+    to->rays += from->rays;
+    to->ms = measured ? to->ms + from->ms : -1.0;
+}
+
 static void add_stats(const whit_stats *from, whit_stats *to)
 {
     to->render_ms += from->render_ms;
@@ -156,6 +164,8 @@ static void add_stats(const whit_stats *from, whit_stats *to)
     to->device_bytes = from->device_bytes;
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
         add_cost(&from->costs[kind], &to->costs[kind]);
+    for (int i = 0; i < WHIT_STAGES; ++i)
+        add_stage(&from->stages[i], &to->stages[i]);
     uint64_t rays = to->rays_primary + to->rays_shadow + to->rays_reflected + to->rays_refracted;
     to->mrays_per_s = to->render_ms > 0.0 ? (double)rays / to->render_ms * 1e-3 : 0.0;
 }

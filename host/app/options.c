@@ -10,9 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTIONS_MAX = 96, ID_HELP = 'h', HELP_COLUMN = 27 };
+enum { OPTIONS_MAX = 96, ID_HELP = 'h', ID_HELP_ALL = CLI_DEVELOPER - 1, HELP_COLUMN = 27 };
 
-static const struct cli_option help_option = {ID_HELP, "help", NULL, "print this help"};
+/* Behind those of a command. */
+static const struct cli_option help_options[] = {
+    {ID_HELP, "help", NULL, "print this help"},
+    {ID_HELP_ALL, "help-all", NULL, "and the options for those who work on whit"},
+};
 
 static uint32_t count_options(const struct cli_command *command)
 {
@@ -22,13 +26,29 @@ static uint32_t count_options(const struct cli_command *command)
     return count;
 }
 
+static bool has_developers(const struct cli_command *command)
+{
+    uint32_t count = count_options(command);
+    return count && command->options[count - 1].id >= CLI_DEVELOPER;
+}
+
+/* Option `i` of the command, then those of help; NULL: there are no more. */
+static const struct cli_option *option_at(const struct cli_command *command, uint32_t i)
+{
+    uint32_t count = count_options(command);
+    if (i < count)
+        return &command->options[i];
+    return i - count < (has_developers(command) ? 2 : 1) ? &help_options[i - count] : NULL;
+}
+
 static const struct cli_option *find_option(const struct cli_command *command, int id)
 {
-    for (const struct cli_option *option = command->options; option->name; ++option) {
+    const struct cli_option *option;
+    for (uint32_t i = 0; (option = option_at(command, i)); ++i) {
         if (option->id == id)
             return option;
     }
-    return id == ID_HELP ? &help_option : NULL;
+    return NULL;
 }
 
 void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
@@ -74,11 +94,10 @@ bool cli_misuse(struct cli_reader *reader, const char *format, ...)
 static struct option *long_options(const struct cli_command *command,
                                    struct option table[OPTIONS_MAX], char *shorts)
 {
-    uint32_t count = count_options(command);
+    const struct cli_option *option;
     *shorts++ = '-'; /* arguments that are no options come in their place, as id 1 */
     *shorts++ = ':';
-    for (uint32_t i = 0; i <= count && i + 1 < OPTIONS_MAX; ++i) {
-        const struct cli_option *option = i < count ? &command->options[i] : &help_option;
+    for (uint32_t i = 0; (option = option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
         table[i] = (struct option){
             .name = option->name,
             .has_arg = option->value ? required_argument : no_argument,
@@ -157,10 +176,10 @@ int cli_next(struct cli_reader *reader)
                        option ? option->value : "?");
         } else if (id == '?') {
             unknown_option(reader);
-        } else if (id == ID_HELP && reader->where) {
+        } else if ((id == ID_HELP || id == ID_HELP_ALL) && reader->where) {
             cli_misuse(reader, "--help is for the command line alone");
-        } else if (id == ID_HELP) {
-            cli_print_help(reader->command, stdout);
+        } else if (id == ID_HELP || id == ID_HELP_ALL) {
+            cli_print_help(reader->command, id == ID_HELP_ALL, stdout);
             reader->done = true;
             reader->status = cli_finish_stdout(EXIT_FINE);
         } else {
@@ -277,14 +296,14 @@ static void print_option(const struct cli_option *option, FILE *to)
     }
 }
 
-void cli_print_help(const struct cli_command *command, FILE *to)
+void cli_print_help(const struct cli_command *command, bool all, FILE *to)
 {
+    const struct cli_option *option;
     fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
             command->summary);
-    uint32_t count = count_options(command);
-    for (uint32_t i = 0; i <= count; ++i) {
-        const struct cli_option *option = i < count ? &command->options[i] : &help_option;
-        print_option(option, to);
+    for (uint32_t i = 0; (option = option_at(command, i)); ++i) {
+        if (option->help && (all || option->id < CLI_DEVELOPER))
+            print_option(option, to);
     }
     if (command->details)
         fprintf(to, "\n%s", command->details);

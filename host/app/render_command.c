@@ -7,12 +7,18 @@
 
 enum render_id {
     ID_IDS = PICTURE_ID_END,
-    ID_TILE,
     ID_FRAMES,
     ID_COUNTERS,
+    ID_TILE = CLI_DEVELOPER,
+    ID_OLD_TILE,
+    ID_PACKETS,
+    ID_CLASSES,
+    ID_SEGMENTS,
 };
 
 enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
+
+static const char *const segment_choices[] = {"auto", "1", "2", NULL};
 
 static const struct cli_option options[] = {
     {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)"},
@@ -24,15 +30,43 @@ static const struct cli_option options[] = {
      "number in place of ####: -o name.####.png"},
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_CHOICE,
-    {ID_TILE, "tile", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     PICTURE_OPTION_VIEW,
     {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
     JOB_OPTION_LOADING,
     JOB_OPTION_RUN,
+    {ID_OLD_TILE, "tile", "N", NULL},
+    {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
+    {ID_PACKETS, "packets", "auto|on|off",
+     "rays that walk together: on: all kinds; auto: those that\n"
+     "it is quicker for, where the device is lavapipe (auto)"},
+    {ID_CLASSES, "classes", "one|many",
+     "one: all materials are shaded by one kernel; many: those\n"
+     "that let light pass by one of their own (many)"},
+    {ID_SEGMENTS, "segments", "auto|1|2",
+     "how many segments lists have; 2: one for each thread of\n"
+     "lavapipe (auto)"},
     {0, NULL, NULL, NULL},
 };
+
+static void read_packets(struct cli_reader *reader, struct render_request *request)
+{
+    static const char *const choices[] = {"auto", "on", "off", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        request->packets = choice == 0   ? WHIT_PACKETS_AUTO
+                           : choice == 1 ? WHIT_PACKETS_ON
+                                         : WHIT_PACKETS_OFF;
+}
+
+static void read_classes(struct cli_reader *reader, struct render_request *request)
+{
+    static const char *const choices[] = {"one", "many", NULL};
+    uint32_t choice;
+    if (cli_choice(reader, choices, &choice))
+        request->one_class = choice == 0;
+}
 
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
@@ -48,6 +82,18 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         break;
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
+        break;
+    case ID_OLD_TILE:
+        cli_misuse(reader, "option `--tile` is `--tile-size` now");
+        break;
+    case ID_PACKETS:
+        read_packets(reader, request);
+        break;
+    case ID_CLASSES:
+        read_classes(reader, request);
+        break;
+    case ID_SEGMENTS:
+        cli_choice(reader, segment_choices, &request->segments);
         break;
     case ID_FRAMES:
         frames_read(reader, &request->frames);
@@ -171,6 +217,9 @@ whit_result render_create(const struct job *job, const struct render_request *re
 {
     whit_renderer_params params = picture_request_params(request, job);
     params.tile_size = request->tile_size;
+    params.packets = request->packets;
+    params.one_class = request->one_class;
+    params.segments = request->segments;
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count = request->view.given || request->counters;

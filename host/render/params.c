@@ -26,6 +26,10 @@ whit_result params_check(const struct log *log, struct render_params *params)
         log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
         return WHIT_ERROR_USAGE;
     }
+    if (params->segments > 2) {
+        log_error(log, "%u segments of lists: must be 1 or 2", params->segments);
+        return WHIT_ERROR_USAGE;
+    }
     if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX)) {
         log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
         return WHIT_ERROR_USAGE;

@@ -13,6 +13,7 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
+enum render_packets { RENDER_PACKETS_AUTO, RENDER_PACKETS_ON, RENDER_PACKETS_OFF };
 enum render_load_path { RENDER_LOAD_AUTO, RENDER_LOAD_STORAGE, RENDER_LOAD_TEXEL };
 
 struct render_params {
@@ -36,9 +37,12 @@ struct render_params {
     void *progress_user;
     double time_limit_s; /* counted from renderer_create on */
     enum render_load_path load_path;
-    uint32_t order;    /* ORDER_* */
-    uint32_t numerics; /* NUMERICS_* */
-    bool count;        /* count what traversals cost */
+    uint32_t order;              /* ORDER_* */
+    uint32_t numerics;           /* NUMERICS_* */
+    enum render_packets packets; /* rays that walk together; ON: all kinds of rays */
+    bool one_class;              /* of materials: one shading kernel */
+    uint32_t segments;           /* of lists, 1 or 2; 0: as the device likes */
+    bool count;                  /* count what traversals cost */
     /* Most rays that renderer_trace will be given, so that buffers need not be larger; 0: any. */
     uint32_t trace_rays;
 };

@@ -302,16 +302,30 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
+/* Packets are for lavapipe: eight lanes, and shuffles that are single instructions. */
+static whit_result choose_packets(struct renderer *renderer)
+{
+    const struct render_params *params = &renderer->params;
+    bool can = renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
+               device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
+               params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST;
+    renderer->packets = can && params->packets != RENDER_PACKETS_OFF;
+    if (can || params->packets != RENDER_PACKETS_ON)
+        return WHIT_OK;
+    log_error(&renderer->log,
+              "packets of rays need a device with 8 lanes a subgroup and texel loads, trees, the "
+              "order of distances, other numerics than fast, and no counting");
+    return WHIT_ERROR_USAGE;
+}
+
 whit_result upload_scene(struct renderer *renderer)
 {
     struct scene_buffers *buffers = &renderer->scene_buffers;
     buffers->texel_loads = choose_texel_loads(renderer);
-    renderer->packets =
-        stages_wanted(renderer) && buffers->texel_loads && !renderer->accel->no_trees &&
-        device_get_info(renderer->device)->subgroup_size == 8 && !renderer->params.count &&
-        renderer->params.order == ORDER_DISTANCE && renderer->params.numerics != NUMERICS_FAST;
-    whit_result result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS,
-                                       "nothing", &buffers->none);
+    whit_result result = choose_packets(renderer);
+    if (result == WHIT_OK)
+        result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS, "nothing",
+                               &buffers->none);
     if (result == WHIT_OK)
         result = upload_trees(renderer);
     if (result == WHIT_OK)

@@ -325,7 +325,7 @@ whit_result variant_create_whitted(struct renderer *renderer)
 uint32_t variant_classes(const struct renderer *renderer)
 {
     struct scene_effects none = {.called = {false}};
-    bool both = !renderer->params.all_effects &&
+    bool both = !renderer->params.all_effects && !renderer->params.one_class &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;
     return both ? CLASSES_MOST : 1;
@@ -407,11 +407,13 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     if (!renderer->packets || stack > PACKET_STACK_MOST)
         return;
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
-    if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
+    bool alike = stage == STAGE_CAMERA || stage == STAGE_SHADOW;
+    if (!alike && renderer->params.packets != RENDER_PACKETS_ON)
         return;
-    spec->SPEC_PACKETS = spec->SPEC_BOUNDED = 1;
+    spec->SPEC_PACKETS = 1;
+    spec->SPEC_BOUNDED = alike;
     spec->SPEC_PACKET_STACK = stack;
-    spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
+    spec->SPEC_PACKET_RAYS = !alike || packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
 }
 
 void variant_job_init(const struct renderer *renderer, const struct gpu_spec *set_spec,
@@ -439,7 +441,9 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *se
     spec->SPEC_LOOKS |= !stages[stage].waits;
     spec->SPEC_LIT_PARTS = lit_parts(spec);
     spec->SPEC_CLASSES = classes;
-    spec->SPEC_SEGMENTS = spec->SPEC_INTERLEAVE ? 2 : 1;
+    spec->SPEC_SEGMENTS = renderer->params.segments ? renderer->params.segments
+                          : spec->SPEC_INTERLEAVE   ? 2
+                                                    : 1;
     spec->SPEC_GENERATIONS = renderer->has_secondary ? stages[stage].generations : 1;
     choose_packets(renderer, stage, spec);
     if (classes > 1 && stages[stage].kernel == KERNEL_SHADE)

@@ -59,6 +59,17 @@ static void draw_names(const struct view *view)
             settings_numerics_name(s->picture.numerics));
 }
 
+/* What one tile in eight took by time stamps, for all. */
+static void draw_stages(const whit_stats *s)
+{
+    for (int i = 0; i < WHIT_STAGES; ++i) {
+        const whit_stage *stage = &s->stages[i];
+        if (stage->rays && stage->ms >= 0.0)
+            ui_text_dim("%s %.2f ms, %.0f ns a ray", stage->name, stage->ms,
+                        stage->ms * 1e6 / (double)stage->rays);
+    }
+}
+
 static void draw_more(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
@@ -77,6 +88,7 @@ static void draw_more(const struct view *view)
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
     ui_text("cut: %llu by depth, %llu by bail-out", (unsigned long long)s->rays_cut_depth,
             (unsigned long long)s->rays_cut_bailout);
+    draw_stages(s);
     ui_text("trees %.1f ms, depth %u, %.1f MiB; kernel %u instructions, %.0f ms", frame->build_ms,
             frame->accel.depth, (double)frame->accel.bytes / 1048576.0, s->kernel_instructions,
             frame->compile_ms);

@@ -18,7 +18,7 @@ check "--quiet prints nothing" test ! -s "$OUT/stderr"
 check "two runs give the same picture" cmp a.png b.png
 check "two runs give the same identities" cmp a.exr b.exr
 for tile in 16 32 512; do
-    expect 0 "--tile $tile" render "$CUBE" -o b.png --size 96x64 --tile $tile --quiet
+    expect 0 "--tile-size $tile" render "$CUBE" -o b.png --size 96x64 --tile-size $tile --quiet
     check "tiles of $tile give the same picture" cmp a.png b.png
 done
 # `--effects all`: cli_effects.
@@ -84,8 +84,18 @@ for key in load_ms build_ms upload_ms compile_ms render_ms primary mrays_per_s n
     check "stats have $key" jq -e "any(.. | objects; has(\"$key\"))" "$OUT/stdout"
 done
 check "as many primary rays as pixels" jq -e '.rays.primary == 6144' "$OUT/stdout"
-expect 0 "--stats text" render "$CUBE" -o b.png --size 96x64 --stats text
+refuse 2 "--packets on at fast" "packets of rays need" \
+    render "$CUBE" -o b.png --size 8x8 --packets on --numerics fast
+# One tile in eight is timed, and the second.
+expect 0 "--stats json, several tiles" render "$CUBE" -o b.png --size 96x64 --tile-size 16 --stats json
+check "camera rays have a price" \
+    jq -e '.stages[] | select(.name == "camera") | .rays == 6144 and .ms > 0' "$OUT/stdout"
+check "so have sums of pixels" jq -e '.stages[] | select(.name == "resolve") | .ms > 0' "$OUT/stdout"
+check "shadow rays are those of the lights" \
+    jq -e '([.stages[] | select(.name | startswith("shadows")) | .rays] | add) == .rays.shadow and .rays.shadow > 0' "$OUT/stdout"
+expect 0 "--stats text" render "$CUBE" -o b.png --size 96x64 --stats text --tile-size 16
 check "stats as text" grep -Eq "^  primary +6144" "$OUT/stdout"
+check "prices of stages as text" grep -Eq "^  camera +[0-9.]+ +6144 +[0-9.]+$" "$OUT/stdout"
 
 if [ -c /dev/full ]; then
     ln -s /dev/full full.png

@@ -281,7 +281,7 @@ static void check_median(const struct subject *subject, const struct drawn *firs
 static void check_ways(const struct subject *subject, const struct drawn *first)
 {
     const whit_renderer_params tile = {.tile_size = 512}, texel = {.load_path = "texel"};
-    check_same(subject, first, &tile, "--tile 512");
+    check_same(subject, first, &tile, "--tile-size 512");
     check_same(subject, first, &texel, "--load-path texel");
     check_median(subject, first);
 }
@@ -296,7 +296,7 @@ static void check_threads(const struct subject *subject, const struct drawn *fir
         char way[64];
         const whit_accel_params trees = {.threads = i + 1};
         const whit_renderer_params params = {.tile_size = tiles[i]};
-        snprintf(way, sizeof way, "--tile %u --threads %u, LP_NUM_THREADS=%s", tiles[i], i + 1,
+        snprintf(way, sizeof way, "--tile-size %u --threads %u, LP_NUM_THREADS=%s", tiles[i], i + 1,
                  drivers[i]);
         setenv("LP_NUM_THREADS", drivers[i], 1);
         check_apart(subject, first, &trees, &params, way);
@@ -337,6 +337,37 @@ static void check_levels(const struct subject *subject, bool refraction)
 {
     check_level(subject, WHIT_NUMERICS_FAST, true);
     check_level(subject, WHIT_NUMERICS_EXACT, refraction);
+}
+
+/* ---- Ways of the stages ---- */
+
+/* `few`: two kernels' sets that have it all. */
+static void check_stages(const struct subject *subject, whit_numerics level, bool few)
+{
+    static const struct {
+        const char *name;
+        whit_renderer_params params;
+    } ways[] = {
+        {"--packets on --segments 1", {.packets = WHIT_PACKETS_ON, .segments = 1}},
+        {"--packets off --classes one", {.packets = WHIT_PACKETS_OFF, .one_class = true}},
+        {"--packets on", {.packets = WHIT_PACKETS_ON}},
+        {"--packets off", {.packets = WHIT_PACKETS_OFF}},
+        {"--classes one", {.one_class = true}},
+        {"--segments 1", {.segments = 1}},
+        {"--segments 2", {.segments = 2}},
+        {"--tile-size 17", {.tile_size = 17}},
+    };
+    whit_renderer_params params = {.numerics = level};
+    struct drawn first;
+    if (draw(subject, &params, &first)) {
+        for (size_t i = 0; i < (few ? 2 : sizeof ways / sizeof *ways); ++i) {
+            params = ways[i].params;
+            params.numerics = level;
+            if (level != WHIT_NUMERICS_FAST || params.packets != WHIT_PACKETS_ON)
+                check_same(subject, &first, &params, ways[i].name);
+        }
+    }
+    drawn_finish(&first);
 }
 
 /* ---- One tree in world space ---- */
@@ -393,7 +424,13 @@ static void check_scene(const char *path, const char *what)
     bool all = strcmp(what, "all-levels") == 0;
     if (opened && (all || strcmp(what, "levels") == 0))
         check_levels(&subject, all);
-    else if (opened && strcmp(what, "flat") == 0)
+    else if (opened && strcmp(what, "few-stages") == 0)
+        check_stages(&subject, WHIT_NUMERICS_WATERTIGHT, true);
+    else if (opened && strcmp(what, "stages") == 0) {
+        check_stages(&subject, WHIT_NUMERICS_WATERTIGHT, false);
+        check_stages(&subject, WHIT_NUMERICS_EXACT, false);
+        check_stages(&subject, WHIT_NUMERICS_FAST, false);
+    } else if (opened && strcmp(what, "flat") == 0)
         check_flat(&subject, 640, 480);
     else if (opened && strcmp(what, "small-flat") == 0)
         check_flat(&subject, 160, 125);
@@ -412,10 +449,11 @@ int main(int argc, char **argv)
     const char *what = argc == 3 ? argv[2] : "";
     bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "validated") == 0 ||
                  strcmp(what, "levels") == 0 || strcmp(what, "all-levels") == 0 ||
-                 strcmp(what, "flat") == 0 || strcmp(what, "small-flat") == 0;
+                 strcmp(what, "flat") == 0 || strcmp(what, "small-flat") == 0 ||
+                 strcmp(what, "stages") == 0 || strcmp(what, "few-stages") == 0;
     if (argc < 2 || argc > 4 || !known) {
         fputs("usage: picture_check SCENE [full | validated | levels | all-levels | flat | "
-              "small-flat]\n"
+              "small-flat | stages | few-stages]\n"
               "       picture_check PICTURE WIDTH HEIGHT\n",
               stderr);
         return 2;
