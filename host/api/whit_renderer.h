@@ -58,9 +58,8 @@ typedef struct whit_renderer_params {
     const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
     whit_traversal traversal;
     whit_numerics numerics;
-    /* How the kernels work; pictures are the same. `packets`: rays that walk together, see
-       docs/architecture.md; ON: all kinds of rays, an error where the device cannot. `one_class`:
-       one shading kernel for all materials. `segments` of lists: 1 or 2; 0: as the device likes. */
+    /* How the kernels work; pictures are the same. `one_class`: one shading kernel for all
+       materials. `segments` of lists: 1 or 2; 0: as the device likes. */
     whit_packets packets;
     bool one_class;
     uint32_t segments;

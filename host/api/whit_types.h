@@ -28,10 +28,10 @@ typedef enum whit_instances {
     WHIT_INSTANCES_OFF,      /* one tree */
 } whit_instances;
 
-/* Whether rays walk together. */
+/* Whether camera rays and the shadow rays of what they meet walk together. */
 typedef enum whit_packets {
-    WHIT_PACKETS_AUTO = 0, /* those that it is quicker for, on devices that it is for */
-    WHIT_PACKETS_ON,       /* all */
+    WHIT_PACKETS_AUTO = 0, /* where that is quicker: on lavapipe, in pictures of 2^17 camera rays on */
+    WHIT_PACKETS_ON,       /* an error where the device cannot */
     WHIT_PACKETS_OFF,
 } whit_packets;
 

@@ -39,8 +39,8 @@ static const struct cli_option options[] = {
     {ID_OLD_TILE, "tile", "N", NULL},
     {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     {ID_PACKETS, "packets", "auto|on|off",
-     "rays that walk together: on: all kinds; auto: those that\n"
-     "it is quicker for, where the device is lavapipe (auto)"},
+     "whether camera rays and the shadow rays of what they meet\n"
+     "walk together; auto: on lavapipe, in larger pictures (auto)"},
     {ID_CLASSES, "classes", "one|many",
      "one: all materials are shaded by one kernel; many: those\n"
      "that let light pass by one of their own (many)"},

@@ -39,7 +39,7 @@ struct render_params {
     enum render_load_path load_path;
     uint32_t order;              /* ORDER_* */
     uint32_t numerics;           /* NUMERICS_* */
-    enum render_packets packets; /* rays that walk together; ON: all kinds of rays */
+    enum render_packets packets; /* see whit_packets */
     bool one_class;              /* of materials: one shading kernel */
     uint32_t segments;           /* of lists, 1 or 2; 0: as the device likes */
     bool count;                  /* count what traversals cost */

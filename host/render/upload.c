@@ -302,6 +302,9 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
+/* Their kernels take longer to make than they save in pictures of fewer camera rays. */
+enum { PACKETS_RAYS_LEAST = 1 << 17 };
+
 /* Packets are for lavapipe: eight lanes, and shuffles that are single instructions. */
 static whit_result choose_packets(struct renderer *renderer)
 {
@@ -309,7 +312,10 @@ static whit_result choose_packets(struct renderer *renderer)
     bool can = renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
                device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
                params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST;
-    renderer->packets = can && params->packets != RENDER_PACKETS_OFF;
+    uint64_t rays = (uint64_t)params->width * params->height * params->samples;
+    bool many = params->adaptive > 0.0 || rays >= PACKETS_RAYS_LEAST;
+    renderer->packets = can && params->packets != RENDER_PACKETS_OFF &&
+                        (many || params->packets == RENDER_PACKETS_ON);
     if (can || params->packets != RENDER_PACKETS_ON)
         return WHIT_OK;
     log_error(&renderer->log,

@@ -407,13 +407,11 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     if (!renderer->packets || stack > PACKET_STACK_MOST)
         return;
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
-    bool alike = stage == STAGE_CAMERA || stage == STAGE_SHADOW;
-    if (!alike && renderer->params.packets != RENDER_PACKETS_ON)
+    if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
         return;
-    spec->SPEC_PACKETS = 1;
-    spec->SPEC_BOUNDED = alike;
+    spec->SPEC_PACKETS = spec->SPEC_BOUNDED = 1;
     spec->SPEC_PACKET_STACK = stack;
-    spec->SPEC_PACKET_RAYS = !alike || packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
+    spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
 }
 
 void variant_job_init(const struct renderer *renderer, const struct gpu_spec *set_spec,

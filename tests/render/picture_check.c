@@ -280,8 +280,9 @@ static void check_median(const struct subject *subject, const struct drawn *firs
 
 static void check_ways(const struct subject *subject, const struct drawn *first)
 {
-    const whit_renderer_params tile = {.tile_size = 512}, texel = {.load_path = "texel"};
-    check_same(subject, first, &tile, "--tile-size 512");
+    const whit_renderer_params tile = {.tile_size = 512, .packets = WHIT_PACKETS_ON},
+                               texel = {.load_path = "texel"};
+    check_same(subject, first, &tile, "--tile-size 512 --packets on");
     check_same(subject, first, &texel, "--load-path texel");
     check_median(subject, first);
 }
