@@ -393,6 +393,7 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .waits = inner.waits,
         .tile_size = inner.tile_size,
         .load_path = inner.texel_loads ? "texel" : "storage",
+        .packets = inner.packets,
     };
     memcpy(stats->pixels_by_samples, inner.pixels_by_samples, sizeof stats->pixels_by_samples);
     for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)

@@ -172,6 +172,7 @@ typedef struct whit_stats {
     uint32_t dispatches, tiles, tile_size;
     uint32_t waits;        /* exact numerics: steps of pixels' rays that took more than floats */
     const char *load_path; /* "storage" or "texel" */
+    bool packets;          /* camera rays walked together */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
     whit_stage stages[WHIT_STAGES];  /* those that had rays; the others have none */
 } whit_stats;

@@ -30,8 +30,9 @@ typedef enum whit_instances {
 
 /* Whether camera rays and the shadow rays of what they meet walk together. */
 typedef enum whit_packets {
-    WHIT_PACKETS_AUTO = 0, /* where that is quicker: on lavapipe, in pictures of 2^17 camera rays on */
-    WHIT_PACKETS_ON,       /* an error where the device cannot */
+    WHIT_PACKETS_AUTO =
+        0,           /* where that is quicker: on lavapipe, in pictures of 2^17 camera rays on */
+    WHIT_PACKETS_ON, /* in smaller ones too; see whit_stats.packets */
     WHIT_PACKETS_OFF,
 } whit_packets;
 

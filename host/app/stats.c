@@ -216,6 +216,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_count(work, "tile_size", figures->render->tile_size);
     document_count(work, "waits", figures->render->waits);
     document_text(work, "load_path", figures->render->load_path);
+    document_flag(work, "packets", figures->render->packets);
     document_put(root, "work", work);
     json_t *memory = document_object();
     document_count(memory, "host_peak_bytes", whit_peak_memory_bytes());
@@ -357,9 +358,9 @@ static int print_text(const struct job *job, const struct render_request *reques
            tree->triangle_count, tree->instance_depth, tree->depth, tree->sah_cost);
     if (figures->sequence)
         print_frames(figures->sequence);
-    printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads\n",
+    printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads%s\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
-           figures->render->load_path);
+           figures->render->load_path, figures->render->packets ? ", camera rays in packets" : "");
     if (figures->render->waits > 0)
         printf("  %u steps of pixels' rays took more than floats\n", figures->render->waits);
     printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",

@@ -84,7 +84,7 @@ struct render_stats {
     uint32_t dispatches, tiles, tile_size;
     uint32_t waits; /* NUMERICS_EXACT: pixels of dispatches, each a ray with its shadow rays, that
                        floats left open */
-    bool texel_loads;
+    bool texel_loads, packets;
     struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
     struct render_stage stages[RENDER_STAGE_COUNT];
 };

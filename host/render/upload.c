@@ -302,11 +302,11 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
-/* Their kernels take longer to make than they save in pictures of fewer camera rays. */
+/* The kernels of packets take longer to make than they save in pictures of fewer camera rays. */
 enum { PACKETS_RAYS_LEAST = 1 << 17 };
 
-/* Packets are for lavapipe: eight lanes, and shuffles that are single instructions. */
-static whit_result choose_packets(struct renderer *renderer)
+/* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
+static bool choose_packets(const struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
     bool can = renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
@@ -314,24 +314,17 @@ static whit_result choose_packets(struct renderer *renderer)
                params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST;
     uint64_t rays = (uint64_t)params->width * params->height * params->samples;
     bool many = params->adaptive > 0.0 || rays >= PACKETS_RAYS_LEAST;
-    renderer->packets = can && params->packets != RENDER_PACKETS_OFF &&
-                        (many || params->packets == RENDER_PACKETS_ON);
-    if (can || params->packets != RENDER_PACKETS_ON)
-        return WHIT_OK;
-    log_error(&renderer->log,
-              "packets of rays need a device with 8 lanes a subgroup and texel loads, trees, the "
-              "order of distances, other numerics than fast, and no counting");
-    return WHIT_ERROR_USAGE;
+    return can && params->packets != RENDER_PACKETS_OFF &&
+           (many || params->packets == RENDER_PACKETS_ON);
 }
 
 whit_result upload_scene(struct renderer *renderer)
 {
     struct scene_buffers *buffers = &renderer->scene_buffers;
     buffers->texel_loads = choose_texel_loads(renderer);
-    whit_result result = choose_packets(renderer);
-    if (result == WHIT_OK)
-        result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS, "nothing",
-                               &buffers->none);
+    renderer->packets = choose_packets(renderer);
+    whit_result result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS,
+                                       "nothing", &buffers->none);
     if (result == WHIT_OK)
         result = upload_trees(renderer);
     if (result == WHIT_OK)

@@ -48,7 +48,8 @@ for most in 4 5 6 7 8; do
     done
 done
 check "the last has enough" test $status -eq 0
-check "the first have not" test $errors -gt 2
+# One descriptor more may do or not: the driver's files and the model's are opened at the same time.
+check "the first have not" test $errors -ge 2
 with_files 4 scene model.obj
 check "what cannot be opened names the model too" \
     grep -q "^whit: error: model.obj: .*: Too many open files" "$OUT/stderr"

@@ -84,8 +84,6 @@ for key in load_ms build_ms upload_ms compile_ms render_ms primary mrays_per_s n
     check "stats have $key" jq -e "any(.. | objects; has(\"$key\"))" "$OUT/stdout"
 done
 check "as many primary rays as pixels" jq -e '.rays.primary == 6144' "$OUT/stdout"
-refuse 2 "--packets on at fast" "packets of rays need" \
-    render "$CUBE" -o b.png --size 8x8 --packets on --numerics fast
 # One tile in eight is timed, and the second.
 expect 0 "--stats json, several tiles" render "$CUBE" -o b.png --size 96x64 --tile-size 16 --stats json
 check "camera rays have a price" \

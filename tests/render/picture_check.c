@@ -1,5 +1,6 @@
 /* What holds of the picture of every scene:
-       picture_check SCENE [full | validated | levels | all-levels | flat | small-flat]
+       picture_check SCENE [full | validated | levels | all-levels | flat | small-flat | stages |
+                            few-stages]
    The picture is finite, neither black nor of one colour, and nothing that may not change it does
    so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
    for the scene is smaller than the one with every effect, which traces the same rays, and none of
@@ -326,7 +327,8 @@ static void check_usual(const struct subject *subject, const char *what)
 
 static void check_level(const struct subject *subject, whit_numerics level, bool refraction)
 {
-    const whit_renderer_params params = {.numerics = level,
+    const whit_renderer_params params = {.packets = WHIT_PACKETS_ON,
+                                         .numerics = level,
                                          .effects = refraction ? "auto" : "auto,-refraction"};
     struct drawn first;
     if (draw(subject, &params, &first))

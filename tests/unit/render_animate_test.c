@@ -4,7 +4,8 @@
 #include "render/renderer.h"
 #include "render_fixture.h"
 
-static const struct render_params animate_params = {.width = 40, .height = 32, .depth = 4};
+static const struct render_params animate_params = {
+    .width = 40, .height = 32, .depth = 4, .packets = RENDER_PACKETS_ON};
 
 /* ---- Scenes ---- */
 

@@ -146,7 +146,7 @@ static void only_fast_leaks(void **state)
     (void)state;
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
-    struct render_params params = {.width = 16, .height = 16};
+    struct render_params params = {.width = 16, .height = 16, .packets = RENDER_PACKETS_ON};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
@@ -222,7 +222,8 @@ static void trees_do_not_matter(void **state)
 {
     (void)state;
     const struct accel_params none = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
-    const struct render_params params = {.width = 24,
+    const struct render_params params = {.packets = RENDER_PACKETS_ON,
+                                         .width = 24,
                                          .height = 16,
                                          .depth = 6,
                                          .camera = glass_camera,

@@ -57,8 +57,7 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
         arguments[count++] = side == FRAME_FAST ? "fast" : "exact";
     }
     /* For small pictures as for large ones: what is made before the first ray is to cancel out. */
-    if (side != FRAME_AGAINST && side != FRAME_FAST && bench->device_info.subgroup_size == 8 &&
-        strcmp(bench->device_info.kind, "cpu") == 0) {
+    if (side != FRAME_AGAINST) {
         arguments[count++] = "--packets";
         arguments[count++] = "on";
     }
