@@ -363,7 +363,7 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
                     ref = next_packet_ref(mode, ref, base);
             }
         } while (is_leaf(ref) && !waits);
-    } while (ref != REF_DONE && !waits);
+    } while (another_turn(ref != REF_DONE && !waits));
     if (ref != REF_DONE && !waits)
         packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -391,7 +391,7 @@ void packet_mesh(const uint mode, float t_min, uint root)
         walk_packet(mode, t_min, 0u, 0u, ref, own_waits, waits);
         if (has_looks(mode) && waits)
             look_at_packet_leaf(mode, t_min, 0u, 0u, own_waits, ref);
-    } while (has_looks(mode) && ref != REF_DONE);
+    } while (has_looks(mode) && another_turn(ref != REF_DONE));
     if (ref != REF_DONE)
         packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -444,14 +444,14 @@ void packet_instances(const uint mode, float t_min, uint root)
                 }
                 inside = false;
             }
-        } while (ref != REF_DONE && !waits);
+        } while (another_turn(ref != REF_DONE && !waits));
         if (ref != REF_DONE && !waits)
             packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
         inside = has_looks(mode);
         if (has_looks(mode) && waits)
             look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, own_waits, mesh_ref);
         waits = false;
-    } while (has_looks(mode) && ref != REF_DONE);
+    } while (has_looks(mode) && another_turn(ref != REF_DONE));
     if (ref != REF_DONE)
         packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
 }

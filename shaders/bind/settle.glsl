@@ -142,7 +142,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
             hit.hi = exact.key;
         }
         first = false;
-    } while (again);
+    } while (another_turn(again));
     if (again) // the driver has ended the loop
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }

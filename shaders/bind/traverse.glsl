@@ -405,7 +405,7 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
 // in lanes that had left the loop before others.
 bool goes_on(bool again)
 {
-    return SPEC_PACKETS != 0u ? any_lane(again) : again;
+    return another_turn(SPEC_PACKETS != 0u ? any_lane(again) : again);
 }
 
 // Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
@@ -487,7 +487,7 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
             }
         } while (is_leaf(ref) && !waits);
         ref = refill_stack(ref, stack, hit.status);
-    } while (ref != REF_DONE && !waits);
+    } while (another_turn(ref != REF_DONE && !waits));
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE && !waits)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
@@ -518,7 +518,7 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
         if (has_looks(mode) && waits)
             look_at_leaf(mode, ray, ray.origin, ray.dir, t_min, 0u, skip_instance, skip_primitive,
                          ref, stack, hit);
-    } while (has_looks(mode) && ref != REF_DONE);
+    } while (has_looks(mode) && another_turn(ref != REF_DONE));
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
@@ -564,7 +564,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
             inside = false;
         }
         ref = refill_stack(ref, stack, hit.status);
-    } while (ref != REF_DONE && !waits);
+    } while (another_turn(ref != REF_DONE && !waits));
     if (ref != REF_DONE && !waits)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -585,7 +585,7 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
         if (has_looks(mode) && waits)
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
                          skip_primitive, mesh_ref, mesh_stack, hit);
-    } while (has_looks(mode) && ref != REF_DONE);
+    } while (has_looks(mode) && another_turn(ref != REF_DONE));
     // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;

@@ -194,7 +194,7 @@ void main()
         EACH_RAY add_arrival(r, light);
         point++;
         more = flats && point < points;
-    } while (more);
+    } while (another_turn(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
     uint rays = 0u;

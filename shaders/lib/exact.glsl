@@ -268,7 +268,7 @@ int compare_product(ivec2 range, uint factor, int shift, out bool finished)
     uint low = factor << bits, f2 = factor >> 16 >> (16u - bits);
     uint f0 = low & 0xffffu, f1 = low >> 16, carry = 0u, d1 = 0u, d2 = 0u;
     int i;
-    for (i = range.x; i <= range.y + 3; i++) {
+    for (i = range.x; another_turn(i <= range.y + 3); i++) {
         uint d0 = digit_at(range, WIDE_D, i);
         uint p0 = f0 * d0, p1 = f1 * d1, p2 = f2 * d2;
         uint sum = (p0 & 0xffffu) + (p1 & 0xffffu) + (p2 & 0xffffu) + carry;

@@ -211,7 +211,7 @@ int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finish
     int twice_digits = 2 * down / BALL_BITS, twice_bits = 2 * down % BALL_BITS;
     int end = max(last + up_digits + 2, ball_last + twice_digits) + 1, i;
     carry = 0;
-    for (i = 0; i < end; i++) { // t (P t - 2 S) + Q
+    for (i = 0; another_turn(i < end); i++) { // t (P t - 2 S) + Q
         int at = i - up_digits;
         carry += factor.x * product_digit(last, at) + factor.y * product_digit(last, at - 1) +
                  factor.z * product_digit(last, at - 2) +
@@ -269,7 +269,7 @@ SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius
             most = beyond ? most : middle;
         }
         choose = false;
-    } while (least < most && finished);
+    } while (another_turn(least < most && finished));
     finished = finished && least >= most;
     SphereMeeting m;
     m.key = uintBitsToFloat(least);

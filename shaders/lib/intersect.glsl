@@ -5,6 +5,7 @@
 #define LIB_INTERSECT_GLSL
 
 #include "../abi/spec.h"
+#include "turn.glsl"
 
 // What a ray needs at every box and triangle.
 struct RaySetup {
