@@ -6,7 +6,6 @@
 #include "kernel_shade.h"
 #include "kernel_shadow.h"
 #include "kernel_trace.h"
-#include "kernel_whitted.h"
 
 const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_TRACE] = {"trace", kernel_trace, sizeof kernel_trace},
@@ -15,5 +14,4 @@ const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_SHADE] = {"shade", kernel_shade, sizeof kernel_shade},
     [KERNEL_SHADOW] = {"shadow", kernel_shadow, sizeof kernel_shadow},
     [KERNEL_RESOLVE] = {"resolve", kernel_resolve, sizeof kernel_resolve},
-    [KERNEL_WHITTED] = {"whitted", kernel_whitted, sizeof kernel_whitted},
 };

@@ -25,6 +25,7 @@ struct spirv_shape spirv_shape(uint32_t op)
     switch (op) {
     case OP_GROUP_BALLOT_BIT_COUNT: /* scope, kind of count, value */
     case OP_GROUP_I_ADD:
+    case OP_GROUP_U_MAX:
         return (struct spirv_shape){true, true, true, all & ~2u};
     case OP_EXT_INST: /* a set and a number first */
         return (struct spirv_shape){true, true, false, all & ~2u};

@@ -102,6 +102,7 @@ enum spirv_op {
     OP_GROUP_BALLOT_BIT_COUNT = 342,
     OP_GROUP_SHUFFLE_XOR = 346,
     OP_GROUP_I_ADD = 349,
+    OP_GROUP_U_MAX = 357,
     OP_COPY_LOGICAL = 400,
 };
 

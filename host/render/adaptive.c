@@ -71,14 +71,10 @@ whit_result adaptive_list(struct renderer *renderer, const struct progress *prog
             adaptive_draws(progress, (size_t)y * renderer->params.width + x))
             list[chunk->listed++] = slot;
     }
-    const struct gpu_work head = {
-        .groups_x = render_groups(chunk), .groups_y = 1, .groups_z = 1, .count = chunk->listed};
-    struct buffer *buffer = renderer->pixel_buffers.listed;
     whit_result result = WHIT_OK;
     if (chunk->listed > 0)
-        result = buffer_write(buffer, 0, &head, sizeof head);
-    if (result == WHIT_OK && chunk->listed > 0)
-        result = buffer_write(buffer, sizeof head, list, (uint64_t)chunk->listed * sizeof *list);
+        result = buffer_write(renderer->pixel_buffers.listed, 0, list,
+                              (uint64_t)chunk->listed * sizeof *list);
     free(list);
     return result;
 }

@@ -45,7 +45,6 @@ whit_result frame_fill(struct renderer *renderer)
     frame->bailout = bailout == 0.0  ? (float)WHIT_BAILOUT_DEFAULT
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
-    frame->stack_size = renderer->pixel_buffers.stack_size;
     return media_frame(renderer);
 }
 

@@ -10,53 +10,27 @@ uint32_t pixels_blocks_across(uint32_t pixels)
     return (pixels + 7) / 8;
 }
 
-/* Rays that wait when one ray leaves up to `children` others, depth first. */
-static uint32_t ray_stack_size(uint32_t depth, uint32_t children)
-{
-    return depth * (children - 1) + 1;
-}
-
-static uint32_t largest_tile(const struct renderer *renderer, uint32_t tile_size)
-{
-    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
-    uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
-    uint64_t slot_bytes = 0;
-    if (renderer->has_secondary)
-        slot_bytes = sizeof(struct gpu_stacked_ray) * renderer->pixel_buffers.stack_size;
-    while (tile > TILE_MIN && (uint64_t)tile * tile * slot_bytes > limit)
-        tile /= 2;
-    return tile;
-}
-
 whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t tile_size)
 {
     struct pixel_buffers *p = &renderer->pixel_buffers;
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
-    uint64_t rows = limit / ((uint64_t)width * sizeof(struct gpu_counts)) / 8 * 8;
+    uint64_t rows = limit / ((uint64_t)width * 16) / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
     if (p->band_rows == 0) {
         log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
         return WHIT_ERROR_DEVICE;
     }
-    bool blend = renderer->effects.called[SCENE_EFFECT_CUTOUTS] ||
-                 renderer->effects.called[SCENE_EFFECT_CATCHERS];
-    p->stack_size = ray_stack_size(renderer->params.depth, blend ? 3 : 2);
-    uint32_t tile = largest_tile(renderer, tile_size);
+    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
     uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
     uint64_t slots = (uint64_t)tile * tile;
-    if (stages_wanted(renderer) && slots > QUEUED_SLOTS_MOST)
-        slots = QUEUED_SLOTS_MOST;
+    slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
     /* What nothing is bound to has no bytes, and is not created. */
-    bool adaptive = renderer->params.adaptive > 0.0;
-    bool stacks = renderer->has_secondary && !stages_wanted(renderer);
-    bool lists = stacks || adaptive;
-    uint64_t list_bytes = lists ? sizeof(struct gpu_work) + (uint64_t)p->chunk_slots * 4 : 0;
-    uint64_t stacked = stacks ? (uint64_t)p->chunk_slots * p->stack_size : 0;
+    bool lists = renderer->params.adaptive > 0.0 || renderer->probe.active;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     const struct {
@@ -67,17 +41,9 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     } all[] = {
         {&p->pixels, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
-        {&p->counts, pixels * sizeof(struct gpu_counts), BUFFER_STORAGE | BUFFER_HOST, "counts"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
-        {&p->work[0], list_bytes, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST, "work list 0"},
-        {&p->work[1], stacks ? list_bytes : 0, BUFFER_STORAGE | BUFFER_INDIRECT | BUFFER_HOST,
-         "work list 1"},
-        {&p->work_head, lists ? 16 : 0, BUFFER_STORAGE | BUFFER_HOST, "empty work list"},
-        {&p->listed, adaptive ? list_bytes : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
-        {&p->ray_stacks, stacked * sizeof(struct gpu_stacked_ray), BUFFER_STORAGE, "ray stacks"},
-        {&p->ray_media,
-         renderer->effects.called[SCENE_EFFECT_MEDIA] ? stacked * sizeof(struct gpu_media) : 0,
-         BUFFER_STORAGE, "ray media"},
+        {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,
+         "listed pixels"},
     };
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
         if (all[i].bytes == 0)
@@ -87,22 +53,17 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
         if (result == WHIT_OK)
             renderer->scene_buffers.bytes += all[i].bytes;
     }
-    if (result == WHIT_OK && stages_wanted(renderer))
+    if (result == WHIT_OK)
         result = queues_create(renderer, p);
     if (result == WHIT_OK)
         result = costs_create(renderer);
     p->bytes = renderer->scene_buffers.bytes - before;
-    const struct gpu_work head = {.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0};
-    if (result == WHIT_OK && lists)
-        result = buffer_write(p->work_head, 0, &head, sizeof head);
     return result;
 }
 
 void pixels_finish(struct pixel_buffers *p)
 {
-    struct buffer *all[] = {p->pixels,  p->ids,       p->counts,    p->status,
-                            p->work[0], p->work[1],   p->work_head, p->ray_stacks,
-                            p->costs,   p->ray_media, p->listed};
+    struct buffer *all[] = {p->pixels, p->ids, p->status, p->costs, p->listed};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     queues_finish(&p->queues);

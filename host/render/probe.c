@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "render/renderer.h"
@@ -13,13 +14,6 @@ enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 
 /* ---- On the device ---- */
 
-static void exchange_passes(struct pass *a, struct pass *b)
-{
-    struct pass kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
 /* The renderer's pixel buffers and passes for those of the probe, or back. */
 static void exchange(struct renderer *renderer)
 {
@@ -27,7 +21,9 @@ static void exchange(struct renderer *renderer)
     struct pixel_buffers kept = renderer->pixel_buffers;
     renderer->pixel_buffers = probe->pixel_buffers;
     probe->pixel_buffers = kept;
-    exchange_passes(&renderer->whitted, &probe->whitted);
+    struct stages stages = renderer->stages;
+    renderer->stages = probe->stages;
+    probe->stages = stages;
     probe->active = !probe->active;
 }
 
@@ -35,7 +31,7 @@ static whit_result create_buffers(struct renderer *renderer)
 {
     struct probe_state *probe = &renderer->probe;
     uint64_t bytes =
-        sizeof(struct gpu_probe) + (uint64_t)PROBE_RAYS_MOST * sizeof(struct gpu_probe_ray);
+        sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MOST * sizeof(struct gpu_probe_ray);
     whit_result result = WHIT_OK;
     if (!probe->records)
         result = buffer_create(renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST, "probed rays",
@@ -47,19 +43,14 @@ static whit_result create_buffers(struct renderer *renderer)
     return result;
 }
 
-static whit_result create_passes(struct renderer *renderer)
+/* Where pixel (x, y) is in its block, as render_slot_pixel. */
+static uint32_t slot_of_pixel(uint32_t x, uint32_t y)
 {
-    if (renderer->whitted.pipeline && renderer->whitted.sets[0])
-        return WHIT_OK;
-    whit_result result = renderer->whitted.pipeline
-                             ? variant_bind_whitted(renderer, &renderer->whitted)
-                             : variant_create_whitted(renderer);
-    if (result != WHIT_OK)
-        pass_finish(&renderer->whitted);
-    return result;
+    x %= 8;
+    y %= 8;
+    return (x & 3) | (x & 4) << 1 | (y & 1) << 2 | (y & 6) << 3;
 }
 
-/* The block of 8 x 8 that the pixel is in; the kernel leaves all others of it alone. */
 static whit_result trace_pixel(struct renderer *renderer, struct probe_report *report)
 {
     const struct render_params *params = &renderer->params;
@@ -69,17 +60,19 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
                               .block_count = 1,
                               .band_y = block_y * 8,
                               .band_rows = rows < 8 ? rows : 8,
+                              .listed = 1,
                               .sample_weight = 1.0f / (float)report->samples};
     const struct progress progress = {.share = 1.0, .work_total = 1};
     double longest_ms = 0.0;
-    whit_result result = WHIT_OK;
+    const uint32_t slot = slot_of_pixel(report->x, report->y);
+    whit_result result = buffer_write(renderer->pixel_buffers.listed, 0, &slot, sizeof slot);
     renderer->pixel_buffers.band_y = chunk.band_y;
     for (uint32_t s = 0; result == WHIT_OK && s < report->samples; ++s) {
         result = render_stop_asked(renderer, &progress);
         chunk.sample_index = s;
         camera_sample(&renderer->frame, s, report->samples, &chunk);
         if (result == WHIT_OK)
-            result = render_sample(renderer, &chunk, &progress, &longest_ms);
+            result = stages_sample(renderer, &chunk, &progress, &longest_ms);
     }
     uint64_t pixel = (uint64_t)(report->y % 8) * params->width + report->x;
     if (result == WHIT_OK)
@@ -88,38 +81,132 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
     return result;
 }
 
+static bool is_shadow(const struct gpu_probe_ray *record)
+{
+    return (record->kind & PROBE_KIND_MASK) == RAY_SHADOW;
+}
+
+/* In the order of parents, and of one parent shadow rays, then what is refracted, goes straight on,
+   is reflected. So all of a parent are next to each other, and none is before its parent. */
+static int compare_records(const void *a, const void *b)
+{
+    uint64_t keys[2];
+    for (int i = 0; i < 2; ++i) {
+        const struct gpu_probe_ray *r = i ? b : a;
+        bool reflected = (r->kind & PROBE_KIND_MASK) == RAY_REFLECTED;
+        uint64_t which = is_shadow(r) ? 0 : r->kind & PROBE_STRAIGHT ? 2 : reflected ? 3 : 1;
+        uint64_t parent = r->parent == PROBE_RAYS_MOST ? 0 : (uint64_t)r->parent + 1;
+        keys[i] = parent << 40 | which << 36 | (which ? 0 : r->turn);
+    }
+    return (keys[0] > keys[1]) - (keys[0] < keys[1]);
+}
+
+/* Names parents by their place in place of their id, which traced rays have as their turn. */
+static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t *places)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_probe_ray *r = &records[i];
+        if (r->parent != PROBE_RAYS_MOST)
+            r->parent = places[r->parent];
+        if (is_shadow(r))
+            continue;
+        if (r->turn != HIT_NONE)
+            places[r->turn] = i;
+        r->turn = 0;
+    }
+}
+
+/* What goes through shadow catchers has the weight that they leave it. `shares`: of each record,
+   what the surfaces before it leave. */
+static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*shares)[3])
+{
+    static const float whole[3] = {1, 1, 1};
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_probe_ray *r = &records[i];
+        bool first = r->parent == PROBE_RAYS_MOST;
+        const struct gpu_probe_ray *parent = first ? NULL : &records[r->parent];
+        for (int k = 0; k < 3; ++k) {
+            float share = first ? whole[k] : shares[r->parent][k];
+            shares[i][k] = share;
+            if (!first && !is_shadow(r) && parent->kind & PROBE_CATCHER)
+                shares[i][k] *= parent->added[k];
+            r->weight[k] *= shares[i][k];
+            if (!is_shadow(r) && !(r->kind & PROBE_CATCHER))
+                r->added[k] *= shares[i][k];
+        }
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        if (records[i].kind & PROBE_CATCHER)
+            memset(records[i].added, 0, sizeof records[i].added);
+        records[i].kind &= ~PROBE_CATCHER;
+    }
+}
+
+/* From the order of ids to that of a tree. */
+static whit_result sort_records(const struct renderer *renderer, struct gpu_probe_ray *records,
+                                uint32_t count)
+{
+    uint32_t *places = array_alloc(PROBE_RAYS_MOST, sizeof *places);
+    float(*shares)[3] = array_alloc(count, sizeof *shares);
+    whit_result result = WHIT_OK;
+    if (places && shares) {
+        qsort(records, count, sizeof *records, compare_records);
+        name_places(records, count, places);
+        weigh_caught(records, count, shares);
+    } else {
+        result = render_no_memory(renderer, "probed rays");
+    }
+    free(places);
+    free(shares);
+    return result;
+}
+
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
 /* *records is free()d by the caller. */
-static whit_result read_records(const struct renderer *renderer, struct probe_report *report,
-                                struct gpu_probe_ray **records)
+static whit_result read_records(const struct renderer *renderer, uint32_t most,
+                                struct probe_report *report, struct gpu_probe_ray **records)
 {
     struct gpu_probe head;
-    whit_result result = buffer_read(renderer->probe.records, 0, &head, sizeof head);
+    struct buffer *buffer = renderer->probe.records;
+    whit_result result = buffer_read(buffer, 0, &head, sizeof head);
     if (result != WHIT_OK)
         return result;
-    report->ray_count = head.count < head.capacity ? head.count : head.capacity;
-    report->dropped = head.count - report->ray_count;
-    *records = array_alloc(report->ray_count, sizeof **records);
+    uint32_t rays = least(head.rays, PROBE_RAYS_MOST);
+    uint32_t others = least(head.others, PROBE_RAYS_MOST);
+    *records = array_alloc((size_t)rays + others, sizeof **records);
     if (!*records)
         return render_no_memory(renderer, "probed rays");
-    return buffer_read(renderer->probe.records, sizeof head, *records,
-                       (uint64_t)report->ray_count * sizeof **records);
+    uint64_t bytes = sizeof **records;
+    result = buffer_read(buffer, sizeof head, *records, rays * bytes);
+    if (result == WHIT_OK)
+        result = buffer_read(buffer, sizeof head + PROBE_RAYS_MOST * bytes, *records + rays,
+                             others * bytes);
+    if (result == WHIT_OK)
+        result = sort_records(renderer, *records, rays + others);
+    report->ray_count = least(rays + others, most);
+    report->dropped = head.rays + head.others - report->ray_count;
+    return result;
 }
 
 static whit_result run(struct renderer *renderer, uint32_t most, struct probe_report *report,
                        struct gpu_probe_ray **records)
 {
     const struct render_stats stats = renderer->stats;
-    const struct gpu_probe head = {.pixel_x = report->x, .pixel_y = report->y, .capacity = most};
+    const struct gpu_probe head = {0};
     exchange(renderer);
     whit_result result = create_buffers(renderer);
     if (result == WHIT_OK)
-        result = create_passes(renderer);
+        result = stages_compile(renderer);
     if (result == WHIT_OK)
         result = buffer_write(renderer->probe.records, 0, &head, sizeof head);
     if (result == WHIT_OK)
         result = trace_pixel(renderer, report);
     if (result == WHIT_OK)
-        result = read_records(renderer, report, records);
+        result = read_records(renderer, most, report, records);
     exchange(renderer);
     renderer->stats = stats;
     return result;
@@ -127,7 +214,7 @@ static whit_result run(struct renderer *renderer, uint32_t most, struct probe_re
 
 void probe_finish(struct probe_state *probe)
 {
-    pass_finish(&probe->whitted);
+    stage_set_finish(&probe->stages.set);
     pixels_finish(&probe->pixel_buffers);
     buffer_destroy(probe->records);
     *probe = (struct probe_state){0};
@@ -136,17 +223,12 @@ void probe_finish(struct probe_state *probe)
 void probe_drop_pixels(struct renderer *renderer)
 {
     struct probe_state *probe = &renderer->probe;
-    pass_unbind(&probe->whitted);
+    stages_unbind(&probe->stages);
     renderer->scene_buffers.bytes -= probe->pixel_buffers.bytes;
     pixels_finish(&probe->pixel_buffers);
 }
 
 /* ---- The tree ---- */
-
-static bool is_shadow(const struct gpu_probe_ray *record)
-{
-    return (record->kind & PROBE_KIND_MASK) == RAY_SHADOW;
-}
 
 /* Of each record, while the tree is put in order. */
 struct branch {

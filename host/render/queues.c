@@ -43,6 +43,9 @@ whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
 {
     struct queue_buffers *queues = &p->queues;
     bool secondary = renderer->has_secondary;
+    const bool *called = renderer->effects.called;
+    bool calls = called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
+                 called[SCENE_EFFECT_CUTOUTS] || called[SCENE_EFFECT_CATCHERS];
     queues->generation_count = secondary ? GENERATIONS_MOST : 2;
     queues->ray_capacity = p->chunk_slots;
     queues->lit_capacity =
@@ -75,11 +78,15 @@ whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
         {&queues->children, sent * 16, loaded, "children of rays"},
         {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},
         {&queues->hit_list, rays * 4 * CLASSES_MOST, loaded, "hits to shade"},
-        {&queues->cuts, (uint64_t)p->chunk_slots * 8, BUFFER_STORAGE, "weights that are cut"},
+        {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE,
+         "weights that are cut"},
+        {&queues->cut_sums, calls ? (uint64_t)renderer->params.width * p->band_rows * 8 : 0,
+         BUFFER_STORAGE, "sums of weights that are cut"},
         {&queues->waiting,
          variant_waits(renderer) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
-        {&queues->kinds, renderer->params.count ? sent * 4 : 0, BUFFER_STORAGE, "kinds of rays"},
+        {&queues->kinds, renderer->params.count || renderer->probe.active ? sent * 4 : 0,
+         BUFFER_STORAGE, "kinds of rays"},
     };
     whit_result result = WHIT_OK;
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
@@ -114,10 +121,10 @@ whit_result queues_grow(struct renderer *renderer)
 
 void queues_finish(struct queue_buffers *queues)
 {
-    struct buffer *all[] = {queues->generations, queues->empty, queues->rays,  queues->media,
-                            queues->hits,        queues->lit,   queues->sums,  queues->children,
-                            queues->hit_list,    queues->cuts,  queues->kinds, queues->lit_list,
-                            queues->waiting};
+    struct buffer *all[] = {queues->generations, queues->empty,  queues->rays,     queues->media,
+                            queues->hits,        queues->lit,    queues->sums,     queues->children,
+                            queues->hit_list,    queues->cuts,   queues->cut_sums, queues->kinds,
+                            queues->lit_list,    queues->waiting};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

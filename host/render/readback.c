@@ -80,7 +80,7 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
         if (result == WHIT_OK)
             result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
     }
-    return result == WHIT_OK ? stats_add_counts(renderer, progress, first, count) : result;
+    return result;
 }
 
 static whit_result begin_read(const struct renderer *renderer, uint32_t channels, bool integers,

@@ -13,11 +13,7 @@
 #include "base/clock.h"
 #include "render/renderer.h"
 
-enum {
-    TILE_FIRST = 96,
-    PASSES_FIRST = 8,
-    PASSES_MAX = 64,
-};
+enum { TILE_FIRST = 96 };
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_TARGET_MS = 40.0;
 static const double SUBMISSION_LIMIT_MS = 100.0;
@@ -47,7 +43,6 @@ whit_result status_check(struct renderer *renderer)
     } reasons[] = {
         {STATUS_UNFINISHED_TRAVERSAL, "a traversal was cut short (the driver ends long loops)"},
         {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed"},
-        {STATUS_RAY_STACK_OVERFLOW, "the ray stack overflowed"},
         {STATUS_NON_FINITE, "radiance is not finite"},
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
@@ -122,14 +117,6 @@ static whit_result submit(struct renderer *renderer)
     return status_check(renderer);
 }
 
-void render_clear_work(struct renderer *renderer, uint32_t list)
-{
-    const struct pixel_buffers *p = &renderer->pixel_buffers;
-    if (p->work[list])
-        commands_copy(renderer->commands, p->work_head, 0, p->work[list], 0,
-                      sizeof(struct gpu_work));
-}
-
 void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
 {
     if (!waiting)
@@ -139,22 +126,14 @@ void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
     commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, count), 4, 0);
 }
 
-void render_take_waiting(struct renderer *renderer, const struct pass *pass, int set,
-                         struct buffer *waiting, const void *push, uint32_t push_bytes)
+void render_take_waiting(struct renderer *renderer, const struct pass *pass, struct buffer *waiting,
+                         const void *push, uint32_t push_bytes)
 {
     commands_barrier(renderer->commands);
-    commands_bind(renderer->commands, pass->looks, pass->looks_sets[set]);
+    commands_bind(renderer->commands, pass->looks, pass->looks_set);
     commands_push(renderer->commands, push, push_bytes);
     commands_dispatch_indirect(renderer->commands, waiting, 0);
     ++renderer->stats.dispatches;
-}
-
-void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk)
-{
-    const struct pixel_buffers *p = &renderer->pixel_buffers;
-    if (chunk->listed > 0)
-        commands_copy(renderer->commands, p->listed, 0, p->work[0], 0,
-                      sizeof(struct gpu_work) + (uint64_t)chunk->listed * sizeof(uint32_t));
 }
 
 uint32_t render_groups(const struct gpu_chunk *chunk)
@@ -172,95 +151,10 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
     return *x < renderer->params.width && *y < renderer->params.height;
 }
 
-/* Camera rays; pixels with rays left go to list 1. */
-static whit_result record_primary(struct renderer *renderer, const struct gpu_chunk *chunk)
-{
-    struct commands *commands = renderer->commands;
-    whit_result result = commands_begin(commands);
-    if (result != WHIT_OK)
-        return result;
-    commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
-    render_clear_work(renderer, 1);
-    render_take_list(renderer, chunk);
-    commands_barrier(commands);
-    commands_span_begin(commands, "sample");
-    commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[0]);
-    commands_push(commands, chunk, sizeof *chunk);
-    commands_dispatch(commands, render_groups(chunk), 1, 1);
-    ++renderer->stats.dispatches;
-    return WHIT_OK;
-}
-
-/* One ray more of each listed pixel, `passes` times: pass i reads list (i + 1) % 2 and fills the
-   other. */
-static void record_passes(struct renderer *renderer, const struct gpu_chunk *chunk, uint32_t first,
-                          uint32_t passes)
-{
-    struct commands *commands = renderer->commands;
-    struct gpu_chunk stacked = *chunk;
-    stacked.stacked = 1;
-    for (uint32_t i = first; i < first + passes; ++i) {
-        uint32_t in = (i + 1) % 2;
-        commands_barrier(commands);
-        render_clear_work(renderer, 1 - in);
-        commands_barrier(commands);
-        commands_bind(commands, renderer->whitted.pipeline, renderer->whitted.sets[in]);
-        commands_push(commands, &stacked, sizeof stacked);
-        commands_dispatch_indirect(commands, renderer->pixel_buffers.work[in], 0);
-        ++renderer->stats.dispatches;
-    }
-}
-
 whit_result render_finish_submission(struct renderer *renderer)
 {
     commands_barrier(renderer->commands);
     return submit(renderer);
-}
-
-static whit_result sample_by_stacks(struct renderer *renderer, const struct gpu_chunk *chunk,
-                                    const struct progress *progress, double *longest_ms)
-{
-    uint32_t several = renderer->accel->no_trees ? 1 : PASSES_FIRST, first = 0;
-    uint32_t passes = renderer->has_secondary ? several : 0;
-    double start_ms = clock_ms();
-    whit_result result = record_primary(renderer, chunk);
-    if (result == WHIT_OK) {
-        record_passes(renderer, chunk, first, passes);
-        result = render_finish_submission(renderer);
-    }
-    for (;;) {
-        double spent_ms = clock_ms() - start_ms;
-        *longest_ms = spent_ms > *longest_ms ? spent_ms : *longest_ms;
-        if (result != WHIT_OK || passes == 0)
-            return result;
-        first += passes;
-        struct gpu_work head;
-        result = buffer_read(renderer->pixel_buffers.work[(first + 1) % 2], 0, &head, sizeof head);
-        if (result != WHIT_OK || head.count == 0)
-            return result;
-        result = render_stop_asked(renderer, progress);
-        if (result != WHIT_OK)
-            return result;
-        if (spent_ms < SUBMISSION_TARGET_MS && passes < PASSES_MAX)
-            passes *= 2;
-        else if (spent_ms > SUBMISSION_LIMIT_MS && passes > 2)
-            passes /= 2;
-        start_ms = clock_ms();
-        result = commands_begin(renderer->commands);
-        if (result != WHIT_OK)
-            return result;
-        commands_span_begin(renderer->commands, "bounces");
-        record_passes(renderer, chunk, first, passes);
-        result = render_finish_submission(renderer);
-    }
-}
-
-whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                          const struct progress *progress, double *longest_ms)
-{
-    if (renderer->pixel_buffers.queues.generations)
-        return stages_sample(renderer, chunk, progress, longest_ms);
-    return sample_by_stacks(renderer, chunk, progress, longest_ms);
 }
 
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
@@ -287,7 +181,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         chunk->sample_index = s;
         chunk->sample_weight = 1.0f / (float)samples;
         camera_sample(&renderer->frame, s, samples, chunk);
-        result = render_sample(renderer, chunk, progress, &longest_ms);
+        result = stages_sample(renderer, chunk, progress, &longest_ms);
         if (result == WHIT_OK)
             result = costs_add(renderer, chunk);
         if (result != WHIT_OK)

@@ -25,7 +25,7 @@ struct scene_buffers {
 /* What the stages of a picture leave to each other, of one tile (abi/queues.h). */
 struct queue_buffers {
     struct buffer *generations, *empty; /* gpu_tally and gpu_generation; as they begin */
-    struct buffer *rays, *media, *hits, *lit, *sums, *children, *hit_list, *cuts;
+    struct buffer *rays, *media, *hits, *lit, *sums, *children, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
         *waiting;         /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
@@ -34,30 +34,25 @@ struct queue_buffers {
     uint64_t bytes;
 };
 
-/* The state of the pixels of one band of rows, and of the ray trees of one chunk. */
+/* The pixels of one band of rows, and the rays of one chunk. */
 struct pixel_buffers {
-    struct buffer *pixels, *ids, *counts;
-    struct buffer *ray_stacks;          /* NULL: surfaces leave no rays */
-    struct buffer *ray_media;           /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
-    struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
+    struct buffer *pixels, *ids;
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
-    struct buffer *listed; /* work list of camera rays; NULL when not adaptive */
+    struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
     struct buffer *status;
-    struct queue_buffers queues; /* nothing without stages */
-    uint32_t band_y;             /* first row that they hold now */
-    uint32_t band_rows;          /* rows the pixel buffers hold, a multiple of 8 */
-    uint32_t chunk_slots;        /* pixels that ray stacks and work lists hold */
-    uint32_t stack_size;         /* rays of one pixel */
-    uint64_t bytes;              /* of all of them, also counted in scene_buffers.bytes */
+    struct queue_buffers queues;
+    uint32_t band_y;      /* first row that they hold now */
+    uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
+    uint32_t chunk_slots; /* pixels that the queues hold */
+    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
    waiting list, else NULL. */
 struct pass {
     struct pipeline *pipeline, *looks;
-    uint32_t rays_each; /* items that an invocation takes */
-    /* What they work on. [1]: with the two work lists exchanged. */
-    struct binding_set *sets[2], *looks_sets[2];
+    uint32_t rays_each;                  /* items that an invocation takes */
+    struct binding_set *set, *looks_set; /* what they work on */
 };
 
 /* In the order in which a generation of rays goes through them; the last one from the youngest
@@ -130,7 +125,7 @@ struct beside_state {
 struct probe_state {
     bool active;
     struct pixel_buffers pixel_buffers; /* of a row of blocks */
-    struct pass whitted;
+    struct stages stages;
     struct buffer *records; /* gpu_probe, and gpu_probe_ray */
 };
 
@@ -144,7 +139,6 @@ struct renderer {
     struct scene_effects effects; /* that kernels are made for: see effects_choose */
     struct scene_buffers scene_buffers;
     struct pixel_buffers pixel_buffers;
-    struct pass whitted;
     struct stages stages;
     bool packets; /* rays may walk in packets, through nodes of eight children */
     struct trace_state trace;
@@ -187,8 +181,8 @@ WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_po
                                     const char *selector, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
-/* whitted.comp's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a camera of
-   `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
+/* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
+   camera of `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
                 const struct gpu_chunk *sample, struct gpu_ray *ray);
 
@@ -264,7 +258,6 @@ struct gpu_spec variant_spec(const struct renderer *renderer);
 struct gpu_spec variant_general_spec(const struct renderer *renderer);
 /* Every effect that the renderer's buffers allow and its params do not remove. */
 struct gpu_spec variant_beside_spec(const struct renderer *renderer);
-WHIT_CHECK whit_result variant_create_whitted(struct renderer *renderer);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
 uint32_t variant_classes(const struct renderer *renderer);
@@ -286,7 +279,6 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *sp
                       uint32_t classes, enum stage stage, struct variant_job *job);
 /* Makes the binding sets of the pass. */
 WHIT_CHECK whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass);
-WHIT_CHECK whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 /* CAMERA_* that kernels are made for. */
 uint32_t variant_camera(const struct renderer *renderer);
@@ -303,7 +295,6 @@ struct stages_job {
     bool wanted[STAGE_COUNT];
     struct variant_job stages[STAGE_COUNT];
 };
-bool stages_wanted(const struct renderer *renderer);
 /* `own`: the kernels for the scene, else general ones with `spec`. */
 void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
                      struct stages_job *job);
@@ -338,9 +329,9 @@ WHIT_CHECK whit_result stage_times_end(struct renderer *renderer, const struct g
 /* Fills in names, and the times of all items. */
 void stage_times_scale(const struct renderer *renderer, struct render_stats *stats);
 
-/* beside.c: renderer->whitted is the best kernel that there is without waiting for it: at first the
-   general one, while a thread compiles the specialised one, and from some later call on that. The
-   thread logs when it fails; the general kernel then stays. */
+/* beside.c: renderer->stages are the best kernels that there are without waiting for them: at first
+   the general one, while a thread compiles the specialised one, and from some later call on that.
+   The thread logs when it fails; the general kernel then stays. */
 WHIT_CHECK whit_result beside_prepare(struct renderer *renderer);
 /* Waits for the thread. */
 void beside_finish(struct renderer *renderer);
@@ -370,10 +361,6 @@ WHIT_CHECK whit_result readback_non_finite(struct renderer *renderer, uint32_t *
 
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
 void stats_clear(struct render_stats *stats);
-/* Sums what the kernel counted for `count` pixels of the band, of which `first` is the first one's
-   index in the picture. */
-WHIT_CHECK whit_result stats_add_counts(struct renderer *renderer, const struct progress *progress,
-                                        size_t first, size_t count);
 
 /* adaptive.c: everything around the passes of an adaptive picture, which render.c makes. */
 /* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,
@@ -385,11 +372,6 @@ WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct pro
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* render.c: all rays of one sample of one chunk. *longest_ms: of its
-   submissions, if longer. */
-WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
-                                     const struct progress *progress, double *longest_ms);
-
 /* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
    traces take more turns of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
@@ -397,15 +379,12 @@ WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
-void render_clear_work(struct renderer *renderer, uint32_t list);
 /* Empties a waiting list, if there is one. Barriers are the caller's. */
 void render_clear_waiting(struct renderer *renderer, struct buffer *waiting);
 /* Goes on, behind a barrier, with what the dispatch before has left on the list. `push`: for it,
    with `waiting` set. */
-void render_take_waiting(struct renderer *renderer, const struct pass *pass, int set,
-                         struct buffer *waiting, const void *push, uint32_t push_bytes);
-/* For a listed chunk, before its camera rays: the list into work list 0. */
-void render_take_list(struct renderer *renderer, const struct gpu_chunk *chunk);
+void render_take_waiting(struct renderer *renderer, const struct pass *pass, struct buffer *waiting,
+                         const void *push, uint32_t push_bytes);
 /* Workgroups of the camera rays of a chunk. */
 uint32_t render_groups(const struct gpu_chunk *chunk);
 /* Pixel `i` of block `block`, as slot_pixel() of the kernel. False when outside of the picture. */

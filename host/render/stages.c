@@ -1,18 +1,15 @@
 /* One sample of a tile in stages: what its rays meet, what the surfaces there do with light, what
    comes from each light; then the same for the rays that these call for, generation by generation;
    last the sums, from the youngest generation to the camera rays. */
+#include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "render/renderer.h"
 
 /* Generations of the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };
-
-bool stages_wanted(const struct renderer *renderer)
-{
-    return !renderer->probe.active;
-}
 
 void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
                      struct stages_job *job)
@@ -34,7 +31,8 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
     whit_result result = WHIT_OK;
     *out = (struct stage_set){.classes = job->classes};
     for (uint32_t i = 0; i < job->classes; ++i)
-        out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec);
+        out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
+                        job->spec.SPEC_PROBE; /* there sums are recorded */
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         if (job->wanted[i])
             result = variant_job_run(device, &job->stages[i], &out->passes[i]);
@@ -60,7 +58,7 @@ whit_result stages_bind(struct renderer *renderer)
 {
     struct stages *stages = &renderer->stages;
     whit_result result = WHIT_OK;
-    if (stages->set.passes[STAGE_CAMERA].sets[0])
+    if (stages->set.passes[STAGE_CAMERA].set)
         return WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         if (stages->set.passes[i].pipeline)
@@ -197,7 +195,7 @@ static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chu
         render_clear_waiting(renderer, waiting);
         commands_barrier(commands);
     }
-    commands_bind(commands, pass->pipeline, pass->sets[0]);
+    commands_bind(commands, pass->pipeline, pass->set);
     commands_push(commands, chunk, sizeof *chunk);
     if (chunk->generation == 0 && list == LIST_RAYS)
         commands_dispatch(commands, (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each,
@@ -210,7 +208,7 @@ static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chu
         struct gpu_chunk waits = *chunk;
         waits.waiting = 1;
         stage_times_next(renderer, RENDER_STAGE_DEFERRED);
-        render_take_waiting(renderer, pass, 0, waiting, &waits, sizeof waits);
+        render_take_waiting(renderer, pass, waiting, &waits, sizeof waits);
     }
     commands_barrier(commands);
 }
@@ -255,8 +253,8 @@ static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk
         commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
         commands_copy(commands, queues->empty, 0, queues->generations, 0,
                       stages_generation_offset(queues->generation_count));
-        commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
-        render_take_list(renderer, chunk);
+        if (queues->cuts)
+            commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
     }
     commands_barrier(commands);
     commands_span_begin(commands, "tile");
@@ -269,6 +267,13 @@ static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk
     return result;
 }
 
+static float float_of_bits(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
 static whit_result take_tally(struct renderer *renderer)
 {
     struct render_stats *stats = &renderer->stats;
@@ -277,6 +282,10 @@ static whit_result take_tally(struct renderer *renderer)
         buffer_read(renderer->pixel_buffers.queues.generations, 0, &tally, sizeof tally);
     if (result != WHIT_OK)
         return result;
+    stats->weight_cut_depth =
+        fmax(stats->weight_cut_depth, (double)float_of_bits(tally.cut_depth_weight));
+    stats->weight_cut_bailout =
+        fmax(stats->weight_cut_bailout, (double)float_of_bits(tally.cut_bailout_weight));
     stats->rays_reflected += tally.reflected;
     stats->rays_refracted += tally.refracted;
     stats->rays_cut_depth += tally.cut_depth;

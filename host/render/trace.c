@@ -67,7 +67,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     commands_fill(renderer->commands, renderer->pixel_buffers.status, 0, 4, 0);
     render_clear_waiting(renderer, renderer->trace.waiting);
     commands_barrier(renderer->commands);
-    commands_bind(renderer->commands, pass->pipeline, pass->sets[0]);
+    commands_bind(renderer->commands, pass->pipeline, pass->set);
     commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
     commands_dispatch(renderer->commands,
@@ -75,7 +75,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     struct gpu_batch waiting = *batch;
     waiting.waiting = 1;
     if (pass->looks)
-        render_take_waiting(renderer, pass, 0, renderer->trace.waiting, &waiting, sizeof waiting);
+        render_take_waiting(renderer, pass, renderer->trace.waiting, &waiting, sizeof waiting);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);

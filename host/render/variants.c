@@ -66,7 +66,7 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
-    spec.SPEC_LISTED = renderer->params.adaptive > 0.0;
+    spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || renderer->probe.active;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
     return spec;
@@ -202,17 +202,11 @@ static struct pipeline_params pass_params(enum kernel kernel, const struct gpu_s
     };
 }
 
-static struct pipeline_params whitted_params(const struct gpu_spec *spec,
-                                             const struct bindings *bindings)
-{
-    return pass_params(KERNEL_WHITTED, spec, bindings, BIND_WHITTED_COUNT, sizeof(struct gpu_chunk),
-                       "whitted");
-}
-
-static struct bindings bind_whitted(const struct renderer *renderer)
+static struct bindings bind_stages(const struct renderer *renderer)
 {
     const struct scene_buffers *scene = &renderer->scene_buffers;
     const struct pixel_buffers *pixels = &renderer->pixel_buffers;
+    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
     struct bindings bindings = bind_trees(renderer);
     bool texels = scene->texel_loads;
     bind_loads(&bindings, BIND_SHADING, BIND_SHADING_TEXELS, texels, scene->shading);
@@ -221,22 +215,10 @@ static struct bindings bind_whitted(const struct renderer *renderer)
     bind(&bindings, BIND_ENVIRONMENT, BINDING_STORAGE, scene->environment);
     bind(&bindings, BIND_PIXELS, BINDING_STORAGE, pixels->pixels);
     bind(&bindings, BIND_IDS, BINDING_STORAGE, pixels->ids);
-    bind(&bindings, BIND_COUNTS, BINDING_STORAGE, pixels->counts);
-    bind(&bindings, BIND_RAY_STACKS, BINDING_STORAGE, pixels->ray_stacks);
-    bind(&bindings, BIND_WORK_IN, BINDING_STORAGE, pixels->work[0]);
-    bind(&bindings, BIND_WORK_OUT, BINDING_STORAGE, pixels->work[1]);
+    bind(&bindings, BIND_LISTED, BINDING_STORAGE, pixels->listed);
     bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
-    bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, pixels->ray_media);
     bind(&bindings, BIND_PROBE, BINDING_STORAGE,
          renderer->probe.active ? renderer->probe.records : NULL);
-    return bindings;
-}
-
-/* Those of the stages too. */
-static struct bindings bind_stages(const struct renderer *renderer)
-{
-    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
-    struct bindings bindings = bind_whitted(renderer);
     bind(&bindings, BIND_GENERATIONS, BINDING_STORAGE, queues->generations);
     bind(&bindings, BIND_GENERATION_TEXELS, BINDING_TEXELS, queues->generations);
     bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
@@ -258,6 +240,7 @@ static struct bindings bind_stages(const struct renderer *renderer)
     bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
     bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
+    bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
     bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, renderer->scene_buffers.nodes8);
     return bindings;
 }
@@ -279,14 +262,12 @@ static whit_result create_pipelines(struct device *device, const struct pipeline
     return pipeline_create(device, &looks, &pass->looks);
 }
 
-/* Set `i` of both pipelines. */
-static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count,
-                               int i)
+/* Of both pipelines. */
+static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count)
 {
-    whit_result result =
-        binding_set_create(pass->pipeline, bindings->buffers, count, &pass->sets[i]);
+    whit_result result = binding_set_create(pass->pipeline, bindings->buffers, count, &pass->set);
     if (result == WHIT_OK && pass->looks)
-        result = binding_set_create(pass->looks, bindings->buffers, count, &pass->looks_sets[i]);
+        result = binding_set_create(pass->looks, bindings->buffers, count, &pass->looks_set);
     return result;
 }
 
@@ -294,31 +275,6 @@ whit_result variant_job_run(struct device *device, const struct variant_job *job
 {
     pass->rays_each = job->spec.SPEC_PACKET_RAYS;
     return create_pipelines(device, &job->params, pass);
-}
-
-whit_result variant_bind_whitted(struct renderer *renderer, struct pass *pass)
-{
-    const struct pixel_buffers *pixels = &renderer->pixel_buffers;
-    struct bindings bindings = bind_whitted(renderer);
-    whit_result result = WHIT_OK;
-    int set_count = pixels->work[0] ? 2 : 1;
-    for (int i = 0; result == WHIT_OK && i < set_count; ++i) {
-        if (pixels->work[0]) {
-            bindings.buffers[BIND_WORK_IN] = pixels->work[i];
-            bindings.buffers[BIND_WORK_OUT] = pixels->work[1 - i];
-        }
-        result = create_sets(pass, &bindings, BIND_WHITTED_COUNT, i);
-    }
-    return result;
-}
-
-whit_result variant_create_whitted(struct renderer *renderer)
-{
-    struct bindings bindings = bind_whitted(renderer);
-    struct gpu_spec spec = variant_spec(renderer);
-    const struct pipeline_params params = whitted_params(&spec, &bindings);
-    whit_result result = create_pipelines(renderer->device, &params, &renderer->whitted);
-    return result == WHIT_OK ? variant_bind_whitted(renderer, &renderer->whitted) : result;
 }
 
 /* Classes of materials that have kernels of their own. */
@@ -404,7 +360,7 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
 {
     uint32_t stack = renderer->packet_stack_size;
     spec->SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
-    if (!renderer->packets || stack > PACKET_STACK_MOST)
+    if (!renderer->packets || spec->SPEC_PROBE || stack > PACKET_STACK_MOST)
         return;
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
@@ -454,7 +410,7 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *se
 whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass)
 {
     struct bindings bindings = bind_stages(renderer);
-    return create_sets(pass, &bindings, BIND_STAGES_COUNT, 0);
+    return create_sets(pass, &bindings, BIND_STAGES_COUNT);
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
@@ -474,7 +430,7 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
         pass_params(KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
                     any ? "trace any" : "trace closest");
     whit_result result = create_pipelines(renderer->device, &params, pass);
-    return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT, 0) : result;
+    return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT) : result;
 }
 
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect)
@@ -484,11 +440,9 @@ bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect
 
 void pass_unbind(struct pass *pass)
 {
-    for (int i = 0; i < 2; ++i) {
-        binding_set_destroy(pass->sets[i]);
-        binding_set_destroy(pass->looks_sets[i]);
-        pass->sets[i] = pass->looks_sets[i] = NULL;
-    }
+    binding_set_destroy(pass->set);
+    binding_set_destroy(pass->looks_set);
+    pass->set = pass->looks_set = NULL;
 }
 
 void pass_finish(struct pass *pass)
@@ -502,9 +456,8 @@ void pass_finish(struct pass *pass)
 void passes_finish(struct renderer *renderer)
 {
     renderer->beside.general = false;
-    pass_finish(&renderer->whitted);
     stage_set_finish(&renderer->stages.set);
-    pass_finish(&renderer->probe.whitted);
+    stage_set_finish(&renderer->probe.stages.set);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);
 }

@@ -63,7 +63,8 @@ GPU_ASSERT_SIZE(gpu_generation, 400)
 struct gpu_tally {
     gpu_uint reflected, refracted;
     gpu_uint cut_depth, cut_bailout;
-    gpu_uint pad0, pad1, pad2, pad3;
+    gpu_uint cut_depth_weight, cut_bailout_weight; /* bits of floats: the largest sum of a pixel */
+    gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_tally, 32)
 

@@ -139,7 +139,7 @@ struct gpu_frame {
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
     gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
-    gpu_uint stack_size; /* rays of one pixel's ray stack */
+    gpu_uint pad1;
     gpu_float bailout;   /* rays that can add less than this to a pixel are not traced */
     gpu_uint light_row;  /* first light */
     gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */
@@ -162,28 +162,17 @@ GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
    priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
-   beside the ray stacks, one for each ray. */
+   one for each ray. */
 #define MEDIA_MOST 8u
 struct gpu_media {
     gpu_uint words0, words1, words2, words3;
 };
 GPU_ASSERT_SIZE(gpu_media, 16)
 
-/* A ray waiting on the ray stack of its pixel. */
+/* Of the steps of a ray: surfaces passed unseen, and above them bounces so far. */
 #define STATE_BOUNCES_SHIFT 8u
-#define STATE_KIND_SHIFT    30u
-struct gpu_stacked_ray {
-    gpu_vec3 origin;
-    gpu_uint state; /* surfaces passed unseen | bounces so far << 8 | RAY_* << 30 */
-    gpu_vec3 dir;   /* unit */
-    gpu_uint skip_primitive;
-    gpu_vec3 weight;
-    gpu_uint skip_instance;
-};
-GPU_ASSERT_SIZE(gpu_stacked_ray, 48)
-GPU_ASSERT_AT(gpu_stacked_ray, weight, 32)
 
-/* Push constants of the Whitted kernel: a chunk is a run of 8x8 pixel blocks of a band of rows. */
+/* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows. */
 struct gpu_chunk {
     gpu_uint first_block;
     gpu_uint block_count;
@@ -194,40 +183,24 @@ struct gpu_chunk {
     gpu_float sample_weight;
     gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
                          distance of the focus */
-    gpu_uint stacked; /* 0: camera rays; 1: rays from the ray stacks of listed pixels */
-    gpu_uint listed;  /* camera rays of so many pixels, in the work list; 0: of all */
-    gpu_uint waiting; /* 1: the pixels on the waiting list */
+    gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
+    gpu_uint waiting; /* 1: of what is on the waiting list */
     gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty */
     gpu_uint generation;                 /* of rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
     gpu_uint list;                       /* LIST_* that the dispatch works on */
+    gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 72)
 
-/* What the kernel counted for a pixel. */
-struct gpu_counts {
-    gpu_uint shadow;
-    gpu_uint reflected;
-    gpu_uint refracted;
-    gpu_uint stack; /* rays waiting */
-    gpu_uint cut_depth;          /* rays not traced for --depth, with their weights summed up */
-    gpu_uint cut_bailout;        /* likewise for --bailout */
-    gpu_float cut_depth_weight;  /* largest channel of each weight */
-    gpu_float cut_bailout_weight;
-};
-GPU_ASSERT_SIZE(gpu_counts, 32)
-
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 
-/* A stacked ray then has the number of its record in `state`, above its bounces. */
-#define STATE_PROBE_SHIFT 16u
-#define PROBE_RAYS_MOST   16383u /* records; as a number: none */
+#define PROBE_RAYS_MOST 16383u /* records; as a number: none */
 
 /* In front of the records. */
 struct gpu_probe {
-    gpu_uint pixel_x, pixel_y;
-    gpu_uint capacity; /* records, up to PROBE_RAYS_MOST */
-    gpu_uint count;    /* of rays; those beyond `capacity` have no record */
+    gpu_uint rays, others; /* traced; shadow rays and what is not traced. May be more than records */
+    gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_probe, 16)
 
@@ -236,9 +209,10 @@ GPU_ASSERT_SIZE(gpu_probe, 16)
 #define PROBE_STRAIGHT  4u /* behind what blends, or a shadow catcher */
 #define PROBE_THROUGH   8u /* behind a surface with the same medium on both sides */
 #define PROBE_INSIDE    16u /* it meets its surface from inside */
+#define PROBE_CATCHER   32u /* as the device leaves it: `added` is what a shadow catcher shows */
 
 /* gpu_probe_ray.end */
-#define PROBE_WAITS    0u /* on the ray stack */
+#define PROBE_WAITS    0u /* not known yet */
 #define PROBE_MISSED   1u
 #define PROBE_ABSORBED 2u /* it leaves the scene in a medium of which too little comes back */
 #define PROBE_HIT      3u

@@ -3,7 +3,7 @@
 #define BIND_CAMERA_GLSL
 
 #include "../lib/angles.glsl"
-#include "ray_stack.glsl"
+#include "ray.glsl"
 
 // Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to right
 // and from top to bottom.

@@ -4,8 +4,7 @@
 #define BIND_CROSSING_GLSL
 
 #include "media.glsl"
-#include "picture.glsl"
-#include "ray_stack.glsl"
+#include "ray.glsl"
 #include "surface.glsl"
 
 // Surfaces that may be crossed at one place.

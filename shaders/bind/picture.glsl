@@ -8,16 +8,9 @@
 layout(push_constant) uniform Chunk { gpu_chunk chunk; };
 layout(set = 0, binding = BIND_PIXELS, std430) buffer PixelBuffer { vec4 pixels[]; };
 layout(set = 0, binding = BIND_IDS, std430) writeonly buffer IdBuffer { uvec2 ids[]; };
-layout(set = 0, binding = BIND_COUNTS, std430) buffer CountBuffer { gpu_counts counts[]; };
-layout(set = 0, binding = BIND_WORK_IN, std430) readonly buffer WorkInBuffer
+layout(set = 0, binding = BIND_LISTED, std430) readonly buffer ListedBuffer
 {
-    gpu_work work_in;
-    uint slots_in[];
-};
-layout(set = 0, binding = BIND_WORK_OUT, std430) buffer WorkOutBuffer
-{
-    gpu_work work_out;
-    uint slots_out[];
+    uint listed_slots[]; // with chunk.listed
 };
 
 // RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
@@ -45,6 +38,11 @@ uvec2 slot_pixel(uint slot)
     uint x = (i & 3u) | ((i >> 1) & 4u);
     uint y = ((i >> 2) & 1u) | ((i >> 3) & 6u);
     return uvec2(block % blocks_x, block / blocks_x) * 8u + uvec2(x, y);
+}
+
+bool is_in_picture(uvec2 at)
+{
+    return at.x < frame.width && at.y < min(frame.height, chunk.band_y + chunk.band_rows);
 }
 
 // Adds what the last traverse() cost to the pixel's rays of `kind`. HIT_NONE: of no pixel.

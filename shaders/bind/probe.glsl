@@ -1,41 +1,26 @@
-// The ray tree of one pixel's first sample, as it is traced: a record for each ray, in the order in
-// which rays are called for. With SPEC_PROBE, and only then in a kernel.
+// The ray tree of one pixel's first sample: a record for each ray. Those that are traced have the number of
+// their id, the others follow behind. With SPEC_PROBE, and only then in a kernel.
 #ifndef BIND_PROBE_GLSL
 #define BIND_PROBE_GLSL
 
+#include "queues.glsl"
 #include "media.glsl"
-#include "picture.glsl"
 #include "surface.glsl"
 
 layout(set = 0, binding = BIND_PROBE, std430) buffer ProbeBuffer
 {
     gpu_probe probe;
-    gpu_probe_ray probe_rays[]; // probe.capacity
+    gpu_probe_ray probe_rays[]; // 2 * PROBE_RAYS_MOST
 };
 
-const uint PROBE_NONE = PROBE_RAYS_MOST;
-
-uint probe_own;    // record of the ray in hand
-uint probe_shadow; // of the last shadow ray
-vec3 probe_weight; // of the ray in hand, where it has come to
-uint probe_kind;   // of the next ray that it may leave
-vec3 probe_dir;
-
-bool is_probed(uvec2 pixel)
+bool is_recorded(uint id)
 {
-    return pixel == uvec2(probe.pixel_x, probe.pixel_y);
+    return SPEC_PROBE != 0u && chunk.sample_index == 0u && id < PROBE_RAYS_MOST;
 }
 
-// Its number; PROBE_NONE where there is no more room, and for samples after the first.
-uint probe_record(uint kind, uint end, uint parent, vec3 origin, vec3 dir, float t_max, vec3 weight,
-                  uint skip_instance, uint skip_primitive)
+gpu_probe_ray make_probe_ray(uint kind, uint end, uint parent, vec3 origin, vec3 dir, float t_max,
+                             vec3 weight, uvec2 skip, uint turn)
 {
-    if (chunk.sample_index != 0u)
-        return PROBE_NONE;
-    uint at = probe.count;
-    probe.count = at + 1u;
-    if (at >= probe.capacity)
-        return PROBE_NONE;
     gpu_probe_ray ray;
     ray.origin = origin;
     ray.kind = kind;
@@ -53,103 +38,98 @@ uint probe_record(uint kind, uint end, uint parent, vec3 origin, vec3 dir, float
     ray.v = 0.0;
     ray.primitive = HIT_NONE;
     ray.instance = HIT_NONE;
-    ray.skip_primitive = skip_primitive;
-    ray.skip_instance = skip_instance;
+    ray.skip_primitive = skip.y;
+    ray.skip_instance = skip.x;
     ray.medium = 0u;
-    ray.turn = 0u;
-    probe_rays[at] = ray;
-    return at;
+    ray.turn = turn;
+    return ray;
 }
 
-// What the ray of a record met.
-void probe_meet(uint at, vec3 origin, vec3 dir, Hit hit)
+// What the ray of `from` met; `from` with it.
+gpu_probe_ray with_hit(gpu_probe_ray from, Hit hit)
 {
-    if (at == PROBE_NONE || hit.primitive == HIT_NONE)
-        return;
+    if (hit.primitive == HIT_NONE)
+        return from;
     if (SPEC_NUMERICS == NUMERICS_EXACT)
-        finish_hit(origin, dir, hit);
+        finish_hit(from.origin, from.dir, hit);
     Surface s = fetch_surface(hit);
-    bool inside = dot(dir, s.ng) > 0.0;
+    bool inside = dot(from.dir, s.ng) > 0.0;
     vec3 side = inside ? -s.ng : s.ng;
-    probe_rays[at].point = s.p;
-    probe_rays[at].t = hit.t;
-    probe_rays[at].normal = dot(s.ns, side) < 0.0 ? -s.ns : s.ns;
-    probe_rays[at].material = s.material;
-    probe_rays[at].u = hit.u;
-    probe_rays[at].v = hit.v;
-    probe_rays[at].primitive = hit.primitive;
-    probe_rays[at].instance = hit.instance;
-    probe_rays[at].kind |= inside ? PROBE_INSIDE : 0u;
+    from.point = s.p;
+    from.t = hit.t;
+    from.normal = dot(s.ns, side) < 0.0 ? -s.ns : s.ns;
+    from.material = s.material;
+    from.u = hit.u;
+    from.v = hit.v;
+    from.primitive = hit.primitive;
+    from.instance = hit.instance;
+    from.kind |= inside ? PROBE_INSIDE : 0u;
+    return from;
 }
 
-// The ray in hand has been traced. `weight`: what is left of it where it has come to.
-void probe_begin(bool stacked, vec3 origin, vec3 dir, vec3 weight, uvec4 media, Hit hit)
+// Ray `id` has been traced. `weight`: of it where it starts; `after`: what is left where it has come to;
+// `sky`: what it adds where it meets nothing.
+void probe_traced(uint id, vec3 origin, vec3 dir, uvec2 skip, vec3 weight, vec3 after, vec3 sky,
+                  uvec4 media, Hit hit)
 {
-    if (!stacked)
-        probe_own = probe_record(RAY_PRIMARY, PROBE_WAITS, PROBE_NONE, origin, dir, FLOAT_LARGEST,
-                                 vec3(1.0), HIT_NONE, HIT_NONE);
-    probe_weight = weight;
-    if (probe_own == PROBE_NONE)
+    atomicAdd(probe.rays, uint(chunk.sample_index == 0u));
+    if (!is_recorded(id))
         return;
-    vec3 sent = probe_rays[probe_own].weight;
-    float before = max(sent.r, max(sent.g, sent.b));
-    float after = max(weight.r, max(weight.g, weight.b));
-    bool lost = after < frame.bailout && before >= frame.bailout;
-    probe_rays[probe_own].end = hit.primitive != HIT_NONE ? PROBE_HIT
-                                : lost                    ? PROBE_ABSORBED
-                                                          : PROBE_MISSED;
-    probe_rays[probe_own].medium = SPEC_MEDIA != 0u ? media_top(media) : 0u;
-    probe_meet(probe_own, origin, dir, hit);
+    uint kind = is_primary() ? RAY_PRIMARY : probe_rays[id].kind;
+    uint parent = is_primary() ? PROBE_RAYS_MOST : probe_rays[id].parent;
+    bool lost = max(after.r, max(after.g, after.b)) < frame.bailout &&
+                max(weight.r, max(weight.g, weight.b)) >= frame.bailout;
+    uint end = hit.primitive != HIT_NONE ? PROBE_HIT : lost ? PROBE_ABSORBED : PROBE_MISSED;
+    gpu_probe_ray ray = with_hit(
+        make_probe_ray(kind, end, parent, origin, dir, FLOAT_LARGEST, weight, skip, id), hit);
+    ray.medium = SPEC_MEDIA != 0u ? media_top(media) : 0u;
+    ray.added = hit.primitive != HIT_NONE ? after : sky; // of a hit until it is known
+    probe_rays[id] = ray;
 }
 
-void probe_end(vec3 radiance)
+// Ray `sent` was called for by ray `id`.
+void probe_sent(uint id, uint sent, uint kind)
 {
-    if (probe_own != PROBE_NONE)
-        probe_rays[probe_own].added = radiance;
+    if (!is_recorded(sent))
+        return;
+    probe_rays[sent].kind = kind;
+    probe_rays[sent].parent = id;
 }
 
-// Before a ray is weighed that the ray in hand may leave.
-void probe_next(uint kind, vec3 dir)
+// Of a ray that is not traced as those of a picture are.
+void probe_other(gpu_probe_ray ray)
 {
-    probe_kind = kind;
-    probe_dir = dir;
+    if (!is_recorded(0u))
+        return;
+    uint at = atomicAdd(probe.others, 1u);
+    if (at < PROBE_RAYS_MOST && ray.parent < PROBE_RAYS_MOST)
+        probe_rays[PROBE_RAYS_MOST + at] = ray;
 }
 
-void probe_cut(vec3 weight, bool deep)
+void probe_cut_ray(uint id, uint kind, uint end, vec3 dir, vec3 weight)
 {
-    probe_record(probe_kind, deep ? PROBE_DEPTH : PROBE_BAILOUT, probe_own, vec3(0.0),
-                 normalize_or(probe_dir, vec3(0.0)), 0.0, weight, HIT_NONE, HIT_NONE);
+    probe_other(make_probe_ray(kind, end, id, vec3(0.0), normalize_or(dir, vec3(0.0)), 0.0, weight,
+                               uvec2(HIT_NONE), HIT_NONE));
 }
 
-// A ray goes on the stack: bits for its `state`.
-uint probe_push(vec3 origin, vec3 dir, vec3 weight, uint skip_instance, uint skip_primitive)
+void probe_shadow_ray(uint id, uint turn, vec3 origin, vec3 dir, float distance, uvec2 skip,
+                      Hit blocker, vec3 share)
 {
-    return probe_record(probe_kind, PROBE_WAITS, probe_own, origin, dir, FLOAT_LARGEST, weight,
-                        skip_instance, skip_primitive) << STATE_PROBE_SHIFT;
+    uint end = blocker.primitive != HIT_NONE ? PROBE_BLOCKED : PROBE_REACHED;
+    vec3 weight = is_recorded(id) ? probe_rays[id].added : vec3(0.0); // of its surface
+    gpu_probe_ray ray = with_hit(
+        make_probe_ray(RAY_SHADOW, end, id, origin, dir, distance, weight, skip, turn), blocker);
+    ray.added = share;
+    probe_other(ray);
 }
 
-// Takes them from there again, and leaves the ray's steps.
-uint probe_pop(uint state)
+// What ray `id` adds by itself; of a shadow catcher the share of what lies behind it that it shows.
+void probe_added(uint id, vec3 added, bool catcher)
 {
-    probe_own = (state >> STATE_PROBE_SHIFT) & PROBE_RAYS_MOST;
-    return state & ((1u << STATE_PROBE_SHIFT) - 1u);
-}
-
-void probe_blocker(uint turn, vec3 origin, vec3 dir, float distance, uint skip_instance,
-                   uint skip_primitive, Hit blocker)
-{
-    bool blocked = blocker.primitive != HIT_NONE;
-    probe_shadow = probe_record(RAY_SHADOW, blocked ? PROBE_BLOCKED : PROBE_REACHED, probe_own,
-                                origin, dir, distance, probe_weight, skip_instance, skip_primitive);
-    if (probe_shadow != PROBE_NONE)
-        probe_rays[probe_shadow].turn = turn;
-    probe_meet(probe_shadow, origin, dir, blocker);
-}
-
-void probe_share(vec3 share)
-{
-    if (probe_shadow != PROBE_NONE)
-        probe_rays[probe_shadow].added = share;
+    if (!is_recorded(id))
+        return;
+    probe_rays[id].added = added;
+    probe_rays[id].kind |= catcher ? PROBE_CATCHER : 0u;
 }
 
 #endif

@@ -29,13 +29,21 @@ layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit
 layout(set = 0, binding = BIND_MEDIA_TEXELS) uniform usamplerBuffer media_texels;
 layout(set = 0, binding = BIND_CHILD_TEXELS) uniform usamplerBuffer child_texels;
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
+layout(set = 0, binding = BIND_RAY_MEDIA, std430) buffer RayMediaBuffer
+{
+    uvec4 ray_media[]; // struct gpu_media; with SPEC_MEDIA
+};
+layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
+{
+    vec2 cut_sums[]; // of a pixel: weights that are not traced of all samples so far
+};
 layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
 {
     uint cuts[]; // of a slot: weights that are not traced for --depth, and for --bailout, in CUT_PARTS
 };
 layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 {
-    uint ray_kinds[]; // with SPEC_COUNT
+    uint ray_kinds[]; // with SPEC_COUNT or SPEC_PROBE
 };
 
 // Whether surfaces call for rays, be they traced or not.
@@ -96,7 +104,7 @@ bool is_queue_full()
 // Of a camera ray.
 uint slot_of(uint id)
 {
-    return SPEC_LISTED != 0u && chunk.listed != 0u ? slots_in[id] : id;
+    return SPEC_LISTED != 0u && chunk.listed != 0u ? listed_slots[id] : id;
 }
 
 uint camera_ray_count()
@@ -118,7 +126,7 @@ Ray queued_ray(uint id, out uint slot)
     }
     ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
     slot = r0.w >> STATE_SLOT_SHIFT;
-    ray.kind = SPEC_COUNT != 0u ? ray_kinds[id] : 0u;
+    ray.kind = SPEC_COUNT != 0u || SPEC_PROBE != 0u ? ray_kinds[id] : 0u;
     ray.skip_primitive = r1.w;
     ray.skip_instance = r2.w;
     return ray;
@@ -152,7 +160,7 @@ void store_ray(uint id, Ray ray, uint slot)
     ray_rows[id * RAY_ROWS + 2u] = uvec4(floatBitsToUint(ray.weight), ray.skip_instance);
     if (SPEC_MEDIA != 0u)
         ray_media[id] = ray.media;
-    if (SPEC_COUNT != 0u)
+    if (SPEC_COUNT != 0u || SPEC_PROBE != 0u)
         ray_kinds[id] = ray.kind;
 }
 
@@ -367,6 +375,16 @@ uint reserve_rays(uint wanted, inout uint status)
         return HIT_NONE;
     }
     return is_back ? chunk.ray_capacity - at - wanted : at;
+}
+
+// Of the invocations of the subgroup, which all must be here.
+uint most_of_lanes(uint value)
+{
+    if (SPEC_EIGHT_LANES == 0u)
+        return subgroupMax(value);
+    value = max(value, subgroupShuffleXor(value, 1u));
+    value = max(value, subgroupShuffleXor(value, 2u));
+    return max(value, subgroupShuffleXor(value, 4u));
 }
 
 // Adds to the tally: two numbers below 2^16 a subgroup.

@@ -10,6 +10,7 @@
 #include "../bind/light.glsl"
 #include "../bind/media.glsl"
 #include "../bind/packet.glsl"
+#include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 #include "../bind/surface.glsl"
 
@@ -23,11 +24,6 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, 
 uint ray_slot[SPEC_PACKET_RAYS], ray_id[SPEC_PACKET_RAYS], ray_kind[SPEC_PACKET_RAYS];
 uvec4 ray_media_of[SPEC_PACKET_RAYS];
 vec3 ray_weight[SPEC_PACKET_RAYS];
-
-bool is_in_picture(uvec2 at)
-{
-    return at.x < frame.width && at.y < min(frame.height, chunk.band_y + chunk.band_rows);
-}
 
 // The ray's id; ITEM_NONE: there is none.
 uint own_ray(uint r)
@@ -94,8 +90,12 @@ bool leave_ray(uint r, bool alive)
     if (met)
         store_hit(ray_id[r], hit);
     vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
+    vec3 sky = environment_radiance(packet_dir[r]) * weight;
     if (alive && !met)
-        sums[ray_id[r]] = vec4(environment_radiance(packet_dir[r]) * weight, 0.0);
+        sums[ray_id[r]] = vec4(sky, 0.0);
+    if (SPEC_PROBE != 0u && alive)
+        probe_traced(ray_id[r], packet_origin[r], packet_dir[r], packet_skip[r], ray_weight[r], weight,
+                     sky, ray_media_of[r], hit);
     report_status(alive ? hit.status : 0u);
     return met;
 }

@@ -6,6 +6,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -29,12 +30,18 @@ vec3 caught_share(vec3 light, vec3 open)
 vec3 whole_sum(uint id, vec4 own)
 {
     uint has = floatBitsToUint(own.w);
+    if (SPEC_PROBE != 0u)
+        probe_added(id, own.rgb, false);
     if (SPEC_SECONDARY == 0u || has == 0u)
         return own.rgb;
     uvec4 from = fetch_children(id);
     vec3 straight = child_sum(from.y);
-    if (SPEC_CATCHERS != 0u && (has & SUM_IS_CATCHER) != 0u)
-        return straight * caught_share(own.rgb, uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz));
+    if (SPEC_CATCHERS != 0u && (has & SUM_IS_CATCHER) != 0u) {
+        vec3 share = caught_share(own.rgb, uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz));
+        if (SPEC_PROBE != 0u)
+            probe_added(id, share, true);
+        return straight * share;
+    }
     return own.rgb + child_sum(from.x) + straight + child_sum(from.z);
 }
 
@@ -42,30 +49,42 @@ void resolve_hit(uint item)
 {
     uint id = fetch_listed_hit(item);
     vec4 own = fetch_sum(id);
-    if (floatBitsToUint(own.w) != 0u)
+    if (floatBitsToUint(own.w) != 0u || SPEC_PROBE != 0u)
         sums[id] = vec4(whole_sum(id, own), 0.0);
+}
+
+// What was cut of the sample, for --depth and for --bailout, to what was cut of the pixel; and the largest
+// sums of all pixels.
+void add_cuts(bool alive, uint slot, uint pixel)
+{
+    vec2 cut = vec2(0.0);
+    if (alive) {
+        cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
+        if (chunk.sample_index != 0u)
+            cut += cut_sums[pixel];
+        cut_sums[pixel] = cut;
+    }
+    uint depth = most_of_lanes(floatBitsToUint(cut.x)), bailout = most_of_lanes(floatBitsToUint(cut.y));
+    if (subgroupElect() && depth != 0u)
+        atomicMax(tally.cut_depth_weight, depth);
+    if (subgroupElect() && bailout != 0u)
+        atomicMax(tally.cut_bailout_weight, bailout);
 }
 
 void resolve_pixel(uint id)
 {
-    uvec2 at = slot_pixel(slot_of(id));
-    if (at.x >= frame.width || at.y >= min(frame.height, chunk.band_y + chunk.band_rows))
-        return;
+    bool alive = id != ITEM_NONE;
+    uint slot = slot_of(alive ? id : 0u);
+    uvec2 at = slot_pixel(slot);
+    alive = alive && is_in_picture(at);
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
+    if (CALLS_RAYS)
+        add_cuts(alive, slot, pixel);
+    if (!alive)
+        return;
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
-    vec2 cut = vec2(0.0); // for --depth, for --bailout
-    if (CALLS_RAYS) {
-        uint slot = slot_of(id);
-        cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
-    }
-    if (chunk.sample_index != 0u) {
+    if (chunk.sample_index != 0u)
         total.rgb += pixels[pixel].rgb;
-        cut += vec2(counts[pixel].cut_depth_weight, counts[pixel].cut_bailout_weight);
-    }
-    if (CALLS_RAYS) {
-        counts[pixel].cut_depth_weight = cut.x;
-        counts[pixel].cut_bailout_weight = cut.y;
-    }
     if (any(isnan(total.rgb)) || any(isinf(total.rgb)))
         report_status(STATUS_NON_FINITE);
     pixels[pixel] = total;
@@ -74,13 +93,10 @@ void resolve_pixel(uint id)
 void main()
 {
     uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
-    if (left.x + left.y != 0u)
-        return;
+    bool done = left.x + left.y == 0u;
     uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
-    if (item == ITEM_NONE)
-        return;
     if (is_primary())
-        resolve_pixel(item);
-    else
+        resolve_pixel(done ? item : ITEM_NONE);
+    else if (done && item != ITEM_NONE)
         resolve_hit(item);
 }

@@ -11,6 +11,7 @@
 #include "../bind/filter.glsl"
 #include "../bind/lit.glsl"
 #include "../bind/optics.glsl"
+#include "../bind/probe.glsl"
 #include "../bind/terminator.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -19,6 +20,7 @@ layout(local_size_x_id = 0) in;
 struct Calls {
     vec3 dir[3], weight[3]; // refracted, straight, reflected
     bool wanted[3];
+    uint ends[3]; // with SPEC_PROBE: PROBE_*, where not traced
     uint steps;
     uint cuts; // for --depth, and above bit 16 for --bailout
     float cut; // largest channels of what is not traced, summed up
@@ -43,7 +45,10 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
 {
     calls.dir[which] = dir;
     calls.weight[which] = weight;
+    uint cuts = calls.cuts;
     calls.wanted[which] = traced(weight, deep, calls, status);
+    if (SPEC_PROBE != 0u && calls.cuts != cuts)
+        calls.ends[which] = deep ? PROBE_DEPTH : PROBE_BAILOUT;
 }
 
 // What the surface reflects and lets through.
@@ -51,6 +56,7 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
 {
     Calls calls;
     calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
+    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_WAITS;
     calls.cut = 0.0;
     calls.cuts = 0u;
     calls.lost = false;
@@ -82,6 +88,7 @@ Calls call_through(Ray ray, inout uint status)
 {
     Calls calls;
     calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
+    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_WAITS;
     calls.cut = 0.0;
     calls.cuts = 0u;
     calls.lost = false;
@@ -151,6 +158,18 @@ void tally_cuts(uint cuts)
         atomicAdd(tally.cut_depth, cuts & 0xffffu);
     if (subgroupElect() && cuts >> 16 != 0u)
         atomicAdd(tally.cut_bailout, cuts >> 16);
+}
+
+void probe_calls(uint id, Ray ray, Calls calls, uvec4 sent, bool through)
+{
+    uint kinds[3] = uint[3](RAY_REFRACTED | (through ? PROBE_THROUGH : 0u), ray.kind | PROBE_STRAIGHT,
+                            RAY_REFLECTED);
+    for (uint i = 0u; i < 3u; i++) {
+        if (calls.ends[i] != PROBE_WAITS)
+            probe_cut_ray(id, kinds[i], calls.ends[i], calls.dir[i], calls.weight[i]);
+        if (sent[i] != HIT_NONE)
+            probe_sent(id, sent[i], kinds[i]);
+    }
 }
 
 void count_cut(uint slot, Calls calls)
@@ -232,6 +251,8 @@ void main()
     uvec4 sent = uvec4(HIT_NONE);
     if (SPEC_SECONDARY != 0u && CALLS_RAYS)
         sent = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
+    if (SPEC_PROBE != 0u && alive)
+        probe_calls(id, ray, calls, sent, !seen);
     vec3 own = o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
     own *= ray.weight * (1.0 - o.straight);
     bool some = sent.x != HIT_NONE || sent.y != HIT_NONE || sent.z != HIT_NONE;

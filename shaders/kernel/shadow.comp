@@ -11,6 +11,7 @@
 #include "../bind/light.glsl"
 #include "../bind/lit.glsl"
 #include "../bind/packet.glsl"
+#include "../bind/probe.glsl"
 #include "../lib/optics.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -125,11 +126,14 @@ EmitterSum emitter_of[SPEC_PACKET_RAYS];
 vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS];
 uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
 
-void add_arrival(uint r, gpu_light light)
+void add_arrival(uint r, gpu_light light, uint point)
 {
     Arrival a = arrival_of[r];
     vec3 share = light_share(r, a.wanted, lit_of[r], status_of[r]);
     share = a.wanted ? share : vec3(0.0);
+    if (SPEC_PROBE != 0u && SPEC_SHADOWS != 0u && a.wanted)
+        probe_shadow_ray(lit_of[r].id, chunk.light * turns_each() + point, packet_origin[r],
+                         packet_dir[r], packet_t_max[r], packet_skip[r], packet_hits[r], share);
     rays_of[r] += uint(a.wanted);
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
         float weight = a.faces ? a.cos_light * a.strength : 0.0;
@@ -191,7 +195,7 @@ void main()
         EACH_RAY face_light(r, alive[r], light, point);
         if (SPEC_SHADOWS != 0u)
             traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8);
-        EACH_RAY add_arrival(r, light);
+        EACH_RAY add_arrival(r, light, point);
         point++;
         more = flats && point < points;
     } while (another_turn(more));

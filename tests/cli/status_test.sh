@@ -95,6 +95,10 @@ expect 0 "stacks as they should be" render "$SCENES/default.json" -o p.exr --siz
 SMALL_STACKS=nodes
 export SMALL_STACKS
 distrust "a small node stack" "the node stack overflowed" "$SCENES/default.json" --size 32x24
+SMALL_STACKS=packets
+distrust "a small stack of packets" "the node stack overflowed" "$SCENES/default.json" --size 32x24 \
+    --packets on
+SMALL_STACKS=nodes
 refuse 1 "trace with a small node stack" "not to be trusted: the node stack overflowed" \
     trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --quiet
 check "leaves the old hits" test "$(cat p.exr)" = old

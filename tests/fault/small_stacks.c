@@ -3,12 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/renderer.h"
+#include "accel/accel.h"
 
 uint32_t __real_accel_stack_size(const struct accel *accel);
 uint32_t __wrap_accel_stack_size(const struct accel *accel);
-whit_result __real_media_frame(struct renderer *renderer);
-whit_result __wrap_media_frame(struct renderer *renderer);
+uint32_t __real_accel_packet_stack_size(const struct accel *accel);
+uint32_t __wrap_accel_packet_stack_size(const struct accel *accel);
 
 static bool is_small(const char *which)
 {
@@ -22,11 +22,8 @@ uint32_t __wrap_accel_stack_size(const struct accel *accel)
     return is_small("nodes") ? 1 : size;
 }
 
-/* The last thing that is put into the frame. */
-whit_result __wrap_media_frame(struct renderer *renderer)
+uint32_t __wrap_accel_packet_stack_size(const struct accel *accel)
 {
-    whit_result result = __real_media_frame(renderer);
-    if (is_small("rays"))
-        renderer->frame.stack_size = 1;
-    return result;
+    uint32_t size = __real_accel_packet_stack_size(accel);
+    return is_small("packets") ? 1 : size;
 }

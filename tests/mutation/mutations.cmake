@@ -14,25 +14,24 @@ mutation(cosine_behind render_refraction RED slab_keeps_directions)
 change(shaders/lib/optics.glsl [[(1.0 - eta) * (1.0 + eta);]] [[(1.0 - eta);]])
 
 mutation(index_upside_down render_refraction RED slab_moves_rays_aside)
-change(shaders/kernel/whitted.comp [[refract_dir(ray.dir, s.ns, o.eta,]]
+change(shaders/kernel/shade.comp [[refract_dir(ray.dir, s.ns, o.eta,]]
   [[refract_dir(ray.dir, s.ns, 1.0 / o.eta,]])
 
 mutation(refraction_by_sine_alone render_refraction RED ball_bends_rays_to_its_focus)
 change(shaders/lib/optics.glsl [[(eta * cos_in - sqrt(cos2_out))]] [[(cos_in - sqrt(cos2_out))]])
 
 mutation(directions_drift render_refraction RED directions_stay_unit)
-change(shaders/kernel/whitted.comp [[normalize(dir)]] [[dir]])
+change(shaders/kernel/shade.comp [[normalize(dir)]] [[dir]])
 
 mutation(beer_by_halves render_refraction RED beer_from_nothing_to_infinity)
 change(shaders/bind/media.glsl [[return exp(-clamp]] [[return exp2(-clamp]])
 
 mutation(endless_media_clear render_refraction RED endless_media_are_dark)
-change(shaders/kernel/whitted.comp [[medium_transmittance(ray.media, hit.t)]]
-  [[(hit.primitive == HIT_NONE ? vec3(1.0) : medium_transmittance(ray.media, hit.t))]])
+change(shaders/kernel/closest.comp [[medium_transmittance(ray_media_of[r], hit.t);]] [[vec3(1.0);]])
 
 mutation(radiance_squeezed render_refraction RED paths_are_reversible)
-change(shaders/kernel/whitted.comp [[ray.weight * o.refracted * solid;]]
-  [[ray.weight * o.refracted * solid * (o.eta * o.eta);]])
+change(shaders/kernel/shade.comp [[ray.weight * o.refracted * solid,]]
+  [[ray.weight * o.refracted * solid * (o.eta * o.eta),]])
 
 mutation(all_refracts render_effects RED only_pixels_that_see_glass_refract)
 change(shaders/bind/optics.glsl [[bool glass = max(transmission.r, max(transmission.g, transmission.b)) > 0.0;]]
@@ -46,7 +45,7 @@ change(shaders/bind/crossing.glsl [[same != CROSSED_MOST && left == leaves;]] [[
 
 mutation(averted_normals_kept render_shading RED averted_normals_give_way)
 change(shaders/bind/crossing.glsl [[if (dot(s.ns, dir) > 0.0)]] [[if (false)]])
-change(shaders/kernel/whitted.comp [[if (dot(s.ns, ray.dir) > 0.0)]] [[if (false)]])
+change(shaders/kernel/shade.comp [[if (dot(s.ns, ray.dir) > 0.0)]] [[if (false)]])
 
 mutation(second_uvs_unread render_shading RED each_texture_has_its_coordinates)
 change(shaders/bind/shading.glsl [[(uv_set != 0u ? frame.uv1_row : frame.uv0_row)]] [[frame.uv0_row]])
@@ -78,17 +77,35 @@ change(shaders/bind/traverse.glsl [[if (ref != REF_DONE)
         hit.status |=]] [[if (false)
         hit.status |=]])
 
+# ---- Stages ----
+
+mutation(ray_lost render_energy RED white_furnace)
+change(shaders/kernel/shade.comp [[    next++;]] [[]])
+
+mutation(overflow_unnoticed render_picture RED full_queues_end_in_smaller_tiles)
+change(shaders/bind/queues.glsl [[if (at + wanted > room) {]] [[if (false) {]])
+
+mutation(sums_in_another_order render_probe RED rays_are_those_of_the_picture)
+change(shaders/kernel/resolve.comp [[own.rgb + child_sum(from.x) + straight + child_sum(from.z)]]
+  [[child_sum(from.z) + straight + child_sum(from.x) + own.rgb]])
+
+mutation(class_too_poor render_effects RED only_pixels_that_see_glass_refract)
+change(host/render/variants.c [[glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE]]
+  [[glass ? SCENE_MATERIALS_OPAQUE : SCENE_MATERIALS_GLASS]])
+
+mutation(loops_cut_unnoticed render_picture RED cut_loops_are_reported)
+change(shaders/lib/turn.glsl [[again && gl_WorkGroupID.y == 0u]] [[again]])
+
 # ---- Boxes, triangles, traversal ----
 
 mutation(offset_four_times_too_far render_shadow RED narrow_gaps_stay_dark)
 change(shaders/bind/surface.glsl [[s.error = rounding_bound(7.0)]] [[s.error = rounding_bound(28.0)]])
 
 mutation(t_min_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
-change(shaders/kernel/whitted.comp [[ray.origin, ray.dir, 0.0, FLOAT_LARGEST,]]
-  [[ray.origin, ray.dir, 1e-3, FLOAT_LARGEST,]])
+change(shaders/kernel/closest.comp [[(TRAVERSE_CLOSEST, 0.0,]] [[(TRAVERSE_CLOSEST, 1e-3,]])
 
 mutation(t_min_of_shadows_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
-change(shaders/bind/lighting.glsl [[origin, to_light, 0.0, distance,]] [[origin, to_light, 1e-3, distance,]])
+change(shaders/kernel/shadow.comp [[(TRAVERSE_SHADOW, 0.0,]] [[(TRAVERSE_SHADOW, 1e-3,]])
 
 mutation(contracted_twin peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
 change(host/accel/module.cmake [[LINK whit_base whit_scene PkgConfig::GMP)]]
@@ -272,10 +289,10 @@ mutation(waiting_rays_forgotten render_waiting RED batches_are_those_of_looks_in
 change(shaders/kernel/trace.comp [[list_waiting(index);]] [[;]])
 
 mutation(waiting_pixels_forgotten render_waiting RED pictures_are_those_of_looks_in_place)
-change(shaders/kernel/whitted.comp [[list_waiting(slot);]] [[;]])
+change(shaders/kernel/closest.comp [[list_waiting(ray_id[r]);]] [[;]])
 
 mutation(waiting_rays_leave_children render_waiting RED pictures_are_those_of_looks_in_place)
-change(shaders/kernel/whitted.comp [[if (SPEC_LOOKS == 0u && must_wait(status)) {]] [[if (false) {]])
+change(shaders/kernel/shade.comp [[alive = alive && !must_wait(status);]] [[;]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
 change(host/accel/traverse.c is_nearer_key [[if \([^()]*->lo < [^()]*->hi\)]] [[if (false)]])

@@ -138,8 +138,8 @@ static void what_is_switched_off_is_gone(void **state)
     plain.SPEC_REFRACTION = plain.SPEC_REFLECTION = plain.SPEC_TEXTURES = 0;
     plain.SPEC_SECONDARY = plain.SPEC_INSTANCED = plain.SPEC_FILTERS = 0;
     for (int i = 0; i < WAYS; ++i) {
-        uint32_t of_all = specialized(ways[i], KERNEL_WHITTED, &all).instructions;
-        uint32_t of_plain = specialized(ways[i], KERNEL_WHITTED, &plain).instructions;
+        uint32_t of_all = specialized(ways[i], KERNEL_SHADE, &all).instructions;
+        uint32_t of_plain = specialized(ways[i], KERNEL_SHADE, &plain).instructions;
         print_message("  %u instructions with every effect, %u without six\n", of_all, of_plain);
         assert_true(of_plain < of_all * 9 / 10);
     }
@@ -193,7 +193,7 @@ static void bindings_follow_the_constants(void **state)
         size_t count = 0;
         struct spirv_info info;
         spec.SPEC_LOAD_PATH = path;
-        uint32_t *words = filled_in(ways[i / 2], KERNEL_WHITTED, &spec, &count);
+        uint32_t *words = filled_in(ways[i / 2], KERNEL_CLOSEST, &spec, &count);
         assert_true(spirv_inspect(words, count, &info));
         assert_true(info.instructions > 0 &&
                     info.instructions < tally_of(words, count).instructions);

@@ -106,14 +106,12 @@ static inline double fresnel(double cos1, double n1, double n2)
     return 0.5 * (s * s + p * p);
 }
 
-/* What a pixel of a picture of one sample a pixel lost by rays that were not traced. */
-static inline struct gpu_counts pixel_counts(const struct fixture *f, size_t pixel)
+/* What a pixel lost by rays that were not traced: for --depth and for --bailout. */
+static inline void pixel_cut(const struct fixture *f, size_t pixel, float cut[2])
 {
-    struct gpu_counts counts;
-    assert_int_equal(buffer_read(f->renderer->pixel_buffers.counts, pixel * sizeof counts, &counts,
-                                 sizeof counts),
+    assert_int_equal(buffer_read(f->renderer->pixel_buffers.queues.cut_sums,
+                                 pixel * 2 * sizeof *cut, cut, 2 * sizeof *cut),
                      WHIT_OK);
-    return counts;
 }
 
 #endif

@@ -432,7 +432,7 @@ static void plain_scenes_bind_little(void **state)
     uint64_t plain = bindings_of(&f);
     static const int absent[] = {BIND_TEXELS,   BIND_TEXEL_TEXELS, BIND_ENVIRONMENT,
                                  BIND_RAY_ROWS, BIND_RAY_TEXELS,   BIND_RAY_MEDIA,
-                                 BIND_CHILDREN, BIND_WORK_IN,      BIND_COSTS};
+                                 BIND_CHILDREN, BIND_LISTED,       BIND_COSTS};
     for (size_t i = 0; i < sizeof absent / sizeof *absent; ++i)
         if (has(plain, absent[i]))
             fail_msg("binding %d", absent[i]);
@@ -444,8 +444,8 @@ static void plain_scenes_bind_little(void **state)
     assert_null(pixels->queues.rays);
     assert_null(pixels->queues.media);
     assert_null(pixels->queues.children);
-    assert_null(pixels->work[0]);
-    assert_null(pixels->work_head);
+    assert_null(pixels->listed);
+    assert_null(pixels->queues.cut_sums);
     assert_null(pixels->costs);
     assert_int_equal(scene->uv_sets, 0);
     fixture_close(&f);
@@ -537,11 +537,11 @@ static void what_comes_into_view_is_right_at_once(void **state)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     renderer_get_stats(f.renderer, &stats);
     assert_int_equal(stats.rays_refracted, 0);
-    const struct pipeline *pipeline = f.renderer->whitted.pipeline;
+    const struct pipeline *pipeline = f.renderer->stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
     struct image image = render(&f);
     assert_true(same_bytes(&image, &expected.color));
-    assert_ptr_equal(f.renderer->whitted.pipeline, pipeline);
+    assert_ptr_equal(f.renderer->stages.set.passes[STAGE_SHADE].pipeline, pipeline);
     renderer_get_stats(f.renderer, &stats);
     assert_int_equal(stats.rays_refracted, expected.stats.rays_refracted);
     image_finish(&image);
