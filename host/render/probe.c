@@ -68,16 +68,14 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
                                   block_y * pixels_blocks_across(params->width) + report->x / 8,
                               .block_count = 1,
                               .band_y = block_y * 8,
-                              .band_rows = rows < 8 ? rows : 8,
-                              .sample_weight = 1.0f / (float)report->samples};
+                              .band_rows = rows < 8 ? rows : 8};
     const struct progress progress = {.share = 1.0, .work_total = 1};
     double longest_ms = 0.0;
     whit_result result = WHIT_OK;
     renderer->pixel_buffers.band_y = chunk.band_y;
     for (uint32_t s = 0; result == WHIT_OK && s < report->samples; ++s) {
         result = render_stop_asked(renderer, &progress);
-        chunk.sample_index = s;
-        camera_sample(&renderer->frame, s, report->samples, &chunk);
+        render_take_sample(renderer, s, report->samples, &chunk);
         if (result == WHIT_OK)
             result = render_sample(renderer, &chunk, &progress, &longest_ms);
     }

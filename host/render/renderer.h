@@ -36,7 +36,8 @@ struct queue_buffers {
 
 /* The state of the pixels of one band of rows, and of the ray trees of one chunk. */
 struct pixel_buffers {
-    struct buffer *pixels, *ids, *counts;
+    struct buffer *pixels; /* and behind them partial sums of samples: `levels` for each slot */
+    struct buffer *ids, *counts;
     struct buffer *ray_stacks;          /* NULL: surfaces leave no rays */
     struct buffer *ray_media;           /* gpu_media beside ray_stacks; NULL without SPEC_MEDIA */
     struct buffer *work[2], *work_head; /* NULL: no pixel needs more than one dispatch */
@@ -48,7 +49,8 @@ struct pixel_buffers {
     uint32_t band_rows;          /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots;        /* pixels that ray stacks and work lists hold */
     uint32_t stack_size;         /* rays of one pixel */
-    uint64_t bytes;              /* of all of them, also counted in scene_buffers.bytes */
+    uint32_t levels;
+    uint64_t bytes; /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
@@ -156,6 +158,7 @@ struct renderer {
 enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
+enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -167,6 +170,8 @@ WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 WHIT_CHECK whit_result pixels_create(struct renderer *renderer, uint32_t height,
                                      uint32_t tile_size);
 void pixels_finish(struct pixel_buffers *buffers);
+/* Partial sums that the most samples of a pixel leave at once. */
+uint32_t pixels_levels(const struct render_params *params);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
 uint32_t pixels_blocks_across(uint32_t pixels);
 
@@ -355,7 +360,10 @@ WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct pro
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* render.c: all rays of one sample of one chunk. *longest_ms: of its
+/* render.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+void render_take_sample(const struct renderer *renderer, uint32_t index, uint32_t samples,
+                        struct gpu_chunk *chunk);
+/* All rays of one sample of one chunk. *longest_ms: of its
    submissions, if longer. */
 WHIT_CHECK whit_result render_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
                                      const struct progress *progress, double *longest_ms);

@@ -57,20 +57,23 @@ void main()
         return;
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
     vec4 total = vec4(sum * chunk.sample_weight, 1.0);
-    vec2 cut = vec2(0.0); // for --depth, for --bailout
+    uint slot = slot_of(id);
     if (CALLS_RAYS) {
-        uint slot = slot_of(id);
-        cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
-    }
-    if (chunk.sample_index != 0u) {
-        total.rgb += pixels[pixel].rgb;
-        cut += vec2(counts[pixel].cut_depth_weight, counts[pixel].cut_bailout_weight);
-    }
-    if (CALLS_RAYS) {
-        counts[pixel].cut_depth_weight = cut.x;
+        vec2 cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
+        if (chunk.summed != 0u)
+            cut += vec2(counts[pixel].cut_depth_weight, counts[pixel].cut_bailout_weight);
+        counts[pixel].cut_depth_weight = cut.x; // for --depth
         counts[pixel].cut_bailout_weight = cut.y;
     }
-    if (any(isnan(total.rgb)) || any(isinf(total.rgb)))
+    // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
+    // where bit i of their number is set.
+    uint row = chunk.sums_row + slot;
+    for (uint carry = chunk.summed; (carry & 1u) != 0u; carry >>= 1) {
+        total.rgb += pixels[row].rgb;
+        row += chunk.sums_step;
+    }
+    bool last = chunk.summed + 1u == chunk.samples;
+    if (last && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
-    pixels[pixel] = total;
+    pixels[last ? pixel : row] = total;
 }
