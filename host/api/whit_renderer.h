@@ -30,7 +30,7 @@ typedef struct whit_renderer_params {
     const char *camera;     /* name or index of a camera of the scene, or
                                "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
     double time_s;          /* of the animation */
-    uint32_t samples;       /* a pixel: 1, 4, 16 or 64; 0: 1 */
+    uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MOST; 0: 1 */
     uint32_t depth;         /* most bounces; 0: 8 */
     bool no_bounces;        /* depth 0: what the primary ray sees, with its shadows */
     double bailout;         /* rays that can add less than this to a pixel are not traced;
@@ -38,7 +38,7 @@ typedef struct whit_renderer_params {
     bool no_shadows;
     double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
                                instead of 4, and then 64; `samples` is not read; 0: off */
-    uint32_t light_samples; /* of an area light, a fixed pattern: 1, 4, 16 or 64; 0: 16 */
+    uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     bool opaque_shadows;    /* glass and blended surfaces cast full shadows */
     /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
@@ -166,7 +166,7 @@ typedef struct whit_stats {
     double weight_cut_depth, weight_cut_bailout;
     /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
     double bailout_bound;
-    uint64_t pixels_by_samples[4]; /* of 1, 4, 16 and 64 samples */
+    uint64_t pixels_by_samples[7]; /* of 1, 4, 16, ... 4096 samples */
     uint32_t kernel_instructions;  /* SPIR-V, of its functions; see whit_renderer_get_kernel */
     bool general;                  /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;

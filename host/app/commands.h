@@ -60,7 +60,7 @@ enum picture_id {
             "vertical angle in degrees (the scene's first)"                                        \
     }
 #define PICTURE_OPTION_SHADING                                                                     \
-    {PICTURE_AA, "aa", "1|4|16|64|adaptive:X",                                                     \
+    {PICTURE_AA, "aa", "1|4|16|...|4096|adaptive:X",                                               \
      "samples a pixel; adaptive: 4, where neighbours differ by\n"                                  \
      "more than X 16, and then 64 (1)"},                                                           \
         {PICTURE_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},          \

@@ -3,10 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool picture_read_samples(struct cli_reader *reader, uint32_t *samples)
+bool picture_read_samples(struct cli_reader *reader, uint32_t most, uint32_t *samples)
 {
-    static const char *const choices[] = {"1", "4", "16", "64", NULL};
+    const char *choices[] = {"1", "4", "16", "64", "256", "1024", "4096", NULL};
     uint32_t choice;
+    for (int i = 0; i < 7; ++i)
+        choices[i] = 1u << (2 * i) <= most ? choices[i] : NULL;
     if (!cli_choice(reader, choices, &choice))
         return false;
     *samples = 1u << (2 * choice);
@@ -19,7 +21,7 @@ bool picture_read_aa(struct cli_reader *reader, struct picture *picture)
     size_t length = strlen(prefix);
     if (strncmp(reader->value, prefix, length) != 0) {
         picture->adaptive = 0.0;
-        return picture_read_samples(reader, &picture->samples);
+        return picture_read_samples(reader, WHIT_SAMPLES_MOST, &picture->samples);
     }
     char *end;
     double contrast = strtod(reader->value + length, &end);
@@ -110,7 +112,7 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
         request->opaque_shadows = true;
         return true;
     case PICTURE_LIGHT_SAMPLES:
-        picture_read_samples(reader, &request->light_samples);
+        picture_read_samples(reader, 64, &request->light_samples);
         return true;
     case PICTURE_FRESNEL:
         if (cli_choice(reader, fresnels, &choice))

@@ -21,6 +21,9 @@ extern "C" {
    what 8 bits can show. */
 #define WHIT_BAILOUT_DEFAULT (1.0 / 1024.0)
 
+/* Samples of a pixel. */
+#define WHIT_SAMPLES_MOST    4096
+
 /* The one vocabulary of failure, from `base` to the public API. The reason is logged once,
    where it happens; callers pass the code up. */
 typedef enum whit_result {

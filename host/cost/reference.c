@@ -7,7 +7,7 @@
 #include "cost/measure.h"
 
 /* Raised when pictures of the reference change: then those that are kept are of no use. */
-enum { KEPT_VERSION = 3, KEPT_CHANNELS = 4, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
+enum { KEPT_VERSION = 4, KEPT_CHANNELS = 4, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
 enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
 
 static bool calls_for_area_lights(const whit_scene *scene)

@@ -46,9 +46,12 @@ struct ray camera_first_ray(const struct reference *reference, uint32_t x, uint3
                       .skip_instance = HIT_NONE,
                       .skip_primitive = HIT_NONE,
                       .node = REFERENCE_NONE};
-    camera_sample(frame, sample, reference->params.picture.samples, &chunk);
-    double at_x = 2.0 * (x + (double)chunk.sample_xy[0]) / frame->width - 1.0;
-    double at_y = 2.0 * (y + (double)chunk.sample_xy[1]) / frame->height - 1.0;
-    take_line(reference, at_x, at_y, chunk.lens_xy, &ray);
+    camera_sample(frame, sample, &chunk);
+    float place[2], lens[2];
+    camera_mirror_sample(chunk.sample_xy, x, y, place);
+    camera_mirror_sample(chunk.lens_xy, x, y, lens);
+    double at_x = (2.0 * x + 1.0 + (double)place[0]) / frame->width - 1.0;
+    double at_y = (2.0 * y + 1.0 + (double)place[1]) / frame->height - 1.0;
+    take_line(reference, at_x, at_y, lens, &ray);
     return ray;
 }

@@ -5,26 +5,6 @@
 
 #define PI 3.14159265358979323846
 
-static uint32_t reverse_bits(uint32_t x)
-{
-    uint32_t out = 0;
-    for (int i = 0; i < 32; ++i)
-        out |= (x >> i & 1u) << (31 - i);
-    return out;
-}
-
-/* The kernels' set of points: Hammersley, moved as a whole for each sample of the pixel. In 2^-32.
- */
-static void emitter_place(uint32_t index, uint32_t count, uint32_t sample, double uv[2])
-{
-    uint32_t half = (uint32_t)(UINT64_C(0x80000000) / count);
-    uint32_t x = 2 * half * index + half, y = reverse_bits(index) + half;
-    x += sample * 0xc13fa9a9u;
-    y += sample * 0x91e10da6u;
-    uv[0] = (x >> 8) * 0x1p-24;
-    uv[1] = (y >> 8) * 0x1p-24;
-}
-
 static struct dvec3 three(const double v[3])
 {
     return d3(v[0], v[1], v[2]);
@@ -33,13 +13,13 @@ static struct dvec3 three(const double v[3])
 static struct dvec3 emitter_point(const struct tracer *tracer, const struct scene_light *light,
                                   uint32_t index)
 {
-    double uv[2];
-    emitter_place(index, tracer->reference->light_samples, tracer->sample, uv);
-    double u = uv[0], v = uv[1];
+    uint32_t before = sequence_light(tracer->sample) * tracer->reference->light_samples, at[2];
+    sequence_point(before + index, at);
+    double u = (at[0] >> 8) * 0x1p-24, v = (at[1] >> 8) * 0x1p-24;
     if (light->kind == SCENE_LIGHT_TRIANGLE) { /* keeps areas (Turk 1990) */
-        double root = sqrt(uv[0]);
-        u = root * (1.0 - uv[1]);
-        v = root * uv[1];
+        double root = sqrt(u);
+        u = root * (1.0 - v);
+        v = root * v;
     }
     return d3_along(d3_along(three(light->position), three(light->edge_u), u), three(light->edge_v),
                     v);

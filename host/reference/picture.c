@@ -129,11 +129,16 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
 {
     const struct render_params *params = &job->reference->params.picture;
     size_t pixel = (size_t)y * params->width + x;
-    struct dvec3 sum = d3_all(0.0);
+    struct dvec3 sum = d3_all(0.0),
+                 partial[SEQUENCE_BITS + 1]; /* of 2^i samples; see resolve.comp */
     for (uint32_t i = 0; i < params->samples; ++i) {
         struct hit first = {.primitive = HIT_NONE, .instance = HIT_NONE};
-        tracer->sample = i;
-        sum = d3_add(sum, tree_trace(tracer, x, y, &first));
+        tracer->sample = params->first_sample + i;
+        sum = tree_trace(tracer, x, y, &first);
+        uint32_t level = 0;
+        for (; i >> level & 1u; ++level)
+            sum = d3_add(partial[level], sum);
+        partial[level] = sum;
         if (i == 0 && job->ids) {
             job->ids->words[2 * pixel] = first.instance;
             job->ids->words[2 * pixel + 1] = first.primitive;

@@ -207,45 +207,19 @@ static void square_to_disk(const double square[2], double disk[2])
     disk[1] = radius * sin(angle);
 }
 
-static uint32_t bit_count(uint32_t count)
+void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk)
 {
-    uint32_t bits = 0;
-    while (count >> (bits + 1))
-        ++bits;
-    return bits;
-}
-
-static uint32_t reverse_bits(uint32_t value, uint32_t bits)
-{
-    uint32_t reversed = 0;
-    for (uint32_t i = 0; i < bits; ++i)
-        reversed |= (value >> i & 1u) << (bits - 1 - i);
-    return reversed;
-}
-
-/* Point `index` of a Hammersley set of `count`, a power of 4: one in every column, one in every
-   row, one in every square of the grid of `count` squares. */
-static void hammersley(uint32_t index, uint32_t count, double xy[2])
-{
-    xy[0] = (index + 0.5) / count;
-    xy[1] = (reverse_bits(index, bit_count(count)) + 0.5) / count;
-}
-
-void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
-                   struct gpu_chunk *chunk)
-{
-    double pixel[2], square[2], disk[2];
-    hammersley(index, count, pixel);
-    /* The same set on the lens, in another order: with the bits of each half of the index reversed,
-       those that decide the quarter of the pixel are not those that decide the quarter of the lens,
-       so that samples from 16 on have every pair of quarters equally often. */
-    uint32_t half = bit_count(count) / 2, low = index & ((1u << half) - 1u);
-    hammersley(reverse_bits(index >> half, half) << half | reverse_bits(low, half), count, square);
-    for (int i = 0; i < 2; ++i)
-        square[i] = 2.0 * square[i] - 1.0;
+    uint32_t pixel[2], lens[2];
+    double square[2], disk[2];
+    sequence_point(index, pixel);
+    sequence_point(sequence_lens(index), lens);
+    for (int i = 0; i < 2; ++i) {
+        chunk->sample_xy[i] = (float)(pixel[i] * 0x1p-31 - 1.0);
+        square[i] = lens[i] * 0x1p-31 - 1.0;
+    }
     square_to_disk(square, disk);
-    chunk->sample_xy[0] = (float)pixel[0];
-    chunk->sample_xy[1] = (float)pixel[1];
+    chunk->sample_index = index;
+    chunk->light_index = sequence_light(index) * frame->light_samples;
     chunk->lens_xy[0] = chunk->lens_xy[1] = 0.0f;
     if (!(frame->lens_radius > 0.0f))
         return;
@@ -316,14 +290,24 @@ static float inverse_square_root(float x)
     return y;
 }
 
+/* mirror_sample of the kernel. */
+void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2])
+{
+    out[0] = (x ^ y) & 1u ? -xy[0] : xy[0];
+    out[1] = x & 1u ? -xy[1] : xy[1];
+}
+
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
                 const struct gpu_chunk *sample, struct gpu_ray *ray)
 {
+    float place[2], lens[2];
+    camera_mirror_sample(sample->sample_xy, x, y, place);
+    camera_mirror_sample(sample->lens_xy, x, y, lens);
     const float at[2] = {
-        (((float)x + sample->sample_xy[0]) * 2.0f - (float)frame->width) * frame->inv_width,
-        (((float)y + sample->sample_xy[1]) * 2.0f - (float)frame->height) * frame->inv_height};
+        ((float)x * 2.0f + 1.0f - (float)frame->width + place[0]) * frame->inv_width,
+        ((float)y * 2.0f + 1.0f - (float)frame->height + place[1]) * frame->inv_height};
     float dir[3];
-    camera_line(frame, kind, sample->lens_xy, at, ray->origin, dir);
+    camera_line(frame, kind, lens, at, ray->origin, dir);
     float shorten = inverse_square_root((dir[0] * dir[0] + dir[1] * dir[1]) + dir[2] * dir[2]);
     for (int i = 0; i < 3; ++i)
         ray->dir[i] = dir[i] * shorten;
@@ -341,7 +325,7 @@ whit_result render_camera_rays(const struct log *log, const struct scene_pose *p
     whit_result result = camera_frame(log, pose, camera, width, height, &frame, &kind);
     if (result != WHIT_OK)
         return result;
-    camera_sample(&frame, 0, 1, &sample);
+    camera_sample(&frame, 0, &sample);
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
             camera_ray(&frame, kind, x, y, &sample, rays++);

@@ -2,6 +2,12 @@
 #include "render/renderer.h"
 
 enum { DEPTH_LARGEST = 255 }; /* bounces of a ray have 8 bits */
+enum { LIGHT_SAMPLES_MOST = 64 };
+
+static bool is_power_of_4(uint32_t n)
+{
+    return (n & (n - 1)) == 0 && (n & 0x55555555u) != 0;
+}
 
 whit_result params_check(const struct log *log, struct render_params *params)
 {
@@ -16,13 +22,18 @@ whit_result params_check(const struct log *log, struct render_params *params)
         log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
         return WHIT_ERROR_USAGE;
     }
-    uint32_t n = params->samples;
-    if (n != 1 && n != 4 && n != 16 && n != 64) {
-        log_error(log, "%u samples a pixel: must be 1, 4, 16 or 64", n);
+    uint32_t n = params->samples, first = params->first_sample;
+    if (!is_power_of_4(n) || n > WHIT_SAMPLES_MOST) {
+        log_error(log, "%u samples a pixel: must be 1, 4, 16, 64, 256, 1024 or 4096", n);
+        return WHIT_ERROR_USAGE;
+    }
+    if (first % n != 0 || first > WHIT_SAMPLES_MOST - n) {
+        log_error(log, "samples of a pixel from %u on: must be a multiple of %u below %d", first, n,
+                  WHIT_SAMPLES_MOST);
         return WHIT_ERROR_USAGE;
     }
     n = params->light_samples;
-    if (n != 0 && n != 1 && n != 4 && n != 16 && n != 64) {
+    if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MOST)) {
         log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
         return WHIT_ERROR_USAGE;
     }
@@ -39,8 +50,7 @@ whit_result params_check(const struct log *log, struct render_params *params)
         return WHIT_ERROR_USAGE;
     }
     if (params->adaptive > 0.0 && params->count) {
-        log_error(log, "what rays cost is counted with 1, 4, 16 or 64 samples a pixel, not with "
-                       "adaptive ones");
+        log_error(log, "what rays cost is not counted with adaptive samples");
         return WHIT_ERROR_USAGE;
     }
     if (params->adaptive > 0.0)

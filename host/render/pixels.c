@@ -10,6 +10,14 @@ uint32_t pixels_blocks_across(uint32_t pixels)
     return (pixels + 7) / 8;
 }
 
+uint32_t pixels_levels(const struct render_params *params)
+{
+    uint32_t most = params->adaptive > 0.0 ? ADAPTIVE_MOST : params->samples, levels = 0;
+    while (most >> (levels + 1))
+        ++levels;
+    return levels;
+}
+
 whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t tile_size)
 {
     struct pixel_buffers *p = &renderer->pixel_buffers;
@@ -29,6 +37,8 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
+    p->levels = pixels_levels(&renderer->params);
+    uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
     /* What nothing is bound to has no bytes, and is not created. */
     bool lists = renderer->params.adaptive > 0.0 || renderer->probe.active;
     uint64_t before = renderer->scene_buffers.bytes;
@@ -39,7 +49,7 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
         uint32_t uses;
         const char *name;
     } all[] = {
-        {&p->pixels, pixels * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
+        {&p->pixels, (pixels + sums) * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
         {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,

@@ -60,8 +60,7 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
                               .block_count = 1,
                               .band_y = block_y * 8,
                               .band_rows = rows < 8 ? rows : 8,
-                              .listed = 1,
-                              .sample_weight = 1.0f / (float)report->samples};
+                              .listed = 1};
     const struct progress progress = {.share = 1.0, .work_total = 1};
     double longest_ms = 0.0;
     const uint32_t slot = slot_of_pixel(report->x, report->y);
@@ -69,8 +68,7 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
     renderer->pixel_buffers.band_y = chunk.band_y;
     for (uint32_t s = 0; result == WHIT_OK && s < report->samples; ++s) {
         result = render_stop_asked(renderer, &progress);
-        chunk.sample_index = s;
-        camera_sample(&renderer->frame, s, report->samples, &chunk);
+        render_take_sample(renderer, s, report->samples, &chunk);
         if (result == WHIT_OK)
             result = stages_sample(renderer, &chunk, &progress, &longest_ms);
     }

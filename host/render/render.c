@@ -169,6 +169,18 @@ static void adapt_tile(const struct renderer *renderer, struct progress *progres
         progress->tile *= 2;
 }
 
+void render_take_sample(const struct renderer *renderer, uint32_t index, uint32_t samples,
+                        struct gpu_chunk *chunk)
+{
+    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    camera_sample(&renderer->frame, renderer->params.first_sample + index, chunk);
+    chunk->sample_weight = 1.0f / (float)samples;
+    chunk->summed = index;
+    chunk->samples = samples;
+    chunk->sums_row = renderer->params.width * p->band_rows;
+    chunk->sums_step = p->chunk_slots;
+}
+
 static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
                                 struct progress *progress)
 {
@@ -178,9 +190,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         whit_result result = render_stop_asked(renderer, progress);
         if (result != WHIT_OK)
             return result;
-        chunk->sample_index = s;
-        chunk->sample_weight = 1.0f / (float)samples;
-        camera_sample(&renderer->frame, s, samples, chunk);
+        render_take_sample(renderer, s, samples, chunk);
         result = stages_sample(renderer, chunk, progress, &longest_ms);
         if (result == WHIT_OK)
             result = costs_add(renderer, chunk);

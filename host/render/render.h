@@ -20,9 +20,10 @@ struct render_params {
     uint32_t width, height; /* 0: 640 x 480 */
     const char *camera;     /* name, index, or ten numbers; NULL: the first */
     double time_s;
-    uint32_t samples; /* 1, 4, 16 or 64; 0: 1 */
-    uint32_t depth;   /* most bounces */
-    double bailout;   /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
+    uint32_t samples;      /* a power of 4 up to WHIT_SAMPLES_MOST; 0: 1 */
+    uint32_t first_sample; /* a multiple of `samples`; ids are of sample 0 alone */
+    uint32_t depth;        /* most bounces */
+    double bailout; /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
     bool no_shadows;
     double adaptive;        /* contrast from which a pixel gets 16, then 64 samples; 0: off */
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
@@ -77,7 +78,7 @@ struct render_stats {
     uint64_t rays_cut_depth, rays_cut_bailout;
     double weight_cut_depth, weight_cut_bailout; /* largest sum of one pixel */
     double bailout_bound;                        /* < 0: not known */
-    uint64_t pixels_by_samples[4];
+    uint64_t pixels_by_samples[7];
     uint32_t kernel_instructions, largest_instructions; /* of all kernels; of the largest */
     bool general;
     uint64_t device_bytes;
@@ -163,10 +164,22 @@ WHIT_CHECK whit_result render_view(const struct log *log, struct accel *accel,
                                    uint32_t width, uint32_t height, struct gpu_frame *frame,
                                    uint32_t *kind);
 
-/* Sample `index` of `count` (1, 4, 16 or 64) into chunk->sample_xy and lens_xy: fixed patterns, the
-   same for every pixel. A single sample is the middle of the pixel and of the lens. */
-void camera_sample(const struct gpu_frame *frame, uint32_t index, uint32_t count,
-                   struct gpu_chunk *chunk);
+/* ---- sequence.c: where samples are ---- */
+
+enum { SEQUENCE_BITS = 12 }; /* of the index of a sample, below WHIT_SAMPLES_MOST */
+
+/* Point `index` of the sequence, in the unit square, in 2^-32. */
+void sequence_point(uint32_t index, uint32_t xy[2]);
+/* Which point of it a sample of a pixel takes on the lens, and which run of `light_samples` points
+   on flat emitters; in the pixel it takes that of its own index. */
+uint32_t sequence_lens(uint32_t sample);
+uint32_t sequence_light(uint32_t sample);
+
+/* Where a sample is in pixel (x, y), from sample_xy or lens_xy: neighbours have mirror images. */
+void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2]);
+
+/* Sample `index` into chunk->sample_index, sample_xy, lens_xy and light_index. */
+void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk);
 
 /* A map as an octahedral square of *size texels a side, RGBA, free(); NULL for a gradient. False
    when memory runs out. */

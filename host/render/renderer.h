@@ -36,7 +36,8 @@ struct queue_buffers {
 
 /* The pixels of one band of rows, and the rays of one chunk. */
 struct pixel_buffers {
-    struct buffer *pixels, *ids;
+    struct buffer *pixels; /* and behind them partial sums of samples: `levels` for each slot */
+    struct buffer *ids;
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
     struct buffer *status;
@@ -44,7 +45,8 @@ struct pixel_buffers {
     uint32_t band_y;      /* first row that they hold now */
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that the queues hold */
-    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
+    uint32_t levels;
+    uint64_t bytes; /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
@@ -162,6 +164,7 @@ struct renderer {
 enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
+enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -173,6 +176,8 @@ WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 WHIT_CHECK whit_result pixels_create(struct renderer *renderer, uint32_t height,
                                      uint32_t tile_size);
 void pixels_finish(struct pixel_buffers *buffers);
+/* Partial sums that the most samples of a pixel leave at once. */
+uint32_t pixels_levels(const struct render_params *params);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
 uint32_t pixels_blocks_across(uint32_t pixels);
 
@@ -371,6 +376,10 @@ WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct pro
                                      struct gpu_chunk *chunk);
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
+
+/* render.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+void render_take_sample(const struct renderer *renderer, uint32_t index, uint32_t samples,
+                        struct gpu_chunk *chunk);
 
 /* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
    traces take more turns of loops together than the driver grants it; else WHIT_OK. */

@@ -10,6 +10,7 @@ static struct render_params merge(const struct render_params *own, const struct 
     params.camera = from->camera;
     params.time_s = from->time_s;
     params.samples = from->samples;
+    params.first_sample = from->first_sample;
     params.adaptive = from->adaptive;
     params.light_samples = from->light_samples;
     params.bailout = from->bailout;
@@ -54,7 +55,8 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     if (result != WHIT_OK)
         return result;
     bool moved = wanted.time_s != renderer->params.time_s;
-    bool same = same_buffers(&renderer->params, &wanted) && renderer->pixel_buffers.pixels;
+    bool same = same_buffers(&renderer->params, &wanted) && renderer->pixel_buffers.pixels &&
+                pixels_levels(&wanted) <= renderer->pixel_buffers.levels;
     bool listed = renderer->params.adaptive > 0.0, had_secondary = renderer->has_secondary;
     renderer->rendered = false;
     renderer->params = wanted;

@@ -368,7 +368,8 @@ whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chu
     uint32_t most = (chunk->block_count + 1) / 2;
     struct gpu_chunk part = *chunk;
     renderer->stages.blocks_most = most;
-    for (; result == WHIT_OK && part.first_block < end; part.first_block += most) {
+    for (; result == WHIT_OK && part.first_block < end;
+         part.first_block += most, part.sums_row += most * RENDER_BLOCK_PIXELS) {
         part.block_count = end - part.first_block < most ? end - part.first_block : most;
         if (progress->listed)
             result = adaptive_list(renderer, progress, &part);

@@ -178,8 +178,8 @@ struct gpu_chunk {
     gpu_uint block_count;
     gpu_uint band_y;    /* first row of the band that the pixel buffers hold */
     gpu_uint band_rows;
-    gpu_vec2 sample_xy; /* within the pixel, 0..1 */
-    gpu_uint sample_index;
+    gpu_vec2 sample_xy; /* from the middle of the pixel, in halves of it: -1..1 */
+    gpu_uint sample_index; /* of the sequence */
     gpu_float sample_weight;
     gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
                          distance of the focus */
@@ -189,9 +189,12 @@ struct gpu_chunk {
     gpu_uint generation;                 /* of rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
     gpu_uint list;                       /* LIST_* that the dispatch works on */
-    gpu_uint pad0;
+    gpu_uint light_index; /* of the sequence: the sample's first point of flat emitters */
+    gpu_uint summed, samples; /* of a pixel in this pass: before this one, and all */
+    gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
+    gpu_uint pad0, pad1;
 };
-GPU_ASSERT_SIZE(gpu_chunk, 72)
+GPU_ASSERT_SIZE(gpu_chunk, 96)
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 

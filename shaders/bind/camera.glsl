@@ -6,8 +6,8 @@
 #include "ray.glsl"
 
 // Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to right
-// and from top to bottom.
-void camera_line(vec2 at, out vec3 origin, out vec3 dir)
+// and from top to bottom. `lens`: as chunk.lens_xy.
+void camera_line(vec2 at, vec2 lens, out vec3 origin, out vec3 dir)
 {
     origin = frame.eye;
     dir = frame.forward;
@@ -27,7 +27,7 @@ void camera_line(vec2 at, out vec3 origin, out vec3 dir)
         dir = aimed;
     if (SPEC_CAMERA == CAMERA_LENS) {
         // All rays of a pixel's sample meet in the focus plane, at eye + focus_distance * aimed.
-        precise vec3 aside = frame.right * chunk.lens_xy.x + frame.up * chunk.lens_xy.y;
+        precise vec3 aside = frame.right * lens.x + frame.up * lens.y;
         precise vec3 on_lens = frame.eye + aside * frame.focus_distance;
         precise vec3 focused = aimed - aside;
         origin = on_lens;
@@ -35,15 +35,21 @@ void camera_line(vec2 at, out vec3 origin, out vec3 dir)
     }
 }
 
+// Samples of neighbours are mirror images of each other, so that what is off in one is made good by the next.
+vec2 mirror_sample(vec2 xy, uvec2 pixel)
+{
+    return uintBitsToFloat(floatBitsToUint(xy) ^ (uvec2(pixel.x ^ pixel.y, pixel.x) << 31));
+}
+
 // camera_ray of render/camera.c is this in C, bit for bit: sums, differences and products alone, which
 // all devices round alike.
 Ray camera_ray(uvec2 pixel)
 {
-    precise vec2 twice = (vec2(pixel) + chunk.sample_xy) * 2.0; // exact, as the difference is
-    precise vec2 at =
-        (twice - vec2(frame.width, frame.height)) * vec2(frame.inv_width, frame.inv_height);
+    vec2 place = mirror_sample(chunk.sample_xy, pixel), lens = mirror_sample(chunk.lens_xy, pixel);
+    precise vec2 middle = vec2(pixel) * 2.0 + 1.0 - vec2(frame.width, frame.height); // exact
+    precise vec2 at = (middle + place) * vec2(frame.inv_width, frame.inv_height);
     vec3 origin, dir;
-    camera_line(at, origin, dir);
+    camera_line(at, lens, origin, dir);
     precise float squared = (dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z;
     precise vec3 unit = dir * inverse_square_root(squared);
     Ray ray;

@@ -4,6 +4,7 @@
 
 #include "../lib/octahedron.glsl"
 #include "../lib/polygon.glsl"
+#include "../lib/sequence.glsl"
 #include "picture.glsl"
 
 layout(set = 0, binding = BIND_ENVIRONMENT, std430) readonly buffer EnvironmentBuffer
@@ -54,19 +55,13 @@ uint turns_each()
     return (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u ? frame.light_samples : 1u;
 }
 
-// Point `index` of a flat emitter: a Hammersley set (the centre for one point), the same for all
-// pixels. For each sample of the pixel it is moved as a whole and wraps around (Cranley and Patterson
-// 1976), by the additive sequence of the plastic number (Roberts 2018). In units of 2^-32, where
-// wrapping is what integers do.
+// Point `index` of a flat emitter: of the sequence those behind what the samples before this one take,
+// the same for all pixels.
 vec3 emitter_point(gpu_light light, uint index)
 {
-    uint bits = uint(findMSB(frame.light_samples));
-    uint x = ((index << (31u - bits)) << 1) + (0x80000000u >> bits);
-    uint y = bitfieldReverse(index) + (0x80000000u >> bits);
-    x += chunk.sample_index * 0xc13fa9a9u;
-    y += chunk.sample_index * 0x91e10da6u;
-    float u = float(x >> 8) * (1.0 / 16777216.0);
-    float v = float(y >> 8) * (1.0 / 16777216.0);
+    uvec2 at = sequence_point(chunk.light_index + index);
+    float u = float(at.x >> 8) * (1.0 / 16777216.0);
+    float v = float(at.y >> 8) * (1.0 / 16777216.0);
     if (light.kind == LIGHT_TRIANGLE) { // keeps areas (Turk 1990)
         float root = sqrt(u);
         u = root * (1.0 - v);

@@ -60,7 +60,7 @@ void add_cuts(bool alive, uint slot, uint pixel)
     vec2 cut = vec2(0.0);
     if (alive) {
         cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
-        if (chunk.sample_index != 0u)
+        if (chunk.summed != 0u)
             cut += cut_sums[pixel];
         cut_sums[pixel] = cut;
     }
@@ -83,11 +83,17 @@ void resolve_pixel(uint id)
     if (!alive)
         return;
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
-    if (chunk.sample_index != 0u)
-        total.rgb += pixels[pixel].rgb;
-    if (any(isnan(total.rgb)) || any(isinf(total.rgb)))
+    // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
+    // where bit i of their number is set.
+    uint row = chunk.sums_row + slot;
+    for (uint carry = chunk.summed; (carry & 1u) != 0u; carry >>= 1) {
+        total.rgb += pixels[row].rgb;
+        row += chunk.sums_step;
+    }
+    bool last = chunk.summed + 1u == chunk.samples;
+    if (last && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
-    pixels[pixel] = total;
+    pixels[last ? pixel : row] = total;
 }
 
 void main()

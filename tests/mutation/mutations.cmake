@@ -341,8 +341,29 @@ change(host/reference/media.c transmitted [[exp\(-]] [[exp(-0.5 * ]])
 mutation(reference_without_room reference_formula RED light_falls_with_cosine_and_square)
 change(host/reference/surface.c surface_at [[ROOM]] [[0.0 * ROOM]])
 
+mutation(samples_summed_one_by_one render_samples RED samples_are_summed_in_pairs)
+change(shaders/kernel/resolve.comp [[carry = chunk.summed; (carry & 1u) != 0u; carry >>= 1]]
+  [[carry = min(chunk.summed, 1u); carry != 0u; carry = 0u, row -= chunk.sums_step]])
+
+mutation(sums_of_parts_mixed render_samples RED full_queues_do_not_matter)
+change(host/render/stages.c [[part.first_block += most, part.sums_row += most * RENDER_BLOCK_PIXELS]]
+  [[part.first_block += most]])
+
+mutation(points_unturned_in_kernels device_sequence RED points_are_those_of_the_host)
+change(shaders/lib/sequence.glsl [[0x55555541u]] [[1u]])
+
+mutation(points_at_corners render_sequence RED points_lean_to_no_side)
+change(host/render/sequence.c [[0x55555541u : 1u]] [[0u : 0u]])
+
+mutation(lens_as_pixel render_sequence RED squares_meet_once)
+change(host/render/sequence.c sequence_lens [[reorder\([a-z]+, ([a-z]+)\)]] [[0 * columns[0] + \1]])
+
+mutation(neighbours_alike_in_kernels reference_effects RED every_effect_agrees_with_the_device)
+change(shaders/bind/camera.glsl [[pixel.x ^ pixel.y, pixel.x]] [[0u, pixel.x]])
+
 mutation(reference_samples_alike reference_effects RED every_effect_agrees_with_the_device)
-change(host/reference/picture.c draw_pixel [[->sample = ([a-z]+);]] [[->sample = 0 * \1;]])
+change(host/reference/picture.c draw_pixel [[->sample = ([a-z]+->first_sample [+] [a-z]+);]]
+  [[->sample = 0 * (\1);]])
 
 mutation(reference_fresnel_of_two_percent reference_scenes RED default_scenes_agree)
 change(host/reference/optics.c optics_fresnel [[return 0\.5]] [[return 0.51]])

@@ -428,7 +428,7 @@ static void cameras_are_those_of_kernels(void **state)
             struct gpu_chunk chunk = {0};
             struct gpu_ray ray;
             struct rays rays;
-            camera_sample(&frame, k % 4, 4, &chunk);
+            camera_sample(&frame, k % 4, &chunk);
             camera_ray(&frame, kind, k / 4 % 13, k / 52, &chunk, &ray);
             assert_int_equal(
                 reference_ray_tree(d.reference, k / 4 % 13, k / 52, k % 4, &rays.all, &rays.count),

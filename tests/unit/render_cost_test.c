@@ -341,7 +341,7 @@ static void check_primary(const struct fixture *f, uint32_t order, const struct 
     const struct gpu_cost *costs = (const struct gpu_cost *)picture->costs[RAY_PRIMARY].words;
     uint32_t bad = 0, ids_bad = 0, status = 0, width = picture->color.width;
     struct gpu_chunk first;
-    camera_sample(&f->renderer->frame, 0, f->renderer->params.samples, &first);
+    camera_sample(&f->renderer->frame, 0, &first);
     for (uint32_t i = 0; i < width * picture->color.height; ++i) {
         struct gpu_ray ray;
         struct gpu_hit hit;

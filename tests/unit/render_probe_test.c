@@ -377,7 +377,7 @@ static void color_is_of_all_samples(void **state)
     f = fixture_open(glass_scene(), NULL, &params);
     assert_int_equal(renderer_probe(f.renderer, 3, 2, 0, &report), WHIT_OK);
     assert_int_equal(report.samples, 4);
-    assert_memory_equal(report.color, &picture.pixels[4 * (2 * 4 + 3)], sizeof report.color);
+    assert_memory_equal(report.color, &picture.pixels[4 * (2 * 4 + 3)], 3 * sizeof(float));
     probe_report_finish(&report);
     image_finish(&picture);
     fixture_close(&f);

@@ -1,0 +1,34 @@
+/* shaders/lib/sequence.glsl as the device computes it: host/render/sequence.c, bit for bit. */
+#include "device_fixture.h"
+#include "render/render.h"
+
+#include "device_sequence.h"
+
+enum { SMALL = 1 << 15, LARGE = 1 << 15, POINTS = SMALL + LARGE };
+
+static uint32_t indices[POINTS], points[POINTS][2];
+
+static void points_are_those_of_the_host(void **state)
+{
+    (void)state;
+    struct messages messages;
+    struct device *device = device_open(&messages, false);
+    for (uint32_t i = 0; i < POINTS; ++i)
+        indices[i] = i < SMALL ? i : i * 0x9e3779b9u;
+    kernel_answer(device, device_sequence, sizeof device_sequence, POINTS, indices, sizeof *indices,
+                  points, sizeof *points);
+    for (uint32_t i = 0; i < POINTS; ++i) {
+        uint32_t expected[2];
+        sequence_point(indices[i], expected);
+        assert_memory_equal(points[i], expected, sizeof expected);
+    }
+    device_close(device, &messages);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_are_those_of_the_host),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

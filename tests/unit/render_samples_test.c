@@ -1,0 +1,152 @@
+/* Samples of pictures: their sum is pairwise by index, so that sets of them merge to the bytes of
+ * the whole. */
+#include "picture_fixture.h"
+#include "render/renderer.h"
+
+enum { WIDTH = 20, HEIGHT = 18, FLOATS = WIDTH * HEIGHT * 4, SAMPLES = 16 };
+
+static struct fixture f;
+static float parts[SAMPLES][FLOATS], whole[FLOATS];
+
+/* A mirror and a ball under a lamp of some size, seen through a lens: all that samples move. */
+static int open_scene(void **state)
+{
+    (void)state;
+    struct scene *scene = dark_scene((double[]){0, 1.2, 3.0}, (double[]){0, 0.2, 0});
+    struct scene_material floor = material_plain("floor"), ball = material_plain("ball");
+    struct scene_light lamp = {.kind = SCENE_LIGHT_RECTANGLE, .node = SCENE_NONE};
+    const double corner[3] = {-1.1, 2.7, -0.8}, direction[3] = {0, -1, 0};
+    memcpy(lamp.position, corner, sizeof corner);
+    memcpy(lamp.direction, direction, sizeof direction);
+    lamp.edge_u[0] = 1.9;
+    lamp.edge_v[2] = 1.3;
+    set_rgb(lamp.color, 2.1f, 1.7f, 1.3f);
+    set_rgb(scene->environment.zenith, 0.3f, 0.6f, 0.9f);
+    set_rgb(floor.diffuse, 0.5f, 0.4f, 0.3f);
+    set_rgb(floor.reflection, 0.3f, 0.3f, 0.3f);
+    set_rgb(ball.diffuse, 0.7f, 0.2f, 0.1f);
+    set_rgb(ball.reflection, 0.2f, 0.3f, 0.4f);
+    add_object(scene, mesh_plane(3), floor, 0, 0, 0);
+    add_object(scene, mesh_sphere(0.5, 12, 8), ball, 0, 0.5, 0);
+    scene_put_light(scene, lamp);
+    scene->cameras[0].lens_radius = 0.15f;
+    const struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3};
+    f = fixture_open(scene, NULL, &params);
+    return 0;
+}
+
+static int close_scene(void **state)
+{
+    (void)state;
+    fixture_close(&f);
+    return 0;
+}
+
+static void draw(uint32_t first, uint32_t count, uint32_t tile_size, float *pixels)
+{
+    const struct render_params params = {.width = WIDTH,
+                                         .height = HEIGHT,
+                                         .depth = 3,
+                                         .light_samples = 4,
+                                         .first_sample = first,
+                                         .samples = count};
+    f.renderer->params.tile_size = tile_size;
+    assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+    struct image image = render(&f);
+    memcpy(pixels, image.pixels, FLOATS * sizeof *pixels);
+    image_finish(&image);
+}
+
+static void draw_parts(uint32_t each)
+{
+    for (uint32_t i = 0; i < SAMPLES / each; ++i)
+        draw(i * each, each, i % 2 ? 16 : 0, parts[i]);
+}
+
+/* The mean of `count` pictures, by the definition: that of each half, halved. */
+static float mean_of(uint32_t first, uint32_t count, int at)
+{
+    if (count == 1)
+        return parts[first][at];
+    return 0.5f * mean_of(first, count / 2, at) + 0.5f * mean_of(first + count / 2, count / 2, at);
+}
+
+static uint32_t count_differing(uint32_t count)
+{
+    uint32_t differing = 0;
+    for (int i = 0; i < FLOATS; ++i)
+        differing += mean_of(0, count, i) != whole[i];
+    return differing;
+}
+
+static void samples_are_summed_in_pairs(void **state)
+{
+    (void)state;
+    uint32_t differing = 0;
+    draw_parts(1);
+    draw(0, SAMPLES, 0, whole);
+    assert_int_equal(count_differing(SAMPLES), 0);
+    for (int i = 0; i < FLOATS; ++i) { /* one by one they come to something else */
+        float sum = 0.0f;
+        for (int s = 0; s < SAMPLES; ++s)
+            sum += parts[s][i] / SAMPLES;
+        differing += sum != whole[i];
+    }
+    assert_true(differing > FLOATS / 10);
+}
+
+static void sets_merge_to_the_whole(void **state)
+{
+    (void)state;
+    draw(0, SAMPLES, 16, whole);
+    draw_parts(4);
+    assert_int_equal(count_differing(SAMPLES / 4), 0);
+    assert_memory_not_equal(parts[0], parts[1], sizeof *parts);
+}
+
+/* Halves of a tile keep their sums apart. */
+static void full_queues_do_not_matter(void **state)
+{
+    (void)state;
+    static float smaller[FLOATS];
+    draw(0, SAMPLES, 0, whole);
+    assert_int_equal(f.renderer->stages.blocks_most, 0);
+    f.renderer->pixel_buffers.queues.ray_capacity = 640;
+    draw(0, SAMPLES, 0, smaller);
+    assert_true(f.renderer->stages.blocks_most > 0);
+    assert_memory_equal(smaller, whole, sizeof whole);
+}
+
+static void other_samples_are_refused(void **state)
+{
+    (void)state;
+    static const struct render_params wrong[] = {{.samples = 2},
+                                                 {.samples = 8},
+                                                 {.samples = 3},
+                                                 {.samples = 16384},
+                                                 {.samples = ~0u},
+                                                 {.light_samples = 256},
+                                                 {.light_samples = 2},
+                                                 {.samples = 4, .first_sample = 2},
+                                                 {.samples = 4, .first_sample = 4096}};
+    struct log silent = {.level = WHIT_LOG_ERROR};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        struct render_params params = wrong[i];
+        assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);
+    }
+    for (uint32_t n = 1; n <= WHIT_SAMPLES_MOST; n *= 4) {
+        struct render_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MOST - n};
+        assert_int_equal(params_check(&silent, &params), WHIT_OK);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(samples_are_summed_in_pairs),
+        cmocka_unit_test(sets_merge_to_the_whole),
+        cmocka_unit_test(full_queues_do_not_matter),
+        cmocka_unit_test(other_samples_are_refused),
+    };
+    return fixture_end(cmocka_run_group_tests(tests, open_scene, close_scene));
+}
