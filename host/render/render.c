@@ -192,8 +192,6 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
             return result;
         render_take_sample(renderer, s, samples, chunk);
         result = stages_sample(renderer, chunk, progress, &longest_ms);
-        if (result == WHIT_OK)
-            result = costs_add(renderer, chunk);
         if (result != WHIT_OK)
             return result;
         progress->work_done += chunk->block_count;

@@ -197,7 +197,8 @@ void sine_cosine_pi(float a, float *sine, float *cosine);
 /* costs.c: all of it does nothing without params.count. */
 WHIT_CHECK whit_result costs_create(struct renderer *renderer);
 void costs_clear(struct renderer *renderer);
-/* Takes over what the kernel counted for one sample of a chunk. */
+/* Takes over what the kernels counted for one sample of `chunk`, which was just drawn: the next
+   chunk counts in the same slots. */
 WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
 
 /* queues.c: of p->chunk_slots slots. */

@@ -342,6 +342,8 @@ static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *
     result = waits_read(renderer, &waits);
     if (result == WHIT_OK)
         result = stage_times_end(renderer, tile, done, waits - waits_before);
+    if (result == WHIT_OK && !renderer->probe.active)
+        result = costs_add(renderer, tile);
     return result == WHIT_OK ? take_tally(renderer) : result;
 }
 

@@ -415,8 +415,16 @@ static void many_lights_are_drawn(void **state)
     fixture_close(&f);
 }
 
-static struct image glass_picture(uint32_t tile_size, bool *was_full)
+struct glass_picture {
+    struct image color, refracted; /* what refracted rays cost, where that is counted */
+    struct cost_sum sum;           /* of those */
+    bool was_full;
+};
+
+static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 {
+    struct glass_picture picture = {0};
+    struct render_stats stats;
     struct scene *scene = dark_scene((double[]){0, 0, 3.5}, (double[]){0, 0, 0});
     struct scene_material glass = material_plain("glass");
     set_rgb(scene->environment.zenith, 0.3f, 0.6f, 1.0f);
@@ -424,26 +432,42 @@ static struct image glass_picture(uint32_t tile_size, bool *was_full)
     glass.fresnel = true;
     glass.ior = 1.5f;
     add_object(scene, mesh_icosphere(1, 2), glass, 0, 0, 0);
-    const struct render_params params = {
-        .width = 64, .height = 64, .depth = 13, .bailout = -1.0, .tile_size = tile_size};
+    const struct render_params params = {.width = 64,
+                                         .height = 64,
+                                         .depth = 13,
+                                         .bailout = -1.0,
+                                         .tile_size = tile_size,
+                                         .count = count};
     struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    *was_full = f.renderer->stages.blocks_most > 0;
+    picture.color = render(&f);
+    if (count)
+        assert_int_equal(renderer_read_costs(f.renderer, RAY_REFRACTED, &picture.refracted),
+                         WHIT_OK);
+    renderer_get_stats(f.renderer, &stats);
+    picture.sum = stats.costs[RAY_REFRACTED];
+    picture.was_full = f.renderer->stages.blocks_most > 0;
     fixture_close(&f);
-    return image;
+    return picture;
 }
 
 /* Each of these rays calls for two others. */
 static void full_queues_end_in_smaller_tiles(void **state)
 {
     (void)state;
-    bool large_was_full, small_was_full;
-    struct image large = glass_picture(64, &large_was_full);
-    struct image small = glass_picture(16, &small_was_full);
-    assert_true(large_was_full && !small_was_full);
-    assert_memory_equal(large.pixels, small.pixels, sizeof(float) * 4 * 64 * 64);
-    image_finish(&large);
-    image_finish(&small);
+    for (int count = 0; count < 2; ++count) {
+        struct glass_picture large = glass_picture(64, count), small = glass_picture(16, count);
+        assert_true(large.was_full && !small.was_full);
+        assert_memory_equal(large.color.pixels, small.color.pixels, sizeof(float) * 4 * 64 * 64);
+        assert_memory_equal(&large.sum, &small.sum, sizeof large.sum);
+        assert_true((large.sum.rays > 0) == (count > 0));
+        if (count)
+            assert_memory_equal(large.refracted.words, small.refracted.words,
+                                sizeof(struct gpu_cost) * 64 * 64);
+        image_finish(&large.color);
+        image_finish(&small.color);
+        image_finish(&large.refracted);
+        image_finish(&small.refracted);
+    }
 }
 
 /* The clock of this program stands still but where the test turns it (-Wl,--wrap=clock_ms). */
