@@ -56,9 +56,10 @@ bool adaptive_draws(const struct progress *progress, size_t index)
     return 1u << (2 * progress->levels[index]) == progress->samples;
 }
 
-whit_result adaptive_list(struct renderer *renderer, const struct progress *progress,
+whit_result adaptive_list(struct target *target, const struct progress *progress,
                           struct gpu_chunk *chunk)
 {
+    struct renderer *renderer = target->renderer;
     chunk->listed = 0;
     uint32_t slots = chunk->block_count * RENDER_BLOCK_PIXELS;
     uint32_t *list = array_alloc(slots, sizeof *list);
@@ -73,8 +74,8 @@ whit_result adaptive_list(struct renderer *renderer, const struct progress *prog
     }
     whit_result result = WHIT_OK;
     if (chunk->listed > 0)
-        result = buffer_write(renderer->pixel_buffers.listed, 0, list,
-                              (uint64_t)chunk->listed * sizeof *list);
+        result =
+            buffer_write(target->buffers.listed, 0, list, (uint64_t)chunk->listed * sizeof *list);
     free(list);
     return result;
 }

@@ -58,8 +58,8 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
         }
         renderer->between_times = result != WHIT_OK;
     }
-    renderer->stats.upload_ms = clock_ms() - posed_ms;
-    renderer->stats.compile_ms = 0.0;
-    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    renderer->picture.stats.upload_ms = clock_ms() - posed_ms;
+    renderer->picture.stats.compile_ms = 0.0;
+    renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }

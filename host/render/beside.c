@@ -40,7 +40,7 @@ static struct beside_job *job_start(const struct renderer *renderer, const struc
     if (!job)
         return NULL;
     job->device = renderer->device;
-    stages_job_init(renderer, spec, true, &job->stages);
+    stages_job_init(&renderer->picture, spec, true, &job->stages);
     job->thread = thread_start(compile_job, job);
     if (job->thread)
         return job;
@@ -52,10 +52,10 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
 {
     struct stages_job job;
     struct stage_set set;
-    stages_job_init(renderer, spec, false, &job);
+    stages_job_init(&renderer->picture, spec, false, &job);
     whit_result result = stages_job_run(renderer->device, &job, &set);
     if (result == WHIT_OK)
-        result = stages_take(renderer, &set);
+        result = stages_take(&renderer->picture, &set);
     renderer->beside.general = result == WHIT_OK;
     return result;
 }
@@ -66,7 +66,7 @@ static whit_result take_over(struct renderer *renderer)
     struct beside_job *job = renderer->beside.job;
     if (!job->set.passes[STAGE_CAMERA].pipeline)
         return WHIT_OK;
-    whit_result result = stages_take(renderer, &job->set);
+    whit_result result = stages_take(&renderer->picture, &job->set);
     if (result != WHIT_OK)
         return result;
     renderer->beside.general = false;
@@ -78,9 +78,10 @@ static whit_result take_over(struct renderer *renderer)
 whit_result beside_prepare(struct renderer *renderer)
 {
     struct beside_state *beside = &renderer->beside;
-    struct gpu_spec own = variant_spec(renderer), general = variant_beside_spec(renderer);
-    if (stages_are_made(renderer) && !beside->general)
-        return stages_bind(renderer);
+    struct gpu_spec own = variant_spec(&renderer->picture),
+                    general = variant_beside_spec(&renderer->picture);
+    if (stages_are_made(&renderer->picture) && !beside->general)
+        return stages_bind(&renderer->picture);
     /* Another time may ask for other constants than those that are being compiled. */
     if (beside->job && memcmp(&beside->job->stages.spec, &own, sizeof own) != 0) {
         job_destroy(beside->job);
@@ -93,7 +94,8 @@ whit_result beside_prepare(struct renderer *renderer)
         if (result != WHIT_OK || !beside->general)
             return result;
     }
-    return stages_are_made(renderer) ? stages_bind(renderer) : create_general(renderer, &general);
+    return stages_are_made(&renderer->picture) ? stages_bind(&renderer->picture)
+                                               : create_general(renderer, &general);
 }
 
 void beside_finish(struct renderer *renderer)

@@ -144,7 +144,7 @@ static double ray_most(const struct renderer *renderer, const bool *worn)
 
 double bailout_bound(const struct renderer *renderer)
 {
-    double cut = renderer->stats.weight_cut_bailout;
+    double cut = renderer->picture.stats.weight_cut_bailout;
     if (cut == 0.0)
         return 0.0;
     bool *worn = worn_materials(renderer->scene);

@@ -6,9 +6,10 @@
 
 enum { COST_WORDS = sizeof(struct gpu_cost) / sizeof(uint32_t) };
 
-whit_result costs_create(struct renderer *renderer)
+whit_result costs_create(struct target *target)
 {
-    struct pixel_buffers *p = &renderer->pixel_buffers;
+    struct renderer *renderer = target->renderer;
+    struct pixel_buffers *p = &target->buffers;
     if (!renderer->params.count)
         return WHIT_OK;
     uint64_t bytes = (uint64_t)p->chunk_slots * RAY_KIND_COUNT * sizeof(struct gpu_cost);
@@ -37,19 +38,20 @@ static whit_result keep(struct renderer *renderer, uint32_t kind, uint32_t x, ui
     return WHIT_OK;
 }
 
-whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk)
+whit_result costs_add(struct target *target, const struct gpu_chunk *chunk)
 {
+    struct renderer *renderer = target->renderer;
     struct gpu_cost costs[RENDER_BLOCK_PIXELS][RAY_KIND_COUNT];
     const struct render_params *params = &renderer->params;
     whit_result result = WHIT_OK;
     for (uint32_t b = 0; params->count && result == WHIT_OK && b < chunk->block_count; ++b) {
         uint32_t block = chunk->first_block + b;
-        result = buffer_read(renderer->pixel_buffers.costs, b * sizeof costs, costs, sizeof costs);
+        result = buffer_read(target->buffers.costs, b * sizeof costs, costs, sizeof costs);
         for (uint32_t i = 0; result == WHIT_OK && i < RENDER_BLOCK_PIXELS; ++i) {
             uint32_t x, y;
             bool inside = render_slot_pixel(renderer, block, i, &x, &y);
             for (uint32_t k = 0; inside && k < RAY_KIND_COUNT; ++k) {
-                cost_add(&renderer->stats.costs[k], &costs[i][k]);
+                cost_add(&target->stats.costs[k], &costs[i][k]);
                 if (result == WHIT_OK && chunk->sample_index == 0 && costs[i][k].rays > 0)
                     result = keep(renderer, k, x, y, &costs[i][k]);
             }

@@ -97,11 +97,3 @@ uint32_t lights_samples(const struct renderer *renderer)
                 (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) != 0;
     return !flat ? 1 : asked ? asked : SAMPLES_DEFAULT;
 }
-
-uint64_t lights_rays(const struct renderer *renderer)
-{
-    uint64_t rays = 0;
-    for (uint32_t i = 0; i < renderer->pose.light_count; ++i)
-        rays += is_flat(&renderer->pose.lights[i]) ? lights_samples(renderer) : 1;
-    return rays;
-}

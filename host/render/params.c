@@ -67,9 +67,7 @@ whit_result params_check_loops(const struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
     bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
-    uint64_t rays = renderer->probe.active ? 1 + (shadows ? lights_rays(renderer) : 0)
-                    : shadows              ? lights_samples(renderer)
-                                           : 1;
+    uint64_t rays = shadows ? lights_samples(renderer) : 1;
     if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
         rays * accel->turns <= ACCEL_TURNS_MOST)
         return WHIT_OK;

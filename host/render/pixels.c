@@ -18,9 +18,10 @@ uint32_t pixels_levels(const struct render_params *params)
     return levels;
 }
 
-whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t tile_size)
+whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_size)
 {
-    struct pixel_buffers *p = &renderer->pixel_buffers;
+    struct renderer *renderer = target->renderer;
+    struct pixel_buffers *p = &target->buffers;
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
@@ -40,7 +41,7 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
     p->levels = pixels_levels(&renderer->params);
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
     /* What nothing is bound to has no bytes, and is not created. */
-    bool lists = renderer->params.adaptive > 0.0 || renderer->probe.active;
+    bool lists = renderer->params.adaptive > 0.0 || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     const struct {
@@ -64,18 +65,37 @@ whit_result pixels_create(struct renderer *renderer, uint32_t height, uint32_t t
             renderer->scene_buffers.bytes += all[i].bytes;
     }
     if (result == WHIT_OK)
-        result = queues_create(renderer, p);
+        result = queues_create(target);
     if (result == WHIT_OK)
-        result = costs_create(renderer);
+        result = costs_create(target);
     p->bytes = renderer->scene_buffers.bytes - before;
     return result;
 }
 
-void pixels_finish(struct pixel_buffers *p)
+static void pixels_finish(struct pixel_buffers *p)
 {
     struct buffer *all[] = {p->pixels, p->ids, p->status, p->costs, p->listed};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     queues_finish(&p->queues);
     *p = (struct pixel_buffers){0};
+}
+
+/* The word of the status stays: kernels of ray batches are bound to it. */
+void target_drop_pixels(struct target *target)
+{
+    struct buffer *status = target->buffers.status;
+    stages_unbind(&target->stages);
+    target->buffers.status = NULL;
+    target->renderer->scene_buffers.bytes -= target->buffers.bytes;
+    pixels_finish(&target->buffers);
+    target->buffers.status = status;
+}
+
+void target_finish(struct target *target)
+{
+    stage_set_finish(&target->stages.set);
+    pixels_finish(&target->buffers);
+    buffer_destroy(target->records);
+    *target = (struct target){0};
 }

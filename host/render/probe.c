@@ -1,6 +1,5 @@
-/* One pixel once more, by a kernel that records its rays (bind/probe.glsl). It works on pixel
-   buffers of its own, which take the place of the renderer's meanwhile, so that the picture stays.
- */
+/* One pixel once more, by kernels that record its rays (bind/probe.glsl), into a target of its own,
+   so that the picture stays. */
 #include "render/probe.h"
 
 #include <math.h>
@@ -14,32 +13,18 @@ enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 
 /* ---- On the device ---- */
 
-/* The renderer's pixel buffers and passes for those of the probe, or back. */
-static void exchange(struct renderer *renderer)
+static whit_result create_buffers(struct target *probe)
 {
-    struct probe_state *probe = &renderer->probe;
-    struct pixel_buffers kept = renderer->pixel_buffers;
-    renderer->pixel_buffers = probe->pixel_buffers;
-    probe->pixel_buffers = kept;
-    struct stages stages = renderer->stages;
-    renderer->stages = probe->stages;
-    probe->stages = stages;
-    probe->active = !probe->active;
-}
-
-static whit_result create_buffers(struct renderer *renderer)
-{
-    struct probe_state *probe = &renderer->probe;
     uint64_t bytes =
         sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MOST * sizeof(struct gpu_probe_ray);
     whit_result result = WHIT_OK;
     if (!probe->records)
-        result = buffer_create(renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST, "probed rays",
-                               &probe->records);
-    if (result == WHIT_OK && !renderer->pixel_buffers.pixels)
-        result = pixels_create(renderer, 8, TILE_MIN);
+        result = buffer_create(probe->renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
+                               "probed rays", &probe->records);
+    if (result == WHIT_OK && !probe->buffers.pixels)
+        result = pixels_create(probe, 8, TILE_MIN);
     if (result != WHIT_OK)
-        pixels_finish(&renderer->pixel_buffers);
+        target_drop_pixels(probe);
     return result;
 }
 
@@ -51,8 +36,9 @@ static uint32_t slot_of_pixel(uint32_t x, uint32_t y)
     return (x & 3) | (x & 4) << 1 | (y & 1) << 2 | (y & 6) << 3;
 }
 
-static whit_result trace_pixel(struct renderer *renderer, struct probe_report *report)
+static whit_result trace_pixel(struct target *target, struct probe_report *report)
 {
+    struct renderer *renderer = target->renderer;
     const struct render_params *params = &renderer->params;
     uint32_t block_y = report->y / 8, rows = params->height - block_y * 8;
     struct gpu_chunk chunk = {.first_block =
@@ -64,18 +50,18 @@ static whit_result trace_pixel(struct renderer *renderer, struct probe_report *r
     const struct progress progress = {.share = 1.0, .work_total = 1};
     double longest_ms = 0.0;
     const uint32_t slot = slot_of_pixel(report->x, report->y);
-    whit_result result = buffer_write(renderer->pixel_buffers.listed, 0, &slot, sizeof slot);
-    renderer->pixel_buffers.band_y = chunk.band_y;
+    whit_result result = buffer_write(target->buffers.listed, 0, &slot, sizeof slot);
+    target->buffers.band_y = chunk.band_y;
     for (uint32_t s = 0; result == WHIT_OK && s < report->samples; ++s) {
         result = render_stop_asked(renderer, &progress);
-        render_take_sample(renderer, s, report->samples, &chunk);
+        render_take_sample(target, s, report->samples, &chunk);
         if (result == WHIT_OK)
-            result = stages_sample(renderer, &chunk, &progress, &longest_ms);
+            result = stages_sample(target, &chunk, &progress, &longest_ms);
     }
     uint64_t pixel = (uint64_t)(report->y % 8) * params->width + report->x;
     if (result == WHIT_OK)
-        result = buffer_read(renderer->pixel_buffers.pixels, pixel * sizeof report->color,
-                             report->color, sizeof report->color);
+        result = buffer_read(target->buffers.pixels, pixel * sizeof report->color, report->color,
+                             sizeof report->color);
     return result;
 }
 
@@ -193,37 +179,18 @@ static whit_result read_records(const struct renderer *renderer, uint32_t most,
 static whit_result run(struct renderer *renderer, uint32_t most, struct probe_report *report,
                        struct gpu_probe_ray **records)
 {
-    const struct render_stats stats = renderer->stats;
+    struct target *probe = &renderer->probe;
     const struct gpu_probe head = {0};
-    exchange(renderer);
-    whit_result result = create_buffers(renderer);
+    whit_result result = create_buffers(probe);
     if (result == WHIT_OK)
-        result = stages_compile(renderer);
+        result = stages_compile(probe);
     if (result == WHIT_OK)
-        result = buffer_write(renderer->probe.records, 0, &head, sizeof head);
+        result = buffer_write(probe->records, 0, &head, sizeof head);
     if (result == WHIT_OK)
-        result = trace_pixel(renderer, report);
+        result = trace_pixel(probe, report);
     if (result == WHIT_OK)
         result = read_records(renderer, most, report, records);
-    exchange(renderer);
-    renderer->stats = stats;
     return result;
-}
-
-void probe_finish(struct probe_state *probe)
-{
-    stage_set_finish(&probe->stages.set);
-    pixels_finish(&probe->pixel_buffers);
-    buffer_destroy(probe->records);
-    *probe = (struct probe_state){0};
-}
-
-void probe_drop_pixels(struct renderer *renderer)
-{
-    struct probe_state *probe = &renderer->probe;
-    stages_unbind(&probe->stages);
-    renderer->scene_buffers.bytes -= probe->pixel_buffers.bytes;
-    pixels_finish(&probe->pixel_buffers);
 }
 
 /* ---- The tree ---- */

@@ -15,7 +15,7 @@ enum {
     QUEUE_GROWTH = 4
 };
 
-static whit_result write_empty(struct renderer *renderer, const struct queue_buffers *queues)
+static whit_result write_empty(const struct renderer *renderer, const struct queue_buffers *queues)
 {
     struct gpu_generation *empty = array_alloc_zeroed(queues->generation_count, sizeof *empty);
     if (!empty)
@@ -39,9 +39,11 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
+whit_result queues_create(struct target *target)
 {
-    struct queue_buffers *queues = &p->queues;
+    const struct pixel_buffers *p = &target->buffers;
+    struct renderer *renderer = target->renderer;
+    struct queue_buffers *queues = &target->buffers.queues;
     bool secondary = renderer->has_secondary;
     const bool *called = renderer->effects.called;
     bool calls = called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
@@ -51,7 +53,7 @@ whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
     queues->lit_capacity =
         p->chunk_slots * 2; /* each half of a list is of one half of a dispatch */
     if (secondary) {
-        uint32_t least = larger(renderer->stages.rays_least, RAYS_LEAST);
+        uint32_t least = larger(target->stages.rays_least, RAYS_LEAST);
         queues->ray_capacity = larger(p->chunk_slots * RAYS_A_SLOT, least);
         queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, least / 4);
     }
@@ -83,10 +85,10 @@ whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
         {&queues->cut_sums, calls ? (uint64_t)renderer->params.width * p->band_rows * 8 : 0,
          BUFFER_STORAGE, "sums of weights that are cut"},
         {&queues->waiting,
-         variant_waits(renderer) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
+         variant_waits(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
-        {&queues->kinds, renderer->params.count || renderer->probe.active ? sent * 4 : 0,
-         BUFFER_STORAGE, "kinds of rays"},
+        {&queues->kinds, renderer->params.count || target->probed ? sent * 4 : 0, BUFFER_STORAGE,
+         "kinds of rays"},
     };
     whit_result result = WHIT_OK;
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
@@ -100,21 +102,22 @@ whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p)
     return result == WHIT_OK ? write_empty(renderer, queues) : result;
 }
 
-bool queues_can_grow(const struct renderer *renderer)
+bool queues_can_grow(const struct target *target)
 {
-    uint64_t rays = (uint64_t)renderer->pixel_buffers.queues.ray_capacity * QUEUE_GROWTH;
+    const struct renderer *renderer = target->renderer;
+    uint64_t rays = (uint64_t)target->buffers.queues.ray_capacity * QUEUE_GROWTH;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
     return renderer->has_secondary && rays * RAY_ROWS * 16 <= limit;
 }
 
-whit_result queues_grow(struct renderer *renderer)
+whit_result queues_grow(struct target *target)
 {
-    struct pixel_buffers *p = &renderer->pixel_buffers;
-    renderer->stages.rays_least = p->queues.ray_capacity * QUEUE_GROWTH;
-    renderer->scene_buffers.bytes -= p->queues.bytes;
+    struct pixel_buffers *p = &target->buffers;
+    target->stages.rays_least = p->queues.ray_capacity * QUEUE_GROWTH;
+    target->renderer->scene_buffers.bytes -= p->queues.bytes;
     p->bytes -= p->queues.bytes;
     queues_finish(&p->queues);
-    whit_result result = queues_create(renderer, p);
+    whit_result result = queues_create(target);
     p->bytes += p->queues.bytes;
     return result;
 }

@@ -6,19 +6,19 @@
 
 bool readback_is_late(const struct renderer *renderer)
 {
-    return renderer->pixel_buffers.band_rows >= renderer->params.height &&
+    return renderer->picture.buffers.band_rows >= renderer->params.height &&
            !(renderer->params.adaptive > 0.0);
 }
 
 static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)
 {
-    return buffer_read(renderer->pixel_buffers.pixels, 0, pixels,
+    return buffer_read(renderer->picture.buffers.pixels, 0, pixels,
                        (uint64_t)renderer->params.width * rows * 4 * sizeof *pixels);
 }
 
 static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint32_t *words)
 {
-    return buffer_read(renderer->pixel_buffers.ids, 0, words,
+    return buffer_read(renderer->picture.buffers.ids, 0, words,
                        (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
 }
 
@@ -30,7 +30,7 @@ static whit_result read_listed(struct renderer *renderer, const struct progress 
     float pixels[READ_SLICE][4];
     for (size_t at = 0; at < count; at += READ_SLICE) {
         size_t n = count - at < READ_SLICE ? count - at : READ_SLICE;
-        whit_result result = buffer_read(renderer->pixel_buffers.pixels, at * sizeof *pixels,
+        whit_result result = buffer_read(renderer->picture.buffers.pixels, at * sizeof *pixels,
                                          pixels, n * sizeof *pixels);
         if (result != WHIT_OK)
             return result;
@@ -42,10 +42,11 @@ static whit_result read_listed(struct renderer *renderer, const struct progress 
     return WHIT_OK;
 }
 
-whit_result readback_non_finite(struct renderer *renderer, uint32_t *x, uint32_t *y,
+whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32_t *y,
                                 uint32_t *count)
 {
-    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    struct renderer *renderer = target->renderer;
+    const struct pixel_buffers *p = &target->buffers;
     float pixels[READ_SLICE][4];
     uint64_t held = (uint64_t)renderer->params.width * p->band_rows;
     *x = *y = *count = 0;

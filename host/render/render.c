@@ -20,20 +20,20 @@ static const double SUBMISSION_LIMIT_MS = 100.0;
 
 /* Where pixels are not finite, of those drawn so far. Nothing where none is: a ray was lost whose
    weight was no number. */
-static void describe_non_finite(struct renderer *renderer, char *text, size_t text_bytes)
+static void describe_non_finite(const struct target *target, char *text, size_t text_bytes)
 {
     uint32_t x, y, count;
     text[0] = 0;
-    if (readback_non_finite(renderer, &x, &y, &count) == WHIT_OK && count > 0)
+    if (readback_non_finite(target, &x, &y, &count) == WHIT_OK && count > 0)
         snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u", count,
                  count == 1 ? "" : "s", x, y);
 }
 
-whit_result status_check(struct renderer *renderer)
+whit_result status_check(struct target *target)
 {
     uint32_t word = 0;
-    whit_result result = buffer_read(renderer->pixel_buffers.status, 0, &word, sizeof word);
-    renderer->stages.full = (word & STATUS_QUEUE_FULL) != 0;
+    whit_result result = buffer_read(target->buffers.status, 0, &word, sizeof word);
+    target->stages.full = (word & STATUS_QUEUE_FULL) != 0;
     word &= ~STATUS_QUEUE_FULL;
     if (result != WHIT_OK || word == 0)
         return result;
@@ -49,27 +49,27 @@ whit_result status_check(struct renderer *renderer)
     };
     char text[1024] = "", where[96] = "";
     if (word & STATUS_NON_FINITE)
-        describe_non_finite(renderer, where, sizeof where);
+        describe_non_finite(target, where, sizeof where);
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)
             snprintf(text + used, sizeof text - used, "%s%s%s", used ? "; " : "", reasons[i].text,
                      reasons[i].bit == STATUS_NON_FINITE ? where : "");
     }
-    log_error(&renderer->log, "the result is not to be trusted: %s", text);
+    log_error(&target->renderer->log, "the result is not to be trusted: %s", text);
     return WHIT_ERROR_STATUS;
 }
 
 /* Behind the bits, in the same buffer. */
-whit_result waits_clear(struct renderer *renderer)
+whit_result waits_clear(struct target *target)
 {
     const uint32_t none = 0;
-    return buffer_write(renderer->pixel_buffers.status, sizeof none, &none, sizeof none);
+    return buffer_write(target->buffers.status, sizeof none, &none, sizeof none);
 }
 
-whit_result waits_read(struct renderer *renderer, uint32_t *count)
+whit_result waits_read(const struct target *target, uint32_t *count)
 {
-    return buffer_read(renderer->pixel_buffers.status, sizeof *count, count, sizeof *count);
+    return buffer_read(target->buffers.status, sizeof *count, count, sizeof *count);
 }
 
 /* How much of the picture is done, 0..1. */
@@ -99,8 +99,9 @@ whit_result render_stop_asked(const struct renderer *renderer, const struct prog
     return WHIT_OK;
 }
 
-static whit_result submit(struct renderer *renderer)
+static whit_result submit(struct target *target)
 {
+    struct renderer *renderer = target->renderer;
     whit_result result = commands_submit(renderer->commands);
     if (result == WHIT_OK)
         result = commands_wait(renderer->commands, -1.0);
@@ -109,12 +110,12 @@ static whit_result submit(struct renderer *renderer)
     uint32_t span = 0;
     do {
         double device_ms = commands_span_ms(renderer->commands, span);
-        if (device_ms < 0.0 || renderer->stats.render_device_ms < 0.0)
-            renderer->stats.render_device_ms = -1.0;
+        if (device_ms < 0.0 || target->stats.render_device_ms < 0.0)
+            target->stats.render_device_ms = -1.0;
         else
-            renderer->stats.render_device_ms += device_ms;
+            target->stats.render_device_ms += device_ms;
     } while (++span < commands_span_count(renderer->commands));
-    return status_check(renderer);
+    return status_check(target);
 }
 
 void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
@@ -126,14 +127,15 @@ void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
     commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, count), 4, 0);
 }
 
-void render_take_waiting(struct renderer *renderer, const struct pass *pass, struct buffer *waiting,
+void render_take_waiting(struct target *target, const struct pass *pass, struct buffer *waiting,
                          const void *push, uint32_t push_bytes)
 {
-    commands_barrier(renderer->commands);
-    commands_bind(renderer->commands, pass->looks, pass->looks_set);
-    commands_push(renderer->commands, push, push_bytes);
-    commands_dispatch_indirect(renderer->commands, waiting, 0);
-    ++renderer->stats.dispatches;
+    struct commands *commands = target->renderer->commands;
+    commands_barrier(commands);
+    commands_bind(commands, pass->looks, pass->looks_set);
+    commands_push(commands, push, push_bytes);
+    commands_dispatch_indirect(commands, waiting, 0);
+    ++target->stats.dispatches;
 }
 
 uint32_t render_groups(const struct gpu_chunk *chunk)
@@ -151,10 +153,10 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
     return *x < renderer->params.width && *y < renderer->params.height;
 }
 
-whit_result render_finish_submission(struct renderer *renderer)
+whit_result render_finish_submission(struct target *target)
 {
-    commands_barrier(renderer->commands);
-    return submit(renderer);
+    commands_barrier(target->renderer->commands);
+    return submit(target);
 }
 
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
@@ -165,14 +167,15 @@ static void adapt_tile(const struct renderer *renderer, struct progress *progres
     if (spent_ms > SUBMISSION_LIMIT_MS && progress->tile > TILE_MIN)
         progress->tile /= 2;
     else if (spent_ms < SUBMISSION_TARGET_MS / 4 &&
-             slots * 4 <= renderer->pixel_buffers.chunk_slots)
+             slots * 4 <= renderer->picture.buffers.chunk_slots)
         progress->tile *= 2;
 }
 
-void render_take_sample(const struct renderer *renderer, uint32_t index, uint32_t samples,
+void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk)
 {
-    const struct pixel_buffers *p = &renderer->pixel_buffers;
+    const struct renderer *renderer = target->renderer;
+    const struct pixel_buffers *p = &target->buffers;
     camera_sample(&renderer->frame, renderer->params.first_sample + index, chunk);
     chunk->sample_weight = 1.0f / (float)samples;
     chunk->summed = index;
@@ -190,14 +193,14 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         whit_result result = render_stop_asked(renderer, progress);
         if (result != WHIT_OK)
             return result;
-        render_take_sample(renderer, s, samples, chunk);
-        result = stages_sample(renderer, chunk, progress, &longest_ms);
+        render_take_sample(&renderer->picture, s, samples, chunk);
+        result = stages_sample(&renderer->picture, chunk, progress, &longest_ms);
         if (result != WHIT_OK)
             return result;
         progress->work_done += chunk->block_count;
         report_progress(renderer, progress);
     }
-    ++renderer->stats.tiles;
+    ++renderer->picture.stats.tiles;
     adapt_tile(renderer, progress, longest_ms);
     return WHIT_OK;
 }
@@ -208,7 +211,7 @@ static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk
 {
     whit_result result = WHIT_OK;
     if (progress->listed)
-        result = adaptive_list(renderer, progress, chunk);
+        result = adaptive_list(&renderer->picture, progress, chunk);
     if (result != WHIT_OK)
         return result;
     if (!progress->listed || chunk->listed > 0)
@@ -224,15 +227,15 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
     const struct render_params *params = &renderer->params;
     uint32_t left = params->height - band_y;
     uint32_t rows =
-        left < renderer->pixel_buffers.band_rows ? left : renderer->pixel_buffers.band_rows;
+        left < renderer->picture.buffers.band_rows ? left : renderer->picture.buffers.band_rows;
     uint32_t across = pixels_blocks_across(params->width);
-    renderer->pixel_buffers.band_y = band_y;
+    renderer->picture.buffers.band_y = band_y;
     uint32_t block = band_y / 8 * across, end = block + pixels_blocks_across(rows) * across;
     while (block < end) {
         uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;
-        uint32_t held = renderer->pixel_buffers.chunk_slots / RENDER_BLOCK_PIXELS;
+        uint32_t held = renderer->picture.buffers.chunk_slots / RENDER_BLOCK_PIXELS;
         blocks = blocks < held ? blocks : held;
-        uint32_t most = renderer->stages.blocks_most;
+        uint32_t most = renderer->picture.stages.blocks_most;
         blocks = most && most < blocks ? most : blocks;
         struct gpu_chunk chunk = {.first_block = block,
                                   .block_count = end - block < blocks ? end - block : blocks,
@@ -242,7 +245,7 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
         if (result != WHIT_OK)
             return result;
         block += chunk.block_count;
-        renderer->stats.tile_size = progress->tile;
+        renderer->picture.stats.tile_size = progress->tile;
     }
     return readback_band(renderer, progress, band_y, rows);
 }
@@ -258,7 +261,7 @@ static whit_result render_pass(struct renderer *renderer, uint32_t samples,
     progress->work_total = (uint64_t)pixels_blocks_across(params->width) *
                            pixels_blocks_across(params->height) * samples;
     for (uint32_t y = 0; result == WHIT_OK && y < params->height;
-         y += renderer->pixel_buffers.band_rows)
+         y += renderer->picture.buffers.band_rows)
         result = render_band(renderer, y, progress);
     progress->before += progress->share;
     progress->work_done = 0;
@@ -280,7 +283,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     for (uint8_t level = 2; result == WHIT_OK && level <= 3; ++level) {
         uint64_t marked =
             adaptive_mark(&renderer->color, params->adaptive, level, progress->levels);
-        renderer->stats.rays_primary += marked << (2 * level);
+        renderer->picture.stats.rays_primary += marked << (2 * level);
         progress->listed = true;
         if (marked > 0)
             result = render_pass(renderer, 1u << (2 * level), progress);
@@ -289,7 +292,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     }
     report_progress(renderer, progress);
     for (size_t i = 0; i < pixels; ++i)
-        ++renderer->stats.pixels_by_samples[progress->levels[i]];
+        ++renderer->picture.stats.pixels_by_samples[progress->levels[i]];
     free(progress->levels);
     progress->levels = NULL;
     return result;
@@ -299,13 +302,13 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
 {
     const struct render_params *params = &renderer->params;
     uint64_t pixels = (uint64_t)params->width * params->height;
-    renderer->stats.rays_primary = pixels * params->samples;
+    renderer->picture.stats.rays_primary = pixels * params->samples;
     if (params->adaptive > 0.0)
         return render_adaptive(renderer, progress);
     uint32_t level = 0;
     while (1u << (2 * level) < params->samples)
         ++level;
-    renderer->stats.pixels_by_samples[level] = pixels;
+    renderer->picture.stats.pixels_by_samples[level] = pixels;
     return render_pass(renderer, params->samples, progress);
 }
 
@@ -328,8 +331,8 @@ whit_result renderer_render(struct renderer *renderer)
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
-    stats_clear(&renderer->stats);
-    uint32_t largest = (uint32_t)sqrt((double)renderer->pixel_buffers.chunk_slots);
+    stats_clear(&renderer->picture.stats);
+    uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
     struct progress progress = {
         .start_ms = clock_ms(),
         .tile = params->tile_size                             ? params->tile_size
@@ -339,12 +342,12 @@ whit_result renderer_render(struct renderer *renderer)
         .share = 1.0,
     };
     if (result == WHIT_OK)
-        result = waits_clear(renderer);
+        result = waits_clear(&renderer->picture);
     if (result == WHIT_OK)
         result = render_picture(renderer, &progress);
     if (result == WHIT_OK)
-        result = waits_read(renderer, &renderer->stats.waits);
-    renderer->stats.render_ms = clock_ms() - progress.start_ms;
+        result = waits_read(&renderer->picture, &renderer->picture.stats.waits);
+    renderer->picture.stats.render_ms = clock_ms() - progress.start_ms;
     renderer->rendered = result == WHIT_OK;
     return result;
 }

@@ -20,7 +20,7 @@ static whit_result create_parts(struct renderer *renderer)
     renderer->node_stack_size = accel_stack_size(renderer->accel);
     renderer->single_identity = renderer->accel->single_identity;
     whit_result result =
-        pixels_create(renderer, renderer->params.height, renderer->params.tile_size);
+        pixels_create(&renderer->picture, renderer->params.height, renderer->params.tile_size);
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)
@@ -28,27 +28,27 @@ static whit_result create_parts(struct renderer *renderer)
     if (result == WHIT_OK)
         result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
                               "frame", &renderer->scene_buffers.frame);
-    renderer->stats.upload_ms = clock_ms() - start_ms;
+    renderer->picture.stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
-    renderer->stats.texel_loads = renderer->scene_buffers.texel_loads;
-    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+    renderer->picture.stats.texel_loads = renderer->scene_buffers.texel_loads;
+    renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }
 
 /* Renderers that only trace batches never need the kernels of pictures. */
 whit_result renderer_compile(struct renderer *renderer)
 {
-    if (stages_are_made(renderer) && !renderer->beside.general)
-        return stages_bind(renderer);
+    if (stages_are_made(&renderer->picture) && !renderer->beside.general)
+        return stages_bind(&renderer->picture);
     double start_ms = clock_ms();
-    whit_result result =
-        renderer->params.compile_beside ? beside_prepare(renderer) : stages_compile(renderer);
+    whit_result result = renderer->params.compile_beside ? beside_prepare(renderer)
+                                                         : stages_compile(&renderer->picture);
     if (result == WHIT_OK)
-        renderer->stats.general = renderer->beside.general;
+        renderer->picture.stats.general = renderer->beside.general;
     else
         passes_finish(renderer);
-    renderer->stats.compile_ms = clock_ms() - start_ms;
+    renderer->picture.stats.compile_ms = clock_ms() - start_ms;
     return result;
 }
 
@@ -59,6 +59,8 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
     struct renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer)
         return WHIT_ERROR_MEMORY;
+    renderer->picture.renderer = renderer->probe.renderer = renderer;
+    renderer->probe.probed = true;
     renderer->log = *log;
     renderer->create_ms = clock_ms();
     renderer->device = device;
@@ -98,8 +100,8 @@ void renderer_destroy(struct renderer *renderer)
     passes_finish(renderer);
     beside_finish(renderer);
     trace_finish(&renderer->trace);
-    probe_finish(&renderer->probe);
-    pixels_finish(&renderer->pixel_buffers);
+    target_finish(&renderer->probe);
+    target_finish(&renderer->picture);
     costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);
     bodies_finish(&renderer->bodies);

@@ -119,16 +119,17 @@ struct progress {
 /* With params.compile_beside: see beside.c. */
 struct beside_state {
     struct beside_job *job; /* the specialised kernel in the making; NULL: none is */
-    bool general;           /* renderer->stages.set is of general kernels */
+    bool general;           /* renderer->picture.stages.set is of general kernels */
 };
 
-/* What one probed pixel is traced with (probe.c); nothing before the first one. While `active`, the
-   fields of the renderer of the same names are these, and these are the renderer's. */
-struct probe_state {
-    bool active;
-    struct pixel_buffers pixel_buffers; /* of a row of blocks */
+/* What pixels are drawn with and into: those of the picture, or a probed one. */
+struct target {
+    struct renderer *renderer;
+    struct pixel_buffers buffers;
     struct stages stages;
-    struct buffer *records; /* gpu_probe, and gpu_probe_ray */
+    struct render_stats stats;
+    bool probed;            /* rays are recorded, those of listed pixels alone (probe.c) */
+    struct buffer *records; /* of a probe: gpu_probe, and gpu_probe_ray */
 };
 
 struct renderer {
@@ -140,18 +141,16 @@ struct renderer {
     struct scene_pose pose;
     struct scene_effects effects; /* that kernels are made for: see effects_choose */
     struct scene_buffers scene_buffers;
-    struct pixel_buffers pixel_buffers;
-    struct stages stages;
-    bool packets; /* rays may walk in packets, through nodes of eight children */
+    struct target picture;
+    struct target probe; /* a row of blocks; without buffers before the first probe */
+    bool packets;        /* rays may walk in packets, through nodes of eight children */
     struct trace_state trace;
     struct beside_state beside;
-    struct probe_state probe;
     struct commands *commands;
     struct gpu_frame frame;
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids;            /* of the last picture, where it has more than one band */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
-    struct render_stats stats;
     double create_ms;
     /* What the pipelines were made for. */
     uint32_t node_stack_size, packet_stack_size;
@@ -171,11 +170,12 @@ bool renderer_bounces(const struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
-/* pixels.c: renderer->pixel_buffers, for the parameters and effects of the renderer, for bands of
-   up to `height` rows and chunks of `tile_size` (0: as large as is fit). */
-WHIT_CHECK whit_result pixels_create(struct renderer *renderer, uint32_t height,
-                                     uint32_t tile_size);
-void pixels_finish(struct pixel_buffers *buffers);
+/* pixels.c: target->buffers, for the parameters and effects of the renderer, for bands of up to
+   `height` rows and chunks of `tile_size` (0: as large as is fit). */
+WHIT_CHECK whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_size);
+void target_finish(struct target *target);
+/* Before pictures of another size or depth: its pixels, and what is bound to them. */
+void target_drop_pixels(struct target *target);
 /* Partial sums that the most samples of a pixel leave at once. */
 uint32_t pixels_levels(const struct render_params *params);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
@@ -195,19 +195,19 @@ void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32
 void sine_cosine_pi(float a, float *sine, float *cosine);
 
 /* costs.c: all of it does nothing without params.count. */
-WHIT_CHECK whit_result costs_create(struct renderer *renderer);
+WHIT_CHECK whit_result costs_create(struct target *target);
 void costs_clear(struct renderer *renderer);
 /* Takes over what the kernels counted for one sample of `chunk`, which was just drawn: the next
    chunk counts in the same slots. */
-WHIT_CHECK whit_result costs_add(struct renderer *renderer, const struct gpu_chunk *chunk);
+WHIT_CHECK whit_result costs_add(struct target *target, const struct gpu_chunk *chunk);
 
-/* queues.c: of p->chunk_slots slots. */
-WHIT_CHECK whit_result queues_create(struct renderer *renderer, struct pixel_buffers *p);
+/* queues.c: target->buffers.queues, of target->buffers.chunk_slots slots. */
+WHIT_CHECK whit_result queues_create(struct target *target);
 void queues_finish(struct queue_buffers *queues);
 /* Room for more rays of a tile, where the device has it. What is bound to the queues must be bound
    anew. */
-bool queues_can_grow(const struct renderer *renderer);
-WHIT_CHECK whit_result queues_grow(struct renderer *renderer);
+bool queues_can_grow(const struct target *target);
+WHIT_CHECK whit_result queues_grow(struct target *target);
 
 /* upload.c */
 /* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
@@ -235,8 +235,6 @@ WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 uint32_t lights_kinds(const struct scene_pose *pose);
 /* Of a flat emitter; 1 where the pose has none. */
 uint32_t lights_samples(const struct renderer *renderer);
-/* Shadow rays that a hit asks for at most. */
-uint64_t lights_rays(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 /* media.c: of renderer->frame the media that the camera is in, and whether media meet, for the pose
@@ -259,17 +257,17 @@ void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 double bailout_bound(const struct renderer *renderer);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */
-struct gpu_spec variant_spec(const struct renderer *renderer);
+struct gpu_spec variant_spec(const struct target *target);
 /* The same with every effect. */
-struct gpu_spec variant_general_spec(const struct renderer *renderer);
+struct gpu_spec variant_general_spec(const struct target *target);
 /* Every effect that the renderer's buffers allow and its params do not remove. */
-struct gpu_spec variant_beside_spec(const struct renderer *renderer);
+struct gpu_spec variant_beside_spec(const struct target *target);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
 uint32_t variant_classes(const struct renderer *renderer);
 /* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
-bool variant_waits(const struct renderer *renderer);
+bool variant_waits(const struct target *target);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.
  */
 struct variant_job {
@@ -281,10 +279,10 @@ struct variant_job {
 WHIT_CHECK whit_result variant_job_run(struct device *device, const struct variant_job *job,
                                        struct pass *pass);
 /* `spec`: of the set of stages, which has `classes` shading kernels. */
-void variant_job_init(const struct renderer *renderer, const struct gpu_spec *spec,
-                      uint32_t classes, enum stage stage, struct variant_job *job);
+void variant_job_init(const struct target *target, const struct gpu_spec *spec, uint32_t classes,
+                      enum stage stage, struct variant_job *job);
 /* Makes the binding sets of the pass. */
-WHIT_CHECK whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass);
+WHIT_CHECK whit_result variant_bind_stage(const struct target *target, struct pass *pass);
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
 /* CAMERA_* that kernels are made for. */
 uint32_t variant_camera(const struct renderer *renderer);
@@ -302,50 +300,45 @@ struct stages_job {
     struct variant_job stages[STAGE_COUNT];
 };
 /* `own`: the kernels for the scene, else general ones with `spec`. */
-void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
+void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
                      struct stages_job *job);
 WHIT_CHECK whit_result stages_job_run(struct device *device, const struct stages_job *job,
                                       struct stage_set *out);
 /* Takes over a set, which is empty afterwards, in place of the one that there was. */
-WHIT_CHECK whit_result stages_take(struct renderer *renderer, struct stage_set *set);
+WHIT_CHECK whit_result stages_take(struct target *target, struct stage_set *set);
 /* Makes the scene's own set where there is none. */
-WHIT_CHECK whit_result stages_compile(struct renderer *renderer);
+WHIT_CHECK whit_result stages_compile(struct target *target);
 /* Binds the set to the buffers that there are, where it is not bound. */
-WHIT_CHECK whit_result stages_bind(struct renderer *renderer);
-bool stages_are_made(const struct renderer *renderer);
+WHIT_CHECK whit_result stages_bind(struct target *target);
+bool stages_are_made(const struct target *target);
 void stages_unbind(struct stages *stages);
 void stage_set_finish(struct stage_set *set);
 /* All rays of one sample of one chunk. *longest_ms: of its submissions. */
-WHIT_CHECK whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+WHIT_CHECK whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
                                      const struct progress *progress, double *longest_ms);
 
 uint64_t stages_generation_offset(uint32_t generation);
 
-/* stage_times.c: renderer->stats.stages, and rays_shadow with it. */
-void stage_times_begin(struct renderer *renderer);
+/* stage_times.c: target->stats.stages, and rays_shadow with it. */
+void stage_times_begin(struct target *target);
 /* A submission begins, whose first span is open. */
-void stage_times_submission(struct renderer *renderer);
+void stage_times_submission(struct target *target);
 /* What is recorded from here on belongs to `row`. */
-void stage_times_next(struct renderer *renderer, uint32_t row);
+void stage_times_next(struct target *target, uint32_t row);
 /* The submission is done. */
-void stage_times_take(struct renderer *renderer);
+void stage_times_take(struct target *target);
 /* A tile is done, of `generations`, with so many items that waited. */
-WHIT_CHECK whit_result stage_times_end(struct renderer *renderer, const struct gpu_chunk *chunk,
+WHIT_CHECK whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk,
                                        uint32_t generations, uint32_t waits);
 /* Fills in names, and the times of all items. */
 void stage_times_scale(const struct renderer *renderer, struct render_stats *stats);
 
-/* beside.c: renderer->stages are the best kernels that there are without waiting for them: at first
-   the general one, while a thread compiles the specialised one, and from some later call on that.
-   The thread logs when it fails; the general kernel then stays. */
+/* beside.c: renderer->picture.stages are the best kernels that there are without waiting for them:
+   at first the general one, while a thread compiles the specialised one, and from some later call
+   on that. The thread logs when it fails; the general kernel then stays. */
 WHIT_CHECK whit_result beside_prepare(struct renderer *renderer);
 /* Waits for the thread. */
 void beside_finish(struct renderer *renderer);
-
-/* probe.c: all but what `active` has exchanged, which must be back. */
-void probe_finish(struct probe_state *probe);
-/* Before pictures of another size or depth: its buffers, and what is bound to them. */
-void probe_drop_pixels(struct renderer *renderer);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);
@@ -362,7 +355,7 @@ bool readback_is_late(const struct renderer *renderer);
 WHIT_CHECK whit_result readback_band(struct renderer *renderer, const struct progress *progress,
                                      uint32_t band_y, uint32_t rows);
 /* How many pixels of the band are not finite as yet, and in the picture the first of them. */
-WHIT_CHECK whit_result readback_non_finite(struct renderer *renderer, uint32_t *x, uint32_t *y,
+WHIT_CHECK whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32_t *y,
                                            uint32_t *count);
 
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
@@ -373,13 +366,13 @@ void stats_clear(struct render_stats *stats);
    in some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
 uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels);
 /* Lists the pixels of the chunk that the pass draws: their number is chunk->listed. */
-WHIT_CHECK whit_result adaptive_list(struct renderer *renderer, const struct progress *progress,
+WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progress *progress,
                                      struct gpu_chunk *chunk);
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
 /* render.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
-void render_take_sample(const struct renderer *renderer, uint32_t index, uint32_t samples,
+void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk);
 
 /* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
@@ -393,20 +386,20 @@ WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
 void render_clear_waiting(struct renderer *renderer, struct buffer *waiting);
 /* Goes on, behind a barrier, with what the dispatch before has left on the list. `push`: for it,
    with `waiting` set. */
-void render_take_waiting(struct renderer *renderer, const struct pass *pass, struct buffer *waiting,
+void render_take_waiting(struct target *target, const struct pass *pass, struct buffer *waiting,
                          const void *push, uint32_t push_bytes);
 /* Workgroups of the camera rays of a chunk. */
 uint32_t render_groups(const struct gpu_chunk *chunk);
 /* Pixel `i` of block `block`, as slot_pixel() of the kernel. False when outside of the picture. */
 bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
                        uint32_t *y);
-WHIT_CHECK whit_result render_finish_submission(struct renderer *renderer);
+WHIT_CHECK whit_result render_finish_submission(struct target *target);
 
 /* render.c: what kernels have listed as waiting since `waits_clear`. */
-WHIT_CHECK whit_result waits_clear(struct renderer *renderer);
-WHIT_CHECK whit_result waits_read(struct renderer *renderer, uint32_t *count);
+WHIT_CHECK whit_result waits_clear(struct target *target);
+WHIT_CHECK whit_result waits_read(const struct target *target, uint32_t *count);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */
-WHIT_CHECK whit_result status_check(struct renderer *renderer);
+WHIT_CHECK whit_result status_check(struct target *target);
 
 #endif

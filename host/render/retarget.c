@@ -24,27 +24,15 @@ static bool same_buffers(const struct render_params *a, const struct render_para
            a->light_samples == b->light_samples && (a->adaptive > 0.0) == (b->adaptive > 0.0);
 }
 
-/* The word of the status stays: kernels of ray batches are bound to it. */
-static void drop_pixels(struct renderer *renderer)
-{
-    struct pixel_buffers *pixels = &renderer->pixel_buffers;
-    struct buffer *status = pixels->status;
-    stages_unbind(&renderer->stages);
-    pixels->status = NULL;
-    renderer->scene_buffers.bytes -= pixels->bytes;
-    pixels_finish(pixels);
-    pixels->status = status;
-}
-
 static whit_result replace_pixels(struct renderer *renderer)
 {
-    drop_pixels(renderer);
-    probe_drop_pixels(renderer);
-    whit_result result =
-        pixels_create(renderer, renderer->params.height, renderer->params.tile_size);
+    const struct render_params *params = &renderer->params;
+    target_drop_pixels(&renderer->picture);
+    target_drop_pixels(&renderer->probe);
+    whit_result result = pixels_create(&renderer->picture, params->height, params->tile_size);
     if (result != WHIT_OK)
-        drop_pixels(renderer);
-    renderer->stats.device_bytes = renderer->scene_buffers.bytes;
+        target_drop_pixels(&renderer->picture);
+    renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }
 
@@ -55,8 +43,8 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     if (result != WHIT_OK)
         return result;
     bool moved = wanted.time_s != renderer->params.time_s;
-    bool same = same_buffers(&renderer->params, &wanted) && renderer->pixel_buffers.pixels &&
-                pixels_levels(&wanted) <= renderer->pixel_buffers.levels;
+    bool same = same_buffers(&renderer->params, &wanted) && renderer->picture.buffers.pixels &&
+                pixels_levels(&wanted) <= renderer->picture.buffers.levels;
     bool listed = renderer->params.adaptive > 0.0, had_secondary = renderer->has_secondary;
     renderer->rendered = false;
     renderer->params = wanted;

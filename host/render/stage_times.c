@@ -9,25 +9,26 @@
    first: drivers that make machine code at the first dispatch (lavapipe) do it there. */
 enum { TIMED_ONE_IN = 8 };
 
-void stage_times_begin(struct renderer *renderer)
+void stage_times_begin(struct target *target)
 {
-    struct stage_times *times = &renderer->stages.times;
+    struct stage_times *times = &target->stages.times;
     uint32_t tile = times->tiles;
     bool scattered = tile * 0x9e3779b9u < UINT32_MAX / TIMED_ONE_IN;
     *times = (struct stage_times){
         .tiles = tile + 1, .on = tile == 1 || (tile > 1 && scattered), .row = RENDER_STAGE_COUNT};
 }
 
-void stage_times_submission(struct renderer *renderer)
+void stage_times_submission(struct target *target)
 {
-    struct stage_times *times = &renderer->stages.times;
+    struct stage_times *times = &target->stages.times;
     times->span_count = 0;
     times->row = RENDER_STAGE_COUNT;
 }
 
-void stage_times_next(struct renderer *renderer, uint32_t row)
+void stage_times_next(struct target *target, uint32_t row)
 {
-    struct stage_times *times = &renderer->stages.times;
+    struct renderer *renderer = target->renderer;
+    struct stage_times *times = &target->stages.times;
     if (!times->on || times->row == row)
         return;
     if (times->span_count + 1 == COMMANDS_SPANS) {
@@ -40,25 +41,25 @@ void stage_times_next(struct renderer *renderer, uint32_t row)
     commands_span_begin(renderer->commands, "stage");
 }
 
-void stage_times_take(struct renderer *renderer)
+void stage_times_take(struct target *target)
 {
-    struct stage_times *times = &renderer->stages.times;
+    struct stage_times *times = &target->stages.times;
     if (!times->on)
         return;
     times->rows[times->span_count++] = times->row;
     for (uint32_t i = 0; i < times->span_count; ++i) {
-        double ms = commands_span_ms(renderer->commands, i);
+        double ms = commands_span_ms(target->renderer->commands, i);
         times->on = times->on && ms >= 0.0;
         if (times->rows[i] < RENDER_STAGE_COUNT)
             times->ms[times->rows[i]] += ms;
     }
 }
 
-static void add_items(struct renderer *renderer, uint32_t row, uint64_t items)
+static void add_items(struct target *target, uint32_t row, uint64_t items)
 {
-    struct render_stage *stage = &renderer->stats.stages[row];
+    struct render_stage *stage = &target->stats.stages[row];
     stage->items += items;
-    if (renderer->stages.times.on)
+    if (target->stages.times.on)
         stage->timed_items += items;
 }
 
@@ -67,46 +68,46 @@ static uint64_t items_of(const struct gpu_generation *generation, uint32_t list)
     return (uint64_t)generation->lists[list].front + generation->lists[list].back;
 }
 
-static void add_generation(struct renderer *renderer, const struct gpu_generation *generation,
+static void add_generation(struct target *target, const struct gpu_generation *generation,
                            bool camera)
 {
-    uint32_t lights = renderer->frame.light_count;
+    uint32_t lights = target->renderer->frame.light_count;
     uint64_t hits = 0;
     if (!camera)
-        add_items(renderer, RENDER_STAGE_CLOSEST, items_of(generation, LIST_RAYS));
-    for (uint32_t i = 0; i < renderer->stages.set.classes; ++i) {
+        add_items(target, RENDER_STAGE_CLOSEST, items_of(generation, LIST_RAYS));
+    for (uint32_t i = 0; i < target->stages.set.classes; ++i) {
         uint64_t items = items_of(generation, LIST_HITS + i);
-        add_items(renderer, RENDER_STAGE_SHADE + i, items);
-        hits += renderer->stages.set.calls[i] ? items : 0;
+        add_items(target, RENDER_STAGE_SHADE + i, items);
+        hits += target->stages.set.calls[i] ? items : 0;
     }
     if (!camera)
-        add_items(renderer, RENDER_STAGE_RESOLVE, hits);
+        add_items(target, RENDER_STAGE_RESOLVE, hits);
     for (uint32_t i = 0; i < (lights > LIGHT_LISTS ? 1 : lights); ++i) {
         uint32_t rays = generation->lists[LIST_LIGHTS + i].shadow_rays;
-        add_items(renderer, RENDER_STAGE_SHADOW + i, rays);
-        renderer->stats.rays_shadow += rays;
+        add_items(target, RENDER_STAGE_SHADOW + i, rays);
+        target->stats.rays_shadow += rays;
     }
 }
 
-whit_result stage_times_end(struct renderer *renderer, const struct gpu_chunk *chunk,
+whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk,
                             uint32_t generations, uint32_t waits)
 {
-    struct stage_times *times = &renderer->stages.times;
+    struct stage_times *times = &target->stages.times;
     uint64_t pixels = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
-    add_items(renderer, RENDER_STAGE_CAMERA, pixels);
-    add_items(renderer, RENDER_STAGE_RESOLVE, pixels);
-    add_items(renderer, RENDER_STAGE_DEFERRED, waits);
+    add_items(target, RENDER_STAGE_CAMERA, pixels);
+    add_items(target, RENDER_STAGE_RESOLVE, pixels);
+    add_items(target, RENDER_STAGE_DEFERRED, waits);
     for (uint32_t g = 0; g < generations; ++g) {
         struct gpu_generation generation;
         whit_result result =
-            buffer_read(renderer->pixel_buffers.queues.generations, stages_generation_offset(g),
+            buffer_read(target->buffers.queues.generations, stages_generation_offset(g),
                         &generation, sizeof generation);
         if (result != WHIT_OK)
             return result;
-        add_generation(renderer, &generation, g == 0);
+        add_generation(target, &generation, g == 0);
     }
     for (uint32_t row = 0; times->on && row < RENDER_STAGE_COUNT; ++row)
-        renderer->stats.stages[row].timed_ms += times->ms[row];
+        target->stats.stages[row].timed_ms += times->ms[row];
     return WHIT_OK;
 }
 

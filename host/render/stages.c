@@ -11,9 +11,10 @@
 /* Generations of the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };
 
-void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spec, bool own,
+void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
                      struct stages_job *job)
 {
+    const struct renderer *renderer = target->renderer;
     *job = (struct stages_job){.spec = *spec};
     job->classes = own ? variant_classes(renderer) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -21,7 +22,7 @@ void stages_job_init(const struct renderer *renderer, const struct gpu_spec *spe
         job->wanted[i] = (!later || renderer->has_secondary) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MOST);
         if (job->wanted[i])
-            variant_job_init(renderer, spec, job->classes, (enum stage)i, &job->stages[i]);
+            variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
 }
 
@@ -49,55 +50,55 @@ void stage_set_finish(struct stage_set *set)
     *set = (struct stage_set){0};
 }
 
-bool stages_are_made(const struct renderer *renderer)
+bool stages_are_made(const struct target *target)
 {
-    return renderer->stages.set.passes[STAGE_CAMERA].pipeline != NULL;
+    return target->stages.set.passes[STAGE_CAMERA].pipeline != NULL;
 }
 
-whit_result stages_bind(struct renderer *renderer)
+whit_result stages_bind(struct target *target)
 {
-    struct stages *stages = &renderer->stages;
+    struct stages *stages = &target->stages;
     whit_result result = WHIT_OK;
     if (stages->set.passes[STAGE_CAMERA].set)
         return WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         if (stages->set.passes[i].pipeline)
-            result = variant_bind_stage(renderer, &stages->set.passes[i]);
+            result = variant_bind_stage(target, &stages->set.passes[i]);
     }
-    stages->expected = renderer->has_secondary ? EXPECTED_FIRST : 1;
+    stages->expected = target->renderer->has_secondary ? EXPECTED_FIRST : 1;
     if (result != WHIT_OK)
         stages_unbind(stages);
     return result;
 }
 
-whit_result stages_take(struct renderer *renderer, struct stage_set *set)
+whit_result stages_take(struct target *target, struct stage_set *set)
 {
-    stage_set_finish(&renderer->stages.set);
-    renderer->stages.set = *set;
+    stage_set_finish(&target->stages.set);
+    target->stages.set = *set;
     *set = (struct stage_set){0};
-    renderer->stats.kernel_instructions = renderer->stats.largest_instructions = 0;
+    target->stats.kernel_instructions = target->stats.largest_instructions = 0;
     for (int i = 0; i < STAGE_COUNT; ++i) {
-        const struct pass *pass = &renderer->stages.set.passes[i];
+        const struct pass *pass = &target->stages.set.passes[i];
         struct pipeline_info info = {0};
         if (pass->pipeline)
             pipeline_get_info(pass->pipeline, &info);
-        renderer->stats.kernel_instructions += info.instructions;
-        if (info.instructions > renderer->stats.largest_instructions)
-            renderer->stats.largest_instructions = info.instructions;
+        target->stats.kernel_instructions += info.instructions;
+        if (info.instructions > target->stats.largest_instructions)
+            target->stats.largest_instructions = info.instructions;
     }
-    return stages_bind(renderer);
+    return stages_bind(target);
 }
 
-whit_result stages_compile(struct renderer *renderer)
+whit_result stages_compile(struct target *target)
 {
     struct stages_job job;
     struct stage_set set;
-    struct gpu_spec spec = variant_spec(renderer);
-    if (stages_are_made(renderer))
-        return stages_bind(renderer);
-    stages_job_init(renderer, &spec, true, &job);
-    whit_result result = stages_job_run(renderer->device, &job, &set);
-    return result == WHIT_OK ? stages_take(renderer, &set) : result;
+    struct gpu_spec spec = variant_spec(target);
+    if (stages_are_made(target))
+        return stages_bind(target);
+    stages_job_init(target, &spec, true, &job);
+    whit_result result = stages_job_run(target->renderer->device, &job, &set);
+    return result == WHIT_OK ? stages_take(target, &set) : result;
 }
 
 static uint32_t count_bits(uint64_t bits)
@@ -126,14 +127,15 @@ static bool count_set(const struct stages_job *job, struct pipeline_info *sum, u
 
 whit_result renderer_get_kernel(const struct renderer *renderer, struct render_kernel_info *info)
 {
-    struct gpu_spec own = variant_spec(renderer), general = variant_general_spec(renderer);
+    const struct target *target = &renderer->picture;
+    struct gpu_spec own = variant_spec(target), general = variant_general_spec(target);
     struct stages_job job;
     struct pipeline_info own_info, general_info;
     uint32_t largest, general_largest;
     *info = (struct render_kernel_info){0};
-    stages_job_init(renderer, &own, true, &job);
+    stages_job_init(target, &own, true, &job);
     bool counted = count_set(&job, &own_info, &largest);
-    stages_job_init(renderer, &general, false, &job);
+    stages_job_init(target, &general, false, &job);
     if (!counted || !count_set(&job, &general_info, &general_largest)) {
         log_error(&renderer->log, "SPIRV-Tools cannot specialize the kernels");
         return WHIT_ERROR_DEVICE;
@@ -183,16 +185,16 @@ static uint32_t row_of(enum stage stage, uint32_t list)
 
 /* Over what waits in the generation of `chunk`: the arguments are at `offset` of it. Those of
    camera rays follow from the chunk. */
-static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chunk *chunk,
+static void dispatch(struct target *target, enum stage stage, struct gpu_chunk *chunk,
                      uint32_t list)
 {
-    struct commands *commands = renderer->commands;
-    const struct pass *pass = &renderer->stages.set.passes[stage];
+    struct commands *commands = target->renderer->commands;
+    const struct pass *pass = &target->stages.set.passes[stage];
     chunk->list = list;
-    struct buffer *waiting = renderer->pixel_buffers.queues.waiting;
-    stage_times_next(renderer, row_of(stage, list));
+    struct buffer *waiting = target->buffers.queues.waiting;
+    stage_times_next(target, row_of(stage, list));
     if (pass->looks) {
-        render_clear_waiting(renderer, waiting);
+        render_clear_waiting(target->renderer, waiting);
         commands_barrier(commands);
     }
     commands_bind(commands, pass->pipeline, pass->set);
@@ -201,56 +203,57 @@ static void dispatch(struct renderer *renderer, enum stage stage, struct gpu_chu
         commands_dispatch(commands, (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each,
                           1, 1);
     else
-        commands_dispatch_indirect(commands, renderer->pixel_buffers.queues.generations,
+        commands_dispatch_indirect(commands, target->buffers.queues.generations,
                                    stages_generation_offset(chunk->generation) + list_offset(list));
-    ++renderer->stats.dispatches;
+    ++target->stats.dispatches;
     if (pass->looks) {
         struct gpu_chunk waits = *chunk;
         waits.waiting = 1;
-        stage_times_next(renderer, RENDER_STAGE_DEFERRED);
-        render_take_waiting(renderer, pass, waiting, &waits, sizeof waits);
+        stage_times_next(target, RENDER_STAGE_DEFERRED);
+        render_take_waiting(target, pass, waiting, &waits, sizeof waits);
     }
     commands_barrier(commands);
 }
 
-static void record_generation(struct renderer *renderer, struct gpu_chunk *chunk)
+static void record_generation(struct target *target, struct gpu_chunk *chunk)
 {
-    dispatch(renderer, chunk->generation == 0 ? STAGE_CAMERA : STAGE_CLOSEST, chunk, LIST_RAYS);
-    dispatch(renderer, STAGE_SHADE, chunk, LIST_HITS);
-    if (renderer->stages.set.classes > 1)
-        dispatch(renderer, STAGE_SHADE_GLASS, chunk, LIST_HITS + CLASS_GLASS);
+    struct renderer *renderer = target->renderer;
+    dispatch(target, chunk->generation == 0 ? STAGE_CAMERA : STAGE_CLOSEST, chunk, LIST_RAYS);
+    dispatch(target, STAGE_SHADE, chunk, LIST_HITS);
+    if (target->stages.set.classes > 1)
+        dispatch(target, STAGE_SHADE_GLASS, chunk, LIST_HITS + CLASS_GLASS);
     bool by_light = renderer->frame.light_count <= LIGHT_LISTS;
     for (uint32_t i = 0; i < renderer->frame.light_count; ++i) {
         chunk->light = i;
-        dispatch(renderer, chunk->generation == 0 ? STAGE_SHADOW : STAGE_SHADOW_LATER, chunk,
+        dispatch(target, chunk->generation == 0 ? STAGE_SHADOW : STAGE_SHADOW_LATER, chunk,
                  LIST_LIGHTS + (by_light ? i : 0));
     }
 }
 
 /* From the last generation to the camera rays. Does nothing where generation `count` has rays. */
-static void record_resolve(struct renderer *renderer, struct gpu_chunk *chunk, uint32_t count)
+static void record_resolve(struct target *target, struct gpu_chunk *chunk, uint32_t count)
 {
     chunk->light = count;
     for (chunk->generation = count; --chunk->generation > 0;) {
-        for (uint32_t i = 0; i < renderer->stages.set.classes; ++i) {
-            if (renderer->stages.set.calls[i])
-                dispatch(renderer, STAGE_RESOLVE_LATER, chunk, LIST_HITS + i);
+        for (uint32_t i = 0; i < target->stages.set.classes; ++i) {
+            if (target->stages.set.calls[i])
+                dispatch(target, STAGE_RESOLVE_LATER, chunk, LIST_HITS + i);
         }
     }
-    dispatch(renderer, STAGE_RESOLVE, chunk, LIST_RAYS);
+    dispatch(target, STAGE_RESOLVE, chunk, LIST_RAYS);
 }
 
 /* Generations `first` to `end` of a tile in one submission, and what they sum up to. */
-static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk *chunk,
-                                     uint32_t first, uint32_t end)
+static whit_result trace_generations(struct target *target, struct gpu_chunk *chunk, uint32_t first,
+                                     uint32_t end)
 {
-    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
-    struct commands *commands = renderer->commands;
+    const struct queue_buffers *queues = &target->buffers.queues;
+    struct commands *commands = target->renderer->commands;
     whit_result result = commands_begin(commands);
     if (result != WHIT_OK)
         return result;
     if (first == 0) {
-        commands_fill(commands, renderer->pixel_buffers.status, 0, 4, 0);
+        commands_fill(commands, target->buffers.status, 0, 4, 0);
         commands_copy(commands, queues->empty, 0, queues->generations, 0,
                       stages_generation_offset(queues->generation_count));
         if (queues->cuts)
@@ -258,12 +261,12 @@ static whit_result trace_generations(struct renderer *renderer, struct gpu_chunk
     }
     commands_barrier(commands);
     commands_span_begin(commands, "tile");
-    stage_times_submission(renderer);
+    stage_times_submission(target);
     for (chunk->generation = first; chunk->generation < end; ++chunk->generation)
-        record_generation(renderer, chunk);
-    record_resolve(renderer, chunk, end);
-    result = render_finish_submission(renderer);
-    stage_times_take(renderer);
+        record_generation(target, chunk);
+    record_resolve(target, chunk, end);
+    result = render_finish_submission(target);
+    stage_times_take(target);
     return result;
 }
 
@@ -274,12 +277,11 @@ static float float_of_bits(uint32_t bits)
     return value;
 }
 
-static whit_result take_tally(struct renderer *renderer)
+static whit_result take_tally(struct target *target)
 {
-    struct render_stats *stats = &renderer->stats;
+    struct render_stats *stats = &target->stats;
     struct gpu_tally tally;
-    whit_result result =
-        buffer_read(renderer->pixel_buffers.queues.generations, 0, &tally, sizeof tally);
+    whit_result result = buffer_read(target->buffers.queues.generations, 0, &tally, sizeof tally);
     if (result != WHIT_OK)
         return result;
     stats->weight_cut_depth =
@@ -294,29 +296,30 @@ static whit_result take_tally(struct renderer *renderer)
 }
 
 /* How many rays wait in a generation that was not traced yet. */
-static whit_result count_left(struct renderer *renderer, uint32_t generation, uint32_t *rays)
+static whit_result count_left(struct target *target, uint32_t generation, uint32_t *rays)
 {
     struct gpu_generation head = {0};
     whit_result result = WHIT_OK;
-    if (renderer->has_secondary)
-        result = buffer_read(renderer->pixel_buffers.queues.generations,
+    if (target->renderer->has_secondary)
+        result = buffer_read(target->buffers.queues.generations,
                              stages_generation_offset(generation), &head, sizeof head);
     *rays = head.lists[LIST_RAYS].front + head.lists[LIST_RAYS].back;
     return result;
 }
 
 /* Leaves the pixels alone where a queue gets full. */
-static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *tile,
+static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile,
                              const struct progress *progress, double *longest_ms)
 {
-    struct stages *stages = &renderer->stages;
-    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
+    struct renderer *renderer = target->renderer;
+    struct stages *stages = &target->stages;
+    const struct queue_buffers *queues = &target->buffers.queues;
     struct gpu_chunk chunk = *tile;
     chunk.ray_capacity = queues->ray_capacity;
     chunk.lit_capacity = queues->lit_capacity;
     uint32_t done = 0, end = stages->expected, left = 1, waits = 0, waits_before = 0;
-    stage_times_begin(renderer);
-    whit_result result = waits_read(renderer, &waits_before);
+    stage_times_begin(target);
+    whit_result result = waits_read(target, &waits_before);
     if (result != WHIT_OK)
         return result;
     while (left > 0) {
@@ -328,58 +331,58 @@ static whit_result draw_tile(struct renderer *renderer, const struct gpu_chunk *
         }
         double start_ms = clock_ms();
         if (result == WHIT_OK)
-            result = trace_generations(renderer, &chunk, done, end);
+            result = trace_generations(target, &chunk, done, end);
         double spent_ms = clock_ms() - start_ms;
         *longest_ms = spent_ms > *longest_ms ? spent_ms : *longest_ms;
         if (result == WHIT_OK && !stages->full)
-            result = count_left(renderer, end, &left);
+            result = count_left(target, end, &left);
         if (result != WHIT_OK || stages->full)
             return result;
         done = end;
         end += MORE_AT_ONCE;
     }
     stages->expected = done;
-    result = waits_read(renderer, &waits);
+    result = waits_read(target, &waits);
     if (result == WHIT_OK)
-        result = stage_times_end(renderer, tile, done, waits - waits_before);
-    if (result == WHIT_OK && !renderer->probe.active)
-        result = costs_add(renderer, tile);
-    return result == WHIT_OK ? take_tally(renderer) : result;
+        result = stage_times_end(target, tile, done, waits - waits_before);
+    if (result == WHIT_OK && !target->probed)
+        result = costs_add(target, tile);
+    return result == WHIT_OK ? take_tally(target) : result;
 }
 
 /* Where a queue gets full, in halves. */
-whit_result stages_sample(struct renderer *renderer, const struct gpu_chunk *chunk,
+whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
                           const struct progress *progress, double *longest_ms)
 {
-    whit_result result = draw_tile(renderer, chunk, progress, longest_ms);
-    if (result != WHIT_OK || !renderer->stages.full)
+    whit_result result = draw_tile(target, chunk, progress, longest_ms);
+    if (result != WHIT_OK || !target->stages.full)
         return result;
-    if (chunk->block_count == 1 && queues_can_grow(renderer)) {
-        result = queues_grow(renderer);
-        stages_unbind(&renderer->stages);
+    if (chunk->block_count == 1 && queues_can_grow(target)) {
+        result = queues_grow(target);
+        stages_unbind(&target->stages);
         if (result == WHIT_OK)
-            result = stages_bind(renderer);
-        return result == WHIT_OK ? stages_sample(renderer, chunk, progress, longest_ms) : result;
+            result = stages_bind(target);
+        return result == WHIT_OK ? stages_sample(target, chunk, progress, longest_ms) : result;
     }
     if (chunk->block_count == 1) {
-        log_error(&renderer->log, "there is no room for the rays of %d pixels",
+        log_error(&target->renderer->log, "there is no room for the rays of %d pixels",
                   RENDER_BLOCK_PIXELS);
         return WHIT_ERROR_STATUS;
     }
     uint32_t end = chunk->first_block + chunk->block_count;
     uint32_t most = (chunk->block_count + 1) / 2;
     struct gpu_chunk part = *chunk;
-    renderer->stages.blocks_most = most;
+    target->stages.blocks_most = most;
     for (; result == WHIT_OK && part.first_block < end;
          part.first_block += most, part.sums_row += most * RENDER_BLOCK_PIXELS) {
         part.block_count = end - part.first_block < most ? end - part.first_block : most;
         if (progress->listed)
-            result = adaptive_list(renderer, progress, &part);
+            result = adaptive_list(target, progress, &part);
         if (result == WHIT_OK && (!progress->listed || part.listed > 0))
-            result = stages_sample(renderer, &part, progress, longest_ms);
+            result = stages_sample(target, &part, progress, longest_ms);
     }
     part = *chunk;
     if (result == WHIT_OK && progress->listed) /* for the next sample */
-        result = adaptive_list(renderer, progress, &part);
+        result = adaptive_list(target, progress, &part);
     return result;
 }

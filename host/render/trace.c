@@ -47,7 +47,7 @@ static whit_result prepare(struct renderer *renderer, bool any)
         result =
             buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
                           BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
-    if (result == WHIT_OK && variant_waits(renderer) && !trace->waiting)
+    if (result == WHIT_OK && variant_waits(&renderer->picture) && !trace->waiting)
         result =
             buffer_create(renderer->device, sizeof(struct gpu_work) + (uint64_t)trace->capacity * 4,
                           BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->waiting);
@@ -64,7 +64,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     whit_result result = commands_begin(renderer->commands);
     if (result != WHIT_OK)
         return result;
-    commands_fill(renderer->commands, renderer->pixel_buffers.status, 0, 4, 0);
+    commands_fill(renderer->commands, renderer->picture.buffers.status, 0, 4, 0);
     render_clear_waiting(renderer, renderer->trace.waiting);
     commands_barrier(renderer->commands);
     commands_bind(renderer->commands, pass->pipeline, pass->set);
@@ -75,7 +75,8 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     struct gpu_batch waiting = *batch;
     waiting.waiting = 1;
     if (pass->looks)
-        render_take_waiting(renderer, pass, renderer->trace.waiting, &waiting, sizeof waiting);
+        render_take_waiting(&renderer->picture, pass, renderer->trace.waiting, &waiting,
+                            sizeof waiting);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);
@@ -83,7 +84,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
         result = commands_wait(renderer->commands, -1.0);
     if (result == WHIT_OK)
         renderer->trace.device_ms += commands_span_ms(renderer->commands, 0);
-    return result == WHIT_OK ? status_check(renderer) : result;
+    return result == WHIT_OK ? status_check(&renderer->picture) : result;
 }
 
 static whit_result cancelled(const struct renderer *renderer)
@@ -110,7 +111,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     renderer->trace.device_ms = 0.0;
     whit_result result = prepare(renderer, any);
     if (result == WHIT_OK)
-        result = waits_clear(renderer);
+        result = waits_clear(&renderer->picture);
     uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BARE : TRACE_FIRST;
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
         result = cancelled(renderer);
@@ -130,7 +131,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
         done += size;
     }
     if (result == WHIT_OK)
-        result = waits_read(renderer, &renderer->trace.waits);
+        result = waits_read(&renderer->picture, &renderer->trace.waits);
     return result;
 }
 

@@ -16,10 +16,11 @@ uint32_t variant_camera(const struct renderer *renderer)
                                                         : CAMERA_PERSPECTIVE;
 }
 
-bool variant_waits(const struct renderer *renderer)
+bool variant_waits(const struct target *target)
 {
+    const struct renderer *renderer = target->renderer;
     return renderer->params.numerics == NUMERICS_EXACT && !renderer->params.count &&
-           !renderer->probe.active;
+           !target->probed;
 }
 
 static bool only_spheres(const struct scene *scene)
@@ -44,9 +45,10 @@ static void refine_effects(const struct renderer *renderer, const struct scene_e
     spec->SPEC_FILTER_DETAIL = detail ? FILTERS_PATTERNED : FILTERS_PLAIN;
 }
 
-static struct gpu_spec make_spec(const struct renderer *renderer,
-                                 const struct scene_effects *effects, bool secondary)
+static struct gpu_spec make_spec(const struct target *target, const struct scene_effects *effects,
+                                 bool secondary)
 {
+    const struct renderer *renderer = target->renderer;
     const struct accel *accel = renderer->accel;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
     spec.SPEC_GROUP_SIZE = RENDER_GROUP_SIZE;
@@ -58,15 +60,15 @@ static struct gpu_spec make_spec(const struct renderer *renderer,
     spec.SPEC_ORDER = renderer->params.order;
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
-    spec.SPEC_PROBE = renderer->probe.active;
-    spec.SPEC_LOOKS = !variant_waits(renderer);
+    spec.SPEC_PROBE = target->probed;
+    spec.SPEC_LOOKS = !variant_waits(target);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
-    spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || renderer->probe.active;
+    spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || target->probed;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
     return spec;
@@ -104,9 +106,10 @@ static void narrow_textures(const struct renderer *renderer, enum scene_material
     spec->SPEC_SAMPLING &= own.sampling;
 }
 
-struct gpu_spec variant_spec(const struct renderer *renderer)
+struct gpu_spec variant_spec(const struct target *target)
 {
-    struct gpu_spec spec = make_spec(renderer, &renderer->effects, renderer->has_secondary);
+    const struct renderer *renderer = target->renderer;
+    struct gpu_spec spec = make_spec(target, &renderer->effects, renderer->has_secondary);
     if (spec.SPEC_SPHERES != SPHERES_NONE && !renderer->params.all_effects &&
         only_spheres(renderer->scene))
         spec.SPEC_SPHERES = SPHERES_ONLY;
@@ -123,18 +126,19 @@ struct gpu_spec variant_spec(const struct renderer *renderer)
     return spec;
 }
 
-struct gpu_spec variant_general_spec(const struct renderer *renderer)
+struct gpu_spec variant_general_spec(const struct target *target)
 {
-    struct scene_effects effects = renderer->effects;
+    struct scene_effects effects = target->renderer->effects;
     const struct render_params all = {.all_effects = true};
     effects_choose(&all, &effects);
-    struct gpu_spec spec = make_spec(renderer, &effects, true);
+    struct gpu_spec spec = make_spec(target, &effects, true);
     spec.SPEC_LISTED = 1;
     return spec;
 }
 
-struct gpu_spec variant_beside_spec(const struct renderer *renderer)
+struct gpu_spec variant_beside_spec(const struct target *target)
 {
+    const struct renderer *renderer = target->renderer;
     /* All but what the buffers hold nothing for. */
     static const enum scene_effect held[] = {SCENE_EFFECT_SMOOTH_NORMALS,
                                              SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_MEDIA};
@@ -146,7 +150,7 @@ struct gpu_spec variant_beside_spec(const struct renderer *renderer)
             all.effects_removed |= UINT64_C(1) << held[i];
     }
     effects_choose(&all, &effects);
-    struct gpu_spec spec = make_spec(renderer, &effects, renderer->has_secondary);
+    struct gpu_spec spec = make_spec(target, &effects, renderer->has_secondary);
     spec.SPEC_LOOKS = 1; /* one kernel is sooner made than two */
     return spec;
 }
@@ -173,15 +177,15 @@ static void bind_loads(struct bindings *bindings, int storage, int texels, bool 
 }
 
 /* The bindings that every kernel has. */
-static struct bindings bind_trees(const struct renderer *renderer)
+static struct bindings bind_trees(const struct target *target)
 {
-    const struct scene_buffers *scene = &renderer->scene_buffers;
+    const struct scene_buffers *scene = &target->renderer->scene_buffers;
     struct bindings bindings = {.none = scene->none};
     bool texels = scene->texel_loads;
     bind_loads(&bindings, BIND_NODES, BIND_NODE_TEXELS, texels, scene->nodes);
     bind_loads(&bindings, BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, texels, scene->triangles);
     bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
-    bind(&bindings, BIND_STATUS, BINDING_STORAGE, renderer->pixel_buffers.status);
+    bind(&bindings, BIND_STATUS, BINDING_STORAGE, target->buffers.status);
     bind(&bindings, BIND_WAITING, BINDING_STORAGE, NULL);
     return bindings;
 }
@@ -202,12 +206,13 @@ static struct pipeline_params pass_params(enum kernel kernel, const struct gpu_s
     };
 }
 
-static struct bindings bind_stages(const struct renderer *renderer)
+static struct bindings bind_stages(const struct target *target)
 {
+    const struct renderer *renderer = target->renderer;
     const struct scene_buffers *scene = &renderer->scene_buffers;
-    const struct pixel_buffers *pixels = &renderer->pixel_buffers;
-    const struct queue_buffers *queues = &renderer->pixel_buffers.queues;
-    struct bindings bindings = bind_trees(renderer);
+    const struct pixel_buffers *pixels = &target->buffers;
+    const struct queue_buffers *queues = &target->buffers.queues;
+    struct bindings bindings = bind_trees(target);
     bool texels = scene->texel_loads;
     bind_loads(&bindings, BIND_SHADING, BIND_SHADING_TEXELS, texels, scene->shading);
     bind_loads(&bindings, BIND_TEXELS, BIND_TEXEL_TEXELS, texels, scene->texels);
@@ -217,8 +222,7 @@ static struct bindings bind_stages(const struct renderer *renderer)
     bind(&bindings, BIND_IDS, BINDING_STORAGE, pixels->ids);
     bind(&bindings, BIND_LISTED, BINDING_STORAGE, pixels->listed);
     bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
-    bind(&bindings, BIND_PROBE, BINDING_STORAGE,
-         renderer->probe.active ? renderer->probe.records : NULL);
+    bind(&bindings, BIND_PROBE, BINDING_STORAGE, target->records);
     bind(&bindings, BIND_GENERATIONS, BINDING_STORAGE, queues->generations);
     bind(&bindings, BIND_GENERATION_TEXELS, BINDING_TEXELS, queues->generations);
     bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
@@ -370,9 +374,10 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
 }
 
-void variant_job_init(const struct renderer *renderer, const struct gpu_spec *set_spec,
+void variant_job_init(const struct target *target, const struct gpu_spec *set_spec,
                       uint32_t classes, enum stage stage, struct variant_job *job)
 {
+    const struct renderer *renderer = target->renderer;
     static const struct {
         enum kernel kernel;
         const char *name;
@@ -388,7 +393,7 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *se
         [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 1},
         [STAGE_RESOLVE_LATER] = {KERNEL_RESOLVE, "resolve later", false, 2},
     };
-    struct bindings bindings = bind_stages(renderer);
+    struct bindings bindings = bind_stages(target);
     *job = (struct variant_job){.spec = *set_spec};
     struct gpu_spec *spec = &job->spec;
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
@@ -407,20 +412,20 @@ void variant_job_init(const struct renderer *renderer, const struct gpu_spec *se
     job->params.bindings = job->kinds;
 }
 
-whit_result variant_bind_stage(const struct renderer *renderer, struct pass *pass)
+whit_result variant_bind_stage(const struct target *target, struct pass *pass)
 {
-    struct bindings bindings = bind_stages(renderer);
+    struct bindings bindings = bind_stages(target);
     return create_sets(pass, &bindings, BIND_STAGES_COUNT);
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
 {
-    struct bindings bindings = bind_trees(renderer);
+    struct bindings bindings = bind_trees(&renderer->picture);
     bind(&bindings, BIND_WAITING, BINDING_STORAGE, renderer->trace.waiting);
     bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
-    struct gpu_spec spec = variant_spec(renderer);
+    struct gpu_spec spec = variant_spec(&renderer->picture);
     spec.SPEC_ANY_HIT = any;
     spec.SPEC_CUTOUTS = 0;
     spec.SPEC_FILTERS = 0;
@@ -456,7 +461,7 @@ void pass_finish(struct pass *pass)
 void passes_finish(struct renderer *renderer)
 {
     renderer->beside.general = false;
-    stage_set_finish(&renderer->stages.set);
+    stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);
     pass_finish(&renderer->trace.closest);
     pass_finish(&renderer->trace.any);

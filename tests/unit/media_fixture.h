@@ -109,7 +109,7 @@ static inline double fresnel(double cos1, double n1, double n2)
 /* What a pixel lost by rays that were not traced: for --depth and for --bailout. */
 static inline void pixel_cut(const struct fixture *f, size_t pixel, float cut[2])
 {
-    assert_int_equal(buffer_read(f->renderer->pixel_buffers.queues.cut_sums,
+    assert_int_equal(buffer_read(f->renderer->picture.buffers.queues.cut_sums,
                                  pixel * 2 * sizeof *cut, cut, 2 * sizeof *cut),
                      WHIT_OK);
 }

@@ -147,7 +147,7 @@ static void check_scene(struct scene *scene, const struct accel_params *accel, c
             params.tile_size = tiles[k];
             renew(&f, &params);
             if (bands[k])
-                f.renderer->pixel_buffers.band_rows = bands[k];
+                f.renderer->picture.buffers.band_rows = bands[k];
             check(&f, &plain[0], e);
         }
         params.tile_size = 0;

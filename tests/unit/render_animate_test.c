@@ -188,19 +188,19 @@ static void a_deeper_tree_gets_a_larger_stack(void **state)
     const struct accel_params as_deep = {0}; /* as its tree, no deeper */
     struct fixture f = fixture_open(strung_out(), &as_deep, &animate_params);
     uint32_t depth = f.accel->instance_depth, size = f.renderer->node_stack_size;
-    struct pipeline *pipeline = f.renderer->stages.set.passes[STAGE_SHADE].pipeline;
+    struct pipeline *pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 0.01), WHIT_OK);
     if (f.accel->instance_depth <= depth)
-        assert_ptr_equal(f.renderer->stages.set.passes[STAGE_SHADE].pipeline, pipeline);
+        assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
     assert_true(f.accel->instance_depth > depth + 2);
     assert_true(f.renderer->node_stack_size > size);
     assert_true(f.renderer->node_stack_size >= accel_stack_size(f.accel));
     size = f.renderer->node_stack_size;
-    pipeline = f.renderer->stages.set.passes[STAGE_SHADE].pipeline;
+    pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 0.0), WHIT_OK);
     assert_int_equal(f.renderer->node_stack_size, size);
-    assert_ptr_equal(f.renderer->stages.set.passes[STAGE_SHADE].pipeline, pipeline);
+    assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
     fixture_close(&f);
     assert_any_order(strung_out(), (double[]){0.0, 0.5, 1.0}, &as_deep);
 }

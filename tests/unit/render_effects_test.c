@@ -409,7 +409,7 @@ static uint64_t bindings_of(const struct fixture *f)
 {
     uint64_t bindings = 0;
     for (int i = 0; i < STAGE_COUNT; ++i) {
-        const struct pass *pass = &f->renderer->stages.set.passes[i];
+        const struct pass *pass = &f->renderer->picture.stages.set.passes[i];
         struct pipeline_info info = {.specialized = true};
         if (pass->pipeline)
             pipeline_get_info(pass->pipeline, &info);
@@ -438,7 +438,7 @@ static void plain_scenes_bind_little(void **state)
             fail_msg("binding %d", absent[i]);
     assert_true(has(plain, BIND_PIXELS) && has(plain, BIND_FRAME));
     const struct scene_buffers *scene = &f.renderer->scene_buffers;
-    const struct pixel_buffers *pixels = &f.renderer->pixel_buffers;
+    const struct pixel_buffers *pixels = &f.renderer->picture.buffers;
     assert_null(scene->texels);
     assert_null(scene->environment);
     assert_null(pixels->queues.rays);
@@ -537,11 +537,11 @@ static void what_comes_into_view_is_right_at_once(void **state)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     renderer_get_stats(f.renderer, &stats);
     assert_int_equal(stats.rays_refracted, 0);
-    const struct pipeline *pipeline = f.renderer->stages.set.passes[STAGE_SHADE].pipeline;
+    const struct pipeline *pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
     struct image image = render(&f);
     assert_true(same_bytes(&image, &expected.color));
-    assert_ptr_equal(f.renderer->stages.set.passes[STAGE_SHADE].pipeline, pipeline);
+    assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
     renderer_get_stats(f.renderer, &stats);
     assert_int_equal(stats.rays_refracted, expected.stats.rays_refracted);
     image_finish(&image);

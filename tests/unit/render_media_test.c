@@ -110,7 +110,7 @@ static void lone_bodies_need_less(void **state)
             const struct render_params params = {
                 .width = 16, .height = 16, .depth = 6, .all_effects = all};
             struct fixture f = fixture_open(layer_scene(layers, count), NULL, &params);
-            struct gpu_spec spec = variant_spec(f.renderer);
+            struct gpu_spec spec = variant_spec(&f.renderer->picture);
             assert_int_equal(spec.SPEC_MEDIA, all ? MEDIA_TOUCH : expected[count]);
             images[all] = render(&f);
             fixture_close(&f);

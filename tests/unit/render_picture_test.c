@@ -445,7 +445,7 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
                          WHIT_OK);
     renderer_get_stats(f.renderer, &stats);
     picture.sum = stats.costs[RAY_REFRACTED];
-    picture.was_full = f.renderer->stages.blocks_most > 0;
+    picture.was_full = f.renderer->picture.stages.blocks_most > 0;
     fixture_close(&f);
     return picture;
 }

@@ -451,15 +451,15 @@ static void pictures_know_nothing_of_it(void **state)
     struct probe_report report;
     image_finish(&picture);
     assert_null(r->probe.records);
-    assert_null(r->probe.pixel_buffers.pixels);
+    assert_null(r->probe.buffers.pixels);
     assert_null(r->probe.stages.set.passes[STAGE_SHADE].pipeline);
     uint64_t bytes = r->scene_buffers.bytes;
-    const struct pass *shading = &r->stages.set.passes[STAGE_SHADE];
+    const struct pass *shading = &r->picture.stages.set.passes[STAGE_SHADE];
     struct pipeline_info before = kernel_of(shading);
     assert_false(before.bindings >> BIND_PROBE & 1);
     assert_int_equal(renderer_probe(r, 2, 2, 0, &report), WHIT_OK);
     probe_report_finish(&report);
-    assert_false(r->probe.active);
+    assert_null(r->picture.records);
     struct pipeline_info after = kernel_of(shading),
                          probe = kernel_of(&r->probe.stages.set.passes[STAGE_SHADE]);
     assert_int_equal(after.instructions, before.instructions);

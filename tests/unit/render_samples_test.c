@@ -110,10 +110,10 @@ static void full_queues_do_not_matter(void **state)
     (void)state;
     static float smaller[FLOATS];
     draw(0, SAMPLES, 0, whole);
-    assert_int_equal(f.renderer->stages.blocks_most, 0);
-    f.renderer->pixel_buffers.queues.ray_capacity = 640;
+    assert_int_equal(f.renderer->picture.stages.blocks_most, 0);
+    f.renderer->picture.buffers.queues.ray_capacity = 640;
     draw(0, SAMPLES, 0, smaller);
-    assert_true(f.renderer->stages.blocks_most > 0);
+    assert_true(f.renderer->picture.stages.blocks_most > 0);
     assert_memory_equal(smaller, whole, sizeof whole);
 }
 

@@ -78,7 +78,7 @@ static void check_picture(const char *name, struct scene *scene, const char *cam
         assert_int_equal(renderer_render(f.renderer), WHIT_OK);
         assert_int_equal(renderer_read_color(f.renderer, &color[i]), WHIT_OK);
         assert_int_equal(renderer_read_ids(f.renderer, &ids[i]), WHIT_OK);
-        waits[i] = f.renderer->stats.waits;
+        waits[i] = f.renderer->picture.stats.waits;
     }
     for (size_t i = 0; i < (size_t)SIDE * SIDE; ++i) {
         differ += memcmp(color[0].pixels + 4 * i, color[1].pixels + 4 * i, 16) != 0;
