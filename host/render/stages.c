@@ -10,6 +10,17 @@
 
 /* Generations of the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };
+/* With thousands of lights, those of one tile would keep Ctrl+C waiting for seconds. */
+enum { DISPATCHES_A_SUBMISSION = 512 };
+
+/* A tile on its way through the stages. */
+struct tile_run {
+    struct target *target;
+    struct gpu_chunk chunk;
+    const struct progress *progress;
+    uint32_t dispatches; /* of the submission in the making */
+    double longest_ms;   /* of those before */
+};
 
 void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
                      struct stages_job *job)
@@ -183,15 +194,56 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
 
-/* Over what waits in the generation of `chunk`: the arguments are at `offset` of it. Those of
-   camera rays follow from the chunk. */
-static void dispatch(struct target *target, enum stage stage, struct gpu_chunk *chunk,
-                     uint32_t list)
+static whit_result begin_submission(struct tile_run *run)
 {
+    struct commands *commands = run->target->renderer->commands;
+    whit_result result = commands_begin(commands);
+    if (result != WHIT_OK)
+        return result;
+    commands_span_begin(commands, "tile");
+    stage_times_submission(run->target);
+    run->dispatches = 0;
+    return WHIT_OK;
+}
+
+static whit_result finish_submission(struct tile_run *run)
+{
+    double start_ms = clock_ms();
+    whit_result result = render_finish_submission(run->target);
+    stage_times_take(run->target);
+    double spent_ms = clock_ms() - start_ms;
+    run->longest_ms = fmax(run->longest_ms, spent_ms);
+    return result;
+}
+
+/* Another submission where this one has got long. */
+static whit_result split_submission(struct tile_run *run)
+{
+    if (run->dispatches < DISPATCHES_A_SUBMISSION)
+        return WHIT_OK;
+    whit_result result = finish_submission(run);
+    if (result == WHIT_OK)
+        result = render_stop_asked(run->target->renderer, run->progress);
+    if (result == WHIT_OK)
+        result = begin_submission(run);
+    if (result == WHIT_OK)
+        commands_barrier(run->target->renderer->commands);
+    return result;
+}
+
+/* Over what waits in the generation of the chunk: the arguments are at `offset` of it. Those of
+   camera rays follow from the chunk. */
+static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t list)
+{
+    struct target *target = run->target;
+    struct gpu_chunk *chunk = &run->chunk;
     struct commands *commands = target->renderer->commands;
     const struct pass *pass = &target->stages.set.passes[stage];
-    chunk->list = list;
     struct buffer *waiting = target->buffers.queues.waiting;
+    whit_result result = split_submission(run);
+    if (result != WHIT_OK)
+        return result;
+    chunk->list = list;
     stage_times_next(target, row_of(stage, list));
     if (pass->looks) {
         render_clear_waiting(target->renderer, waiting);
@@ -206,6 +258,7 @@ static void dispatch(struct target *target, enum stage stage, struct gpu_chunk *
         commands_dispatch_indirect(commands, target->buffers.queues.generations,
                                    stages_generation_offset(chunk->generation) + list_offset(list));
     ++target->stats.dispatches;
+    ++run->dispatches;
     if (pass->looks) {
         struct gpu_chunk waits = *chunk;
         waits.waiting = 1;
@@ -213,61 +266,68 @@ static void dispatch(struct target *target, enum stage stage, struct gpu_chunk *
         render_take_waiting(target, pass, waiting, &waits, sizeof waits);
     }
     commands_barrier(commands);
+    return WHIT_OK;
 }
 
-static void record_generation(struct target *target, struct gpu_chunk *chunk)
+static whit_result record_generation(struct tile_run *run)
 {
-    struct renderer *renderer = target->renderer;
-    dispatch(target, chunk->generation == 0 ? STAGE_CAMERA : STAGE_CLOSEST, chunk, LIST_RAYS);
-    dispatch(target, STAGE_SHADE, chunk, LIST_HITS);
-    if (target->stages.set.classes > 1)
-        dispatch(target, STAGE_SHADE_GLASS, chunk, LIST_HITS + CLASS_GLASS);
-    bool by_light = renderer->frame.light_count <= LIGHT_LISTS;
-    for (uint32_t i = 0; i < renderer->frame.light_count; ++i) {
-        chunk->light = i;
-        dispatch(target, chunk->generation == 0 ? STAGE_SHADOW : STAGE_SHADOW_LATER, chunk,
-                 LIST_LIGHTS + (by_light ? i : 0));
+    const struct renderer *renderer = run->target->renderer;
+    bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
+    whit_result result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
+    if (result == WHIT_OK)
+        result = dispatch(run, STAGE_SHADE, LIST_HITS);
+    if (result == WHIT_OK && run->target->stages.set.classes > 1)
+        result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
+    for (uint32_t i = 0; result == WHIT_OK && i < renderer->frame.light_count; ++i) {
+        run->chunk.light = i;
+        result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER,
+                          LIST_LIGHTS + (by_light ? i : 0));
     }
+    return result;
 }
 
 /* From the last generation to the camera rays. Does nothing where generation `count` has rays. */
-static void record_resolve(struct target *target, struct gpu_chunk *chunk, uint32_t count)
+static whit_result record_resolve(struct tile_run *run, uint32_t count)
 {
-    chunk->light = count;
-    for (chunk->generation = count; --chunk->generation > 0;) {
-        for (uint32_t i = 0; i < target->stages.set.classes; ++i) {
-            if (target->stages.set.calls[i])
-                dispatch(target, STAGE_RESOLVE_LATER, chunk, LIST_HITS + i);
+    const struct stage_set *set = &run->target->stages.set;
+    whit_result result = WHIT_OK;
+    run->chunk.light = count;
+    for (run->chunk.generation = count; --run->chunk.generation > 0;) {
+        for (uint32_t i = 0; result == WHIT_OK && i < set->classes; ++i) {
+            if (set->calls[i])
+                result = dispatch(run, STAGE_RESOLVE_LATER, LIST_HITS + i);
         }
     }
-    dispatch(target, STAGE_RESOLVE, chunk, LIST_RAYS);
+    return result == WHIT_OK ? dispatch(run, STAGE_RESOLVE, LIST_RAYS) : result;
 }
 
-/* Generations `first` to `end` of a tile in one submission, and what they sum up to. */
-static whit_result trace_generations(struct target *target, struct gpu_chunk *chunk, uint32_t first,
-                                     uint32_t end)
+static void clear_queues(struct target *target)
 {
     const struct queue_buffers *queues = &target->buffers.queues;
     struct commands *commands = target->renderer->commands;
-    whit_result result = commands_begin(commands);
+    commands_fill(commands, target->buffers.status, 0, 4, 0);
+    commands_copy(commands, queues->empty, 0, queues->generations, 0,
+                  stages_generation_offset(queues->generation_count));
+    if (queues->cuts)
+        commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
+}
+
+/* Generations `first` to `end` of a tile, and what they sum up to. */
+static whit_result trace_generations(struct tile_run *run, uint32_t first, uint32_t end)
+{
+    whit_result result = begin_submission(run);
     if (result != WHIT_OK)
         return result;
-    if (first == 0) {
-        commands_fill(commands, target->buffers.status, 0, 4, 0);
-        commands_copy(commands, queues->empty, 0, queues->generations, 0,
-                      stages_generation_offset(queues->generation_count));
-        if (queues->cuts)
-            commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
+    if (first == 0)
+        clear_queues(run->target);
+    commands_barrier(run->target->renderer->commands);
+    for (uint32_t g = first; result == WHIT_OK && g < end; ++g) {
+        run->chunk.generation = g;
+        result = record_generation(run);
     }
-    commands_barrier(commands);
-    commands_span_begin(commands, "tile");
-    stage_times_submission(target);
-    for (chunk->generation = first; chunk->generation < end; ++chunk->generation)
-        record_generation(target, chunk);
-    record_resolve(target, chunk, end);
-    result = render_finish_submission(target);
-    stage_times_take(target);
-    return result;
+    if (result == WHIT_OK)
+        result = record_resolve(run, end);
+    return result == WHIT_OK ? finish_submission(run) : result;
 }
 
 static float float_of_bits(uint32_t bits)
@@ -314,9 +374,9 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
     struct renderer *renderer = target->renderer;
     struct stages *stages = &target->stages;
     const struct queue_buffers *queues = &target->buffers.queues;
-    struct gpu_chunk chunk = *tile;
-    chunk.ray_capacity = queues->ray_capacity;
-    chunk.lit_capacity = queues->lit_capacity;
+    struct tile_run run = {.target = target, .chunk = *tile, .progress = progress};
+    run.chunk.ray_capacity = queues->ray_capacity;
+    run.chunk.lit_capacity = queues->lit_capacity;
     uint32_t done = 0, end = stages->expected, left = 1, waits = 0, waits_before = 0;
     stage_times_begin(target);
     whit_result result = waits_read(target, &waits_before);
@@ -329,11 +389,9 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
                       queues->generation_count - 1);
             result = WHIT_ERROR_STATUS;
         }
-        double start_ms = clock_ms();
         if (result == WHIT_OK)
-            result = trace_generations(target, &chunk, done, end);
-        double spent_ms = clock_ms() - start_ms;
-        *longest_ms = spent_ms > *longest_ms ? spent_ms : *longest_ms;
+            result = trace_generations(&run, done, end);
+        *longest_ms = fmax(*longest_ms, run.longest_ms);
         if (result == WHIT_OK && !stages->full)
             result = count_left(target, end, &left);
         if (result != WHIT_OK || stages->full)

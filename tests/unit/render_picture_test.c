@@ -398,6 +398,18 @@ static void cut_loops_are_reported(void **state)
     }
 }
 
+/* The clock of this program stands still but where the test turns it (-Wl,--wrap=clock_ms). */
+static double now_ms;
+static bool *cancelled_by_clock; /* when somebody looks at it */
+double __wrap_clock_ms(void);
+
+double __wrap_clock_ms(void)
+{
+    if (cancelled_by_clock)
+        *cancelled_by_clock = true;
+    return now_ms;
+}
+
 /* Each light is a dispatch of its own. */
 static void many_lights_are_drawn(void **state)
 {
@@ -413,6 +425,32 @@ static void many_lights_are_drawn(void **state)
     assert_true(stats.rays_shadow > 4000);
     image_finish(&image);
     fixture_close(&f);
+}
+
+/* In one tile, whose first submission takes some of its lights. */
+static void many_lights_keep_no_one_waiting(void **state)
+{
+    (void)state;
+    bool cancel = false;
+    struct render_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
+    for (int lights = 4; lights <= 4000; lights += 3996) {
+        struct scene *scene = plain_scene();
+        for (int i = 0; i < lights; ++i)
+            scene_put_lamp(scene, 3 + 0.01 * i, 4, 3, 0.001f);
+        struct fixture f = fixture_open(scene, NULL, &params);
+        struct progress progress = {.share = 1.0, .work_total = 1};
+        struct gpu_chunk chunk = {.block_count = 1, .band_rows = 8};
+        double longest_ms = 0.0;
+        assert_int_equal(renderer_compile(f.renderer), WHIT_OK);
+        render_take_sample(&f.renderer->picture, 0, 1, &chunk);
+        cancelled_by_clock = &cancel;
+        whit_result result = stages_sample(&f.renderer->picture, &chunk, &progress, &longest_ms);
+        cancelled_by_clock = NULL;
+        assert_true(cancel);
+        cancel = false;
+        assert_int_equal(result, lights == 4 ? WHIT_OK : WHIT_ERROR_CANCELLED);
+        fixture_close(&f);
+    }
 }
 
 struct glass_picture {
@@ -468,15 +506,6 @@ static void full_queues_end_in_smaller_tiles(void **state)
         image_finish(&large.refracted);
         image_finish(&small.refracted);
     }
-}
-
-/* The clock of this program stands still but where the test turns it (-Wl,--wrap=clock_ms). */
-static double now_ms;
-double __wrap_clock_ms(void);
-
-double __wrap_clock_ms(void)
-{
-    return now_ms;
 }
 
 static void cancel_and_time_limit_stop(void **state)
@@ -558,6 +587,7 @@ int main(void)
         cmocka_unit_test(unused_effects_do_not_matter),
         cmocka_unit_test(cut_loops_are_reported),
         cmocka_unit_test(many_lights_are_drawn),
+        cmocka_unit_test(many_lights_keep_no_one_waiting),
         cmocka_unit_test(full_queues_end_in_smaller_tiles),
         cmocka_unit_test(cancel_and_time_limit_stop),
         cmocka_unit_test(pictures_may_be_dropped),
