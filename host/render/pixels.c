@@ -25,20 +25,21 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
-    uint64_t rows = limit / ((uint64_t)width * 16) / 8 * 8;
+    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
+    uint64_t slots = (uint64_t)tile * tile;
+    slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
+    p->levels = pixels_levels(&renderer->params);
+    uint64_t most_pixels = limit / 16 - slots * p->levels; /* as the sums are behind them */
+    uint64_t rows = most_pixels / width / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
     if (p->band_rows == 0) {
         log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
         return WHIT_ERROR_DEVICE;
     }
-    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
     uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
-    uint64_t slots = (uint64_t)tile * tile;
-    slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
-    p->levels = pixels_levels(&renderer->params);
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
     /* What nothing is bound to has no bytes, and is not created. */
     bool lists = renderer->params.adaptive > 0.0 || target->probed;

@@ -117,6 +117,20 @@ static void full_queues_do_not_matter(void **state)
     assert_memory_equal(smaller, whole, sizeof whole);
 }
 
+/* A buffer of the device holds one sample of all of it, but not the sums of more as well. */
+static void large_pictures_have_room_for_sums(void **state)
+{
+    (void)state;
+    const struct render_params params = {.width = 4096, .height = 2048, .samples = 4096};
+    const struct pixel_buffers *p = &f.renderer->picture.buffers;
+    assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+    uint64_t limit = device_get_info(f.device)->max_storage_range_bytes;
+    assert_int_equal(p->levels, 12);
+    assert_true(p->band_rows > 0 && p->band_rows % 8 == 0);
+    assert_true(buffer_size(p->pixels) <= limit);
+    assert_true(p->band_rows == params.height || limit == UINT64_C(4096) * 2048 * 16);
+}
+
 static void other_samples_are_refused(void **state)
 {
     (void)state;
@@ -146,6 +160,7 @@ int main(void)
         cmocka_unit_test(samples_are_summed_in_pairs),
         cmocka_unit_test(sets_merge_to_the_whole),
         cmocka_unit_test(full_queues_do_not_matter),
+        cmocka_unit_test(large_pictures_have_room_for_sums),
         cmocka_unit_test(other_samples_are_refused),
     };
     return fixture_end(cmocka_run_group_tests(tests, open_scene, close_scene));
