@@ -29,7 +29,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint64_t slots = (uint64_t)tile * tile;
     slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
     p->levels = pixels_levels(&renderer->params);
-    uint64_t most_pixels = limit / 16 - slots * p->levels; /* as the sums are behind them */
+    /* The sums of samples are in the same buffer, behind the pixels. */
+    uint64_t most_pixels = limit / 16 - slots * p->levels;
     uint64_t rows = most_pixels / width / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;

@@ -122,7 +122,8 @@ struct beside_state {
     bool general;           /* renderer->picture.stages.set is of general kernels */
 };
 
-/* What pixels are drawn with and into: those of the picture, or a probed one. */
+/* The buffers that the stages read and write, the kernels bound to them, and the figures of what
+   was drawn. A renderer has two: one for pictures, one for probed pixels. */
 struct target {
     struct renderer *renderer;
     struct pixel_buffers buffers;

@@ -10,7 +10,8 @@
 
 /* Generations of the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };
-/* With thousands of lights, those of one tile would keep Ctrl+C waiting for seconds. */
+/* A submission cannot be stopped. One of all the dispatches of a tile takes seconds in a scene of
+   thousands of lights, and Ctrl+C would wait for it. */
 enum { DISPATCHES_A_SUBMISSION = 512 };
 
 /* A tile on its way through the stages. */
@@ -216,7 +217,8 @@ static whit_result finish_submission(struct tile_run *run)
     return result;
 }
 
-/* Another submission where this one has got long. */
+/* Submits what was recorded and begins anew where the submission has as many dispatches as one may
+   have; stops there if that is asked for. */
 static whit_result split_submission(struct tile_run *run)
 {
     if (run->dispatches < DISPATCHES_A_SUBMISSION)
@@ -231,8 +233,9 @@ static whit_result split_submission(struct tile_run *run)
     return result;
 }
 
-/* Over what waits in the generation of the chunk: the arguments are at `offset` of it. Those of
-   camera rays follow from the chunk. */
+/* Records one stage over one list of the generation run->chunk.generation. How many workgroups that
+   takes is known to the device alone, but for camera rays: one for each listed pixel of the chunk.
+ */
 static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t list)
 {
     struct target *target = run->target;
