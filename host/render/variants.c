@@ -369,7 +369,9 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
         return;
-    spec->SPEC_PACKETS = spec->SPEC_BOUNDED = 1;
+    spec->SPEC_PACKETS = 1;
+    spec->SPEC_COMMON_ORIGIN =
+        stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE && !spec->SPEC_INSTANCED;
     spec->SPEC_PACKET_STACK = stack;
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
 }

@@ -6,34 +6,22 @@
 #ifndef BIND_PACKET_GLSL
 #define BIND_PACKET_GLSL
 
-#include "traverse.glsl"
+#include "beam.glsl"
 
 layout(set = 0, binding = BIND_NODE8_TEXELS) uniform usamplerBuffer node8_texels;
 
-#define EACH_RAY [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++)
-
-// What the caller asks for, and gets.
-bool packet_alive[SPEC_PACKET_RAYS];
-vec3 packet_origin[SPEC_PACKET_RAYS], packet_dir[SPEC_PACKET_RAYS];
-float packet_t_max[SPEC_PACKET_RAYS];
-uvec2 packet_skip[SPEC_PACKET_RAYS]; // instance, primitive
-Hit packet_hits[SPEC_PACKET_RAYS];
-
-// In the space of the tree in hand, and in that of the tree over instances.
-RaySetup packet_rays[SPEC_PACKET_RAYS], packet_world[SPEC_PACKET_RAYS];
+RaySetup packet_world[SPEC_PACKET_RAYS]; // packet_rays in the space of the tree over instances
 
 // The same rays as boxes are tested with: t in units of the largest component of the direction, so that
 // `inverse` is at least 1; and at most BOX_INVERSE_MOST, see box_margin.
 struct BoxRay {
     vec3 origin, inverse, size; // size: |inverse|
-    float unit;                 // that component
 };
 BoxRay packet_box_rays[SPEC_PACKET_RAYS], packet_world_box_rays[SPEC_PACKET_RAYS];
-int packet_end[SPEC_PACKET_RAYS]; // bits of the t behind which nothing counts, in these units
-float packet_size;                // largest coordinate of an origin, and what clipped triangles take
-const float BOX_INVERSE_MOST = 16777216.0; // 2^24
 
-// Entry i: what is left to visit of a node's children, nearest first, the lanes behind them REF_DONE.
+// What is left to visit of the children of the node in hand, nearest first, the lanes behind them REF_DONE;
+// then the same of the nodes above, the lowest first.
+uint packet_top;
 uint packet_stack[SPEC_PACKET_STACK];
 uint packet_height;
 
@@ -47,30 +35,6 @@ struct PacketBounds {
     float t_most;
 };
 PacketBounds packet_bounds;
-
-#define INFINITE uintBitsToFloat(0x7f800000u)
-// Far more than the roundings of a ray, its bounds and the test of a box, each a few 2^-24 of the distances
-// from the ray's ends; and than the slack of that test (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
-const float BOUNDS_MARGIN = 1.0 / 131072.0;
-
-int least_of_lanes(int value)
-{
-    value = min(value, subgroupShuffleXor(value, 1u));
-    value = min(value, subgroupShuffleXor(value, 2u));
-    return min(value, subgroupShuffleXor(value, 4u));
-}
-
-float least_of_lanes(float value)
-{
-    value = min(value, subgroupShuffleXor(value, 1u));
-    value = min(value, subgroupShuffleXor(value, 2u));
-    return min(value, subgroupShuffleXor(value, 4u));
-}
-
-vec3 least_of_lanes3(vec3 value)
-{
-    return vec3(least_of_lanes(value.x), least_of_lanes(value.y), least_of_lanes(value.z));
-}
 
 vec3 inverse_or_infinite(vec3 value)
 {
@@ -115,34 +79,19 @@ void make_packet_bounds(const uint mode)
     packet_bounds = b;
 }
 
-BoxRay make_box_ray(RaySetup ray)
-{
-    BoxRay box;
-    vec3 size = abs(ray.dir);
-    box.origin = ray.origin;
-    box.unit = max(size.x, max(size.y, size.z));
-    box.size = min(abs(box.unit * ray.inv_dir), vec3(BOX_INVERSE_MOST));
-    box.inverse = mix(box.size, -box.size, ray.negative);
-    return box;
-}
-
 // Of packet_rays, which are those of a tree now.
 void make_box_rays(const uint mode)
 {
-    float size = 0.0;
     EACH_RAY {
         RaySetup ray = packet_rays[r];
-        packet_box_rays[r] = make_box_ray(ray);
-        packet_end[r] = floatBitsToInt(farthest(packet_hits[r]) * packet_box_rays[r].unit);
-        vec3 far = abs(ray.origin);
-        float own = max(far.x, max(far.y, far.z));
-        if (SPEC_CLIPPED != 0u)
-            own += (ray.above.x - ray.origin.x) / BOUNDS_MARGIN;
-        size = packet_alive[r] ? max(size, own) : size;
+        vec3 size = abs(ray.dir);
+        packet_unit[r] = max(size.x, max(size.y, size.z));
+        size = min(abs(packet_unit[r] * ray.inv_dir), vec3(BOX_INVERSE_MOST));
+        packet_box_rays[r] = BoxRay(ray.origin, mix(size, -size, ray.negative), size);
+        end_ray(false, r);
     }
-    packet_size = -least_of_lanes(-size);
-    if (SPEC_BOUNDED != 0u)
-        make_packet_bounds(mode);
+    size_rays();
+    make_packet_bounds(mode);
 }
 
 // Whether some ray within the bounds may come through the box.
@@ -166,52 +115,40 @@ bool may_be_met(vec3 box_lo, vec3 box_hi)
     return start <= end * (1.0 + BOUNDS_MARGIN);
 }
 
-void push_packet(uint entry, bool wanted)
+// Whether there is anything in an entry. Lane 0 by a name that compilers do not know it by (see turn.glsl):
+// of a lane that they know lavapipe makes a scalar, and a jump of every selection by it.
+bool is_filled(uint entry)
 {
+    return subgroupShuffle(entry, gl_WorkGroupID.y) != REF_DONE;
+}
+
+// Puts another entry on top, if there is anything in it.
+void push_packet(uint entry, bool some)
+{
+    bool keep = some && is_filled(packet_top);
+    if (keep && packet_height >= SPEC_PACKET_STACK)
+        packet_status |= STATUS_NODE_STACK_OVERFLOW;
     [[unroll]] for (uint i = 0u; i < SPEC_PACKET_STACK; i++)
-        packet_stack[i] = wanted && packet_height == i ? entry : packet_stack[i];
-    if (wanted && packet_height >= SPEC_PACKET_STACK)
-        packet_hits[0].status |= STATUS_NODE_STACK_OVERFLOW;
-    packet_height += uint(wanted);
+        packet_stack[i] = keep && packet_height == i ? packet_top : packet_stack[i];
+    packet_height += uint(keep);
+    packet_top = some ? entry : packet_top;
 }
 
-// Splits off the first of an entry, the others of which are pushed.
-uint take_first(uint entry, bool wanted)
-{
-    uint lane = gl_SubgroupInvocationID;
-    uint rest = subgroupShuffle(entry, (lane + 1u) & 7u);
-    rest = lane == 7u ? REF_DONE : rest;
-    push_packet(rest, wanted && subgroupShuffle(rest, 0u) != REF_DONE);
-    return subgroupShuffle(entry, 0u);
-}
-
-// `ref` itself where nothing is `wanted`.
+// `ref` itself where nothing is `wanted`; REF_DONE where nothing is left above `base`.
 uint pop_packet(bool wanted, uint ref, uint base)
 {
-    bool some = wanted && packet_height > base;
-    uint entry = REF_DONE;
+    bool empty = wanted && !is_filled(packet_top) && packet_height > base;
     [[unroll]] for (uint i = 0u; i < SPEC_PACKET_STACK; i++)
-        entry = packet_height == i + 1u ? packet_stack[i] : entry;
-    packet_height -= uint(some);
-    uint first = take_first(entry, some);
-    return wanted ? (some ? first : REF_DONE) : ref;
+        packet_top = empty && packet_height == i + 1u ? packet_stack[i] : packet_top;
+    packet_height -= uint(empty);
+    uint lane = gl_SubgroupInvocationID, first = subgroupShuffle(packet_top, 0u);
+    uint rest = subgroupShuffle(packet_top, (lane + 1u) & 7u);
+    rest = lane == 7u ? REF_DONE : rest;
+    packet_top = wanted ? rest : packet_top;
+    return wanted ? first : ref;
 }
 
-// Boxes are widened by more than all roundings of their tests, of transforms to instances and of the tests
-// of what is inside, each of which is a few 2^-24 of the coordinates that go into it. So wide, a box that a
-// ray runs along is met: with BOX_INVERSE_MOST in place of infinity it is left 2^7 times as far away as it
-// is large.
-float box_margin(vec3 middle, vec3 half_size)
-{
-    vec3 far = abs(middle) + half_size;
-    return (max(far.x, max(far.y, far.z)) + packet_size) * BOUNDS_MARGIN;
-}
-
-// Where the first ray of this lane enters the box, as bits; NEVER where none does. Integers, as lavapipe
-// has single instructions for their minima: negative floats are negative integers, which is all that
-// matters of them here.
-const int NEVER = 0x7f800000;
-
+// When the first ray of this lane enters the box, which is widened.
 int enter_box(vec3 middle, vec3 half_size)
 {
     int first = NEVER;
@@ -227,48 +164,30 @@ int enter_box(vec3 middle, vec3 half_size)
     return first;
 }
 
-vec3 from_lane(vec3 value, uint lane)
-{
-    return vec3(subgroupShuffle(value.x, lane), subgroupShuffle(value.y, lane),
-                subgroupShuffle(value.z, lane));
-}
-
-// Minima over two lanes `span` apart: of `lower` in the one that has not that bit, of `upper` in the other.
-int least_of_halves(int lower, int upper, uint span)
-{
-    bool up = (gl_SubgroupInvocationID & span) != 0u;
-    return min(up ? upper : lower, subgroupShuffleXor(up ? lower : upper, span));
-}
-
 // Of child `lane`, its first entry.
 int enter_children(vec3 lo, vec3 hi, bool wanted)
 {
     uint lane = gl_SubgroupInvocationID;
-    vec3 middle = lo * 0.5 + hi * 0.5, half_size = hi * 0.5 - lo * 0.5;
-    half_size += box_margin(middle, half_size);
-    if (SPEC_BOUNDED != 0u) {
-        uint left = gather_lanes(wanted && may_be_met(lo, hi) ? 1u << lane : 0u);
-        int own = NEVER;
-        do {
-            uint child = uint(findLSB(left)) & 7u;
-            int first =
-                least_of_lanes(enter_box(from_lane(middle, child), from_lane(half_size, child)));
-            own = left != 0u && lane == child ? first : own;
-            left &= left - 1u;
-        } while (left != 0u);
-        return own;
+    vec3 a = lo, b = hi;
+    if (SPEC_COMMON_ORIGIN != 0u) {
+        wanted = wanted && bring_to_beam(a, b);
+    } else {
+        wanted = wanted && may_be_met(lo, hi);
+        a = lo * 0.5 + hi * 0.5;
+        b = hi * 0.5 - lo * 0.5 + box_margin(lo, hi);
     }
-    int first[8];
-    [[unroll]] for (uint child = 0u; child < 8u; child++)
-        first[child] = enter_box(from_lane(middle, child), from_lane(half_size, child));
-    // Minima over lanes of all eight at once, child by lane. Written out: lavapipe keeps the array in memory
-    // where it cannot count the turns of a loop.
-    [[unroll]] for (uint child = 0u; child < 4u; child++)
-        first[child] = least_of_halves(first[child], first[child + 4u], 4u);
-    first[0] = least_of_halves(first[0], first[2], 2u);
-    first[1] = least_of_halves(first[1], first[3], 2u);
-    first[0] = least_of_halves(first[0], first[1], 1u);
-    return wanted ? first[0] : NEVER;
+    uint left = gather_lanes(wanted ? 1u << lane : 0u);
+    int own = NEVER;
+    do {
+        uint child = uint(findLSB(left)) & 7u;
+        vec3 child_a = from_lane(a, child), child_b = from_lane(b, child);
+        int first = SPEC_COMMON_ORIGIN != 0u ? enter_beam_box(child_a, child_b)
+                                             : enter_box(child_a, child_b);
+        first = least_of_lanes(first);
+        own = left != 0u && lane == child ? first : own;
+        left &= left - 1u;
+    } while (left != 0u);
+    return own;
 }
 
 // One stage of Batcher's bitonic sorter over the lanes.
@@ -301,8 +220,8 @@ uint step_packet(uint node, uint base)
     uint ref = (r1.w << BVH_COUNT_SHIFT) | r0.w;
     int entered = enter_children(row_vec3(r0), row_vec3(r1), ref != REF_DONE);
     uint entry = sort_children(ref, entered);
-    uint first = take_first(entry, true);
-    return pop_packet(first == REF_DONE, first, base);
+    push_packet(entry, is_filled(entry));
+    return pop_packet(true, node, base);
 }
 
 RecordRows fetch_packet_record(uint record)
@@ -315,13 +234,11 @@ RecordRows fetch_packet_record(uint record)
     return rows;
 }
 
-// A ray that is done meets nothing more.
-void end_ray(bool over, uint r)
+RaySetup packet_ray(uint r)
 {
-    packet_hits[r].t = over ? -1.0 : packet_hits[r].t;
-    packet_hits[r].lo = over ? -1.0 : packet_hits[r].lo;
-    packet_hits[r].hi = over ? -1.0 : packet_hits[r].hi;
-    packet_end[r] = floatBitsToInt(farthest(packet_hits[r]) * packet_box_rays[r].unit);
+    if (SPEC_COMMON_ORIGIN != 0u)
+        return beam_ray(r);
+    return packet_rays[r];
 }
 
 // The ref behind a leaf's record that was tested.
@@ -352,7 +269,7 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
                 uint record = ref & BVH_FIRST_MASK;
                 RecordRows rows = fetch_packet_record(record);
                 EACH_RAY {
-                    bool done = test_rows(mode, packet_rays[r], t_min, record, rows, instance,
+                    bool done = test_rows(mode, packet_ray(r), t_min, record, rows, instance,
                                           packet_skip[r].x, packet_skip[r].y, packet_hits[r],
                                           own_waits);
                     end_ray(done, r);
@@ -365,7 +282,7 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
         } while (is_leaf(ref) && !waits);
     } while (another_turn(ref != REF_DONE && !waits));
     if (ref != REF_DONE && !waits)
-        packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
+        packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
 // Looks at the record at `ref` for the rays that wait, and goes on to the next.
@@ -393,7 +310,7 @@ void packet_mesh(const uint mode, float t_min, uint root)
             look_at_packet_leaf(mode, t_min, 0u, 0u, own_waits, ref);
     } while (has_looks(mode) && another_turn(ref != REF_DONE));
     if (ref != REF_DONE)
-        packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
+        packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
 void enter_instance(const uint mode, uint instance)
@@ -407,8 +324,9 @@ void packet_instances(const uint mode, float t_min, uint root)
     PacketBounds bounds = packet_bounds;
     uint ref = root, mesh_ref = REF_DONE, base = 0u;
     bool inside = false, own_waits = false, waits = false;
-    float world_size = packet_size;
+    float world_size = packet_size, world_unit[SPEC_PACKET_RAYS];
     EACH_RAY {
+        world_unit[r] = packet_unit[r];
         packet_world[r] = packet_rays[r];
         packet_world_box_rays[r] = packet_box_rays[r];
     }
@@ -423,6 +341,7 @@ void packet_instances(const uint mode, float t_min, uint root)
                 if (!inside) {
                     enter_instance(mode, instance);
                     mesh_ref = fetch_instance_row(instance * INSTANCE_ROWS + 7u).y;
+                    push_packet(REF_DONE, true);
                     base = packet_height;
                 }
                 walk_packet(mode, t_min, instance, base, mesh_ref, own_waits, waits);
@@ -431,12 +350,12 @@ void packet_instances(const uint mode, float t_min, uint root)
                 bool ends = SPEC_NUMERICS == NUMERICS_EXACT || !finds_closest(mode);
                 bool over = ends && !any_lane(going);
                 if (!waits) {
-                    packet_height = base;
                     ref = pop_packet(true, ref, 0u);
                     ref = over ? REF_DONE : ref;
                     EACH_RAY {
                         packet_rays[r] = packet_world[r];
                         packet_box_rays[r] = packet_world_box_rays[r];
+                        packet_unit[r] = world_unit[r];
                         end_ray(false, r);
                     }
                     packet_bounds = bounds;
@@ -446,18 +365,35 @@ void packet_instances(const uint mode, float t_min, uint root)
             }
         } while (another_turn(ref != REF_DONE && !waits));
         if (ref != REF_DONE && !waits)
-            packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
+            packet_status |= STATUS_UNFINISHED_TRAVERSAL;
         inside = has_looks(mode);
         if (has_looks(mode) && waits)
             look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, own_waits, mesh_ref);
         waits = false;
     } while (has_looks(mode) && another_turn(ref != REF_DONE));
     if (ref != REF_DONE)
-        packet_hits[0].status |= STATUS_UNFINISHED_TRAVERSAL;
+        packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// traverse() for all rays of the subgroup, from packet_origin and the like into packet_hits.
-void traverse_packets(const uint mode, float t_min, uint root, uint root8)
+void packet_beams(const uint mode, float t_min, uint root)
+{
+    bool more = false;
+    EACH_RAY beam_left[r] = packet_alive[r];
+    size_rays();
+    do {
+        bool some = begin_beam();
+        packet_height = 0u;
+        packet_top = REF_DONE;
+        packet_mesh(mode, t_min, some ? root : REF_DONE);
+        more = end_beam();
+    } while (another_turn(more));
+    if (more)
+        packet_status |= STATUS_UNFINISHED_TRAVERSAL;
+}
+
+// traverse() for all rays of the subgroup, from packet_origin and the like into packet_hits. With
+// SPEC_COMMON_ORIGIN all alive rays start at `eye`.
+void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 eye)
 {
     if (SPEC_PACKETS == 0u) {
         EACH_RAY packet_hits[r] =
@@ -467,25 +403,33 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8)
     }
     if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // behind the origin nothing is hit
         t_min = 0.0;
+    packet_status = 0u;
+    packet_height = 0u;
+    packet_top = REF_DONE;
     bool some = false;
     EACH_RAY {
         packet_alive[r] = packet_alive[r] && is_usable(packet_origin[r], packet_dir[r]);
         some = some || packet_alive[r];
         packet_hits[r] = make_hit(packet_t_max[r]);
         end_ray(!packet_alive[r], r);
-        packet_rays[r] = make_ray_setup(packet_alive[r] ? packet_origin[r] : vec3(0.0),
+        vec3 origin = packet_alive[r] ? packet_origin[r] : vec3(0.0);
+        packet_rays[r] = make_ray_setup(SPEC_COMMON_ORIGIN != 0u ? eye : origin,
                                         packet_alive[r] ? packet_dir[r] : vec3(1.0));
         if (SPEC_INSTANCED == 0u && SPEC_CLIPPED != 0u)
             widen_ray_setup(packet_rays[r], fetch_mesh_center(0u), fetch_mesh_reach(0u));
     }
-    packet_height = 0u;
-    make_box_rays(mode);
     root8 = any_lane(some) ? root8 : REF_DONE;
-    if (SPEC_INSTANCED != 0u)
-        packet_instances(mode, t_min, root8);
-    else
-        packet_mesh(mode, t_min, root8);
+    if (SPEC_COMMON_ORIGIN != 0u) {
+        packet_beams(mode, t_min, root8);
+    } else {
+        make_box_rays(mode);
+        if (SPEC_INSTANCED != 0u)
+            packet_instances(mode, t_min, root8);
+        else
+            packet_mesh(mode, t_min, root8);
+    }
     EACH_RAY {
+        packet_hits[r].status |= packet_status;
         if (packet_hits[r].primitive == HIT_NONE)
             packet_hits[r].t = make_hit(packet_t_max[r]).t;
     }

@@ -32,12 +32,16 @@ uint own_slot()
 // Pixel of a slot: blocks row by row over the picture; within a block 4 x 2 pixels a subgroup of 8.
 uvec2 slot_pixel(uint slot)
 {
-    uint blocks_x = (frame.width + 7u) / 8u;
-    uint block = chunk.first_block + slot / BLOCK_PIXELS;
+    uint blocks_x = (frame.width + 7u) / 8u, first_y = chunk.first_block / blocks_x;
+    // From the start of that row less than 2^14 blocks on: floats divide them right, and lavapipe divides
+    // integers lane by lane.
+    uint place = chunk.first_block - first_y * blocks_x + slot / BLOCK_PIXELS;
+    uint row = uint((float(place) + 0.5) / float(blocks_x));
+    uvec2 block = uvec2(place - row * blocks_x, first_y + row);
     uint i = slot % BLOCK_PIXELS;
     uint x = (i & 3u) | ((i >> 1) & 4u);
     uint y = ((i >> 2) & 1u) | ((i >> 3) & 6u);
-    return uvec2(block % blocks_x, block / blocks_x) * 8u + uvec2(x, y);
+    return block * 8u + uvec2(x, y);
 }
 
 bool is_in_picture(uvec2 at)

@@ -147,9 +147,11 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
         m.owned = true;
         return m;
     }
-    precise vec3 a = row_vec3(r0) - ray.origin;
-    precise vec3 b = row_vec3(r1) - ray.origin;
-    precise vec3 c = row_vec3(r2) - ray.origin;
+    vec3 v0 = turn_dominant(ray.space, row_vec3(r0)), v1 = turn_dominant(ray.space, row_vec3(r1));
+    vec3 v2 = turn_dominant(ray.space, row_vec3(r2));
+    precise vec3 a = v0 - ray.origin;
+    precise vec3 b = v1 - ray.origin;
+    precise vec3 c = v2 - ray.origin;
     if (SPEC_NUMERICS == NUMERICS_EXACT) {
         m = bound_triangle(ray, t_min, a, b, c);
         if (SPEC_FLAT != 0u)
@@ -157,16 +159,17 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
         return m;
     }
     vec3 lo, hi;
-    if (SPEC_PACKET_RAYS > 1u) {
-        bound_points(row_vec3(r0), row_vec3(r1), row_vec3(r2), lo, hi);
-        precise vec3 near = lo - ray.origin;
-        precise vec3 far = hi - ray.origin;
-        lo = near;
-        hi = far;
-    } else {
+    if (SPEC_PACKET_RAYS > 1u) // the same for all rays of a packet that share their signs
+        bound_points(v0, v1, v2, lo, hi);
+    else
         bound_points(a, b, c, lo, hi);
+    precise vec3 first = mix(lo, hi, ray.negative);
+    precise vec3 last = mix(hi, lo, ray.negative);
+    if (SPEC_PACKET_RAYS > 1u) {
+        first -= ray.origin;
+        last -= ray.origin;
     }
-    m.met = intersect_triangle(ray, a, b, c, lo, hi, t_min, m.t, m.u, m.v, m.front);
+    m.met = intersect_triangle(ray, a, b, c, first, last, t_min, m.t, m.u, m.v, m.front);
     if (SPEC_FLAT != 0u)
         m.front = m.front == ((r1.w & TRIANGLE_MIRRORED) == 0u);
     m.owned = owns_point(ray, a, b, c);
@@ -235,10 +238,11 @@ Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool
 Chord chord_of(RaySetup ray, float t_min, Primitive p)
 {
     Chord chord;
+    vec3 center = turn_dominant(ray.space, row_vec3(p.r0));
     if (SPEC_SPHERES != SPHERES_NONE)
-        chord = intersect_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x), t_min);
+        chord = intersect_sphere(ray, center, uintBitsToFloat(p.r1.x), t_min);
     if (SPEC_SPHERES != SPHERES_NONE && SPEC_NUMERICS == NUMERICS_EXACT) {
-        chord.bounds = bound_sphere(ray, row_vec3(p.r0), uintBitsToFloat(p.r1.x));
+        chord.bounds = bound_sphere(ray, center, uintBitsToFloat(p.r1.x));
         chord.met = !chord.bounds.outside;
     }
     return chord;

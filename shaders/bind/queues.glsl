@@ -316,11 +316,10 @@ uint from_first(uint value)
     return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
 }
 
-// `back` is the same for all invocations of the subgroup.
-uint append_segment(uint generation, uint list, uint wanted, uint each, bool back)
+// Room for `all` items of the subgroup. `back` is the same for all its invocations.
+uint extend_segment(uint generation, uint list, uint all, uint each, bool back)
 {
-    uint all, at = 0u;
-    uint before = count_before(wanted, all);
+    uint at = 0u;
     if (subgroupElect() && all != 0u) {
         at = back ? atomicAdd(generations[generation].lists[list].back, all)
                   : atomicAdd(generations[generation].lists[list].front, all);
@@ -328,7 +327,13 @@ uint append_segment(uint generation, uint list, uint wanted, uint each, bool bac
         if (more != 0u)
             atomicAdd(generations[generation].lists[list].groups, more);
     }
-    return from_first(at) + before;
+    return from_first(at);
+}
+
+uint append_segment(uint generation, uint list, uint wanted, uint each, bool back)
+{
+    uint all, before = count_before(wanted, all);
+    return extend_segment(generation, list, all, each, back) + before;
 }
 
 // Room for `wanted` items of the invocation in a list of a generation: where in its segment. `each`:
@@ -350,13 +355,26 @@ uint item_place(uint at, uint capacity)
     return is_back ? capacity - 1u - at : at;
 }
 
-void list_hit(bool wanted, uint material_class, uint id)
+// Those of the invocation's rays that met something, class by class: a subgroup's `r` for `r`.
+void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint ids[SPEC_PACKET_RAYS])
 {
-    for (uint k = 0u; k < SPEC_CLASSES; k++) {
-        bool own = wanted && material_class == k;
-        uint at = append_items(chunk.generation, LIST_HITS + k, uint(own), SPEC_GROUP_SIZE);
-        if (own)
-            hit_list[k * chunk.ray_capacity + place_in_tile(item_place(at, chunk.ray_capacity))] = id;
+    uint before[SPEC_PACKET_RAYS];
+    [[unroll]] for (uint k = 0u; k < SPEC_CLASSES; k++) {
+        uint all = 0u, each = SPEC_GROUP_SIZE, list = LIST_HITS + k, first = 0u;
+        [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++) {
+            uint of_ray;
+            before[r] = all + count_before(uint(met[r] && class_of[r] == k), of_ray);
+            all += of_ray;
+        }
+        if (SPEC_PACKET_RAYS == 1u)
+            first = append_items(chunk.generation, list, uint(met[0] && class_of[0] == k), each) - before[0];
+        else
+            first = extend_segment(chunk.generation, list, all, each, is_back);
+        [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++) {
+            uint item = item_place(first + before[r], chunk.ray_capacity);
+            if (met[r] && class_of[r] == k)
+                hit_list[k * chunk.ray_capacity + place_in_tile(item)] = ids[r];
+        }
     }
 }
 

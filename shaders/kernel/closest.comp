@@ -96,12 +96,12 @@ bool leave_ray(uint r, bool alive)
     if (SPEC_PROBE != 0u && alive)
         probe_traced(ray_id[r], packet_origin[r], packet_dir[r], packet_skip[r], ray_weight[r], weight,
                      sky, ray_media_of[r], hit);
-    report_status(alive ? hit.status : 0u);
     return met;
 }
 
 void main()
 {
+    load_frame();
     if (SPEC_SECONDARY != 0u && own_slot() == 0u)
         generations[chunk.generation + 1u].firsts = firsts_behind();
     bool alive[SPEC_PACKET_RAYS];
@@ -109,9 +109,14 @@ void main()
         take_ray(r);
         alive[r] = packet_alive[r];
     }
-    traverse_packets(TRAVERSE_CLOSEST, 0.0, frame.root, frame.root8);
+    traverse_packets(TRAVERSE_CLOSEST, 0.0, frame.root, frame.root8, frame.eye);
+    bool met[SPEC_PACKET_RAYS];
+    uint class_of[SPEC_PACKET_RAYS], status = 0u;
     EACH_RAY {
-        bool met = leave_ray(r, alive[r]);
-        list_hit(met, class_of_hit(packet_hits[r]), ray_id[r]);
+        met[r] = leave_ray(r, alive[r]);
+        class_of[r] = class_of_hit(packet_hits[r]);
+        status |= alive[r] && !must_wait(packet_hits[r].status) ? packet_hits[r].status : 0u;
     }
+    list_hits(met, class_of, ray_id);
+    report_status(status);
 }

@@ -1,6 +1,7 @@
 // Adds to each ray of a generation what the rays that it called for have brought, in a fixed order. Of
 // camera rays to the pixel.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -98,6 +99,7 @@ void resolve_pixel(uint id)
 
 void main()
 {
+    load_frame();
     uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
     bool done = left.x + left.y == 0u;
     uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);

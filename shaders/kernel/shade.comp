@@ -1,6 +1,7 @@
 // What surfaces do with the rays of a generation that met one: light of their own, what lights are asked
 // for, and the rays that go on.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -216,6 +217,7 @@ void ask_lights(bool alive, uint id, Ray ray, Surface s, Optics o, Crossing c, b
 
 void main()
 {
+    load_frame();
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
     uint item = waited ? waiting_item(0u) : own_item(0u, chunk.ray_capacity);
     bool alive = item != ITEM_NONE;

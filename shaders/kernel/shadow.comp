@@ -167,12 +167,12 @@ uint leave_lit(uint r, bool alive, uint item, gpu_light light)
     if (SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u)
         hit_rows[id * HIT_ROWS].xyz =
             floatBitsToUint(uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz) + open);
-    report_status(status_of[r]);
     return rays_of[r];
 }
 
 void main()
 {
+    load_frame();
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
     bool alive[SPEC_PACKET_RAYS];
     uint item[SPEC_PACKET_RAYS];
@@ -194,15 +194,19 @@ void main()
     do {
         EACH_RAY face_light(r, alive[r], light, point);
         if (SPEC_SHADOWS != 0u)
-            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8);
+            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8, vec3(0.0));
         EACH_RAY add_arrival(r, light, point);
         point++;
         more = flats && point < points;
     } while (another_turn(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
-    uint rays = 0u;
-    EACH_RAY rays += leave_lit(r, alive[r], item[r], light);
+    uint rays = 0u, status = 0u;
+    EACH_RAY {
+        rays += leave_lit(r, alive[r], item[r], light);
+        status |= alive[r] && !must_wait(status_of[r]) ? status_of[r] : 0u;
+    }
+    report_status(status);
     rays = add_up_lanes(rays);
     if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);

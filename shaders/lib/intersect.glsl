@@ -13,6 +13,7 @@ struct RaySetup {
     vec3 above, below; // origin plus and less the margin of node boxes: see widen_ray_setup
     vec3 inv_dir;  // infinite where the direction is 0
     bvec3 negative; // inv_dir < 0, so that -0 counts as negative
+    bvec2 space;    // the ray's space is that of the tree turned so: see turn_dominant
     bvec2 dominant; // |dir| is largest along x; along y
     vec3 shear;    // Woop, Benthin and Wald 2013: dir.x / dir.z, dir.y / dir.z, 1 / dir.z after
                    // turning the dominant axis to z
@@ -38,6 +39,7 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     bool x_over_y = size.x > size.y;
     bool x_over_z = size.x > size.z;
     bool y_over_z = size.y > size.z;
+    ray.space = bvec2(false);
     ray.dominant = bvec2(x_over_y && x_over_z, !x_over_y && y_over_z);
     vec3 turned = turn_dominant(ray.dominant, dir);
     precise vec3 shear;
@@ -75,15 +77,13 @@ void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
 // which may call a triangle hit by a ray that passes its box within rounding.
 const float SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;
 
-// The part of the ray inside the box `lo`..`hi`, both relative to the ray's origin. NaN (0 times
-// infinity: the origin in the plane of a face, the ray parallel to it) loses every comparison and
-// so bounds nothing.
-void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near, out float t_far)
+// The part of the ray inside a box, of which the ray comes to the corner `first` first, as far as it goes
+// that way, and to `last` last, both relative to its origin. NaN (0 times infinity: the origin in the plane
+// of a face, the ray parallel to it) loses every comparison and so bounds nothing.
+void slab_between(RaySetup ray, vec3 first, vec3 last, float t_min, out float t_near, out float t_far)
 {
-    precise vec3 at_lo = lo * ray.inv_dir;
-    precise vec3 at_hi = hi * ray.inv_dir;
-    vec3 near = mix(at_lo, at_hi, ray.negative);
-    vec3 far = mix(at_hi, at_lo, ray.negative);
+    precise vec3 near = first * ray.inv_dir;
+    precise vec3 far = last * ray.inv_dir;
     float start = t_min;
     start = near.x > start ? near.x : start;
     start = near.y > start ? near.y : start;
@@ -95,6 +95,11 @@ void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near
     precise float widened = end * SLAB_FAR_SCALE;
     t_near = start;
     t_far = SPEC_NUMERICS == NUMERICS_FAST ? end : widened;
+}
+
+void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near, out float t_far)
+{
+    slab_between(ray, mix(lo, hi, ray.negative), mix(hi, lo, ray.negative), t_min, t_near, t_far);
 }
 
 // Vertices, the dominant axis last, sheared so that the ray goes along that axis; and for each vertex
@@ -156,12 +161,13 @@ void bound_points(vec3 a, vec3 b, vec3 c, out vec3 lo, out vec3 hi)
 // An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
 // triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
 // other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
+// `first`, `last`: corners of that box, see slab_between.
 // `front`: met from the side that sees the vertices go round against the clock.
-bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, vec3 lo, vec3 hi, float t_min, out float t, out float u,
-                        out float v, out bool front)
+bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, vec3 first, vec3 last, float t_min,
+                        out float t, out float u, out float v, out bool front)
 {
     float t_near, t_far;
-    slab_interval(ray, lo, hi, t_min, t_near, t_far);
+    slab_between(ray, first, last, t_min, t_near, t_far);
 
     vec3 ta = turn_dominant(ray.dominant, a);
     vec3 tb = turn_dominant(ray.dominant, b);

@@ -111,7 +111,7 @@ vec3 chord_end(RaySetup ray, Chord chord, bool at_exit)
 {
     precise vec3 begin = chord.middle - chord.to_exit;
     precise vec3 end = chord.middle + chord.to_exit;
-    return turn_back(ray.dominant, at_exit ? end : begin);
+    return turn_back(ray.space, turn_back(ray.dominant, at_exit ? end : begin));
 }
 
 // A direction on the unit square (Meyer et al. 2010); +y is in its middle, as is what has no length.

@@ -158,10 +158,10 @@ change(host/accel/intersect.h slab_interval
   [[slab_axis\(([a-z.]+z, [a-z.]+z, )([a-z]+->)]] [[slab_axis(\2origin.z, \1\2]])
 
 mutation(slab_by_fma_in_kernels render_trace RED far_sphere_equals_twin)
-change(shaders/lib/intersect.glsl [[lo * ray.inv_dir;]]
-  [[(lo + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
-change(shaders/lib/intersect.glsl [[hi * ray.inv_dir;]]
-  [[(hi + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
+change(shaders/lib/intersect.glsl [[first * ray.inv_dir;]]
+  [[(first + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
+change(shaders/lib/intersect.glsl [[last * ray.inv_dir;]]
+  [[(last + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h make_ray_setup

@@ -1,0 +1,122 @@
+// Packets whose rays start at one point, and the boxes they come to: SPEC_COMMON_ORIGIN, without instances.
+#ifndef BIND_BEAM_GLSL
+#define BIND_BEAM_GLSL
+
+#include "packet_rays.glsl"
+
+// Rays whose directions have the same dominant axis and the same signs walk together, one such group after
+// the other. Boxes are tested in the space of the group: that axis last, all directions upward, the rays'
+// origin at 0.
+struct Beam {
+    bvec2 dominant;
+    bvec3 negative;              // axes that are reversed
+    vec3 origin;                 // of all rays, only turned so that the dominant axis is last
+    vec2 inverse_lo, inverse_hi; // that all of its rays lie in
+};
+Beam beam;
+vec3 beam_inv_dir[SPEC_PACKET_RAYS]; // turned likewise
+vec2 beam_inverse[SPEC_PACKET_RAYS]; // last component of a ray's direction by the others, upwards
+bool beam_left[SPEC_PACKET_RAYS];    // rays whose group is yet to walk
+bool beam_walks[SPEC_PACKET_RAYS];   // rays of the group that walks
+vec3 beam_aside[SPEC_PACKET_RAYS];   // t, lo and hi of the hits of those that are not
+
+// A ray of the group, its dominant axis last. What the group has in common is taken from one place: then
+// compilers compute once what depends on that alone.
+RaySetup beam_ray(uint r)
+{
+    RaySetup ray = packet_rays[r];
+    ray.space = beam.dominant;
+    ray.dominant = bvec2(false);
+    ray.negative = beam.negative;
+    ray.origin = beam.origin;
+    ray.inv_dir = beam_inv_dir[r];
+    return ray;
+}
+
+uint group_of(RaySetup ray)
+{
+    uint signs = uint(ray.negative.x) | uint(ray.negative.y) << 1 | uint(ray.negative.z) << 2;
+    return (ray.dominant.x ? 1u : ray.dominant.y ? 2u : 0u) | signs << 2;
+}
+
+const uint GROUP_NONE = 32u;
+
+void bound_beam()
+{
+    vec2 lo = vec2(INFINITE), hi = lo; // hi: negated
+    EACH_RAY {
+        packet_unit[r] = abs(turn_dominant(beam.dominant, packet_rays[r].dir).z);
+        beam_inv_dir[r] = turn_dominant(beam.dominant, packet_rays[r].inv_dir);
+        vec2 inverse = lesser2(packet_unit[r] * abs(beam_inv_dir[r].xy), vec2(BOX_INVERSE_MOST));
+        lo = lesser2(beam_walks[r] ? inverse : vec2(INFINITE), lo);
+        hi = lesser2(beam_walks[r] ? -inverse : vec2(INFINITE), hi);
+        beam_inverse[r] = inverse;
+        end_ray(!beam_walks[r], r);
+    }
+    beam.inverse_lo = least_of_lanes2(lo);
+    beam.inverse_hi = -least_of_lanes2(hi);
+}
+
+// Takes one group of the rays that are left; the others are done until it has walked. False: none is left.
+bool begin_beam()
+{
+    uint own = GROUP_NONE;
+    EACH_RAY own = beam_left[r] ? min(own, group_of(packet_rays[r])) : own;
+    uint group = uint(least_of_lanes(int(own)));
+    beam.dominant = bvec2((group & 3u) == 1u, (group & 3u) == 2u);
+    bvec3 negative = notEqual(uvec3(group) & uvec3(4u, 8u, 16u), uvec3(0u));
+    vec3 way = mix(vec3(1.0), vec3(-1.0), negative);
+    beam.negative = lessThan(turn_dominant(beam.dominant, way), vec3(0.0));
+    beam.origin = turn_dominant(beam.dominant, packet_rays[0].origin);
+    EACH_RAY {
+        beam_walks[r] = beam_left[r] && group_of(packet_rays[r]) == group;
+        beam_left[r] = beam_left[r] && !beam_walks[r];
+        beam_aside[r] = vec3(packet_hits[r].t, packet_hits[r].lo, packet_hits[r].hi);
+    }
+    bound_beam();
+    return group != GROUP_NONE;
+}
+
+// Whether another group is left.
+bool end_beam()
+{
+    bool left = false;
+    EACH_RAY {
+        bool aside = !beam_walks[r];
+        packet_hits[r].t = aside ? beam_aside[r].x : packet_hits[r].t;
+        packet_hits[r].lo = aside ? beam_aside[r].y : packet_hits[r].lo;
+        packet_hits[r].hi = aside ? beam_aside[r].z : packet_hits[r].hi;
+        left = left || beam_left[r];
+    }
+    return any_lane(left);
+}
+
+// A box of this lane, taken to the group's space and widened. Whether some ray of the group may come
+// through it.
+bool bring_to_beam(inout vec3 lo, inout vec3 hi)
+{
+    vec3 margin = vec3(box_margin(lo, hi)), origin = beam.origin;
+    vec3 turned_lo = (turn_dominant(beam.dominant, lo) - origin) - margin;
+    vec3 turned_hi = (turn_dominant(beam.dominant, hi) - origin) + margin;
+    lo = mix(turned_lo, -turned_hi, beam.negative);
+    hi = mix(turned_hi, -turned_lo, beam.negative);
+    ivec3 near = floatBitsToInt(vec3(lo.xy * beam.inverse_lo, lo.z));
+    ivec3 far = floatBitsToInt(vec3(hi.xy * beam.inverse_hi, hi.z));
+    return max(max(near.x, near.y), max(near.z, 0)) <= min(far.x, min(far.y, far.z));
+}
+
+// Where the first ray of this lane enters a box that was brought there.
+int enter_beam_box(vec3 lo, vec3 hi)
+{
+    int first = NEVER;
+    EACH_RAY {
+        ivec3 near = floatBitsToInt(vec3(lo.xy * beam_inverse[r], lo.z));
+        ivec3 far = floatBitsToInt(vec3(hi.xy * beam_inverse[r], hi.z));
+        int start = max(max(near.x, near.y), max(near.z, 0));
+        int end = min(min(far.x, far.y), min(far.z, packet_end[r]));
+        first = start <= end ? min(first, start) : first;
+    }
+    return first;
+}
+
+#endif

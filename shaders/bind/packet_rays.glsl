@@ -1,0 +1,116 @@
+// Rays that walk together, and their lanes: SPEC_PACKET_RAYS of each lane of a subgroup of 8.
+#ifndef BIND_PACKET_RAYS_GLSL
+#define BIND_PACKET_RAYS_GLSL
+
+#include "traverse.glsl"
+
+#define EACH_RAY [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++)
+
+// What the caller asks for, and gets.
+bool packet_alive[SPEC_PACKET_RAYS];
+vec3 packet_origin[SPEC_PACKET_RAYS], packet_dir[SPEC_PACKET_RAYS];
+float packet_t_max[SPEC_PACKET_RAYS];
+uvec2 packet_skip[SPEC_PACKET_RAYS]; // instance, primitive
+Hit packet_hits[SPEC_PACKET_RAYS];
+uint packet_status; // of the walk, for all rays
+
+RaySetup packet_rays[SPEC_PACKET_RAYS]; // in the space of the tree in hand
+int packet_end[SPEC_PACKET_RAYS];       // bits of the t behind which nothing counts, in units of
+float packet_unit[SPEC_PACKET_RAYS];    // the largest component of the direction
+float packet_size; // largest coordinate of an origin, and what clipped triangles take
+
+const float BOX_INVERSE_MOST = 16777216.0; // 2^24
+#define INFINITE uintBitsToFloat(0x7f800000u)
+// Far more than the roundings of a ray, its bounds and the test of a box, each a few 2^-24 of the distances
+// from the ray's ends; and than the slack of that test (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
+const float BOUNDS_MARGIN = 1.0 / 131072.0;
+
+int least_of_lanes(int value)
+{
+    value = min(value, subgroupShuffleXor(value, 1u));
+    value = min(value, subgroupShuffleXor(value, 2u));
+    return min(value, subgroupShuffleXor(value, 4u));
+}
+
+// One instruction on lavapipe, of which min takes three for the sake of NaN.
+float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+float least_of_lanes(float value)
+{
+    value = lesser(value, subgroupShuffleXor(value, 1u));
+    value = lesser(value, subgroupShuffleXor(value, 2u));
+    return lesser(value, subgroupShuffleXor(value, 4u));
+}
+
+vec2 lesser2(vec2 a, vec2 b)
+{
+    return vec2(lesser(a.x, b.x), lesser(a.y, b.y));
+}
+
+vec3 lesser3(vec3 a, vec3 b)
+{
+    return vec3(lesser2(a.xy, b.xy), lesser(a.z, b.z));
+}
+
+vec2 least_of_lanes2(vec2 value)
+{
+    return vec2(least_of_lanes(value.x), least_of_lanes(value.y));
+}
+
+vec3 least_of_lanes3(vec3 value)
+{
+    return vec3(least_of_lanes2(value.xy), least_of_lanes(value.z));
+}
+
+float largest_of(vec3 value)
+{
+    value = abs(value);
+    return -lesser(-value.x, lesser(-value.y, -value.z));
+}
+
+vec3 from_lane(vec3 value, uint lane)
+{
+    return vec3(subgroupShuffle(value.x, lane), subgroupShuffle(value.y, lane),
+                subgroupShuffle(value.z, lane));
+}
+
+// A ray that is done meets nothing more.
+void end_ray(bool over, uint r)
+{
+    packet_hits[r].t = over ? -1.0 : packet_hits[r].t;
+    packet_hits[r].lo = over ? -1.0 : packet_hits[r].lo;
+    packet_hits[r].hi = over ? -1.0 : packet_hits[r].hi;
+    packet_end[r] = floatBitsToInt(farthest(packet_hits[r]) * packet_unit[r]);
+}
+
+// What all boxes of the tree are wider by, beside their own share (box_margin).
+void size_rays()
+{
+    float least = 0.0; // negated
+    EACH_RAY {
+        float own = largest_of(packet_rays[r].origin);
+        if (SPEC_CLIPPED != 0u)
+            own += (packet_rays[r].above.x - packet_rays[r].origin.x) / BOUNDS_MARGIN;
+        least = lesser(packet_alive[r] ? -own : 0.0, least);
+    }
+    packet_size = -least_of_lanes(least);
+}
+
+// Boxes are widened by more than all roundings of their tests, of transforms to instances and of the tests
+// of what is inside, each of which is a few 2^-24 of the coordinates that go into it. So wide, a box that a
+// ray runs along is met: with BOX_INVERSE_MOST in place of infinity it is left 2^7 times as far away as it
+// is large.
+float box_margin(vec3 lo, vec3 hi)
+{
+    return (max(largest_of(lo), largest_of(hi)) + packet_size) * BOUNDS_MARGIN;
+}
+
+// When the first ray comes to a box, as bits; NEVER where none does. Integers, as lavapipe has single
+// instructions for their minima: negative floats are negative integers, which is all that matters of them
+// here.
+const int NEVER = 0x7f800000;
+
+#endif
