@@ -151,6 +151,8 @@ WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gp
                                       struct gpu_cost *costs);
 /* Device time of the traversal of the last renderer_trace, without transfers; < 0: not measured. */
 double renderer_trace_device_ms(const struct renderer *renderer);
+/* Rays of the last batch that walked in packets. */
+uint64_t renderer_trace_together(const struct renderer *renderer);
 
 /* ---- What pictures share that are made without a device (host/reference) ---- */
 

@@ -99,8 +99,10 @@ struct stages {
 struct trace_state {
     struct buffer *rays, *hits, *costs;
     struct buffer *waiting; /* work list; NULL where no ray waits */
-    struct pass closest, any;
-    uint32_t capacity; /* rays */
+    struct pass singles[2]; /* for closest hits, for any */
+    struct pass beams[2];   /* likewise, of rays that start at one point, in packets */
+    uint32_t capacity;      /* rays */
+    uint64_t together;      /* rays of the last batch that walked in packets */
     double device_ms;
     uint32_t waits; /* rays of the last batch that floats left open */
 };
@@ -144,7 +146,8 @@ struct renderer {
     struct scene_buffers scene_buffers;
     struct target picture;
     struct target probe; /* a row of blocks; without buffers before the first probe */
-    bool packets;        /* rays may walk in packets, through nodes of eight children */
+    bool packets;        /* rays of pictures may walk in packets, through nodes of eight children */
+    bool wide;           /* there are such nodes on the device */
     struct trace_state trace;
     struct beside_state beside;
     struct commands *commands;
@@ -214,6 +217,10 @@ WHIT_CHECK whit_result queues_grow(struct target *target);
 /* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
+/* Whether rays can walk in packets here, as far as device, trees and parameters go. */
+bool upload_can_widen(const struct renderer *renderer);
+/* Nodes of eight children, where there are none yet: renderer->wide. */
+WHIT_CHECK whit_result upload_wide(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
                                     uint64_t size_bytes, uint32_t uses, const char *name,
@@ -284,7 +291,11 @@ void variant_job_init(const struct target *target, const struct gpu_spec *spec, 
                       enum stage stage, struct variant_job *job);
 /* Makes the binding sets of the pass. */
 WHIT_CHECK whit_result variant_bind_stage(const struct target *target, struct pass *pass);
-WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass);
+/* `beams`: for rays that start at one point, which then needs renderer->wide and
+   variant_has_beams. */
+WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams,
+                                            struct pass *pass);
+bool variant_has_beams(const struct renderer *renderer);
 /* CAMERA_* that kernels are made for. */
 uint32_t variant_camera(const struct renderer *renderer);
 void pass_finish(struct pass *pass);

@@ -1,20 +1,26 @@
 /* Batches of rays: in, traced, out, in pieces that the device holds and finishes soon. */
 #include "render/renderer.h"
 
+#include <stdlib.h>
+
+#include "base/array.h"
 #include "base/clock.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20,   /* rays in device memory */
-    TRACE_FIRST = 1 << 14,      /* rays of the first dispatch, whose time sets the next one's */
-    TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
+    TRACE_CAPACITY = 1 << 20,    /* rays in device memory */
+    TRACE_FIRST = 1 << 14,       /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST_BARE = 1 << 10,  /* the same without trees */
+    TRACE_BEAMS_LEAST = 1 << 16, /* rays of a batch that are worth the kernel of beams */
 };
 /* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
 
 void trace_finish(struct trace_state *trace)
 {
-    pass_finish(&trace->closest);
-    pass_finish(&trace->any);
+    for (int any = 0; any < 2; ++any) {
+        pass_finish(&trace->singles[any]);
+        pass_finish(&trace->beams[any]);
+    }
     buffer_destroy(trace->rays);
     buffer_destroy(trace->hits);
     buffer_destroy(trace->costs);
@@ -31,14 +37,21 @@ static uint32_t choose_capacity(uint32_t most_rays)
     return capacity;
 }
 
-static whit_result prepare(struct renderer *renderer, bool any)
+static whit_result prepare_pass(struct renderer *renderer, bool any, bool beams)
+{
+    struct pass *pass = beams ? &renderer->trace.beams[any] : &renderer->trace.singles[any];
+    return pass->pipeline ? WHIT_OK : variant_create_trace(renderer, any, beams, pass);
+}
+
+static whit_result prepare(struct renderer *renderer, bool any, bool beams)
 {
     struct trace_state *trace = &renderer->trace;
-    whit_result result = WHIT_OK;
-    if (!trace->rays) {
+    whit_result result = beams ? upload_wide(renderer) : WHIT_OK;
+    beams = beams && renderer->packet_stack_size <= PACKET_STACK_MOST;
+    if (result == WHIT_OK && !trace->rays) {
         trace->capacity = choose_capacity(renderer->params.trace_rays);
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
-                               BUFFER_STORAGE | BUFFER_HOST, "rays", &trace->rays);
+                               BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_HOST, "rays", &trace->rays);
     }
     if (result == WHIT_OK && !trace->hits)
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_hit),
@@ -47,20 +60,37 @@ static whit_result prepare(struct renderer *renderer, bool any)
         result =
             buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
                           BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
-    if (result == WHIT_OK && variant_waits(&renderer->picture) && !trace->waiting)
+    bool lists = variant_waits(&renderer->picture) || variant_has_beams(renderer);
+    if (result == WHIT_OK && lists && !trace->waiting)
         result =
             buffer_create(renderer->device, sizeof(struct gpu_work) + (uint64_t)trace->capacity * 4,
                           BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->waiting);
-    struct pass *pass = any ? &trace->any : &trace->closest;
-    if (result == WHIT_OK && !pass->pipeline)
-        result = variant_create_trace(renderer, any, pass);
+    if (result == WHIT_OK)
+        result = prepare_pass(renderer, any, false);
+    if (result == WHIT_OK && beams)
+        result = prepare_pass(renderer, any, true);
     return result;
 }
 
-/* One dispatch over rays [0, batch->ray_count) of the ray buffer. */
-static whit_result dispatch(struct renderer *renderer, bool any, const struct gpu_batch *batch)
+/* What a dispatch has put on the waiting list. */
+static void record_waiting(struct renderer *renderer, struct pipeline *pipeline,
+                           struct binding_set *set, const struct gpu_batch *batch)
 {
-    struct pass *pass = any ? &renderer->trace.any : &renderer->trace.closest;
+    struct gpu_batch waiting = *batch;
+    waiting.waiting = 1;
+    commands_barrier(renderer->commands);
+    commands_bind(renderer->commands, pipeline, set);
+    commands_push(renderer->commands, &waiting, sizeof waiting);
+    commands_dispatch_indirect(renderer->commands, renderer->trace.waiting, 0);
+}
+
+/* Rays [0, batch->ray_count) of the ray buffer. `beams`: first together those that can be. */
+static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
+                            const struct gpu_batch *batch)
+{
+    const struct pass *singles = &renderer->trace.singles[any];
+    const struct pass *pass = beams ? &renderer->trace.beams[any] : singles;
+    uint32_t each = RENDER_GROUP_SIZE * pass->rays_each;
     whit_result result = commands_begin(renderer->commands);
     if (result != WHIT_OK)
         return result;
@@ -70,13 +100,11 @@ static whit_result dispatch(struct renderer *renderer, bool any, const struct gp
     commands_bind(renderer->commands, pass->pipeline, pass->set);
     commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
-    commands_dispatch(renderer->commands,
-                      (batch->ray_count + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE, 1, 1);
-    struct gpu_batch waiting = *batch;
-    waiting.waiting = 1;
-    if (pass->looks)
-        render_take_waiting(&renderer->picture, pass, renderer->trace.waiting, &waiting,
-                            sizeof waiting);
+    commands_dispatch(renderer->commands, (batch->ray_count + each - 1) / each, 1, 1);
+    if (beams)
+        record_waiting(renderer, singles->pipeline, singles->set, batch);
+    else if (pass->looks)
+        record_waiting(renderer, pass->looks, pass->looks_set, batch);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);
@@ -92,13 +120,41 @@ static whit_result cancelled(const struct renderer *renderer)
     return renderer->params.cancel && *renderer->params.cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-/* Rays [0, count) of the ray buffer. */
-static whit_result trace_piece(struct renderer *renderer, bool any, uint32_t count)
+/* Rays [0, count) of the ray buffer. *beams: whether to try them together; then, whether most went
+   together. */
+static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams, uint32_t count)
 {
+    const struct accel *accel = renderer->accel;
     struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root};
-    if (renderer->accel->instance_count == 0)
+    if (accel->instance_count == 0)
         batch.root = BVH_EMPTY_REF;
-    return dispatch(renderer, any, &batch);
+    *beams = *beams && accel->instance_count > 0 && renderer->trace.beams[any].pipeline;
+    if (!*beams)
+        return dispatch(renderer, any, false, &batch);
+    batch.root8 = accel->instances[0].root8;
+    whit_result result = dispatch(renderer, any, true, &batch);
+    struct gpu_work alone;
+    if (result == WHIT_OK)
+        result = buffer_read(renderer->trace.waiting, 0, &alone, sizeof alone);
+    *beams = result == WHIT_OK && alone.count < count / 2;
+    renderer->trace.together += alone.count < count ? count - alone.count : 0;
+    return result;
+}
+
+static whit_result read_hits(const struct renderer *renderer, bool any, uint64_t count,
+                             struct gpu_hit *hits)
+{
+    if (!any)
+        return buffer_read(renderer->trace.hits, 0, hits, count * sizeof *hits);
+    uint32_t *blocked = array_alloc(count, sizeof *blocked);
+    if (!blocked)
+        return render_no_memory(renderer, "hits");
+    whit_result result = buffer_read(renderer->trace.hits, 0, blocked, count * sizeof *blocked);
+    for (uint64_t i = 0; result == WHIT_OK && i < count; ++i)
+        hits[i] = (struct gpu_hit){.primitive = blocked[i] ? 0 : HIT_NONE,
+                                   .instance = blocked[i] ? 0 : HIT_NONE};
+    free(blocked);
+    return result;
 }
 
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
@@ -109,7 +165,9 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
         return WHIT_ERROR_USAGE;
     }
     renderer->trace.device_ms = 0.0;
-    whit_result result = prepare(renderer, any);
+    renderer->trace.together = 0;
+    bool beams = count >= TRACE_BEAMS_LEAST && variant_has_beams(renderer);
+    whit_result result = prepare(renderer, any, beams);
     if (result == WHIT_OK)
         result = waits_clear(&renderer->picture);
     uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BARE : TRACE_FIRST;
@@ -121,9 +179,9 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
         double start_ms = clock_ms();
         result = buffer_write(renderer->trace.rays, 0, rays + done, size * sizeof *rays);
         if (result == WHIT_OK)
-            result = trace_piece(renderer, any, (uint32_t)size);
+            result = trace_piece(renderer, any, &beams, (uint32_t)size);
         if (result == WHIT_OK)
-            result = buffer_read(renderer->trace.hits, 0, hits + done, size * sizeof *hits);
+            result = read_hits(renderer, any, size, hits + done);
         if (result == WHIT_OK && costs)
             result = buffer_read(renderer->trace.costs, 0, costs + done, size * sizeof *costs);
         if (clock_ms() - start_ms < TRACE_TARGET_MS / 4 && piece < renderer->trace.capacity)
@@ -138,4 +196,9 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
 double renderer_trace_device_ms(const struct renderer *renderer)
 {
     return renderer->trace.device_ms;
+}
+
+uint64_t renderer_trace_together(const struct renderer *renderer)
+{
+    return renderer->trace.together;
 }

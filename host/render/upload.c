@@ -65,7 +65,8 @@ static whit_result store_words(struct renderer *renderer, const void *data, uint
     if (size_bytes == 0)
         return WHIT_OK;
     if (held_bytes < size_bytes) {
-        passes_finish(renderer);
+        if (*buffer)
+            passes_finish(renderer);
         buffer_destroy(*buffer);
         *buffer = NULL;
         uint64_t spare_bytes = held_bytes ? size_bytes / 8 : 0;
@@ -97,7 +98,7 @@ static whit_result upload_instances(struct renderer *renderer)
 static whit_result upload_nodes8(struct renderer *renderer)
 {
     const struct accel_bvh8 *bvh8 = &renderer->accel->bvh8;
-    if (!renderer->packets)
+    if (!renderer->wide)
         return WHIT_OK;
     whit_result result = accel_widen(renderer->accel);
     uint32_t stack_size = accel_packet_stack_size(renderer->accel);
@@ -306,23 +307,36 @@ static whit_result upload_shading(struct renderer *renderer)
 enum { PACKETS_RAYS_LEAST = 1 << 17 };
 
 /* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
+bool upload_can_widen(const struct renderer *renderer)
+{
+    const struct render_params *params = &renderer->params;
+    return renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
+           device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
+           params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST &&
+           params->packets != RENDER_PACKETS_OFF;
+}
+
+whit_result upload_wide(struct renderer *renderer)
+{
+    if (renderer->wide)
+        return WHIT_OK;
+    renderer->wide = true;
+    return upload_nodes8(renderer);
+}
+
 static bool choose_packets(const struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
-    bool can = renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
-               device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
-               params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST;
     uint64_t rays = (uint64_t)params->width * params->height * params->samples;
     bool many = params->adaptive > 0.0 || rays >= PACKETS_RAYS_LEAST;
-    return can && params->packets != RENDER_PACKETS_OFF &&
-           (many || params->packets == RENDER_PACKETS_ON);
+    return upload_can_widen(renderer) && (many || params->packets == RENDER_PACKETS_ON);
 }
 
 whit_result upload_scene(struct renderer *renderer)
 {
     struct scene_buffers *buffers = &renderer->scene_buffers;
     buffers->texel_loads = choose_texel_loads(renderer);
-    renderer->packets = choose_packets(renderer);
+    renderer->packets = renderer->wide = choose_packets(renderer);
     whit_result result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS,
                                        "nothing", &buffers->none);
     if (result == WHIT_OK)

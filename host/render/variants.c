@@ -185,6 +185,7 @@ static struct bindings bind_trees(const struct target *target)
     bind_loads(&bindings, BIND_NODES, BIND_NODE_TEXELS, texels, scene->nodes);
     bind_loads(&bindings, BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, texels, scene->triangles);
     bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
+    bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, scene->nodes8);
     bind(&bindings, BIND_STATUS, BINDING_STORAGE, target->buffers.status);
     bind(&bindings, BIND_WAITING, BINDING_STORAGE, NULL);
     return bindings;
@@ -245,7 +246,6 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
     bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
     bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
-    bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, renderer->scene_buffers.nodes8);
     return bindings;
 }
 
@@ -420,11 +420,19 @@ whit_result variant_bind_stage(const struct target *target, struct pass *pass)
     return create_sets(pass, &bindings, BIND_STAGES_COUNT);
 }
 
-whit_result variant_create_trace(struct renderer *renderer, bool any, struct pass *pass)
+bool variant_has_beams(const struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    return renderer->params.numerics == NUMERICS_WATERTIGHT && upload_can_widen(renderer) &&
+           (accel->single_identity || accel->flat);
+}
+
+whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams, struct pass *pass)
 {
     struct bindings bindings = bind_trees(&renderer->picture);
     bind(&bindings, BIND_WAITING, BINDING_STORAGE, renderer->trace.waiting);
-    bind(&bindings, BIND_RAYS, BINDING_STORAGE, renderer->trace.rays);
+    bind_loads(&bindings, BIND_RAYS, BIND_BATCH_TEXELS, renderer->scene_buffers.texel_loads,
+               renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
     bind(&bindings, BIND_TRACE_COSTS, BINDING_STORAGE, renderer->trace.costs);
     struct gpu_spec spec = variant_spec(&renderer->picture);
@@ -433,9 +441,17 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, struct pas
     spec.SPEC_FILTERS = 0;
     spec.SPEC_FILTER_DETAIL = 0;
     spec.SPEC_CULLING = 0;
+    if (beams) {
+        spec.SPEC_PACKETS = spec.SPEC_COMMON_ORIGIN = 1;
+        spec.SPEC_PACKET_RAYS = PACKET_RAYS;
+        spec.SPEC_PACKET_STACK = renderer->packet_stack_size;
+    }
+    pass->rays_each = spec.SPEC_PACKET_RAYS;
     const struct pipeline_params params =
         pass_params(KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
-                    any ? "trace any" : "trace closest");
+                    beams ? any ? "trace any together" : "trace closest together"
+                    : any ? "trace any"
+                          : "trace closest");
     whit_result result = create_pipelines(renderer->device, &params, pass);
     return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT) : result;
 }
@@ -465,6 +481,8 @@ void passes_finish(struct renderer *renderer)
     renderer->beside.general = false;
     stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);
-    pass_finish(&renderer->trace.closest);
-    pass_finish(&renderer->trace.any);
+    for (int any = 0; any < 2; ++any) {
+        pass_finish(&renderer->trace.singles[any]);
+        pass_finish(&renderer->trace.beams[any]);
+    }
 }

@@ -11,47 +11,48 @@
 #define BIND_INSTANCE_TEXELS  5
 #define BIND_STATUS           6
 #define BIND_WAITING          7
+#define BIND_NODE8_TEXELS     8
 
 /* The ray batch kernel. */
-#define BIND_RAYS        8
-#define BIND_HITS        9
-#define BIND_TRACE_COSTS 10
-#define BIND_TRACE_COUNT 11 /* bindings of that kernel */
+#define BIND_RAYS         9
+#define BIND_BATCH_TEXELS 10 /* the same */
+#define BIND_HITS         11
+#define BIND_TRACE_COSTS  12
+#define BIND_TRACE_COUNT  13 /* bindings of that kernel */
 
 /* The stages of a picture, and what one stage leaves to the next. */
-#define BIND_SHADING             8
-#define BIND_SHADING_TEXELS      9
-#define BIND_TEXELS              10
-#define BIND_TEXEL_TEXELS        11
-#define BIND_FRAME               12
-#define BIND_ENVIRONMENT         13
-#define BIND_PIXELS              14
-#define BIND_IDS                 15
-#define BIND_LISTED              16
-#define BIND_COSTS               17
-#define BIND_PROBE               18
-#define BIND_GENERATIONS         19
-#define BIND_GENERATION_TEXELS   20
-#define BIND_RAY_ROWS            21
-#define BIND_RAY_TEXELS          22
-#define BIND_RAY_MEDIA           23
-#define BIND_MEDIA_TEXELS        24
-#define BIND_RAY_KINDS           25
-#define BIND_HIT_ROWS            26
-#define BIND_HIT_TEXELS          27
-#define BIND_HIT_LIST            28
-#define BIND_LIST_TEXELS         29
-#define BIND_LIT_ROWS            30
-#define BIND_LIT_TEXELS          31
-#define BIND_LIT_LIST            32
-#define BIND_LIT_LIST_TEXELS     33
-#define BIND_SUMS                34
-#define BIND_SUM_TEXELS          35
-#define BIND_CHILDREN            36
-#define BIND_CHILD_TEXELS        37
-#define BIND_CUTS                38
-#define BIND_CUT_SUMS            39
-#define BIND_NODE8_TEXELS        40
+#define BIND_SHADING             9
+#define BIND_SHADING_TEXELS      10
+#define BIND_TEXELS              11
+#define BIND_TEXEL_TEXELS        12
+#define BIND_FRAME               13
+#define BIND_ENVIRONMENT         14
+#define BIND_PIXELS              15
+#define BIND_IDS                 16
+#define BIND_LISTED              17
+#define BIND_COSTS               18
+#define BIND_PROBE               19
+#define BIND_GENERATIONS         20
+#define BIND_GENERATION_TEXELS   21
+#define BIND_RAY_ROWS            22
+#define BIND_RAY_TEXELS          23
+#define BIND_RAY_MEDIA           24
+#define BIND_MEDIA_TEXELS        25
+#define BIND_RAY_KINDS           26
+#define BIND_HIT_ROWS            27
+#define BIND_HIT_TEXELS          28
+#define BIND_HIT_LIST            29
+#define BIND_LIST_TEXELS         30
+#define BIND_LIT_ROWS            31
+#define BIND_LIT_TEXELS          32
+#define BIND_LIT_LIST            33
+#define BIND_LIT_LIST_TEXELS     34
+#define BIND_SUMS                35
+#define BIND_SUM_TEXELS          36
+#define BIND_CHILDREN            37
+#define BIND_CHILD_TEXELS        38
+#define BIND_CUTS                39
+#define BIND_CUT_SUMS            40
 #define BIND_STAGES_COUNT        41
 
 #endif

@@ -142,6 +142,7 @@ struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
     gpu_uint waiting; /* 1: of the rays on the waiting list */
+    gpu_uint root8;   /* of eight children a node, for SPEC_PACKETS */
 };
 
 /* Head of a work list, followed by the items: pixels (slots within the chunk), or rays of a batch.

@@ -6,6 +6,13 @@
 
 #define EACH_RAY [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++)
 
+// Where the lane's ray `r` is among those of its workgroup: those of a subgroup follow each other.
+uint own_place(uint r)
+{
+    uint lane = gl_LocalInvocationID.x;
+    return SPEC_PACKET_RAYS == 1u ? lane : (lane / 8u * SPEC_PACKET_RAYS + r) * 8u + lane % 8u;
+}
+
 // What the caller asks for, and gets.
 bool packet_alive[SPEC_PACKET_RAYS];
 vec3 packet_origin[SPEC_PACKET_RAYS], packet_dir[SPEC_PACKET_RAYS];
@@ -65,7 +72,7 @@ vec3 least_of_lanes3(vec3 value)
     return vec3(least_of_lanes2(value.xy), least_of_lanes(value.z));
 }
 
-float largest_of(vec3 value)
+float largest_size(vec3 value)
 {
     value = abs(value);
     return -lesser(-value.x, lesser(-value.y, -value.z));
@@ -91,7 +98,7 @@ void size_rays()
 {
     float least = 0.0; // negated
     EACH_RAY {
-        float own = largest_of(packet_rays[r].origin);
+        float own = largest_size(packet_rays[r].origin);
         if (SPEC_CLIPPED != 0u)
             own += (packet_rays[r].above.x - packet_rays[r].origin.x) / BOUNDS_MARGIN;
         least = lesser(packet_alive[r] ? -own : 0.0, least);
@@ -105,7 +112,7 @@ void size_rays()
 // is large.
 float box_margin(vec3 lo, vec3 hi)
 {
-    return (max(largest_of(lo), largest_of(hi)) + packet_size) * BOUNDS_MARGIN;
+    return (max(largest_size(lo), largest_size(hi)) + packet_size) * BOUNDS_MARGIN;
 }
 
 // When the first ray comes to a box, as bits; NEVER where none does. Integers, as lavapipe has single

@@ -5,6 +5,7 @@
 
 #include "../abi/queues.h"
 #include "camera.glsl"
+#include "packet_rays.glsl"
 
 layout(set = 0, binding = BIND_GENERATIONS, std430) buffer GenerationBuffer
 {
@@ -244,13 +245,6 @@ uint fetch_listed_hit(uint item)
     uint at = (chunk.list - LIST_HITS) * chunk.ray_capacity + place_in_tile(item);
     return SPEC_LOAD_PATH == LOAD_TEXEL ? word_of_row(texelFetch(list_texels, int(at >> 2)), at)
                                         : hit_list[at];
-}
-
-// Where the lane's ray `r` is among those of its workgroup: those of a subgroup follow each other.
-uint own_place(uint r)
-{
-    uint lane = gl_LocalInvocationID.x;
-    return SPEC_PACKET_RAYS == 1u ? lane : (lane / 8u * SPEC_PACKET_RAYS + r) * 8u + lane % 8u;
 }
 
 const uint ITEM_NONE = 0xffffffffu;

@@ -1,15 +1,24 @@
 // A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
-#include "../bind/traverse.glsl"
+#include "../bind/packet.glsl"
 
 layout(local_size_x_id = 0) in;
 
 layout(push_constant) uniform Batch { gpu_batch batch; };
 layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray rays[]; };
-layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer { gpu_hit hits[]; };
+layout(set = 0, binding = BIND_BATCH_TEXELS) uniform usamplerBuffer ray_texels;
+layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer
+{
+    uvec4 hit_rows[]; // two of each gpu_hit: lavapipe writes the words of a row together
+};
+layout(set = 0, binding = BIND_HITS, std430) buffer BlockedBuffer
+{
+    uint blocked[]; // with SPEC_ANY_HIT: 1: there is a hit
+};
 layout(set = 0, binding = BIND_TRACE_COSTS, std430) buffer CostBuffer
 {
     gpu_cost costs[]; // with SPEC_COUNT
@@ -60,25 +69,115 @@ vec3 geometric_normal(Hit hit)
     return rotate_rows(c0, c1, c2, n);
 }
 
-Hit trace(const uint mode, uint index)
+gpu_ray fetch_ray(uint index)
 {
-    gpu_ray ray = rays[index];
-    Hit hit = traverse(mode, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE,
-                       HIT_NONE);
-    if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(mode))
-        finish_hit(ray.origin, ray.dir, hit);
-    return hit;
+    if (SPEC_LOAD_PATH != LOAD_TEXEL)
+        return rays[index];
+    uvec4 r0 = texelFetch(ray_texels, int(index * 2u)), r1 = texelFetch(ray_texels, int(index * 2u + 1u));
+    return gpu_ray(row_vec3(r0), uintBitsToFloat(r0.w), row_vec3(r1), uintBitsToFloat(r1.w));
 }
 
-void main()
+// Of any hit nothing is told but that there is one.
+void store_answer(uint index, Hit hit)
+{
+    bool met = hit.primitive != HIT_NONE;
+    if (SPEC_ANY_HIT != 0u) {
+        blocked[index] = uint(met);
+        return;
+    }
+    vec3 at = met ? vec3(hit.t, hit.u, hit.v) : vec3(uintBitsToFloat(0x7f800000u), 0.0, 0.0);
+    vec3 ng = met ? geometric_normal(hit) : vec3(0.0);
+    hit_rows[index * 2u] = uvec4(floatBitsToUint(at), hit.primitive);
+    hit_rows[index * 2u + 1u] = uvec4(hit.instance, floatBitsToUint(ng));
+}
+
+const uint MODE = SPEC_ANY_HIT != 0u ? TRAVERSE_ANY : TRAVERSE_CLOSEST;
+
+// Whether `dir` lies so near to `first` that packets of such rays visit little more than each ray alone:
+// by their components in units of that which is the largest of `first`.
+const float BEAM_WIDTH = 0.25;
+
+bool is_near(vec3 dir, vec3 first)
+{
+    bvec2 dominant = make_ray_setup(vec3(0.0), first).dominant;
+    vec3 a = turn_dominant(dominant, first), b = turn_dominant(dominant, dir);
+    vec2 apart = abs(b.xy / b.z - a.xy / a.z);
+    return a.z * b.z > 0.0 && apart.x < 0.5 * BEAM_WIDTH && apart.y < 0.5 * BEAM_WIDTH;
+}
+
+vec3 of_first(vec3 value)
+{
+    return vec3(subgroupShuffle(value.x, 0u), subgroupShuffle(value.y, 0u), subgroupShuffle(value.z, 0u));
+}
+
+// Lists the rays of the subgroup, to be traced one by one.
+void list_packet(bool wanted, uint index[SPEC_PACKET_RAYS], bool alive[SPEC_PACKET_RAYS])
+{
+    const uint rays_each = 8u * SPEC_PACKET_RAYS;
+    uint at = 0u, lane = gl_SubgroupInvocationID;
+    if (wanted && lane == 0u) {
+        at = atomicAdd(waiting.count, rays_each);
+        atomicMax(waiting.groups_x, (at + rays_each - 1u) / SPEC_GROUP_SIZE + 1u);
+    }
+    at = subgroupShuffle(at, 0u);
+    EACH_RAY {
+        if (wanted)
+            waiting_items[at + r * 8u + lane] = alive[r] ? index[r] : HIT_NONE;
+    }
+}
+
+// Rays that follow each other, start at one point and go about the same way walk together.
+void trace_beam()
+{
+    uint index[SPEC_PACKET_RAYS];
+    bool alive[SPEC_PACKET_RAYS], some = false, apart = false;
+    vec3 eye, first;
+    float t_min = 0.0;
+    EACH_RAY {
+        index[r] = gl_WorkGroupID.x * SPEC_GROUP_SIZE * SPEC_PACKET_RAYS + own_place(r);
+        alive[r] = index[r] < batch.ray_count;
+        gpu_ray ray = fetch_ray(alive[r] ? index[r] : 0u);
+        if (r == 0u) {
+            eye = of_first(ray.origin);
+            first = of_first(ray.dir);
+            t_min = subgroupShuffle(ray.t_min, 0u);
+        }
+        bool fits = floatBitsToUint(ray.origin) == floatBitsToUint(eye) && ray.t_min == t_min &&
+                    ray.t_min >= 0.0 && is_near(ray.dir, first);
+        some = some || alive[r];
+        apart = apart || (alive[r] && !fits);
+        packet_origin[r] = ray.origin;
+        packet_dir[r] = ray.dir;
+        packet_t_max[r] = ray.t_max;
+        packet_skip[r] = uvec2(HIT_NONE);
+    }
+    apart = any_lane(apart);
+    list_packet(apart && any_lane(some), index, alive);
+    EACH_RAY packet_alive[r] = alive[r] && !apart;
+    traverse_packets(MODE, t_min, batch.root, batch.root8, eye);
+    uint status = 0u;
+    EACH_RAY {
+        if (alive[r] && !apart)
+            store_answer(index[r], packet_hits[r]);
+        status |= alive[r] && !apart ? packet_hits[r].status : 0u;
+    }
+    report_status(status);
+}
+
+void trace_ray()
 {
     uint index = gl_GlobalInvocationID.x;
-    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && batch.waiting != 0u;
+    bool waited = batch.waiting != 0u;
     if (index >= (waited ? waiting.count : batch.ray_count))
         return;
     if (waited)
         index = waiting_items[index];
-    Hit hit = SPEC_ANY_HIT != 0u ? trace(TRAVERSE_ANY, index) : trace(TRAVERSE_CLOSEST, index);
+    if (index == HIT_NONE)
+        return;
+    gpu_ray ray = fetch_ray(index);
+    Hit hit = traverse(MODE, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE, HIT_NONE);
+    if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(MODE))
+        finish_hit(ray.origin, ray.dir, hit);
     if (SPEC_LOOKS == 0u && must_wait(hit.status)) {
         list_waiting(index);
         return;
@@ -86,16 +185,13 @@ void main()
     report_status(hit.status);
     if (SPEC_COUNT != 0u)
         costs[index] = traversal_cost;
-    bool met = hit.primitive != HIT_NONE;
-    gpu_hit answer;
-    answer.t = met ? hit.t : uintBitsToFloat(0x7f800000u);
-    answer.u = met ? hit.u : 0.0;
-    answer.v = met ? hit.v : 0.0;
-    answer.primitive = hit.primitive;
-    answer.instance = hit.instance;
-    vec3 ng = met ? geometric_normal(hit) : vec3(0.0);
-    answer.ng_x = ng.x;
-    answer.ng_y = ng.y;
-    answer.ng_z = ng.z;
-    hits[index] = answer;
+    store_answer(index, hit);
+}
+
+void main()
+{
+    if (SPEC_PACKETS != 0u)
+        trace_beam();
+    else
+        trace_ray();
 }

@@ -163,6 +163,15 @@ change(shaders/lib/intersect.glsl [[first * ray.inv_dir;]]
 change(shaders/lib/intersect.glsl [[last * ray.inv_dir;]]
   [[(last + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 
+mutation(beam_boxes_too_narrow render_trace RED packets_equal_twin)
+change(shaders/bind/beam.glsl [[vec3(box_margin(lo, hi))]] [[vec3(0.0)]])
+
+mutation(beam_of_two_origins render_trace RED packets_equal_twin)
+change(shaders/kernel/trace.comp [[floatBitsToUint(ray.origin) == floatBitsToUint(eye) &&]] [[true &&]])
+
+mutation(beam_of_mixed_signs render_trace RED packets_equal_twin)
+change(shaders/bind/beam.glsl [[beam_left[r] && group_of(packet_rays[r]) == group]] [[beam_left[r]]])
+
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h make_ray_setup
   [[vec3_make\(1\.0f / ([a-z]+)\.x, ([^;]+), ([^;]+)\);]]

@@ -214,7 +214,7 @@ static struct traced trace(struct scene *scene)
                              .t_max = INFINITY};
     struct fixture f = fixture_open(scene, NULL, &small);
     assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, traced.hits, NULL), WHIT_OK);
-    pipeline_get_info(f.renderer->trace.closest.pipeline, &info);
+    pipeline_get_info(f.renderer->trace.singles[0].pipeline, &info);
     traced.instructions = info.instructions;
     fixture_close(&f);
     return traced;

@@ -189,6 +189,85 @@ static struct scene *integer_ring(void)
     return scene;
 }
 
+/* Packets of 32 rays from one point, about the same way: towards the scene, or along an axis, so
+   that signs differ and components are 0. Every seventh goes all ways, every eleventh starts all
+   over the place, and of every fifth one ray has another interval. */
+static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t count)
+{
+    struct scene_pose pose;
+    uint64_t random = 17;
+    double target[3], middle[3] = {0}, way[3];
+    assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t packet = i / 32, axis = packet % 3;
+        if (i % 32 == 0)
+            aim_at_scene(f, &pose, &random, target);
+        rays[i] = (struct gpu_ray){.t_max = i % 4 ? INFINITY : 1.0f};
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (i % 1024 == 0)
+                middle[k] = (double)(float)(0.5 * (pose.lo[k] + pose.hi[k]) +
+                                            1.5 * (pose.hi[k] - pose.lo[k] + 1e-3) *
+                                                random_signed(&random));
+            way[k] = packet % 2 ? target[k] - middle[k] : k == axis ? -1.0 : 0.0;
+            double origin = packet % 2 || k == axis ? middle[k] : target[k];
+            rays[i].origin[k] = (float)(origin + (packet % 11 == 10 ? random_signed(&random) : 0));
+        }
+        double size = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+        double wide = packet % 7 == 6 ? 3.0 : packet % 13 == 12 ? 0.0 : 0.03;
+        for (uint32_t k = 0; k < 3; ++k)
+            rays[i].dir[k] = (float)(way[k] + (i % 3 || packet % 2 ? wide * size : 0.0) *
+                                                  random_signed(&random));
+        if (packet % 5 == 4 && i % 32 == 9)
+            rays[i].t_min = 0.25f;
+    }
+    scene_pose_finish(&pose);
+}
+
+static void check_packets(struct scene *scene, const struct accel_params *params, const char *label)
+{
+    enum { MANY = 70000 }; /* the last packet is not full */
+    struct fixture f = fixture_open(scene, params, NULL);
+    struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(MANY, sizeof *hits);
+    assert_true(rays && hits);
+    aim_packets(&f, rays, MANY);
+    for (int any = 0; any < 2; ++any) {
+        uint32_t unlike = count_unlike_twin(&f, NUMERICS_WATERTIGHT, any, rays, MANY, hits),
+                 met = 0;
+        for (uint32_t i = 0; i < MANY; ++i)
+            met += hits[i].primitive != HIT_NONE;
+        uint64_t together = renderer_trace_together(f.renderer);
+        print_message("  %s, %s: %u rays, %u met, %u in packets; unlike the twin %u\n", label,
+                      any ? "any" : "closest", MANY, met, (uint32_t)together, unlike);
+        assert_int_equal(unlike, 0);
+        assert_true(met > MANY / 10 && met < MANY);
+        if (device_get_info(f.device)->subgroup_size == 8) {
+            assert_true(together > MANY / 2 && together < MANY);
+        }
+    }
+    free(rays);
+    free(hits);
+    fixture_close(&f);
+}
+
+static void packets_equal_twin(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_begin(&fixture_log, "torus");
+    scene_put(scene, mesh_torus(1.0, 0.45, 60, 30), NULL);
+    check_packets(scene, NULL, "torus");
+    check_packets(integer_ring(), NULL, "ring of integers");
+    scene = scene_begin(&fixture_log, "rings");
+    scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+    uint64_t random = 5;
+    for (int i = 0; i < 40; ++i) {
+        struct affine placed = placement_random(&random, 6.0, i % 3 == 0);
+        scene_put_again(scene, 0, &(struct put){.matrix = &placed});
+    }
+    const struct accel_params flat = {.stack_floor = 32, .flatten = true};
+    check_packets(scene, &flat, "one tree of 40 instances");
+}
+
 /* Along an axis at multiples of a half: from far away; every fifth from a vertex. */
 static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint64_t *state)
 {
@@ -348,11 +427,17 @@ static void cut_traversals_are_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sphere_equals_twin),  cmocka_unit_test(box_equals_twin),
-        cmocka_unit_test(terrain_equals_twin), cmocka_unit_test(far_sphere_equals_twin),
-        cmocka_unit_test(soup_equals_twin),    cmocka_unit_test(instances_equal_twin),
-        cmocka_unit_test(integers_equal_twin), cmocka_unit_test(degenerate_rays_miss),
-        cmocka_unit_test(empty_scene_misses),  cmocka_unit_test(cut_traversals_are_reported),
+        cmocka_unit_test(sphere_equals_twin),
+        cmocka_unit_test(box_equals_twin),
+        cmocka_unit_test(terrain_equals_twin),
+        cmocka_unit_test(far_sphere_equals_twin),
+        cmocka_unit_test(soup_equals_twin),
+        cmocka_unit_test(instances_equal_twin),
+        cmocka_unit_test(packets_equal_twin),
+        cmocka_unit_test(integers_equal_twin),
+        cmocka_unit_test(degenerate_rays_miss),
+        cmocka_unit_test(empty_scene_misses),
+        cmocka_unit_test(cut_traversals_are_reported),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
