@@ -170,7 +170,7 @@ mutation(beam_of_two_origins render_trace RED packets_equal_twin)
 change(shaders/kernel/trace.comp [[floatBitsToUint(ray.origin) == floatBitsToUint(eye) &&]] [[true &&]])
 
 mutation(beam_of_mixed_signs render_trace RED packets_equal_twin)
-change(shaders/bind/beam.glsl [[beam_left[r] && group_of(packet_rays[r]) == group]] [[beam_left[r]]])
+change(shaders/bind/beam.glsl [[&& group_of(packet_rays[r]) == group]] [[&& true]])
 
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h make_ray_setup
