@@ -404,6 +404,12 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         stats->stages[i].ms = inner.stages[i].ms;
         memcpy(stats->stages[i].name, inner.stages[i].name, sizeof stats->stages[i].name);
     }
+    _Static_assert(WHIT_SHARES == RENDER_SHARES, "room for each");
+    stats->share_count = inner.share_count;
+    for (uint32_t i = 0; i < inner.share_count; ++i)
+        stats->shares[i] = (whit_share){.stage = inner.shares[i].stage,
+                                        .material = inner.shares[i].material,
+                                        .share = inner.shares[i].share};
     uint64_t rays =
         inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
     if (inner.render_ms > 0.0)

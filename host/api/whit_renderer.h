@@ -155,6 +155,15 @@ typedef struct whit_stage {
 } whit_stage;
 #define WHIT_STAGES 14
 
+/* Of the hits that a shading kernel worked on in those tiles, how many wear a material. Their share
+   of its time, not their price: a hit of one material may take longer than one of another. */
+typedef struct whit_share {
+    uint32_t stage;    /* of whit_stats.stages */
+    uint32_t material; /* of the scene */
+    double share;      /* 0..1 */
+} whit_share;
+#define WHIT_SHARES 24
+
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
@@ -175,6 +184,8 @@ typedef struct whit_stats {
     bool packets;          /* camera rays walked together */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
     whit_stage stages[WHIT_STAGES];  /* those that had rays; the others have none */
+    whit_share shares[WHIT_SHARES];  /* largest first; the rest is left out */
+    uint32_t share_count;
 } whit_stats;
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 

@@ -118,7 +118,27 @@ static json_t *kernel_document(const struct figures *figures)
     return kernel;
 }
 
-static json_t *stages_document(const struct figures *figures)
+/* Of the time of a shading kernel, by materials; NULL where nothing is known of that stage. */
+static json_t *shares_document(const struct job *job, const struct figures *figures, uint32_t stage)
+{
+    json_t *shares = NULL;
+    for (uint32_t i = 0; i < figures->render->share_count; ++i) {
+        const whit_share *share = &figures->render->shares[i];
+        if (share->stage != stage)
+            continue;
+        whit_material_info material;
+        whit_scene_get_material(job->scene, share->material, &material);
+        json_t *object = document_object();
+        document_count(object, "material", share->material);
+        document_text(object, "name", material.name);
+        document_put(object, "share", json_real(share->share));
+        shares = shares ? shares : document_array();
+        document_append(shares, object);
+    }
+    return shares;
+}
+
+static json_t *stages_document(const struct job *job, const struct figures *figures)
 {
     json_t *stages = document_array();
     for (int i = 0; i < WHIT_STAGES; ++i) {
@@ -132,6 +152,9 @@ static json_t *stages_document(const struct figures *figures)
             document_ms(object, "ms", stage->ms);
         else
             document_put(object, "ms", json_null());
+        json_t *shares = shares_document(job, figures, (uint32_t)i);
+        if (shares)
+            document_put(object, "shares", shares);
         document_append(stages, object);
     }
     return stages;
@@ -201,7 +224,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(figures));
-    document_put(root, "stages", stages_document(figures));
+    document_put(root, "stages", stages_document(job, figures));
     document_put(root, "kernel", kernel_document(figures));
     if (request->picture.adaptive > 0.0)
         document_put(root, "pixels_by_samples", pixels_document(figures));
@@ -275,7 +298,21 @@ static void print_rays(const struct figures *figures)
         puts("  how far off a pixel can be because of --bailout is not known for this scene");
 }
 
-static void print_stages(const struct figures *figures)
+/* Those of a hundredth and more. */
+static void print_shares(const struct job *job, const struct figures *figures, uint32_t stage)
+{
+    for (uint32_t i = 0; i < figures->render->share_count; ++i) {
+        const whit_share *share = &figures->render->shares[i];
+        if (share->stage != stage || share->share < 0.01)
+            continue;
+        whit_material_info material;
+        whit_scene_get_material(job->scene, share->material, &material);
+        printf("    %5.1f %% of its hits: %u %s\n", 100.0 * share->share, share->material,
+               cli_shown(material.name));
+    }
+}
+
+static void print_stages(const struct job *job, const struct figures *figures)
 {
     puts("stages                     ms       rays  ns a ray   of one tile in eight, by time "
          "stamps");
@@ -286,6 +323,7 @@ static void print_stages(const struct figures *figures)
                    (unsigned long long)stage->rays, stage->ms * 1e6 / (double)stage->rays);
         else if (stage->rays)
             printf("  %-18s %8s %10llu\n", stage->name, "-", (unsigned long long)stage->rays);
+        print_shares(job, figures, (uint32_t)i);
     }
 }
 
@@ -347,7 +385,7 @@ static int print_text(const struct job *job, const struct render_request *reques
            cli_shown(stats_driver(&figures->device)));
     print_times(job, figures);
     print_rays(figures);
-    print_stages(figures);
+    print_stages(job, figures);
     if (request->picture.adaptive > 0.0)
         print_samples(figures);
     print_kernel(figures);

@@ -97,6 +97,7 @@ void target_drop_pixels(struct target *target)
 void target_finish(struct target *target)
 {
     stage_set_finish(&target->stages.set);
+    material_shares_clear(target);
     pixels_finish(&target->buffers);
     buffer_destroy(target->records);
     *target = (struct target){0};

@@ -332,6 +332,7 @@ whit_result renderer_render(struct renderer *renderer)
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
     stats_clear(&renderer->picture.stats);
+    material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
     struct progress progress = {
         .start_ms = clock_ms(),

@@ -72,6 +72,14 @@ struct render_stage {
     double timed_ms;
 };
 
+/* Of the hits that a shading kernel works on, how many wear a material. */
+enum { RENDER_SHARES = 24 };
+struct render_share {
+    uint32_t stage; /* RENDER_STAGE_SHADE and behind */
+    uint32_t material;
+    double share; /* 0..1 */
+};
+
 struct render_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms;
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
@@ -88,6 +96,8 @@ struct render_stats {
     bool texel_loads, packets;
     struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
     struct render_stage stages[RENDER_STAGE_COUNT];
+    struct render_share shares[RENDER_SHARES]; /* largest first; the rest is left out */
+    uint32_t share_count;
 };
 
 struct renderer;

@@ -90,10 +90,11 @@ struct stage_times {
 struct stages {
     struct stage_set set;
     struct stage_times times;
-    uint32_t expected;    /* generations of the last tile */
-    bool full;            /* a queue was, in the last submission */
-    uint32_t blocks_most; /* of tiles, since one was too large; 0: as many as fit */
-    uint32_t rays_least;  /* that the queues have room for, since a block was too large for them */
+    uint32_t expected;       /* generations of the last tile */
+    bool full;               /* a queue was, in the last submission */
+    uint64_t *material_hits; /* of each class and material, in timed tiles; NULL: none so far */
+    uint32_t blocks_most;    /* of tiles, since one was too large; 0: as many as fit */
+    uint32_t rays_least; /* that the queues have room for, since a block was too large for them */
 };
 
 struct trace_state {
@@ -330,6 +331,16 @@ WHIT_CHECK whit_result stages_sample(struct target *target, const struct gpu_chu
                                      const struct progress *progress, double *longest_ms);
 
 uint64_t stages_generation_offset(uint32_t generation);
+
+/* material_shares.c: of the tile in hand, whose queues are as its generations have left them.
+   WHIT_ERROR_MEMORY, logged. */
+WHIT_CHECK whit_result material_shares_add(struct target *target,
+                                           const struct gpu_generation *generations,
+                                           uint32_t generation_count);
+/* Before another picture. */
+void material_shares_clear(struct target *target);
+/* stats->shares. */
+void material_shares_get(const struct target *target, struct render_stats *stats);
 
 /* stage_times.c: target->stats.stages, and rays_shadow with it. */
 void stage_times_begin(struct target *target);

@@ -2,7 +2,9 @@
    on drivers that end a batch of work for each stamp (lavapipe): so only some tiles are timed, and
    what an item took there stands for all. */
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "base/array.h"
 #include "render/renderer.h"
 
 /* One tile in so many is timed, and the second. Which ones has no pattern in the picture. Never the
@@ -97,18 +99,19 @@ whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk
     add_items(target, RENDER_STAGE_CAMERA, pixels);
     add_items(target, RENDER_STAGE_RESOLVE, pixels);
     add_items(target, RENDER_STAGE_DEFERRED, waits);
-    for (uint32_t g = 0; g < generations; ++g) {
-        struct gpu_generation generation;
-        whit_result result =
-            buffer_read(target->buffers.queues.generations, stages_generation_offset(g),
-                        &generation, sizeof generation);
-        if (result != WHIT_OK)
-            return result;
-        add_generation(target, &generation, g == 0);
-    }
+    struct gpu_generation *all = array_alloc(generations, sizeof *all);
+    if (!all)
+        return render_no_memory(target->renderer, "the counts of a tile");
+    whit_result result = buffer_read(target->buffers.queues.generations,
+                                     stages_generation_offset(0), all, generations * sizeof *all);
+    for (uint32_t g = 0; result == WHIT_OK && g < generations; ++g)
+        add_generation(target, &all[g], g == 0);
+    if (result == WHIT_OK && times->on && !target->probed)
+        result = material_shares_add(target, all, generations);
+    free(all);
     for (uint32_t row = 0; times->on && row < RENDER_STAGE_COUNT; ++row)
         target->stats.stages[row].timed_ms += times->ms[row];
-    return WHIT_OK;
+    return result;
 }
 
 void stage_times_scale(const struct renderer *renderer, struct render_stats *stats)

@@ -17,5 +17,6 @@ void renderer_get_stats(const struct renderer *renderer, struct render_stats *st
     *stats = renderer->picture.stats;
     stats->packets = renderer->packets && renderer->packet_stack_size <= PACKET_STACK_MOST;
     stage_times_scale(renderer, stats);
+    material_shares_get(&renderer->picture, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
 }

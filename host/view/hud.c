@@ -59,14 +59,33 @@ static void draw_names(const struct view *view)
             settings_numerics_name(s->picture.numerics));
 }
 
-/* What one tile in eight took by time stamps, for all. */
-static void draw_stages(const whit_stats *s)
+/* Of the time of a shading kernel: the materials that most of its hits wear. */
+static void draw_shares(const struct engine_frame *frame, uint32_t stage)
 {
+    const whit_stats *s = &frame->stats;
+    for (uint32_t i = 0, shown = 0; i < s->share_count && shown < 3; ++i) {
+        const whit_share *share = &s->shares[i];
+        if (share->stage != stage || share->share < 0.01)
+            continue;
+        whit_material_info material;
+        whit_scene_get_material(frame->scene->scene, share->material, &material);
+        char name[64];
+        whit_text_show(material.name, name, sizeof name);
+        ui_text_dim("    %.0f %% of its hits: %s", 100.0 * share->share, name);
+        ++shown;
+    }
+}
+
+/* What one tile in eight took by time stamps, for all. */
+static void draw_stages(const struct engine_frame *frame)
+{
+    const whit_stats *s = &frame->stats;
     for (int i = 0; i < WHIT_STAGES; ++i) {
         const whit_stage *stage = &s->stages[i];
         if (stage->rays && stage->ms >= 0.0)
             ui_text_dim("%s %.2f ms, %.0f ns a ray", stage->name, stage->ms,
                         stage->ms * 1e6 / (double)stage->rays);
+        draw_shares(frame, (uint32_t)i);
     }
 }
 
@@ -88,7 +107,7 @@ static void draw_more(const struct view *view)
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
     ui_text("cut: %llu by depth, %llu by bail-out", (unsigned long long)s->rays_cut_depth,
             (unsigned long long)s->rays_cut_bailout);
-    draw_stages(s);
+    draw_stages(frame);
     ui_text("trees %.1f ms, depth %u, %.1f MiB; kernel %u instructions, %.0f ms", frame->build_ms,
             frame->accel.depth, (double)frame->accel.bytes / 1048576.0, s->kernel_instructions,
             frame->compile_ms);

@@ -489,6 +489,52 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 }
 
 /* Each of these rays calls for two others. */
+/* What a tile that was timed has shaded, by its materials. Two tiles of two rows of blocks: the
+   second is timed. */
+static void check_shares(const struct accel_params *accel)
+{
+    enum { WIDTH = 64, HEIGHT = 32 };
+    const struct render_params params = {.width = WIDTH, .height = HEIGHT, .tile_size = 32};
+    struct fixture f = fixture_open(mixed_scene(), accel, &params);
+    struct image ids;
+    struct render_stats stats;
+    uint32_t worn[2][8] = {{0}}, all[2] = {0}, known = 0;
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    assert_int_equal(renderer_read_ids(f.renderer, &ids), WHIT_OK);
+    renderer_get_stats(f.renderer, &stats);
+    assert_int_equal(stats.tiles, 2);
+    assert_true(f.scene->material_count <= 8);
+    for (uint32_t i = WIDTH * HEIGHT / 2; i < WIDTH * HEIGHT; ++i) {
+        const uint32_t *id = &ids.words[2 * (size_t)i];
+        if (id[1] == HIT_NONE)
+            continue;
+        uint32_t m = f.scene->meshes[f.scene->instances[id[0]].mesh].materials[id[1]];
+        bool glass = f.scene->materials[m].transmission[0] > 0.0f;
+        ++worn[glass][m];
+        ++all[glass];
+    }
+    for (uint32_t i = 0; i < stats.share_count; ++i) {
+        const struct render_share *share = &stats.shares[i];
+        bool glass = share->stage == RENDER_STAGE_SHADE_GLASS;
+        print_message("  %s: %.3f\n", f.scene->materials[share->material].name, share->share);
+        assert_true(fabs(share->share - (double)worn[glass][share->material] / all[glass]) < 1e-9);
+        assert_true(i == 0 || share->share <= stats.shares[i - 1].share);
+        known += worn[glass][share->material];
+    }
+    assert_int_equal(known, all[0] + all[1]); /* none is left out */
+    assert_true(stats.share_count == 3);
+    image_finish(&ids);
+    fixture_close(&f);
+}
+
+static void shares_are_those_of_hits(void **state)
+{
+    (void)state;
+    const struct accel_params flat = {.stack_floor = 32, .flatten = true};
+    check_shares(NULL);
+    check_shares(&flat);
+}
+
 static void full_queues_end_in_smaller_tiles(void **state)
 {
     (void)state;
@@ -588,6 +634,7 @@ int main(void)
         cmocka_unit_test(cut_loops_are_reported),
         cmocka_unit_test(many_lights_are_drawn),
         cmocka_unit_test(many_lights_keep_no_one_waiting),
+        cmocka_unit_test(shares_are_those_of_hits),
         cmocka_unit_test(full_queues_end_in_smaller_tiles),
         cmocka_unit_test(cancel_and_time_limit_stop),
         cmocka_unit_test(pictures_may_be_dropped),
