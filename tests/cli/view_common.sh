@@ -32,6 +32,7 @@ play() {
     mv "$OUT/stdout" "$OUT/states"
     read_states
     check "$what: exit code 0 (got $status)" test "$status" -eq 0
+    test "$status" -eq 0 || sed 's/^/        said: /' "$OUT/stderr"
     check "$what: nothing to complain of" \
         test "$(grep -cv "${EXPECTED:-^$}" "$OUT/stderr")" -eq 0
     check "$what: all states are there" test "$(grep -c '^state' "$OUT/replay")" -eq \
