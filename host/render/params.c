@@ -73,7 +73,7 @@ whit_result params_check_loops(const struct renderer *renderer)
         return WHIT_OK;
     log_error(&renderer->log,
               "%s: without trees every ray tests %llu primitives, which is too much where each hit "
-              "takes %llu rays at once: fewer lights or --light-samples are possible",
+              "takes %llu rays at once: fewer --light-samples are possible",
               scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
               (unsigned long long)rays);
     return WHIT_ERROR_USAGE;

@@ -10,7 +10,7 @@ enum {
     TRACE_CAPACITY = 1 << 20,    /* rays in device memory */
     TRACE_FIRST = 1 << 14,       /* rays of the first dispatch, whose time sets the next one's */
     TRACE_FIRST_BARE = 1 << 10,  /* the same without trees */
-    TRACE_BEAMS_LEAST = 1 << 16, /* rays of a batch that are worth the kernel of beams */
+    TRACE_BEAMS_LEAST = 1 << 17, /* rays of a batch that are worth the kernel of beams */
 };
 /* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
@@ -166,7 +166,8 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     }
     renderer->trace.device_ms = 0.0;
     renderer->trace.together = 0;
-    bool beams = count >= TRACE_BEAMS_LEAST && variant_has_beams(renderer);
+    bool many = count >= TRACE_BEAMS_LEAST || renderer->params.packets == RENDER_PACKETS_ON;
+    bool beams = many && variant_has_beams(renderer);
     whit_result result = prepare(renderer, any, beams);
     if (result == WHIT_OK)
         result = waits_clear(&renderer->picture);

@@ -189,7 +189,7 @@ static struct scene *integer_ring(void)
     return scene;
 }
 
-/* Packets of 32 rays from one point, about the same way: towards the scene, or along an axis, so
+/* Runs of 64 rays from one point, about the same way: towards the scene, or along an axis, so
    that signs differ and components are 0. Every seventh goes all ways, every eleventh starts all
    over the place, and of every fifth one ray has another interval. */
 static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t count)
@@ -199,8 +199,8 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
     double target[3], middle[3] = {0}, way[3];
     assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
     for (uint32_t i = 0; i < count; ++i) {
-        uint32_t packet = i / 32, axis = packet % 3;
-        if (i % 32 == 0)
+        uint32_t packet = i / 64, axis = packet % 3;
+        if (i % 64 == 0)
             aim_at_scene(f, &pose, &random, target);
         rays[i] = (struct gpu_ray){.t_max = i % 4 ? INFINITY : 1.0f};
         for (uint32_t k = 0; k < 3; ++k) {
@@ -217,7 +217,7 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
         for (uint32_t k = 0; k < 3; ++k)
             rays[i].dir[k] = (float)(way[k] + (i % 3 || packet % 2 ? wide * size : 0.0) *
                                                   random_signed(&random));
-        if (packet % 5 == 4 && i % 32 == 9)
+        if (packet % 5 == 4 && i % 64 == 9)
             rays[i].t_min = 0.25f;
     }
     scene_pose_finish(&pose);
@@ -226,7 +226,8 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
 static void check_packets(struct scene *scene, const struct accel_params *params, const char *label)
 {
     enum { MANY = 70000 }; /* the last packet is not full */
-    struct fixture f = fixture_open(scene, params, NULL);
+    const struct render_params on = {.width = 16, .height = 16, .packets = RENDER_PACKETS_ON};
+    struct fixture f = fixture_open(scene, params, &on);
     struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
     struct gpu_hit *hits = array_alloc(MANY, sizeof *hits);
     assert_true(rays && hits);
