@@ -155,8 +155,9 @@ typedef struct whit_stage {
 } whit_stage;
 #define WHIT_STAGES 14
 
-/* Of the hits that a shading kernel worked on in those tiles, how many wear a material. Their share
-   of its time, not their price: a hit of one material may take longer than one of another. */
+/* How many of the hits that a shading kernel worked on, in those tiles, wear one material. This is
+   the material's share of the kernel's time, not its price: a hit of one material may take longer
+   than a hit of another. */
 typedef struct whit_share {
     uint32_t stage;    /* of whit_stats.stages */
     uint32_t material; /* of the scene */

@@ -118,7 +118,8 @@ static json_t *kernel_document(const struct figures *figures)
     return kernel;
 }
 
-/* Of the time of a shading kernel, by materials; NULL where nothing is known of that stage. */
+/* The shares that materials have in the time of a shading kernel; NULL where the stage is no
+   shading kernel, or none of its tiles was timed. */
 static json_t *shares_document(const struct job *job, const struct figures *figures, uint32_t stage)
 {
     json_t *shares = NULL;
@@ -298,7 +299,7 @@ static void print_rays(const struct figures *figures)
         puts("  how far off a pixel can be because of --bailout is not known for this scene");
 }
 
-/* Those of a hundredth and more. */
+/* Prints the materials that a hundredth of the stage's hits and more wear. */
 static void print_shares(const struct job *job, const struct figures *figures, uint32_t stage)
 {
     for (uint32_t i = 0; i < figures->render->share_count; ++i) {

@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
-/* What a tile has left, as read back. */
+/* The lists and rows of hits of a tile, read back from the device. */
 struct tile_hits {
     uint32_t *list; /* ids, class by class */
     uint32_t *rows; /* HIT_ROWS of four words an id */
@@ -51,6 +51,8 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
     const struct renderer *renderer = target->renderer;
     uint32_t material_count = renderer->scene->material_count;
     uint64_t **counts = &target->stages.material_hits;
+    if (material_count == 0) /* nothing can be hit */
+        return WHIT_OK;
     if (!*counts)
         *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MOST, sizeof **counts);
     if (!*counts)

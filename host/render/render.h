@@ -72,7 +72,7 @@ struct render_stage {
     double timed_ms;
 };
 
-/* Of the hits that a shading kernel works on, how many wear a material. */
+/* How many of the hits that a shading kernel worked on wear one material. */
 enum { RENDER_SHARES = 24 };
 struct render_share {
     uint32_t stage; /* RENDER_STAGE_SHADE and behind */

@@ -48,10 +48,11 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     struct trace_state *trace = &renderer->trace;
     whit_result result = beams ? upload_wide(renderer) : WHIT_OK;
     beams = beams && renderer->packet_stack_size <= PACKET_STACK_MOST;
+    uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     if (result == WHIT_OK && !trace->rays) {
         trace->capacity = choose_capacity(renderer->params.trace_rays);
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
-                               BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_HOST, "rays", &trace->rays);
+                               loads | BUFFER_HOST, "rays", &trace->rays);
     }
     if (result == WHIT_OK && !trace->hits)
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_hit),
@@ -72,7 +73,7 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     return result;
 }
 
-/* What a dispatch has put on the waiting list. */
+/* Records a dispatch over the rays that the one before it has put on the waiting list. */
 static void record_waiting(struct renderer *renderer, struct pipeline *pipeline,
                            struct binding_set *set, const struct gpu_batch *batch)
 {

@@ -59,7 +59,7 @@ static void draw_names(const struct view *view)
             settings_numerics_name(s->picture.numerics));
 }
 
-/* Of the time of a shading kernel: the materials that most of its hits wear. */
+/* Shows the three materials that most hits of a shading kernel wear. */
 static void draw_shares(const struct engine_frame *frame, uint32_t stage)
 {
     const whit_stats *s = &frame->stats;

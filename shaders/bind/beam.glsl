@@ -41,6 +41,7 @@ uint group_of(RaySetup ray)
 
 const uint GROUP_NONE = 32u;
 
+// Prepares the rays of the group for tests of boxes, and bounds their directions.
 void bound_beam()
 {
     vec2 lo = vec2(INFINITE), hi = lo; // hi: negated
@@ -91,8 +92,8 @@ bool end_beam()
     return any_lane(left);
 }
 
-// A box of this lane, taken to the group's space and widened. Whether some ray of the group may come
-// through it.
+// Takes a box of this lane to the group's space, and widens it. True where some ray of the group may come
+// through the box.
 bool bring_to_beam(inout vec3 lo, inout vec3 hi)
 {
     vec3 margin = vec3(box_margin(lo, hi)), origin = beam.origin;
@@ -105,7 +106,8 @@ bool bring_to_beam(inout vec3 lo, inout vec3 hi)
     return max(max(near.x, near.y), max(near.z, 0)) <= min(far.x, min(far.y, far.z));
 }
 
-// Where the first ray of this lane enters a box that was brought there.
+// When the first ray of this lane enters a box, which bring_to_beam has taken to the group's space: as bits,
+// see NEVER.
 int enter_beam_box(vec3 lo, vec3 hi)
 {
     int first = NEVER;

@@ -375,6 +375,7 @@ void packet_instances(const uint mode, float t_min, uint root)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
+// Rays that start at one point, one group of directions after the other.
 void packet_beams(const uint mode, float t_min, uint root)
 {
     bool more = false;

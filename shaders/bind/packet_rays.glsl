@@ -39,7 +39,7 @@ int least_of_lanes(int value)
     return min(value, subgroupShuffleXor(value, 4u));
 }
 
-// One instruction on lavapipe, of which min takes three for the sake of NaN.
+// A compare and a selection. min takes lavapipe an instruction more, for the sake of NaN.
 float lesser(float a, float b)
 {
     return a < b ? a : b;

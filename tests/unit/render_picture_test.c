@@ -488,7 +488,6 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
     return picture;
 }
 
-/* Each of these rays calls for two others. */
 /* What a tile that was timed has shaded, by its materials. Two tiles of two rows of blocks: the
    second is timed. */
 static void check_shares(const struct accel_params *accel)
@@ -535,6 +534,7 @@ static void shares_are_those_of_hits(void **state)
     check_shares(&flat);
 }
 
+/* Each of these rays calls for two others. */
 static void full_queues_end_in_smaller_tiles(void **state)
 {
     (void)state;
