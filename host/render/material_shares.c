@@ -7,11 +7,12 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
-/* The lists and rows of hits of a tile, read back from the device. */
+/* The lists and rows of hits of a tile, read back from the device: of `capacity` the first and the
+   last, which is all that the tile has used. */
 struct tile_hits {
     uint32_t *list; /* ids, class by class */
-    uint32_t *rows; /* HIT_ROWS of four words an id */
-    uint32_t capacity;
+    uint32_t *rows; /* of each id variant_hit_rows() of four words */
+    uint32_t capacity, first, last;
 };
 
 static void tile_hits_finish(struct tile_hits *hits)
@@ -20,18 +21,39 @@ static void tile_hits_finish(struct tile_hits *hits)
     free(hits->rows);
 }
 
-static whit_result read_tile(struct target *target, struct tile_hits *hits)
+/* Array `index` of those of `capacity` items each that a buffer holds, as far as it is used. */
+static whit_result read_used(struct buffer *buffer, const struct tile_hits *hits, uint64_t index,
+                             uint64_t item_bytes, uint32_t *words)
+{
+    uint64_t start = index * hits->capacity * item_bytes, last_bytes = hits->last * item_bytes;
+    uint64_t last = start + (hits->capacity - hits->last) * item_bytes;
+    whit_result result = buffer_read(buffer, start, words + start / 4, hits->first * item_bytes);
+    return result == WHIT_OK ? buffer_read(buffer, last, words + last / 4, last_bytes) : result;
+}
+
+static whit_result read_tile(struct target *target, const struct gpu_generation *generations,
+                             uint32_t generation_count, uint32_t camera_rays,
+                             struct tile_hits *hits)
 {
     const struct queue_buffers *queues = &target->buffers.queues;
-    uint64_t ids = queues->ray_capacity;
-    uint64_t list_bytes = ids * 4 * target->stages.set.classes, row_bytes = ids * HIT_ROWS * 16;
-    hits->capacity = queues->ray_capacity;
-    hits->list = array_alloc(list_bytes, 1);
-    hits->rows = array_alloc(row_bytes, 1);
+    uint64_t row_bytes = variant_hit_rows(target->renderer) * 16;
+    *hits = (struct tile_hits){.capacity = queues->ray_capacity, .first = camera_rays};
+    for (uint32_t g = 1; g < generation_count; ++g) {
+        const struct gpu_items *rays = &generations[g].lists[LIST_RAYS];
+        uint32_t first =
+            generations[g].firsts[0] + rays->front; /* 0 of a generation without rays */
+        uint32_t last = generations[g].firsts[1] + rays->back;
+        hits->first = first > hits->first ? first : hits->first;
+        hits->last = last > hits->last ? last : hits->last;
+    }
+    hits->list = array_alloc((size_t)hits->capacity * CLASSES_MOST, 4);
+    hits->rows = array_alloc(hits->capacity, row_bytes);
     if (!hits->list || !hits->rows)
         return render_no_memory(target->renderer, "shares of materials");
-    whit_result result = buffer_read(queues->hit_list, 0, hits->list, list_bytes);
-    return result == WHIT_OK ? buffer_read(queues->hits, 0, hits->rows, row_bytes) : result;
+    whit_result result = read_used(queues->hits, hits, 0, row_bytes, hits->rows);
+    for (uint32_t k = 0; result == WHIT_OK && k < target->stages.set.classes; ++k)
+        result = read_used(queues->hit_list, hits, k, 4, hits->list);
+    return result;
 }
 
 static uint32_t material_of(const struct renderer *renderer, const struct tile_hits *hits,
@@ -39,14 +61,16 @@ static uint32_t material_of(const struct renderer *renderer, const struct tile_h
 {
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
-    const uint32_t *row = &hits->rows[(size_t)id * HIT_ROWS * 4];
-    uint32_t instance = accel->single_identity && !accel->flat ? 0 : row[4];
-    uint32_t primitive = accel->triangles[row[3] & ~HIT_AT_EXIT].primitive;
-    return scene->meshes[scene->instances[instance].mesh].materials[primitive];
+    const uint32_t *row = &hits->rows[(size_t)id * variant_hit_rows(renderer) * 4];
+    const struct gpu_triangle *record = &accel->triangles[row[3] & ~HIT_AT_EXIT];
+    uint32_t instance = accel->flat              ? record->flags >> TRIANGLE_INSTANCE_SHIFT
+                        : accel->single_identity ? 0
+                                                 : row[4];
+    return scene->meshes[scene->instances[instance].mesh].materials[record->primitive];
 }
 
 whit_result material_shares_add(struct target *target, const struct gpu_generation *generations,
-                                uint32_t generation_count)
+                                uint32_t generation_count, uint32_t camera_rays)
 {
     const struct renderer *renderer = target->renderer;
     uint32_t material_count = renderer->scene->material_count;
@@ -57,18 +81,19 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
         *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MOST, sizeof **counts);
     if (!*counts)
         return render_no_memory(renderer, "shares of materials");
-    struct tile_hits hits = {0};
-    whit_result result = read_tile(target, &hits);
+    struct tile_hits hits;
+    whit_result result = read_tile(target, generations, generation_count, camera_rays, &hits);
     for (uint32_t g = 0; result == WHIT_OK && g < generation_count; ++g) {
         for (uint32_t k = 0; k < target->stages.set.classes; ++k) {
             const struct gpu_items *items = &generations[g].lists[LIST_HITS + k];
             const uint32_t *list = &hits.list[(size_t)k * hits.capacity];
             const gpu_uint *firsts = generations[g].firsts;
+            uint32_t end = g == 0 ? camera_rays : hits.capacity; /* hit_capacity() of queues.glsl */
             for (uint32_t i = 0; i < items->front; ++i)
                 ++(*counts)[k * material_count + material_of(renderer, &hits, list[firsts[0] + i])];
             for (uint32_t i = 0; i < items->back; ++i)
                 ++(*counts)[k * material_count +
-                            material_of(renderer, &hits, list[hits.capacity - 1 - firsts[1] - i])];
+                            material_of(renderer, &hits, list[end - 1 - firsts[1] - i])];
         }
     }
     tile_hits_finish(&hits);

@@ -60,7 +60,7 @@ whit_result queues_create(struct target *target)
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
     uint64_t heads = sizeof(struct gpu_tally) +
                      (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
-    bool media = renderer->effects.called[SCENE_EFFECT_MEDIA];
+    bool media = called[SCENE_EFFECT_MEDIA] && !variant_media_word(renderer);
     uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
     const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS;
     const struct {
@@ -74,10 +74,9 @@ whit_result queues_create(struct target *target)
         {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
         {&queues->rays, sent * RAY_ROWS * 16, loaded, "rays"},
         {&queues->media, media ? sent * sizeof(struct gpu_media) : 0, loaded, "media of rays"},
-        {&queues->hits, rays * HIT_ROWS * 16, loaded, "hits"},
+        {&queues->hits, rays * variant_hit_rows(renderer) * 16, loaded, "hits"},
         {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
         {&queues->sums, rays * 16, loaded, "sums"},
-        {&queues->children, sent * 16, loaded, "children of rays"},
         {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},
         {&queues->hit_list, rays * 4 * CLASSES_MOST, loaded, "hits to shade"},
         {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE,
@@ -124,10 +123,10 @@ whit_result queues_grow(struct target *target)
 
 void queues_finish(struct queue_buffers *queues)
 {
-    struct buffer *all[] = {queues->generations, queues->empty,  queues->rays,     queues->media,
-                            queues->hits,        queues->lit,    queues->sums,     queues->children,
-                            queues->hit_list,    queues->cuts,   queues->cut_sums, queues->kinds,
-                            queues->lit_list,    queues->waiting};
+    struct buffer *all[] = {queues->generations, queues->empty,    queues->rays,  queues->media,
+                            queues->hits,        queues->lit,      queues->sums,  queues->hit_list,
+                            queues->cuts,        queues->cut_sums, queues->kinds, queues->lit_list,
+                            queues->waiting};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

@@ -15,7 +15,6 @@
 
 enum { TILE_FIRST = 96 };
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
-static const double SUBMISSION_TARGET_MS = 40.0;
 static const double SUBMISSION_LIMIT_MS = 100.0;
 
 /* Where pixels are not finite, of those drawn so far. Nothing where none is: a ray was lost whose
@@ -166,7 +165,7 @@ static void adapt_tile(const struct renderer *renderer, struct progress *progres
         return;
     if (spent_ms > SUBMISSION_LIMIT_MS && progress->tile > TILE_MIN)
         progress->tile /= 2;
-    else if (spent_ms < SUBMISSION_TARGET_MS / 4 &&
+    else if (4.0 * spent_ms < SUBMISSION_LIMIT_MS &&
              slots * 4 <= renderer->picture.buffers.chunk_slots)
         progress->tile *= 2;
 }

@@ -25,7 +25,7 @@ struct scene_buffers {
 /* What the stages of a picture leave to each other, of one tile (abi/queues.h). */
 struct queue_buffers {
     struct buffer *generations, *empty; /* gpu_tally and gpu_generation; as they begin */
-    struct buffer *rays, *media, *hits, *lit, *sums, *children, *hit_list, *cuts, *cut_sums;
+    struct buffer *rays, *media, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
         *waiting;         /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
@@ -277,6 +277,11 @@ uint32_t variant_classes(const struct renderer *renderer);
 /* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
 bool variant_waits(const struct target *target);
+/* Whether the media that a queued ray is in are in one of its words: media_word of bind/media.glsl.
+ */
+bool variant_media_word(const struct renderer *renderer);
+/* Rows of 16 bytes of a hit: HIT_ROWS of bind/queues.glsl. */
+uint32_t variant_hit_rows(const struct renderer *renderer);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.
  */
 struct variant_job {
@@ -332,11 +337,11 @@ WHIT_CHECK whit_result stages_sample(struct target *target, const struct gpu_chu
 
 uint64_t stages_generation_offset(uint32_t generation);
 
-/* material_shares.c: of the tile in hand, whose queues are as its generations have left them.
-   WHIT_ERROR_MEMORY, logged. */
+/* material_shares.c: of the tile in hand, whose queues are as its generations and its camera rays
+   have left them. WHIT_ERROR_MEMORY, logged. */
 WHIT_CHECK whit_result material_shares_add(struct target *target,
                                            const struct gpu_generation *generations,
-                                           uint32_t generation_count);
+                                           uint32_t generation_count, uint32_t camera_rays);
 /* Before another picture. */
 void material_shares_clear(struct target *target);
 /* stats->shares. */

@@ -107,7 +107,7 @@ whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk
     for (uint32_t g = 0; result == WHIT_OK && g < generations; ++g)
         add_generation(target, &all[g], g == 0);
     if (result == WHIT_OK && times->on && !target->probed)
-        result = material_shares_add(target, all, generations);
+        result = material_shares_add(target, all, generations, (uint32_t)pixels);
     free(all);
     for (uint32_t row = 0; times->on && row < RENDER_STAGE_COUNT; ++row)
         target->stats.stages[row].timed_ms += times->ms[row];

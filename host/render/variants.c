@@ -23,6 +23,16 @@ bool variant_waits(const struct target *target)
            !target->probed;
 }
 
+bool variant_media_word(const struct renderer *renderer)
+{
+    return renderer->scene->material_count < 16 && renderer->accel->flat;
+}
+
+uint32_t variant_hit_rows(const struct renderer *renderer)
+{
+    return renderer->accel->flat && renderer->params.numerics != NUMERICS_EXACT ? 1 : 2;
+}
+
 static bool only_spheres(const struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->mesh_count; ++i) {
@@ -71,6 +81,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || target->probed;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
+    spec.SPEC_MEDIA_WORD = spec.SPEC_MEDIA && variant_media_word(renderer);
     return spec;
 }
 
@@ -238,9 +249,7 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_TEXELS, BINDING_TEXELS, queues->lit);
     bind(&bindings, BIND_SUMS, BINDING_STORAGE, queues->sums);
     bind(&bindings, BIND_SUM_TEXELS, BINDING_TEXELS, queues->sums);
-    bind(&bindings, BIND_CHILDREN, BINDING_STORAGE, queues->children);
     bind(&bindings, BIND_MEDIA_TEXELS, BINDING_TEXELS, queues->media);
-    bind(&bindings, BIND_CHILD_TEXELS, BINDING_TEXELS, queues->children);
     bind(&bindings, BIND_LIST_TEXELS, BINDING_TEXELS, queues->hit_list);
     bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);

@@ -49,10 +49,8 @@
 #define BIND_LIT_LIST_TEXELS     34
 #define BIND_SUMS                35
 #define BIND_SUM_TEXELS          36
-#define BIND_CHILDREN            37
-#define BIND_CHILD_TEXELS        38
-#define BIND_CUTS                39
-#define BIND_CUT_SUMS            40
-#define BIND_STAGES_COUNT        41
+#define BIND_CUTS                37
+#define BIND_CUT_SUMS            38
+#define BIND_STAGES_COUNT        39
 
 #endif

@@ -9,8 +9,7 @@
 #include "base.h"
 
 /* Rows of 16 bytes. */
-#define RAY_ROWS 3u /* origin, state; dir, skip_primitive; weight, skip_instance */
-#define HIT_ROWS 2u /* t, u, v, record; primitive, instance, lo, hi */
+#define RAY_ROWS 3u /* origin, state; dir, record to skip; weight, its instance or SPEC_MEDIA_WORD */
 #define LIT_ROWS 7u /* see bind/lit.glsl */
 
 /* Of a queued ray: its steps, and above them the slot of its pixel. */
@@ -25,9 +24,13 @@
 /* Bit of the record of a hit: NUMERICS_EXACT, it is the far end of a sphere. */
 #define HIT_AT_EXIT 0x80000000u
 
-/* sums[].w of a ray, as bits. */
-#define SUM_HAS_CHILDREN 1u
-#define SUM_IS_CATCHER   2u /* its light, unweighted; without shadows in the first row of its hit */
+/* sums[].w of a ray, as bits: which rays it calls for, whose ids follow each other in this order, and the
+   first id. 0: none. */
+#define SUM_ID_MASK    0x0fffffffu
+#define SUM_REFRACTED  0x10000000u
+#define SUM_STRAIGHT   0x20000000u
+#define SUM_REFLECTED  0x40000000u
+#define SUM_IS_CATCHER 0x80000000u /* its light, unweighted; without shadows in the first row of its hit */
 
 /* What is waiting in a generation, list by list. */
 #define LIST_RAYS      0u

@@ -122,7 +122,8 @@
     X(47, SPEC_CROSSINGS, 1)          /* surfaces of the class bound media */                      \
     X(48, SPEC_LIT_PARTS, 7)          /* LIT_HAS_* */                                              \
     X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */                                       \
-    X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */
+    X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */                                             \
+    X(51, SPEC_MEDIA_WORD, 0)         /* queued rays have their media in a word: see media_word */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -61,7 +61,7 @@ Ray camera_ray(uvec2 pixel)
                                          frame.eye_media3)
                                  : uvec4(0u);
     ray.skip_primitive = HIT_NONE;
-    ray.skip_instance = HIT_NONE;
+    ray.skip_instance = ray.skip_record = HIT_NONE;
     ray.kind = RAY_PRIMARY;
     return ray;
 }

@@ -16,7 +16,7 @@ struct Crossing {
     bool seen;           // false: both sides are the same medium, so there is nothing to see
     // Where what passes goes on: the last of the surfaces that are crossed here.
     vec3 p, error, ng;
-    uint instance, primitive;
+    uint instance, record;
 };
 
 // Turns the normals to the ray's side. True: the ray comes from inside.
@@ -144,7 +144,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
                 c.error = other.error;
                 c.ng = other.ng;
                 c.instance = hit.instance;
-                c.primitive = hit.primitive;
+                c.record = hit.triangle;
                 uint other_rank = medium_priority(other.material + 1u) * 2u + uint(!leaves);
                 if (other_rank > rank) {
                     rank = other_rank;
@@ -180,7 +180,7 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
     c.error = s.error;
     c.ng = s.ng;
     c.instance = hit.instance;
-    c.primitive = hit.primitive;
+    c.record = hit.triangle;
     if (SPEC_MEDIA == 0u || SPEC_CROSSINGS == 0u || !bounds_medium(m))
         return c;
     if (is_crossed_already(ray, hit, s, inside)) {

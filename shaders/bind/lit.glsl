@@ -23,6 +23,7 @@ struct Lit {
     vec3 absorption; // of the media around
     uint flags;     // LIT_*
     uint id, skip_instance, skip_primitive;
+    uint record; // of the primitive, where it is stored
 };
 
 uvec4 fetch_lit_row(uint row)
@@ -69,7 +70,8 @@ uint lit_rows_each()
 Lit fetch_lit(uint index)
 {
     uint row = index * lit_rows_each();
-    uvec4 r0 = fetch_lit_row(row), r1 = fetch_lit_row(row + 1u), r2 = fetch_lit_row(row + 2u);
+    uvec4 r0 = fetch_lit_row(row), r1 = fetch_lit_row(row + 1u);
+    uvec4 r2 = fetch_lit_row(row + 2u), r3 = fetch_lit_row(row + 3u);
     Lit lit;
     lit.p = row_vec3(r0);
     lit.id = r0.w & LIT_ID_MASK;
@@ -78,7 +80,7 @@ Lit fetch_lit(uint index)
     lit.gloss = uintBitsToFloat(r1.w);
     lit.ns = row_vec3(r2);
     lit.error = uintBitsToFloat(r2.w);
-    lit.diffuse = row_vec3(fetch_lit_row(row + 3u));
+    lit.diffuse = row_vec3(r3);
     lit.ng = lit_has(LIT_HAS_NG) ? row_vec3(fetch_lit_row(row + 4u)) : lit.ns;
     lit.highlight = vec3(0.0);
     lit.view = vec3(0.0);
@@ -90,7 +92,7 @@ Lit fetch_lit(uint index)
     lit.absorption = vec3(0.0);
     if (lit_has(LIT_HAS_ABSORPTION))
         lit.absorption = row_vec3(fetch_lit_row(row + lit_absorption_row()));
-    uvec2 own = fetch_hit_ids(lit.id, fetch_hit_row(lit.id * HIT_ROWS).w & ~HIT_AT_EXIT);
+    uvec2 own = fetch_hit_ids(lit.id, r3.w);
     lit.skip_instance = own.x;
     lit.skip_primitive = own.y;
     return lit;
@@ -102,7 +104,7 @@ void store_lit(uint index, Lit lit)
     lit_rows[row] = uvec4(floatBitsToUint(lit.p), lit.id | lit.flags << LIT_FLAGS_SHIFT);
     lit_rows[row + 1u] = floatBitsToUint(vec4(lit.origin, lit.gloss));
     lit_rows[row + 2u] = floatBitsToUint(vec4(lit.ns, lit.error));
-    lit_rows[row + 3u] = floatBitsToUint(vec4(lit.diffuse, 0.0));
+    lit_rows[row + 3u] = uvec4(floatBitsToUint(lit.diffuse), lit.record);
     if (lit_has(LIT_HAS_NG))
         lit_rows[row + 4u] = floatBitsToUint(vec4(lit.ng, 0.0));
     if (lit_has(LIT_HAS_HIGHLIGHT))

@@ -5,6 +5,7 @@
 
 #include "../abi/queues.h"
 #include "camera.glsl"
+#include "media.glsl"
 #include "packet_rays.glsl"
 
 layout(set = 0, binding = BIND_GENERATIONS, std430) buffer GenerationBuffer
@@ -22,17 +23,12 @@ layout(set = 0, binding = BIND_SUMS, std430) buffer SumBuffer
 {
     vec4 sums[]; // radiance that a ray brings, weighted; SUM_*
 };
-layout(set = 0, binding = BIND_CHILDREN, std430) buffer ChildBuffer
-{
-    uvec4 children[]; // ids of refracted, straight, reflected, or HIT_NONE
-};
 layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit_list[]; };
 layout(set = 0, binding = BIND_MEDIA_TEXELS) uniform usamplerBuffer media_texels;
-layout(set = 0, binding = BIND_CHILD_TEXELS) uniform usamplerBuffer child_texels;
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
 layout(set = 0, binding = BIND_RAY_MEDIA, std430) buffer RayMediaBuffer
 {
-    uvec4 ray_media[]; // struct gpu_media; with SPEC_MEDIA
+    uvec4 ray_media[]; // struct gpu_media; with SPEC_MEDIA, without SPEC_MEDIA_WORD
 };
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
@@ -82,11 +78,24 @@ vec4 fetch_sum(uint id)
     return sums[id];
 }
 
-uvec4 fetch_children(uint id)
+// Ids of the refracted, the straight and the reflected ray that sums[].w tells of, or HIT_NONE.
+uvec3 child_ids(uint has)
 {
-    if (SPEC_LOAD_PATH == LOAD_TEXEL)
-        return texelFetch(child_texels, int(id));
-    return children[id];
+    bvec3 some = notEqual(uvec3(has) & uvec3(SUM_REFRACTED, SUM_STRAIGHT, SUM_REFLECTED), uvec3(0u));
+    uvec3 place = uvec3(0u, uint(some.x), uint(some.x) + uint(some.y));
+    return mix(uvec3(HIT_NONE), (has & SUM_ID_MASK) + place, some);
+}
+
+// Of each hit. The second tells the instance where the record does not, and the key.
+const uint HIT_ROWS = SPEC_NUMERICS == NUMERICS_EXACT || SPEC_FLAT == 0u ? 2u : 1u;
+
+// Instance and primitive of a record; `instance`: where SPEC_INSTANCED.
+uvec2 fetch_record_ids(uint record, uint instance)
+{
+    uint row = record * TRIANGLE_ROWS;
+    if (SPEC_FLAT != 0u)
+        instance = fetch_triangle_row(row + 1u).w >> TRIANGLE_INSTANCE_SHIFT;
+    return uvec2(SPEC_INSTANCED != 0u || SPEC_FLAT != 0u ? instance : 0u, fetch_triangle_row(row).w);
 }
 
 // Four words share a row.
@@ -122,14 +131,15 @@ Ray queued_ray(uint id, out uint slot)
     ray.dir = row_vec3(r1);
     ray.weight = row_vec3(r2);
     ray.media = uvec4(0u);
-    if (SPEC_MEDIA != 0u) {
-        ray.media = fetch_media(id);
-    }
+    if (SPEC_MEDIA != 0u)
+        ray.media = SPEC_MEDIA_WORD != 0u ? media_of_word(r2.w) : fetch_media(id);
     ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
     slot = r0.w >> STATE_SLOT_SHIFT;
     ray.kind = SPEC_COUNT != 0u || SPEC_PROBE != 0u ? ray_kinds[id] : 0u;
-    ray.skip_primitive = r1.w;
-    ray.skip_instance = r2.w;
+    ray.skip_record = r1.w;
+    uvec2 skip = fetch_record_ids(r1.w, r2.w);
+    ray.skip_instance = skip.x;
+    ray.skip_primitive = skip.y;
     return ray;
 }
 
@@ -157,9 +167,10 @@ void store_ray(uint id, Ray ray, uint slot)
 {
     uint state = ray.steps | slot << STATE_SLOT_SHIFT;
     ray_rows[id * RAY_ROWS] = uvec4(floatBitsToUint(ray.origin), state);
-    ray_rows[id * RAY_ROWS + 1u] = uvec4(floatBitsToUint(ray.dir), ray.skip_primitive);
-    ray_rows[id * RAY_ROWS + 2u] = uvec4(floatBitsToUint(ray.weight), ray.skip_instance);
-    if (SPEC_MEDIA != 0u)
+    uint last = SPEC_MEDIA_WORD != 0u ? media_word(ray.media) : ray.skip_instance;
+    ray_rows[id * RAY_ROWS + 1u] = uvec4(floatBitsToUint(ray.dir), ray.skip_record);
+    ray_rows[id * RAY_ROWS + 2u] = uvec4(floatBitsToUint(ray.weight), last);
+    if (SPEC_MEDIA != 0u && SPEC_MEDIA_WORD == 0u)
         ray_media[id] = ray.media;
     if (SPEC_COUNT != 0u || SPEC_PROBE != 0u)
         ray_kinds[id] = ray.kind;
@@ -172,17 +183,15 @@ void store_hit(uint id, Hit hit)
     if (SPEC_NUMERICS == NUMERICS_EXACT)
         hit_rows[id * HIT_ROWS + 1u] =
             uvec4(hit.instance, floatBitsToUint(hit.lo), floatBitsToUint(hit.hi), 0u);
-    else if (SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
+    else if (SPEC_INSTANCED != 0u)
         hit_rows[id * HIT_ROWS + 1u].x = hit.instance;
 }
 
 // The instance and the primitive of a hit.
 uvec2 fetch_hit_ids(uint id, uint record)
 {
-    uint instance = 0u;
-    if (SPEC_NUMERICS == NUMERICS_EXACT || SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
-        instance = fetch_hit_row(id * HIT_ROWS + 1u).x;
-    return uvec2(instance, fetch_triangle_row(record * TRIANGLE_ROWS).w);
+    uint instance = SPEC_INSTANCED != 0u ? fetch_hit_row(id * HIT_ROWS + 1u).x : 0u;
+    return fetch_record_ids(record, instance);
 }
 
 Hit fetch_hit(uint id)
@@ -213,6 +222,13 @@ uvec2 fetch_counts(uint generation, uint list)
     }
     gpu_items items = generations[generation].lists[list];
     return uvec2(items.front, items.back);
+}
+
+// Items of the lists of hits of the generation. Those of camera rays have no more room than they need: later
+// generations list theirs behind them.
+uint hit_capacity()
+{
+    return is_primary() ? camera_ray_count() : chunk.ray_capacity;
 }
 
 // Ids in front are below that, those at the back are not. Camera rays are all in front.
@@ -365,7 +381,7 @@ void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint
         else
             first = extend_segment(chunk.generation, list, all, each, is_back);
         [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++) {
-            uint item = item_place(first + before[r], chunk.ray_capacity);
+            uint item = item_place(first + before[r], hit_capacity());
             if (met[r] && class_of[r] == k)
                 hit_list[k * chunk.ray_capacity + place_in_tile(item)] = ids[r];
         }

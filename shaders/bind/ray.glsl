@@ -9,6 +9,7 @@ struct Ray {
     uvec4 media; // struct gpu_media
     uint steps;  // ray_bounces() and, below them, surfaces that were passed unseen
     uint skip_primitive, skip_instance;
+    uint skip_record; // of that primitive, where it is to be queued
     uint kind; // RAY_*; with SPEC_COUNT or SPEC_PROBE
 };
 

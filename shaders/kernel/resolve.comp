@@ -35,7 +35,7 @@ vec3 whole_sum(uint id, vec4 own)
         probe_added(id, own.rgb, false);
     if (SPEC_SECONDARY == 0u || has == 0u)
         return own.rgb;
-    uvec4 from = fetch_children(id);
+    uvec3 from = child_ids(has);
     vec3 straight = child_sum(from.y);
     if (SPEC_CATCHERS != 0u && (has & SUM_IS_CATCHER) != 0u) {
         vec3 share = caught_share(own.rgb, uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz));

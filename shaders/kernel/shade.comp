@@ -100,21 +100,19 @@ Calls call_through(Ray ray, inout uint status)
 }
 
 // Puts a ray into the next generation.
-uint send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next)
+void send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next)
 {
-    uint id = next;
-    next++;
     ray.dir = dir;
     ray.weight = weight;
     ray.steps = steps;
-    store_ray(id, ray, slot);
-    return id;
+    store_ray(next, ray, slot);
+    next++;
 }
 
-uvec4 send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit,
-                 Calls calls, inout uint status)
+// Gives what sums[].w tells of them.
+uint send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit, Calls calls,
+                inout uint status)
 {
-    uvec4 sent = uvec4(HIT_NONE);
     uint next = reserve_rays(alive ? uint(calls.wanted[0]) + uint(calls.wanted[1]) +
                                          uint(calls.wanted[2])
                                    : 0u,
@@ -125,31 +123,35 @@ uvec4 send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c
     if (subgroupElect() && sum >> 16 != 0u)
         atomicAdd(tally.reflected, sum >> 16);
     if (next == HIT_NONE)
-        return sent;
+        return 0u;
+    uint has = next;
     Ray beyond = ray;
     beyond.origin = offset_origin(c.p, c.error, -c.ng);
     beyond.skip_instance = c.instance;
-    beyond.skip_primitive = c.primitive;
+    beyond.skip_record = c.record;
     if ((SPEC_REFRACTION != 0u || SPEC_MEDIA != 0u) && calls.wanted[0]) {
         beyond.media = o.thin ? ray.media : c.after;
         beyond.kind = RAY_REFRACTED;
-        sent.x = send(slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
+        send(slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
+        has |= SUM_REFRACTED;
     }
     if ((SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) && calls.wanted[1]) {
         beyond.media = ray.media;
         beyond.kind = ray.kind;
-        sent.y = send(slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);
+        send(slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);
+        has |= SUM_STRAIGHT;
     }
     if (SPEC_REFLECTION != 0u && calls.wanted[2]) {
         Ray back = ray;
         back.origin = offset_origin(s.p, s.error, s.ng);
         back.skip_instance = hit.instance;
-        back.skip_primitive = hit.primitive;
+        back.skip_record = hit.triangle;
         back.media = c.before;
         back.kind = RAY_REFLECTED;
-        sent.z = send(slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
+        send(slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
+        has |= SUM_REFLECTED;
     }
-    return sent;
+    return has;
 }
 
 void tally_cuts(uint cuts)
@@ -161,8 +163,9 @@ void tally_cuts(uint cuts)
         atomicAdd(tally.cut_bailout, cuts >> 16);
 }
 
-void probe_calls(uint id, Ray ray, Calls calls, uvec4 sent, bool through)
+void probe_calls(uint id, Ray ray, Calls calls, uint has, bool through)
 {
+    uvec3 sent = child_ids(has);
     uint kinds[3] = uint[3](RAY_REFRACTED | (through ? PROBE_THROUGH : 0u), ray.kind | PROBE_STRAIGHT,
                             RAY_REFLECTED);
     for (uint i = 0u; i < 3u; i++) {
@@ -192,8 +195,8 @@ void make_catcher(inout Optics o)
     o.metal_rough = false;
 }
 
-void ask_lights(bool alive, uint id, Ray ray, Surface s, Optics o, Crossing c, bool catcher,
-                inout uint status)
+void ask_lights(bool alive, uint id, uint record, Ray ray, Surface s, Optics o, Crossing c,
+                bool catcher, inout uint status)
 {
     vec3 weight = catcher ? vec3(1.0) : ray.weight * (1.0 - o.straight);
     vec3 lift = smooth_lift(s);
@@ -210,6 +213,7 @@ void ask_lights(bool alive, uint id, Ray ray, Surface s, Optics o, Crossing c, b
     lit.flags = (lift != vec3(0.0) ? LIT_LIFTED : 0u) | (o.metal_rough ? LIT_METAL_ROUGH : 0u) |
                 (catcher ? LIT_CATCHER : 0u);
     lit.id = id;
+    lit.record = record;
     bool some = largest_of(lit.diffuse + lit.highlight) > 0.0 ||
                 any(isnan(lit.diffuse + lit.highlight));
     list_lit(alive && some, lit, status);
@@ -219,7 +223,7 @@ void main()
 {
     load_frame();
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
-    uint item = waited ? waiting_item(0u) : own_item(0u, chunk.ray_capacity);
+    uint item = waited ? waiting_item(0u) : own_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     item = alive ? item : 0u;
     uint id = waited ? item : fetch_listed_hit(item);
@@ -250,25 +254,24 @@ void main()
     }
     if (CALLS_RAYS)
         tally_cuts(alive ? calls.cuts : 0u);
-    uvec4 sent = uvec4(HIT_NONE);
+    uint has = 0u;
     if (SPEC_SECONDARY != 0u && CALLS_RAYS)
-        sent = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
+        has = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
     if (SPEC_PROBE != 0u && alive)
-        probe_calls(id, ray, calls, sent, !seen);
+        probe_calls(id, ray, calls, has, !seen);
     vec3 own = o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
     own *= ray.weight * (1.0 - o.straight);
-    bool some = sent.x != HIT_NONE || sent.y != HIT_NONE || sent.z != HIT_NONE;
-    uint has = (some ? SUM_HAS_CHILDREN : 0u) | (catcher && some ? SUM_IS_CATCHER : 0u);
+    bool some = has != 0u;
+    has |= catcher && some ? SUM_IS_CATCHER : 0u;
     own = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : own;
     if (alive)
         sums[id] = vec4(calls.lost || (seen && !catcher) ? own : vec3(0.0), uintBitsToFloat(has));
-    if (SPEC_SECONDARY != 0u && alive && some)
-        children[id] = sent;
     if (CALLS_RAYS && alive && calls.cut > 0.0)
         count_cut(slot, calls);
     if (alive && catcher)
         hit_rows[id * HIT_ROWS] = uvec4(0u);
     if (SPEC_LIGHTS != 0u)
-        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, ray, s, o, c, catcher, status);
+        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, hit.triangle, ray, s, o, c, catcher,
+                   status);
     report_status(alive ? status : 0u);
 }
