@@ -108,9 +108,22 @@ static void put_entry_point(struct evaluation *e, struct word_list *out, const u
         out->words[begin] = spirv_head(OP_ENTRY_POINT, out->count - begin);
 }
 
-/* What stands in front of types, without names and remarks. */
+/* Whether integers of 64 bits are left. */
+static bool has_wide_integers(const struct evaluation *e)
+{
+    bool found = false;
+    for (uint32_t word = 0; word < e->globals.count;
+         word += spirv_length(e->globals.words + word)) {
+        const uint32_t *at = e->globals.words + word;
+        found = found || (spirv_op(at) == OP_TYPE_INT && at[2] == 64 && e->results[at[1]].live);
+    }
+    return found;
+}
+
+/* What stands in front of types, without names, remarks, and a capability that devices may lack. */
 static void put_head(struct evaluation *e, struct word_list *out)
 {
+    bool wide = has_wide_integers(e);
     put(e, out, e->words, SPIRV_HEADER_WORDS);
     for (uint32_t word = SPIRV_HEADER_WORDS; word < e->functions_at;
          word += spirv_length(e->words + word)) {
@@ -120,8 +133,10 @@ static void put_head(struct evaluation *e, struct word_list *out)
         bool of_live = decorates && e->source[at[1]].at < e->functions_at && e->results[at[1]].live;
         if (op == OP_ENTRY_POINT)
             put_entry_point(e, out, at);
-        else if (op == OP_CAPABILITY || op == OP_EXTENSION || op == OP_EXT_INST_IMPORT ||
-                 op == OP_MEMORY_MODEL || op == OP_EXECUTION_MODE ||
+        else if ((op == OP_CAPABILITY &&
+                  (wide || spirv_length(at) != 2 || at[1] != CAPABILITY_INT64)) ||
+                 op == OP_EXTENSION || op == OP_EXT_INST_IMPORT || op == OP_MEMORY_MODEL ||
+                 op == OP_EXECUTION_MODE ||
                  (of_live && !(op == OP_DECORATE && at[2] == DECORATION_SPEC_ID)))
             put(e, out, at, spirv_length(at));
     }

@@ -8,7 +8,7 @@
    where that is too little, tiles get smaller. Generations: as many as a ray may bounce, and then
    some, as surfaces that are passed unseen take one too. */
 enum {
-    RAYS_A_SLOT = 12,
+    RAYS_A_SLOT = 16,
     LIT_A_SLOT = 2,
     RAYS_LEAST = 1 << 16,
     GENERATIONS_MOST = 640,
@@ -60,7 +60,6 @@ whit_result queues_create(struct target *target)
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
     uint64_t heads = sizeof(struct gpu_tally) +
                      (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
-    bool media = called[SCENE_EFFECT_MEDIA] && !variant_media_word(renderer);
     uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
     const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS;
     const struct {
@@ -72,8 +71,7 @@ whit_result queues_create(struct target *target)
         {&queues->generations, heads,
          BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT | BUFFER_HOST, "generations"},
         {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
-        {&queues->rays, sent * RAY_ROWS * 16, loaded, "rays"},
-        {&queues->media, media ? sent * sizeof(struct gpu_media) : 0, loaded, "media of rays"},
+        {&queues->rays, sent / 2 * RAY_ROWS * 16, loaded, "rays"},
         {&queues->hits, rays * variant_hit_rows(renderer) * 16, loaded, "hits"},
         {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
         {&queues->sums, rays * 16, loaded, "sums"},
@@ -123,10 +121,9 @@ whit_result queues_grow(struct target *target)
 
 void queues_finish(struct queue_buffers *queues)
 {
-    struct buffer *all[] = {queues->generations, queues->empty,    queues->rays,  queues->media,
-                            queues->hits,        queues->lit,      queues->sums,  queues->hit_list,
-                            queues->cuts,        queues->cut_sums, queues->kinds, queues->lit_list,
-                            queues->waiting};
+    struct buffer *all[] = {queues->generations, queues->empty, queues->rays,     queues->hits,
+                            queues->lit,         queues->sums,  queues->hit_list, queues->cuts,
+                            queues->cut_sums,    queues->kinds, queues->lit_list, queues->waiting};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

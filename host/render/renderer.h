@@ -25,7 +25,7 @@ struct scene_buffers {
 /* What the stages of a picture leave to each other, of one tile (abi/queues.h). */
 struct queue_buffers {
     struct buffer *generations, *empty; /* gpu_tally and gpu_generation; as they begin */
-    struct buffer *rays, *media, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
+    struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
         *waiting;         /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
@@ -277,9 +277,6 @@ uint32_t variant_classes(const struct renderer *renderer);
 /* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
 bool variant_waits(const struct target *target);
-/* Whether the media that a queued ray is in are in one of its words: media_word of bind/media.glsl.
- */
-bool variant_media_word(const struct renderer *renderer);
 /* Rows of 16 bytes of a hit: HIT_ROWS of bind/queues.glsl. */
 uint32_t variant_hit_rows(const struct renderer *renderer);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.

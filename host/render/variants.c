@@ -23,11 +23,6 @@ bool variant_waits(const struct target *target)
            !target->probed;
 }
 
-bool variant_media_word(const struct renderer *renderer)
-{
-    return renderer->scene->material_count < 16 && renderer->accel->flat;
-}
-
 uint32_t variant_hit_rows(const struct renderer *renderer)
 {
     return renderer->accel->flat && renderer->params.numerics != NUMERICS_EXACT ? 1 : 2;
@@ -74,6 +69,8 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_LOOKS = !variant_waits(target);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    spec.SPEC_WIDE_ROWS =
+        spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64; /* lavapipe */
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
@@ -81,7 +78,6 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || target->probed;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
-    spec.SPEC_MEDIA_WORD = spec.SPEC_MEDIA && variant_media_word(renderer);
     return spec;
 }
 
@@ -240,7 +236,6 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
     bind(&bindings, BIND_RAY_TEXELS, BINDING_TEXELS, queues->rays);
     bind(&bindings, BIND_WAITING, BINDING_STORAGE, queues->waiting);
-    bind(&bindings, BIND_RAY_MEDIA, BINDING_STORAGE, queues->media);
     bind(&bindings, BIND_RAY_KINDS, BINDING_STORAGE, queues->kinds);
     bind(&bindings, BIND_HIT_ROWS, BINDING_STORAGE, queues->hits);
     bind(&bindings, BIND_HIT_TEXELS, BINDING_TEXELS, queues->hits);
@@ -249,7 +244,6 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_TEXELS, BINDING_TEXELS, queues->lit);
     bind(&bindings, BIND_SUMS, BINDING_STORAGE, queues->sums);
     bind(&bindings, BIND_SUM_TEXELS, BINDING_TEXELS, queues->sums);
-    bind(&bindings, BIND_MEDIA_TEXELS, BINDING_TEXELS, queues->media);
     bind(&bindings, BIND_LIST_TEXELS, BINDING_TEXELS, queues->hit_list);
     bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);

@@ -36,21 +36,19 @@
 #define BIND_GENERATION_TEXELS   21
 #define BIND_RAY_ROWS            22
 #define BIND_RAY_TEXELS          23
-#define BIND_RAY_MEDIA           24
-#define BIND_MEDIA_TEXELS        25
-#define BIND_RAY_KINDS           26
-#define BIND_HIT_ROWS            27
-#define BIND_HIT_TEXELS          28
-#define BIND_HIT_LIST            29
-#define BIND_LIST_TEXELS         30
-#define BIND_LIT_ROWS            31
-#define BIND_LIT_TEXELS          32
-#define BIND_LIT_LIST            33
-#define BIND_LIT_LIST_TEXELS     34
-#define BIND_SUMS                35
-#define BIND_SUM_TEXELS          36
-#define BIND_CUTS                37
-#define BIND_CUT_SUMS            38
-#define BIND_STAGES_COUNT        39
+#define BIND_RAY_KINDS           24
+#define BIND_HIT_ROWS            25
+#define BIND_HIT_TEXELS          26
+#define BIND_HIT_LIST            27
+#define BIND_LIST_TEXELS         28
+#define BIND_LIT_ROWS            29
+#define BIND_LIT_TEXELS          30
+#define BIND_LIT_LIST            31
+#define BIND_LIT_LIST_TEXELS     32
+#define BIND_SUMS                33
+#define BIND_SUM_TEXELS          34
+#define BIND_CUTS                35
+#define BIND_CUT_SUMS            36
+#define BIND_STAGES_COUNT        37
 
 #endif

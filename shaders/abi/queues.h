@@ -9,8 +9,8 @@
 #include "base.h"
 
 /* Rows of 16 bytes. */
-#define RAY_ROWS 3u /* origin, state; dir, record to skip; weight, its instance or SPEC_MEDIA_WORD */
-#define LIT_ROWS 7u /* see bind/lit.glsl */
+#define RAY_ROWS 4u /* origin, state; dir, record to skip; weight, its instance; media */
+#define LIT_ROWS 8u /* at most, see bind/lit.glsl */
 
 /* Of a queued ray: its steps, and above them the slot of its pixel. */
 #define STATE_SLOT_SHIFT  16u

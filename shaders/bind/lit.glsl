@@ -6,6 +6,7 @@
 #include "queues.glsl"
 
 layout(set = 0, binding = BIND_LIT_ROWS, std430) buffer LitRowBuffer { uvec4 lit_rows[]; };
+layout(set = 0, binding = BIND_LIT_ROWS, std430) buffer WideLitBuffer { u64vec4 wide_lits[]; };
 layout(set = 0, binding = BIND_LIT_LIST, std430) buffer LitListBuffer { uint lit_list[]; };
 layout(set = 0, binding = BIND_LIT_LIST_TEXELS) uniform usamplerBuffer lit_list_texels;
 layout(set = 0, binding = BIND_LIT_TEXELS) uniform usamplerBuffer lit_texels;
@@ -62,9 +63,10 @@ uint lit_absorption_row()
     return lit_highlight_row() + uint(lit_has(LIT_HAS_HIGHLIGHT));
 }
 
+// In pairs.
 uint lit_rows_each()
 {
-    return lit_absorption_row() + uint(lit_has(LIT_HAS_ABSORPTION));
+    return (lit_absorption_row() + uint(lit_has(LIT_HAS_ABSORPTION)) + 1u) & ~1u;
 }
 
 Lit fetch_lit(uint index)
@@ -98,19 +100,32 @@ Lit fetch_lit(uint index)
     return lit;
 }
 
+void store_lit_rows(uint row, uvec4 a, uvec4 b)
+{
+    if (SPEC_WIDE_ROWS != 0u) {
+        wide_lits[row / 2u] = wide_rows(a, b);
+    } else {
+        lit_rows[row] = a;
+        lit_rows[row + 1u] = b;
+    }
+}
+
 void store_lit(uint index, Lit lit)
 {
     uint row = index * lit_rows_each();
-    lit_rows[row] = uvec4(floatBitsToUint(lit.p), lit.id | lit.flags << LIT_FLAGS_SHIFT);
-    lit_rows[row + 1u] = floatBitsToUint(vec4(lit.origin, lit.gloss));
-    lit_rows[row + 2u] = floatBitsToUint(vec4(lit.ns, lit.error));
-    lit_rows[row + 3u] = uvec4(floatBitsToUint(lit.diffuse), lit.record);
-    if (lit_has(LIT_HAS_NG))
-        lit_rows[row + 4u] = floatBitsToUint(vec4(lit.ng, 0.0));
-    if (lit_has(LIT_HAS_HIGHLIGHT))
-        lit_rows[row + lit_highlight_row()] = floatBitsToUint(vec4(lit.highlight, 0.0));
-    if (lit_has(LIT_HAS_ABSORPTION))
-        lit_rows[row + lit_absorption_row()] = floatBitsToUint(vec4(lit.absorption, 0.0));
+    uvec4 ng = uvec4(floatBitsToUint(lit.ng), 0u), highlight = uvec4(floatBitsToUint(lit.highlight), 0u);
+    uvec4 absorption = uvec4(floatBitsToUint(lit.absorption), 0u);
+    store_lit_rows(row, uvec4(floatBitsToUint(lit.p), lit.id | lit.flags << LIT_FLAGS_SHIFT),
+                   floatBitsToUint(vec4(lit.origin, lit.gloss)));
+    store_lit_rows(row + 2u, floatBitsToUint(vec4(lit.ns, lit.error)),
+                   uvec4(floatBitsToUint(lit.diffuse), lit.record));
+    // Whichever of them there are.
+    uvec4 fourth = lit_has(LIT_HAS_NG) ? ng : lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
+    uvec4 fifth = lit_has(LIT_HAS_NG) && lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
+    if (SPEC_LIT_PARTS != 0u)
+        store_lit_rows(row + 4u, fourth, fifth);
+    if (lit_absorption_row() == 6u && lit_has(LIT_HAS_ABSORPTION))
+        store_lit_rows(row + 6u, absorption, uvec4(0u));
 }
 
 // Which of the lights that have lists of their own may reach it: bit i: light i.

@@ -11,19 +11,6 @@
 const uvec4 MEDIA_EVEN = uvec4(0u, 2u, 4u, 6u);
 const uvec4 MEDIA_ODD = uvec4(1u, 3u, 5u, 7u);
 
-// All entries in one word, where materials are less than 16.
-uint media_word(uvec4 media)
-{
-    uvec4 both = (media & 15u) | (media >> 12);
-    return both.x | both.y << 8 | both.z << 16 | both.w << 24;
-}
-
-uvec4 media_of_word(uint word)
-{
-    uvec4 both = uvec4(word, word >> 8, word >> 16, word >> 24);
-    return (both & 15u) | (both & 0xf0u) << 12;
-}
-
 // Entry `at`; 0 from the number of entries on.
 uint media_entry(uvec4 media, uint at)
 {

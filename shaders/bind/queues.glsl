@@ -5,7 +5,7 @@
 
 #include "../abi/queues.h"
 #include "camera.glsl"
-#include "media.glsl"
+#include "../lib/wide.glsl"
 #include "packet_rays.glsl"
 
 layout(set = 0, binding = BIND_GENERATIONS, std430) buffer GenerationBuffer
@@ -15,21 +15,19 @@ layout(set = 0, binding = BIND_GENERATIONS, std430) buffer GenerationBuffer
 };
 layout(set = 0, binding = BIND_GENERATION_TEXELS) uniform usamplerBuffer generation_texels;
 layout(set = 0, binding = BIND_RAY_ROWS, std430) buffer RayRowBuffer { uvec4 ray_rows[]; };
+layout(set = 0, binding = BIND_RAY_ROWS, std430) buffer WideRayBuffer { u64vec4 wide_rays[]; };
 layout(set = 0, binding = BIND_RAY_TEXELS) uniform usamplerBuffer ray_texels;
 layout(set = 0, binding = BIND_HIT_ROWS, std430) buffer HitRowBuffer { uvec4 hit_rows[]; };
+layout(set = 0, binding = BIND_HIT_ROWS, std430) buffer WideHitBuffer { u64vec2 wide_hits[]; };
 layout(set = 0, binding = BIND_HIT_TEXELS) uniform usamplerBuffer hit_texels;
 layout(set = 0, binding = BIND_SUM_TEXELS) uniform usamplerBuffer sum_texels;
 layout(set = 0, binding = BIND_SUMS, std430) buffer SumBuffer
 {
     vec4 sums[]; // radiance that a ray brings, weighted; SUM_*
 };
+layout(set = 0, binding = BIND_SUMS, std430) buffer WideSumBuffer { u64vec2 wide_sums[]; };
 layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit_list[]; };
-layout(set = 0, binding = BIND_MEDIA_TEXELS) uniform usamplerBuffer media_texels;
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
-layout(set = 0, binding = BIND_RAY_MEDIA, std430) buffer RayMediaBuffer
-{
-    uvec4 ray_media[]; // struct gpu_media; with SPEC_MEDIA, without SPEC_MEDIA_WORD
-};
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
     vec2 cut_sums[]; // of a pixel: weights that are not traced of all samples so far
@@ -62,13 +60,6 @@ uvec4 fetch_hit_row(uint row)
     if (SPEC_LOAD_PATH == LOAD_TEXEL)
         return texelFetch(hit_texels, int(row));
     return hit_rows[row];
-}
-
-uvec4 fetch_media(uint id)
-{
-    if (SPEC_LOAD_PATH == LOAD_TEXEL)
-        return texelFetch(media_texels, int(id));
-    return ray_media[id];
 }
 
 vec4 fetch_sum(uint id)
@@ -122,17 +113,48 @@ uint camera_ray_count()
     return SPEC_LISTED != 0u && chunk.listed != 0u ? chunk.listed : chunk.block_count * BLOCK_PIXELS;
 }
 
+// Ids in front are below that, those at the back are not. Camera rays are all in front.
+uint middle_id()
+{
+    return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
+                               : chunk.ray_capacity;
+}
+
+// `firsts` of a generation.
+uvec2 fetch_firsts(uint generation)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL) {
+        uint row = TALLY_ROWS + generation * GENERATION_ROWS + LISTS_COUNT * ITEMS_ROWS;
+        return texelFetch(generation_texels, int(row)).xy;
+    }
+    return generations[generation].firsts.xy;
+}
+
+// How many rays of a generation there is room for.
+uint generation_capacity()
+{
+    return chunk.ray_capacity / 4u;
+}
+
+// Of a ray of a generation. Every second one takes the same place, as no ray is asked for after its own:
+// so rows stay in caches.
+uint ray_place(uint id, uint generation)
+{
+    uvec2 firsts = fetch_firsts(generation);
+    bool back = SPEC_SEGMENTS == 2u && id >= middle_id();
+    uint at = back ? generation_capacity() - (chunk.ray_capacity - firsts.y - id) : id - firsts.x;
+    return at + (generation & 1u) * generation_capacity();
+}
+
 Ray queued_ray(uint id, out uint slot)
 {
-    uvec4 r0 = fetch_ray_row(id * RAY_ROWS), r1 = fetch_ray_row(id * RAY_ROWS + 1u);
-    uvec4 r2 = fetch_ray_row(id * RAY_ROWS + 2u);
+    uint row = ray_place(id, chunk.generation) * RAY_ROWS;
+    uvec4 r0 = fetch_ray_row(row), r1 = fetch_ray_row(row + 1u), r2 = fetch_ray_row(row + 2u);
     Ray ray;
     ray.origin = row_vec3(r0);
     ray.dir = row_vec3(r1);
     ray.weight = row_vec3(r2);
-    ray.media = uvec4(0u);
-    if (SPEC_MEDIA != 0u)
-        ray.media = SPEC_MEDIA_WORD != 0u ? media_of_word(r2.w) : fetch_media(id);
+    ray.media = SPEC_MEDIA != 0u ? fetch_ray_row(row + 3u) : uvec4(0u);
     ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
     slot = r0.w >> STATE_SLOT_SHIFT;
     ray.kind = SPEC_COUNT != 0u || SPEC_PROBE != 0u ? ray_kinds[id] : 0u;
@@ -162,29 +184,51 @@ Ray fetch_ray(uint id, out uint slot)
     return ray;
 }
 
-// In whole rows: lavapipe writes the four words of one in little more time than a single word.
+// For the next generation.
 void store_ray(uint id, Ray ray, uint slot)
 {
-    uint state = ray.steps | slot << STATE_SLOT_SHIFT;
-    ray_rows[id * RAY_ROWS] = uvec4(floatBitsToUint(ray.origin), state);
-    uint last = SPEC_MEDIA_WORD != 0u ? media_word(ray.media) : ray.skip_instance;
-    ray_rows[id * RAY_ROWS + 1u] = uvec4(floatBitsToUint(ray.dir), ray.skip_record);
-    ray_rows[id * RAY_ROWS + 2u] = uvec4(floatBitsToUint(ray.weight), last);
-    if (SPEC_MEDIA != 0u && SPEC_MEDIA_WORD == 0u)
-        ray_media[id] = ray.media;
+    uint place = ray_place(id, chunk.generation + 1u);
+    uvec4 r0 = uvec4(floatBitsToUint(ray.origin), ray.steps | slot << STATE_SLOT_SHIFT);
+    uvec4 r1 = uvec4(floatBitsToUint(ray.dir), ray.skip_record);
+    uvec4 r2 = uvec4(floatBitsToUint(ray.weight), ray.skip_instance);
+    if (SPEC_WIDE_ROWS != 0u) {
+        wide_rays[place * 2u] = wide_rows(r0, r1);
+        wide_rays[place * 2u + 1u] = wide_rows(r2, ray.media);
+    } else {
+        ray_rows[place * RAY_ROWS] = r0;
+        ray_rows[place * RAY_ROWS + 1u] = r1;
+        ray_rows[place * RAY_ROWS + 2u] = r2;
+        if (SPEC_MEDIA != 0u)
+            ray_rows[place * RAY_ROWS + 3u] = ray.media;
+    }
     if (SPEC_COUNT != 0u || SPEC_PROBE != 0u)
         ray_kinds[id] = ray.kind;
+}
+
+void store_hit_row(uint row, uvec4 value)
+{
+    if (SPEC_WIDE_ROWS != 0u)
+        wide_hits[row] = wide_row(value);
+    else
+        hit_rows[row] = value;
 }
 
 void store_hit(uint id, Hit hit)
 {
     uint record = hit.triangle | (hit.at_exit ? HIT_AT_EXIT : 0u);
-    hit_rows[id * HIT_ROWS] = uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), record);
-    if (SPEC_NUMERICS == NUMERICS_EXACT)
-        hit_rows[id * HIT_ROWS + 1u] =
-            uvec4(hit.instance, floatBitsToUint(hit.lo), floatBitsToUint(hit.hi), 0u);
-    else if (SPEC_INSTANCED != 0u)
-        hit_rows[id * HIT_ROWS + 1u].x = hit.instance;
+    store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), record));
+    if (HIT_ROWS == 2u && (SPEC_NUMERICS == NUMERICS_EXACT || SPEC_INSTANCED != 0u))
+        store_hit_row(id * HIT_ROWS + 1u,
+                      uvec4(hit.instance, floatBitsToUint(hit.lo), floatBitsToUint(hit.hi), 0u));
+}
+
+void store_sum(uint id, vec3 radiance, uint has)
+{
+    uvec4 row = uvec4(floatBitsToUint(radiance), has);
+    if (SPEC_WIDE_ROWS != 0u)
+        wide_sums[id] = wide_row(row);
+    else
+        sums[id] = uintBitsToFloat(row);
 }
 
 // The instance and the primitive of a hit.
@@ -229,23 +273,6 @@ uvec2 fetch_counts(uint generation, uint list)
 uint hit_capacity()
 {
     return is_primary() ? camera_ray_count() : chunk.ray_capacity;
-}
-
-// Ids in front are below that, those at the back are not. Camera rays are all in front.
-uint middle_id()
-{
-    return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
-                               : chunk.ray_capacity;
-}
-
-// `firsts` of a generation.
-uvec2 fetch_firsts(uint generation)
-{
-    if (SPEC_LOAD_PATH == LOAD_TEXEL) {
-        uint row = TALLY_ROWS + generation * GENERATION_ROWS + LISTS_COUNT * ITEMS_ROWS;
-        return texelFetch(generation_texels, int(row)).xy;
-    }
-    return generations[generation].firsts.xy;
 }
 
 // Of an item of the dispatch's generation among those of all generations.
@@ -396,9 +423,10 @@ uint reserve_rays(uint wanted, inout uint status)
     if (wanted == 0u)
         return HIT_NONE;
     uvec2 firsts = fetch_firsts(next);
+    uint own_end = at + wanted, own_room = generation_capacity() / SPEC_SEGMENTS;
     at += is_back ? firsts.y : firsts.x;
     uint room = is_back ? chunk.ray_capacity - middle_id() : middle_id();
-    if (at + wanted > room) {
+    if (at + wanted > room || own_end > own_room) {
         status |= STATUS_QUEUE_FULL;
         return HIT_NONE;
     }

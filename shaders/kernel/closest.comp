@@ -2,6 +2,7 @@
 // the sky.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -92,7 +93,7 @@ bool leave_ray(uint r, bool alive)
     vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
     vec3 sky = environment_radiance(packet_dir[r]) * weight;
     if (alive && !met)
-        sums[ray_id[r]] = vec4(sky, 0.0);
+        store_sum(ray_id[r], sky, 0u);
     if (SPEC_PROBE != 0u && alive)
         probe_traced(ray_id[r], packet_origin[r], packet_dir[r], packet_skip[r], ray_weight[r], weight,
                      sky, ray_media_of[r], hit);

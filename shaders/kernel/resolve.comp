@@ -2,6 +2,7 @@
 // camera rays to the pixel.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -51,7 +52,7 @@ void resolve_hit(uint item)
     uint id = fetch_listed_hit(item);
     vec4 own = fetch_sum(id);
     if (floatBitsToUint(own.w) != 0u || SPEC_PROBE != 0u)
-        sums[id] = vec4(whole_sum(id, own), 0.0);
+        store_sum(id, whole_sum(id, own), 0u);
 }
 
 // What was cut of the sample, for --depth and for --bailout, to what was cut of the pixel; and the largest

@@ -2,6 +2,7 @@
 // for, and the rays that go on.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -265,11 +266,11 @@ void main()
     has |= catcher && some ? SUM_IS_CATCHER : 0u;
     own = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : own;
     if (alive)
-        sums[id] = vec4(calls.lost || (seen && !catcher) ? own : vec3(0.0), uintBitsToFloat(has));
+        store_sum(id, calls.lost || (seen && !catcher) ? own : vec3(0.0), has);
     if (CALLS_RAYS && alive && calls.cut > 0.0)
         count_cut(slot, calls);
     if (alive && catcher)
-        hit_rows[id * HIT_ROWS] = uvec4(0u);
+        store_hit_row(id * HIT_ROWS, uvec4(0u));
     if (SPEC_LIGHTS != 0u)
         ask_lights(alive && seen && !o.unlit && (!catcher || some), id, hit.triangle, ray, s, o, c, catcher,
                    status);

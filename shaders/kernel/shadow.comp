@@ -1,6 +1,7 @@
 // Light that reaches the lit hits of a generation from one light, with shadows.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -163,7 +164,7 @@ uint leave_lit(uint r, bool alive, uint item, gpu_light light)
     }
     uint id = lit_of[r].id;
     vec4 own = fetch_sum(id);
-    sums[id] = vec4(own.rgb + sum, own.w);
+    store_sum(id, own.rgb + sum, floatBitsToUint(own.w));
     if (SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u)
         hit_rows[id * HIT_ROWS].xyz =
             floatBitsToUint(uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz) + open);

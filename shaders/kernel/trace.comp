@@ -1,10 +1,12 @@
 // A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/packet.glsl"
+#include "../lib/wide.glsl"
 
 layout(local_size_x_id = 0) in;
 
@@ -13,8 +15,9 @@ layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray
 layout(set = 0, binding = BIND_BATCH_TEXELS) uniform usamplerBuffer ray_texels;
 layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer
 {
-    uvec4 hit_rows[]; // two of each gpu_hit: lavapipe writes the words of a row together
+    uvec4 hit_rows[]; // two of each gpu_hit
 };
+layout(set = 0, binding = BIND_HITS, std430) buffer WideHitBuffer { u64vec4 wide_hits[]; };
 layout(set = 0, binding = BIND_HITS, std430) buffer BlockedBuffer
 {
     uint blocked[]; // with SPEC_ANY_HIT: 1: there is a hit
@@ -87,8 +90,14 @@ void store_answer(uint index, Hit hit)
     }
     vec3 at = met ? vec3(hit.t, hit.u, hit.v) : vec3(uintBitsToFloat(0x7f800000u), 0.0, 0.0);
     vec3 ng = met ? geometric_normal(hit) : vec3(0.0);
-    hit_rows[index * 2u] = uvec4(floatBitsToUint(at), hit.primitive);
-    hit_rows[index * 2u + 1u] = uvec4(hit.instance, floatBitsToUint(ng));
+    uvec4 r0 = uvec4(floatBitsToUint(at), hit.primitive);
+    uvec4 r1 = uvec4(hit.instance, floatBitsToUint(ng));
+    if (SPEC_WIDE_ROWS != 0u) {
+        wide_hits[index] = wide_rows(r0, r1);
+    } else {
+        hit_rows[index * 2u] = r0;
+        hit_rows[index * 2u + 1u] = r1;
+    }
 }
 
 const uint MODE = SPEC_ANY_HIT != 0u ? TRAVERSE_ANY : TRAVERSE_CLOSEST;

@@ -431,8 +431,8 @@ static void plain_scenes_bind_little(void **state)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     uint64_t plain = bindings_of(&f);
     static const int absent[] = {BIND_TEXELS,   BIND_TEXEL_TEXELS, BIND_ENVIRONMENT,
-                                 BIND_RAY_ROWS, BIND_RAY_TEXELS,   BIND_RAY_MEDIA,
-                                 BIND_LISTED,   BIND_COSTS};
+                                 BIND_RAY_ROWS, BIND_RAY_TEXELS,   BIND_LISTED,
+                                 BIND_COSTS};
     for (size_t i = 0; i < sizeof absent / sizeof *absent; ++i)
         if (has(plain, absent[i]))
             fail_msg("binding %d", absent[i]);
@@ -442,7 +442,6 @@ static void plain_scenes_bind_little(void **state)
     assert_null(scene->texels);
     assert_null(scene->environment);
     assert_null(pixels->queues.rays);
-    assert_null(pixels->queues.media);
     assert_null(pixels->listed);
     assert_null(pixels->queues.cut_sums);
     assert_null(pixels->costs);
@@ -452,8 +451,6 @@ static void plain_scenes_bind_little(void **state)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     uint64_t rich = bindings_of(&f);
     assert_true(has(rich, BIND_ENVIRONMENT) && has(rich, BIND_RAY_ROWS));
-    assert_int_equal(has(rich, BIND_RAY_MEDIA), !variant_media_word(f.renderer));
-    assert_int_equal(f.renderer->picture.buffers.queues.media != NULL, has(rich, BIND_RAY_MEDIA));
     assert_true(has(rich, BIND_TEXELS) || has(rich, BIND_TEXEL_TEXELS));
     fixture_close(&f);
 }

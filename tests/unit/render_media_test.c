@@ -123,49 +123,16 @@ static void lone_bodies_need_less(void **state)
 
 /* ---- The list of media ---- */
 
-/* With `spare` materials before theirs, that nothing wears. */
-static struct scene *shells_behind(int spare, int count)
+static struct scene *shell_scene(int count)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 20}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
-    for (int i = 0; i < spare; ++i) {
-        struct scene_material m = material_plain(NULL);
-        m.name = scene_text(scene, "spare");
-        scene_add_material(scene, m);
-    }
     for (int i = 0; i < count; ++i) {
         double side = 10.0 - 0.5 * i;
         add_object(scene, mesh_box(side, side, side), clear_glass(1.0f + 0.02f * (float)(i + 1), 0),
                    0, 0, 0);
     }
     return scene;
-}
-
-static struct scene *shell_scene(int count)
-{
-    return shells_behind(0, count);
-}
-
-/* In one word of a ray while all numbers of materials fit into four bits, else in a row of their
- * own. */
-static void media_are_the_same_in_words_and_in_rows(void **state)
-{
-    (void)state;
-    const struct render_params params = {.width = 16, .height = 16, .depth = 20};
-    const struct accel_params one_tree = {.flatten = true};
-    struct image images[2];
-    for (int rows = 0; rows < 2; ++rows) {
-        struct fixture f = fixture_open(shells_behind(7 + rows, 8), &one_tree, &params);
-        assert_int_equal(f.renderer->scene->material_count, 15 + rows);
-        assert_int_equal(variant_media_word(f.renderer), !rows);
-        assert_int_equal(f.renderer->picture.buffers.queues.media != NULL, rows);
-        images[rows] = render(&f);
-        fixture_close(&f);
-    }
-    assert_true(middle(&images[0])[0] > 0.9f && middle(&images[0])[0] < 1.0001f);
-    assert_memory_equal(images[0].pixels, images[1].pixels, 16 * 16 * 16);
-    image_finish(&images[0]);
-    image_finish(&images[1]);
 }
 
 static void list_holds_eight_media(void **state)
@@ -472,7 +439,6 @@ int main(void)
         cmocka_unit_test(edges_are_crossed_once),
         cmocka_unit_test(liquid_in_a_glass),
         cmocka_unit_test(lone_bodies_need_less),
-        cmocka_unit_test(media_are_the_same_in_words_and_in_rows),
         cmocka_unit_test(list_holds_eight_media),
         cmocka_unit_test(ninth_medium_is_an_error),
         cmocka_unit_test(open_meshes_stay_finite),
