@@ -31,8 +31,10 @@ typedef enum whit_instances {
 /* Whether camera rays and the shadow rays of what they meet walk together. */
 typedef enum whit_packets {
     WHIT_PACKETS_AUTO =
-        0,           /* where that is quicker: on lavapipe, in pictures of 2^17 camera rays on */
-    WHIT_PACKETS_ON, /* in smaller ones too; see whit_stats.packets */
+        0,           /* where that is quicker: on lavapipe, in one large tree and with enough
+                        rays to pay for kernels that take longer to make; or with
+                        whit_renderer_params.compile_beside, whose kernels are for many pictures */
+    WHIT_PACKETS_ON, /* elsewhere too; see whit_stats.packets */
     WHIT_PACKETS_OFF,
 } whit_packets;
 

@@ -165,7 +165,7 @@ struct renderer {
     bool rendered;
 };
 
-enum { RENDER_GROUP_SIZE = 64, RENDER_BLOCK_PIXELS = 64 };
+enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
 enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive picture */

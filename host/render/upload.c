@@ -303,8 +303,10 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
-/* The kernels of packets take longer to make than they save in pictures of fewer camera rays. */
-enum { PACKETS_RAYS_LEAST = 1 << 17 };
+/* What the kernels of packets take to make, and what they then save of each ray by each halving of
+   the tree that is more than the first few, in ns of processor time (docs/performance.md). */
+static const double PACKETS_KERNELS_NS = 170e6, PACKETS_SAVED_NS = 15.0;
+enum { PACKETS_HALVINGS = 8 };
 
 /* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
 bool upload_can_widen(const struct renderer *renderer)
@@ -324,12 +326,24 @@ whit_result upload_wide(struct renderer *renderer)
     return upload_nodes8(renderer);
 }
 
-static bool choose_packets(const struct renderer *renderer)
+/* Of one picture's camera rays and their shadow rays; what is compiled beside is for many pictures.
+   In instances packets lose what they gain outside of them. */
+static bool packets_pay(const struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
-    uint64_t rays = (uint64_t)params->width * params->height * params->samples;
-    bool many = params->adaptive > 0.0 || rays >= PACKETS_RAYS_LEAST;
-    return upload_can_widen(renderer) && (many || params->packets == RENDER_PACKETS_ON);
+    const struct accel *accel = renderer->accel;
+    double samples = params->adaptive > 0.0 ? 4.0 : (double)params->samples;
+    double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
+    double rays = (double)params->width * params->height * samples * (1.0 + lights);
+    double halvings = log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
+    return (accel->flat || accel->single_identity) && halvings > 0.0 &&
+           (params->compile_beside || rays * halvings * PACKETS_SAVED_NS >= PACKETS_KERNELS_NS);
+}
+
+static bool choose_packets(const struct renderer *renderer)
+{
+    return upload_can_widen(renderer) &&
+           (renderer->params.packets == RENDER_PACKETS_ON || packets_pay(renderer));
 }
 
 whit_result upload_scene(struct renderer *renderer)

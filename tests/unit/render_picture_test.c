@@ -375,6 +375,37 @@ static struct scene *panes_scene(int count)
     return scene;
 }
 
+/* In one large tree, and of one picture where it has enough rays to pay for the kernels. */
+static void packets_are_chosen_where_they_pay(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t steps, side;
+        bool instances, beside, expected;
+    } cases[] = {
+        {96, 16, false, false, false},  {96, 1024, false, false, true},
+        {96, 1024, true, false, false}, {96, 16, false, true, true},
+        {4, 1024, false, false, false}, {4, 16, false, true, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        const struct render_params params = {.width = cases[i].side,
+                                             .height = cases[i].side,
+                                             .depth = 1,
+                                             .compile_beside = cases[i].beside};
+        struct scene *scene = dark_scene((double[]){0, 9, 9}, (double[]){0, 0, 0});
+        add_object(scene, mesh_terrain(8, 1, cases[i].steps, 1), material_plain("ground"), 0, 0, 0);
+        scene_put_lamp(scene, 3, 4, 3, 1);
+        if (cases[i].instances)
+            add_object(scene, mesh_box(1, 1, 1), material_plain("box"), 0, 3, 0);
+        struct fixture f = fixture_open(scene, NULL, &params);
+        bool can = upload_can_widen(f.renderer); /* what lavapipe is for */
+        print_message("  %u steps, %u pixels a side: packets %d\n", cases[i].steps, cases[i].side,
+                      f.renderer->packets);
+        assert_int_equal(f.renderer->packets, can && cases[i].expected);
+        fixture_close(&f);
+    }
+}
+
 /* More loop turns than lavapipe grants: an error, never a silently wrong picture. Here a shadow ray
    passes all panes of a stack, the last thing that it meets, through each kind of tree and of walk.
  */
@@ -631,6 +662,7 @@ int main(void)
         cmocka_unit_test(tiles_do_not_matter),
         cmocka_unit_test(load_paths_do_not_matter),
         cmocka_unit_test(unused_effects_do_not_matter),
+        cmocka_unit_test(packets_are_chosen_where_they_pay),
         cmocka_unit_test(cut_loops_are_reported),
         cmocka_unit_test(many_lights_are_drawn),
         cmocka_unit_test(many_lights_keep_no_one_waiting),
