@@ -148,7 +148,8 @@ struct renderer {
     struct target picture;
     struct target probe; /* a row of blocks; without buffers before the first probe */
     bool packets;        /* rays of pictures may walk in packets, through nodes of eight children */
-    bool wide;           /* there are such nodes on the device */
+    uint32_t packet_rays; /* of a lane, in these */
+    bool wide;            /* there are such nodes on the device */
     struct trace_state trace;
     struct beside_state beside;
     struct commands *commands;

@@ -304,8 +304,12 @@ static whit_result upload_shading(struct renderer *renderer)
 }
 
 /* What the kernels of packets take to make, and what they then save of each ray by each halving of
-   the tree that is more than the first few, in ns of processor time (docs/performance.md). */
-static const double PACKETS_KERNELS_NS = 170e6, PACKETS_SAVED_NS = 15.0;
+   the tree that is more than the first few, in ns of processor time (docs/performance.md): with two
+   rays of a lane, and what four take and save more. */
+static const struct {
+    uint32_t rays;
+    double kernels_ns, saved_ns;
+} packet_choices[] = {{2, 60e6, 18.0}, {4, 90e6, 4.0}};
 enum { PACKETS_HALVINGS = 8 };
 
 /* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
@@ -326,9 +330,10 @@ whit_result upload_wide(struct renderer *renderer)
     return upload_nodes8(renderer);
 }
 
-/* Of one picture's camera rays and their shadow rays; what is compiled beside is for many pictures.
-   In instances packets lose what they gain outside of them. */
-static bool packets_pay(const struct renderer *renderer)
+/* Rays of a lane that pay for their kernels by one picture's camera rays and their shadow rays;
+   what is compiled beside is for many pictures. 1: none, as in instances packets lose what they
+   gain outside. */
+static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
     const struct accel *accel = renderer->accel;
@@ -336,14 +341,21 @@ static bool packets_pay(const struct renderer *renderer)
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
     double rays = (double)params->width * params->height * samples * (1.0 + lights);
     double halvings = log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
-    return (accel->flat || accel->single_identity) && halvings > 0.0 &&
-           (params->compile_beside || rays * halvings * PACKETS_SAVED_NS >= PACKETS_KERNELS_NS);
+    uint32_t chosen = 1;
+    for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
+        bool pays = rays * halvings * packet_choices[i].saved_ns >= packet_choices[i].kernels_ns;
+        if (halvings > 0.0 && (pays || params->compile_beside))
+            chosen = packet_choices[i].rays;
+    }
+    return accel->flat || accel->single_identity ? chosen : 1;
 }
 
-static bool choose_packets(const struct renderer *renderer)
+static bool choose_packets(struct renderer *renderer)
 {
-    return upload_can_widen(renderer) &&
-           (renderer->params.packets == RENDER_PACKETS_ON || packets_pay(renderer));
+    renderer->packet_rays = choose_packet_rays(renderer);
+    if (renderer->params.packets == RENDER_PACKETS_ON && renderer->packet_rays == 1)
+        renderer->packet_rays = packet_choices[0].rays;
+    return upload_can_widen(renderer) && renderer->packet_rays > 1;
 }
 
 whit_result upload_scene(struct renderer *renderer)

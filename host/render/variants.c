@@ -349,10 +349,8 @@ static uint32_t lit_parts(const struct gpu_spec *spec)
            (absorbing ? LIT_HAS_ABSORPTION : 0);
 }
 
-/* Rays of a lane that go about the same way; of a batch, that start at one point as well. Pictures
-   would gain a twentieth of their camera rays' time by 8, for kernels that take 0.1 s longer to
-   make. */
-enum { PACKET_RAYS = 4, BEAM_RAYS = 8 };
+/* Rays of a lane of a batch that start at one point and go about the same way. */
+enum { BEAM_RAYS = 8 };
 
 /* As has_looks of shaders/bind/traverse.glsl: a record that waits is looked at for one ray a lane.
  */
@@ -371,14 +369,14 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
     if (!renderer->packets || spec->SPEC_PROBE || stack > PACKET_STACK_MOST)
         return;
-    spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : PACKET_RAYS;
+    spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : renderer->packet_rays;
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
         return;
     spec->SPEC_PACKETS = 1;
     spec->SPEC_COMMON_ORIGIN =
         stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE && !spec->SPEC_INSTANCED;
     spec->SPEC_PACKET_STACK = stack;
-    spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : PACKET_RAYS;
+    spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : renderer->packet_rays;
 }
 
 void variant_job_init(const struct target *target, const struct gpu_spec *set_spec,

@@ -381,11 +381,12 @@ static void packets_are_chosen_where_they_pay(void **state)
     (void)state;
     static const struct {
         uint32_t steps, side;
-        bool instances, beside, expected;
+        bool instances, beside;
+        uint32_t rays; /* of a lane */
     } cases[] = {
-        {96, 16, false, false, false},  {96, 1024, false, false, true},
-        {96, 1024, true, false, false}, {96, 16, false, true, true},
-        {4, 1024, false, false, false}, {4, 16, false, true, false},
+        {96, 16, false, false, 1},  {96, 1024, false, false, 2}, {96, 4096, false, false, 4},
+        {96, 1024, true, false, 1}, {96, 16, false, true, 4},    {4, 1024, false, false, 1},
+        {4, 16, false, true, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const struct render_params params = {.width = cases[i].side,
@@ -399,9 +400,10 @@ static void packets_are_chosen_where_they_pay(void **state)
             add_object(scene, mesh_box(1, 1, 1), material_plain("box"), 0, 3, 0);
         struct fixture f = fixture_open(scene, NULL, &params);
         bool can = upload_can_widen(f.renderer); /* what lavapipe is for */
-        print_message("  %u steps, %u pixels a side: packets %d\n", cases[i].steps, cases[i].side,
-                      f.renderer->packets);
-        assert_int_equal(f.renderer->packets, can && cases[i].expected);
+        print_message("  %u steps, %u pixels a side: %u rays a lane\n", cases[i].steps,
+                      cases[i].side, f.renderer->packet_rays);
+        assert_int_equal(f.renderer->packets, can && cases[i].rays > 1);
+        assert_int_equal(f.renderer->packet_rays, cases[i].rays);
         fixture_close(&f);
     }
 }
