@@ -567,6 +567,30 @@ static void shares_are_those_of_hits(void **state)
     check_shares(&flat);
 }
 
+/* Nor on how lists are filled, though those of later generations stand behind those of camera rays.
+ */
+static void shares_are_the_same_by_one_segment_and_by_two(void **state)
+{
+    (void)state;
+    struct render_stats stats[2];
+    for (uint32_t i = 0; i < 2; ++i) {
+        const struct render_params params = {
+            .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = i + 1};
+        struct fixture f = fixture_open(mixed_scene(), NULL, &params);
+        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+        renderer_get_stats(f.renderer, &stats[i]);
+        assert_true(stats[i].rays_refracted > 0);
+        fixture_close(&f);
+    }
+    assert_int_equal(stats[0].share_count, stats[1].share_count);
+    for (uint32_t i = 0; i < stats[0].share_count; ++i) {
+        const struct render_share *one = &stats[0].shares[i], *two = &stats[1].shares[i];
+        print_message("  material %u: %.6f, %.6f\n", one->material, one->share, two->share);
+        assert_int_equal(one->material, two->material);
+        assert_true(one->share == two->share);
+    }
+}
+
 /* Each of these rays calls for two others. */
 static void full_queues_end_in_smaller_tiles(void **state)
 {
@@ -669,6 +693,7 @@ int main(void)
         cmocka_unit_test(many_lights_are_drawn),
         cmocka_unit_test(many_lights_keep_no_one_waiting),
         cmocka_unit_test(shares_are_those_of_hits),
+        cmocka_unit_test(shares_are_the_same_by_one_segment_and_by_two),
         cmocka_unit_test(full_queues_end_in_smaller_tiles),
         cmocka_unit_test(cancel_and_time_limit_stop),
         cmocka_unit_test(pictures_may_be_dropped),
