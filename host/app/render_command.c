@@ -40,7 +40,7 @@ static const struct cli_option options[] = {
     {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     {ID_PACKETS, "packets", "auto|on|off",
      "whether camera rays and the shadow rays of what they meet\n"
-     "walk together; auto: on lavapipe, in larger pictures (auto)"},
+     "walk together; auto: where that is quicker (auto)"},
     {ID_CLASSES, "classes", "one|many",
      "one: all materials are shaded by one kernel; many: those\n"
      "that let light pass by one of their own (many)"},

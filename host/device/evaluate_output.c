@@ -120,7 +120,8 @@ static bool has_wide_integers(const struct evaluation *e)
     return found;
 }
 
-/* What stands in front of types, without names, remarks, and a capability that devices may lack. */
+/* Writes the instructions in front of the types. Names and remarks are left out, and so is the
+   capability for integers of 64 bits where there are none: a device may lack it. */
 static void put_head(struct evaluation *e, struct word_list *out)
 {
     bool wide = has_wide_integers(e);

@@ -11,7 +11,7 @@
 #include "base/store.h"
 
 /* Raised with evaluate*.c and the passes of specialize.cpp. */
-enum { KERNEL_VERSION = 4 };
+enum { KERNEL_VERSION = 5 };
 
 /* In front of the words. */
 struct kernel_header {

@@ -39,6 +39,13 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
+/* Two generations of rays are kept at a time, each of up to a fourth of all rays of a tile:
+   generation_capacity() of bind/queues.glsl. */
+static uint64_t ray_bytes(uint64_t rays)
+{
+    return rays / 2 * RAY_ROWS * 16;
+}
+
 whit_result queues_create(struct target *target)
 {
     const struct pixel_buffers *p = &target->buffers;
@@ -71,7 +78,7 @@ whit_result queues_create(struct target *target)
         {&queues->generations, heads,
          BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT | BUFFER_HOST, "generations"},
         {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
-        {&queues->rays, sent / 2 * RAY_ROWS * 16, loaded, "rays"},
+        {&queues->rays, ray_bytes(sent), loaded, "rays"},
         {&queues->hits, rays * variant_hit_rows(renderer) * 16, loaded, "hits"},
         {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
         {&queues->sums, rays * 16, loaded, "sums"},
@@ -104,7 +111,7 @@ bool queues_can_grow(const struct target *target)
     const struct renderer *renderer = target->renderer;
     uint64_t rays = (uint64_t)target->buffers.queues.ray_capacity * QUEUE_GROWTH;
     uint64_t limit = device_get_info(renderer->device)->max_storage_range_bytes;
-    return renderer->has_secondary && rays * RAY_ROWS * 16 <= limit;
+    return renderer->has_secondary && ray_bytes(rays) <= limit;
 }
 
 whit_result queues_grow(struct target *target)

@@ -303,9 +303,10 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
-/* What the kernels of packets take to make, and what they then save of each ray by each halving of
-   the tree that is more than the first few, in ns of processor time (docs/performance.md): with two
-   rays of a lane, and what four take and save more. */
+/* Packets of two rays a lane: their kernels take `kernels_ns` of processor time longer to make than
+   those of single rays, and each ray then takes `saved_ns` less for every halving of the tree's
+   records beyond PACKETS_HALVINGS. Packets of four: the same beside those of two. Measured, see
+   docs/performance.md. */
 static const struct {
     uint32_t rays;
     double kernels_ns, saved_ns;

@@ -77,7 +77,8 @@ uvec3 child_ids(uint has)
     return mix(uvec3(HIT_NONE), (has & SUM_ID_MASK) + place, some);
 }
 
-// Of each hit. The second tells the instance where the record does not, and the key.
+// Rows that a hit has. The second one holds its instance, which records of a flat tree name themselves,
+// and at NUMERICS_EXACT the bounds of its key.
 const uint HIT_ROWS = SPEC_NUMERICS == NUMERICS_EXACT || SPEC_FLAT == 0u ? 2u : 1u;
 
 // Instance and primitive of a record; `instance`: where SPEC_INSTANCED.
@@ -136,8 +137,8 @@ uint generation_capacity()
     return chunk.ray_capacity / 4u;
 }
 
-// Of a ray of a generation. Every second one takes the same place, as no ray is asked for after its own:
-// so rows stay in caches.
+// Where a ray of a generation is in the buffer of rays. A ray is read by the stages of its own generation alone, so
+// that two generations share the buffer in turns: what is written stays in caches.
 uint ray_place(uint id, uint generation)
 {
     uvec2 firsts = fetch_firsts(generation);

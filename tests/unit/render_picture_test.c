@@ -567,8 +567,8 @@ static void shares_are_those_of_hits(void **state)
     check_shares(&flat);
 }
 
-/* Nor on how lists are filled, though those of later generations stand behind those of camera rays.
- */
+/* With two segments lists are filled from both ends. Hits of camera rays must still be there when
+   they are counted, after later generations have listed theirs. */
 static void shares_are_the_same_by_one_segment_and_by_two(void **state)
 {
     (void)state;
