@@ -137,8 +137,8 @@ uint generation_capacity()
     return chunk.ray_capacity / 4u;
 }
 
-// Where a ray of a generation is in the buffer of rays. A ray is read by the stages of its own generation alone, so
-// that two generations share the buffer in turns: what is written stays in caches.
+// Where a ray of a generation is in the buffer of rays. Only the stages of its own generation read a ray,
+// so even generations share one half of the buffer and odd ones the other: a small buffer stays in caches.
 uint ray_place(uint id, uint generation)
 {
     uvec2 firsts = fetch_firsts(generation);
