@@ -373,8 +373,12 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
         return;
     spec->SPEC_PACKETS = 1;
-    spec->SPEC_COMMON_ORIGIN =
-        stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE && !spec->SPEC_INSTANCED;
+    bool from_eye = stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE;
+    bool to_point = stage == STAGE_SHADOW && !(spec->SPEC_LIGHTS & 1u << LIGHT_DIRECTIONAL);
+    spec->SPEC_BEAM = spec->SPEC_INSTANCED ? BEAM_NONE
+                      : from_eye           ? BEAM_STARTS
+                      : to_point           ? BEAM_ENDS
+                                           : BEAM_NONE;
     spec->SPEC_PACKET_STACK = stack;
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : renderer->packet_rays;
 }
@@ -445,7 +449,8 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams
     spec.SPEC_FILTER_DETAIL = 0;
     spec.SPEC_CULLING = 0;
     if (beams) {
-        spec.SPEC_PACKETS = spec.SPEC_COMMON_ORIGIN = 1;
+        spec.SPEC_PACKETS = 1;
+        spec.SPEC_BEAM = BEAM_STARTS;
         spec.SPEC_PACKET_RAYS = BEAM_RAYS;
         spec.SPEC_PACKET_STACK = renderer->packet_stack_size;
     }

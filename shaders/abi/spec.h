@@ -60,6 +60,11 @@
 /* SPEC_PACKET_STACK at most. */
 #define PACKET_STACK_MOST 32u
 
+/* What the rays of a packet have in common. */
+#define BEAM_NONE   0u
+#define BEAM_STARTS 1u /* where they start */
+#define BEAM_ENDS   2u /* where they end, or pass by: a light */
+
 /* Filters whose depth is not that of their record alone. */
 #define FILTERS_PLAIN     0u
 #define FILTERS_ABSORB    1u
@@ -115,7 +120,7 @@
     X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes, and are slow to add them up */    \
     X(41, SPEC_PACKET_RAYS, 1)        /* rays of a lane */                                         \
     X(42, SPEC_PACKET_STACK, 16)      /* nodes on the stack of a packet */                         \
-    X(43, SPEC_COMMON_ORIGIN, 0)      /* rays of a packet start at one point */                    \
+    X(43, SPEC_BEAM, 0)               /* BEAM_*, of packets */                                     \
     X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays where camera rays are */  \
     X(45, SPEC_GENERATIONS, 3)        /* bit 0: camera rays; bit 1: later generations */           \
     X(46, SPEC_CLASSES, 1)            /* kernels for what materials call for */                    \

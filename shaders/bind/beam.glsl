@@ -1,4 +1,6 @@
-// Packets whose rays start at one point, and the boxes they come to: SPEC_COMMON_ORIGIN, without instances.
+// Packets whose rays start at one point, or end there, and the boxes they come to: SPEC_BEAM, without
+// instances. Rays that end at a point, as those to a light do, come to boxes as if they started there; what is
+// in the boxes they meet from where they do start.
 #ifndef BIND_BEAM_GLSL
 #define BIND_BEAM_GLSL
 
@@ -10,11 +12,12 @@
 struct Beam {
     bvec2 dominant;
     bvec3 negative;              // axes that are reversed
-    vec3 origin;                 // of all rays, only turned so that the dominant axis is last
+    vec3 eye;                    // that point, turned so that the dominant axis is last
     vec2 inverse_lo, inverse_hi; // that all of its rays lie in
 };
 Beam beam;
 vec3 beam_inv_dir[SPEC_PACKET_RAYS]; // turned likewise
+vec3 beam_origin[SPEC_PACKET_RAYS];  // where the rays start, likewise
 vec2 beam_inverse[SPEC_PACKET_RAYS]; // last component of a ray's direction by the others, upwards
 bool beam_left[SPEC_PACKET_RAYS];    // rays whose group is yet to walk
 bool beam_walks[SPEC_PACKET_RAYS];   // rays of the group that walks
@@ -28,7 +31,7 @@ RaySetup beam_ray(uint r)
     ray.space = beam.dominant;
     ray.dominant = bvec2(false);
     ray.negative = beam.negative;
-    ray.origin = beam.origin;
+    ray.origin = SPEC_BEAM == BEAM_STARTS ? beam.eye : beam_origin[r];
     ray.inv_dir = beam_inv_dir[r];
     return ray;
 }
@@ -48,6 +51,8 @@ void bound_beam()
     EACH_RAY {
         packet_unit[r] = abs(turn_dominant(beam.dominant, packet_rays[r].dir).z);
         beam_inv_dir[r] = turn_dominant(beam.dominant, packet_rays[r].inv_dir);
+        beam_origin[r] = turn_dominant(beam.dominant, packet_rays[r].origin);
+        packet_reach[r] = abs(beam_origin[r].z - beam.eye.z);
         vec2 inverse = lesser2(packet_unit[r] * abs(beam_inv_dir[r].xy), vec2(BOX_INVERSE_MOST));
         lo = lesser2(beam_walks[r] ? inverse : vec2(INFINITE), lo);
         hi = lesser2(beam_walks[r] ? -inverse : vec2(INFINITE), hi);
@@ -59,7 +64,7 @@ void bound_beam()
 }
 
 // Takes one group of the rays that are left; the others are done until it has walked. False: none is left.
-bool begin_beam()
+bool begin_beam(vec3 eye)
 {
     uint own = GROUP_NONE;
     EACH_RAY own = beam_left[r] ? min(own, group_of(packet_rays[r])) : own;
@@ -68,7 +73,7 @@ bool begin_beam()
     bvec3 negative = notEqual(uvec3(group) & uvec3(4u, 8u, 16u), uvec3(0u));
     vec3 way = mix(vec3(1.0), vec3(-1.0), negative);
     beam.negative = lessThan(turn_dominant(beam.dominant, way), vec3(0.0));
-    beam.origin = turn_dominant(beam.dominant, packet_rays[0].origin);
+    beam.eye = turn_dominant(beam.dominant, eye);
     EACH_RAY {
         beam_walks[r] = beam_left[r] && group_of(packet_rays[r]) == group;
         beam_left[r] = beam_left[r] && !beam_walks[r];
@@ -96,11 +101,12 @@ bool end_beam()
 // through the box.
 bool bring_to_beam(inout vec3 lo, inout vec3 hi)
 {
-    vec3 margin = vec3(box_margin(lo, hi)), origin = beam.origin;
-    vec3 turned_lo = (turn_dominant(beam.dominant, lo) - origin) - margin;
-    vec3 turned_hi = (turn_dominant(beam.dominant, hi) - origin) + margin;
-    lo = mix(turned_lo, -turned_hi, beam.negative);
-    hi = mix(turned_hi, -turned_lo, beam.negative);
+    vec3 margin = vec3(box_margin(lo, hi)), eye = beam.eye;
+    vec3 turned_lo = (turn_dominant(beam.dominant, lo) - eye) - margin;
+    vec3 turned_hi = (turn_dominant(beam.dominant, hi) - eye) + margin;
+    bvec3 negative = SPEC_BEAM == BEAM_ENDS ? not(beam.negative) : beam.negative;
+    lo = mix(turned_lo, -turned_hi, negative);
+    hi = mix(turned_hi, -turned_lo, negative);
     ivec3 near = floatBitsToInt(vec3(lo.xy * beam.inverse_lo, lo.z));
     ivec3 far = floatBitsToInt(vec3(hi.xy * beam.inverse_hi, hi.z));
     return max(max(near.x, near.y), max(near.z, 0)) <= min(far.x, min(far.y, far.z));

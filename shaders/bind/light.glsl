@@ -70,6 +70,12 @@ vec3 emitter_point(gpu_light light, uint index)
     return light.position + light.edge_u * u + light.edge_v * v;
 }
 
+// Where turn `index` of a light comes from; of a directional light it is nowhere.
+vec3 light_point(gpu_light light, uint index)
+{
+    return is_flat(light) ? emitter_point(light, index) : light.position;
+}
+
 // Form factor of a flat emitter at `p`, off by up to `error`, with shading normal `n`, without shadows.
 float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
 {
@@ -98,9 +104,7 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
         turn.distance = uintBitsToFloat(0x7f7fffffu);
         return true;
     }
-    vec3 way = light.position - p;
-    if (flat_emitter)
-        way = emitter_point(light, index) - p;
+    vec3 way = light_point(light, index) - p;
     float largest = max(abs(way.x), max(abs(way.y), abs(way.z)));
     if (!(largest > 0.0)) {
         turn.to_light = vec3(0.0);

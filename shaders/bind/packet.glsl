@@ -90,7 +90,7 @@ void make_box_rays(const uint mode)
         packet_box_rays[r] = BoxRay(ray.origin, mix(size, -size, ray.negative), size);
         end_ray(false, r);
     }
-    size_rays();
+    size_rays(vec3(0.0));
     make_packet_bounds(mode);
 }
 
@@ -169,7 +169,7 @@ int enter_children(vec3 lo, vec3 hi, bool wanted)
 {
     uint lane = gl_SubgroupInvocationID;
     vec3 a = lo, b = hi;
-    if (SPEC_COMMON_ORIGIN != 0u) {
+    if (SPEC_BEAM != BEAM_NONE) {
         wanted = wanted && bring_to_beam(a, b);
     } else {
         wanted = wanted && may_be_met(lo, hi);
@@ -181,7 +181,7 @@ int enter_children(vec3 lo, vec3 hi, bool wanted)
     do {
         uint child = uint(findLSB(left)) & 7u;
         vec3 child_a = from_lane(a, child), child_b = from_lane(b, child);
-        int first = SPEC_COMMON_ORIGIN != 0u ? enter_beam_box(child_a, child_b)
+        int first = SPEC_BEAM != BEAM_NONE ? enter_beam_box(child_a, child_b)
                                              : enter_box(child_a, child_b);
         first = least_of_lanes(first);
         own = left != 0u && lane == child ? first : own;
@@ -236,7 +236,7 @@ RecordRows fetch_packet_record(uint record)
 
 RaySetup packet_ray(uint r)
 {
-    if (SPEC_COMMON_ORIGIN != 0u)
+    if (SPEC_BEAM != BEAM_NONE)
         return beam_ray(r);
     return packet_rays[r];
 }
@@ -375,14 +375,14 @@ void packet_instances(const uint mode, float t_min, uint root)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// Rays that start at one point, one group of directions after the other.
-void packet_beams(const uint mode, float t_min, uint root)
+// Rays that start at `eye` or end there, one group of directions after the other.
+void packet_beams(const uint mode, float t_min, uint root, vec3 eye)
 {
     bool more = false;
     EACH_RAY beam_left[r] = packet_alive[r];
-    size_rays();
+    size_rays(eye);
     do {
-        bool some = begin_beam();
+        bool some = begin_beam(eye);
         packet_height = 0u;
         packet_top = REF_DONE;
         packet_mesh(mode, t_min, some ? root : REF_DONE);
@@ -393,7 +393,7 @@ void packet_beams(const uint mode, float t_min, uint root)
 }
 
 // traverse() for all rays of the subgroup, from packet_origin and the like into packet_hits. With
-// SPEC_COMMON_ORIGIN all alive rays start at `eye`.
+// SPEC_BEAM all alive rays start at `eye` or end there.
 void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 eye)
 {
     if (SPEC_PACKETS == 0u) {
@@ -414,14 +414,14 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
         packet_hits[r] = make_hit(packet_t_max[r]);
         end_ray(!packet_alive[r], r);
         vec3 origin = packet_alive[r] ? packet_origin[r] : vec3(0.0);
-        packet_rays[r] = make_ray_setup(SPEC_COMMON_ORIGIN != 0u ? eye : origin,
+        packet_rays[r] = make_ray_setup(SPEC_BEAM == BEAM_STARTS ? eye : origin,
                                         packet_alive[r] ? packet_dir[r] : vec3(1.0));
         if (SPEC_INSTANCED == 0u && SPEC_CLIPPED != 0u)
             widen_ray_setup(packet_rays[r], fetch_mesh_center(0u), fetch_mesh_reach(0u));
     }
     root8 = any_lane(some) ? root8 : REF_DONE;
-    if (SPEC_COMMON_ORIGIN != 0u) {
-        packet_beams(mode, t_min, root8);
+    if (SPEC_BEAM != BEAM_NONE) {
+        packet_beams(mode, t_min, root8, eye);
     } else {
         make_box_rays(mode);
         if (SPEC_INSTANCED != 0u)

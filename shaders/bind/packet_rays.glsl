@@ -24,6 +24,7 @@ uint packet_status; // of the walk, for all rays
 RaySetup packet_rays[SPEC_PACKET_RAYS]; // in the space of the tree in hand
 int packet_end[SPEC_PACKET_RAYS];       // bits of the t behind which nothing counts, in units of
 float packet_unit[SPEC_PACKET_RAYS];    // the largest component of the direction
+float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: from there to the ray's start, in the same units
 float packet_size; // largest coordinate of an origin, and what clipped triangles take
 
 const float BOX_INVERSE_MOST = 16777216.0; // 2^24
@@ -90,15 +91,32 @@ void end_ray(bool over, uint r)
     packet_hits[r].t = over ? -1.0 : packet_hits[r].t;
     packet_hits[r].lo = over ? -1.0 : packet_hits[r].lo;
     packet_hits[r].hi = over ? -1.0 : packet_hits[r].hi;
-    packet_end[r] = floatBitsToInt(farthest(packet_hits[r]) * packet_unit[r]);
+    float end = farthest(packet_hits[r]);
+    if (SPEC_BEAM == BEAM_ENDS)
+        end = end < 0.0 ? end : packet_reach[r];
+    else
+        end *= packet_unit[r];
+    packet_end[r] = floatBitsToInt(end);
+}
+
+// How far a ray passes by `eye`, near which it ends: BEAM_ENDS.
+float distance_to_eye(RaySetup ray, vec3 eye)
+{
+    vec3 origin = turn_dominant(ray.dominant, ray.origin), dir = turn_dominant(ray.dominant, ray.dir);
+    eye = turn_dominant(ray.dominant, eye);
+    vec2 aside = abs(origin.xy + dir.xy * ((eye.z - origin.z) / dir.z) - eye.xy);
+    float distance = max(aside.x, aside.y);
+    return distance < INFINITE ? distance : INFINITE; // NaN: anywhere
 }
 
 // What all boxes of the tree are wider by, beside their own share (box_margin).
-void size_rays()
+void size_rays(vec3 eye)
 {
     float least = 0.0; // negated
     EACH_RAY {
         float own = largest_size(packet_rays[r].origin);
+        if (SPEC_BEAM == BEAM_ENDS)
+            own = max(own, largest_size(eye)) + distance_to_eye(packet_rays[r], eye) / BOUNDS_MARGIN;
         if (SPEC_CLIPPED != 0u)
             own += (packet_rays[r].above.x - packet_rays[r].origin.x) / BOUNDS_MARGIN;
         least = lesser(packet_alive[r] ? -own : 0.0, least);

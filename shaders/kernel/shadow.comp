@@ -195,7 +195,8 @@ void main()
     do {
         EACH_RAY face_light(r, alive[r], light, point);
         if (SPEC_SHADOWS != 0u)
-            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8, vec3(0.0));
+            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8,
+                             light_point(light, point));
         EACH_RAY add_arrival(r, light, point);
         point++;
         more = flats && point < points;

@@ -172,6 +172,13 @@ change(shaders/kernel/trace.comp [[floatBitsToUint(ray.origin) == floatBitsToUin
 mutation(beam_of_mixed_signs render_trace RED packets_equal_twin)
 change(shaders/bind/beam.glsl [[&& group_of(packet_rays[r]) == group]] [[&& true]])
 
+mutation(beam_rays_pass_by render_light RED packets_to_a_light_shade_as_rays_do)
+change(shaders/bind/packet_rays.glsl [[+ distance_to_eye(packet_rays[r], eye) / BOUNDS_MARGIN;]] [[;]])
+
+mutation(beam_ends_early render_light RED packets_to_a_light_shade_as_rays_do)
+change(shaders/bind/beam.glsl [[= abs(beam_origin[r].z - beam.eye.z);]]
+  [[= 0.98 * abs(beam_origin[r].z - beam.eye.z);]])
+
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h make_ray_setup
   [[vec3_make\(1\.0f / ([a-z]+)\.x, ([^;]+), ([^;]+)\);]]

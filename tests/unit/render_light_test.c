@@ -396,6 +396,103 @@ static void trees_change_nothing(void **state)
     assert_same_pictures(&none, params, params);
 }
 
+/* Rings of glass and a table over terrain, moved far from the origin, as `light` is. Or over a
+   slope so large that hits on it are rounded to more than the rest is. */
+static struct scene *rings_under(struct scene_light light, double moved, float slope)
+{
+    struct scene *scene =
+        dark_scene((double[]){moved, moved + 4, moved + 8}, (double[]){moved, moved + 0.5, moved});
+    const float corners[9] = {-slope, -0.3f * slope, slope,     2 * slope, 1.05f * slope, slope,
+                              0,      -0.3f * slope, -2 * slope};
+    struct scene_material glass = material_plain("glass");
+    set_rgb(glass.transmission, 0.5f, 0.9f, 0.4f);
+    for (int k = 0; k < 3; ++k)
+        light.position[k] += moved;
+    struct scene_mesh ground =
+        slope > 0 ? mesh_triangles(corners, 1) : mesh_terrain(10.0, 1.0, 24, 3);
+    add_object(scene, ground, material_grey("ground"), moved, moved, moved);
+    add_object(scene, mesh_box(3, 0.5, 1.5), material_grey("table"), moved, moved + 1.25,
+               moved - 1);
+    for (int i = 0; i < 3; ++i)
+        add_object(scene, mesh_torus(1.0, 0.3, 24, 12), i ? glass : material_grey("ring"),
+                   moved + 1.5 * (i - 1), moved + 1.0, moved + 0.4 * i);
+    scene_put_light(scene, light);
+    return scene;
+}
+
+static struct image picture_in_packets(struct fixture *f, struct render_params params,
+                                       enum render_packets packets)
+{
+    params.packets = packets;
+    renderer_destroy(f->renderer);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, &params, &f->renderer),
+                     WHIT_OK);
+    return render(f);
+}
+
+/* S4 and S5 of the catalogue of hard cases, for lights: 10^-6 above a surface, 10^4 sizes away and
+   farther, in a plane or a corner of what stands there, near to coordinates that are large.
+   Packets, whose boxes are told from the light, meet what the rays meet alone. */
+static void packets_to_a_light_shade_as_rays_do(void **state)
+{
+    (void)state;
+    static const struct {
+        double at[3], moved;
+        float slope;
+        bool clipped, exact, flat;
+    } cases[] = {
+        {{3, 6, 2}, 0, 0, false, false, false},
+        {{3, 6, 2}, 0, 0, false, true, false},
+        {{3, 6, 2}, 0, 0, false, false, true},
+        {{3, 6, 2}, 0, 4e5f, false, false, false},
+        {{0, 1e5, 0}, 0, 0, false, false, false},
+        {{3e4, 8e4, 5e4}, 0, 0, true, false, false},
+        {{1e30, 1e30, 1}, 0, 0, false, false, false},
+        {{0, 1.500001, -1}, 0, 0, false, false, false},
+        {{0, 1.500001, -1}, 0, 0, false, true, false},
+        {{0, 1.500001, -1}, 0, 0, false, false, true},
+        {{1.5, 1.5, -0.25}, 0, 0, true, false, false},
+        {{0, 1.0, 0.4}, 0, 0, false, false, false},
+        {{-4, 6, 3}, 1e4, 0, false, false, false},
+        {{1, 1.6, 1}, -1e5, 0, true, false, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct scene_light light = {.name = string_copy("light"),
+                                    .kind = SCENE_LIGHT_POINT,
+                                    .node = SCENE_NONE,
+                                    .color = {1, 1, 1}};
+        memcpy(light.position, cases[i].at, sizeof light.position);
+        if (cases[i].flat) {
+            free(light.name);
+            light = emitter(SCENE_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
+                            (double[]){0, 0, 0.3}, 1);
+        }
+        const struct accel_params accel = {.mesh.builder =
+                                               cases[i].clipped ? BVH_SPATIAL : BVH_BINNED,
+                                           .flatten = true,
+                                           .stack_floor = 32};
+        const struct render_params params = {.width = 128,
+                                             .height = 96,
+                                             .depth = 1,
+                                             .light_samples = 4,
+                                             .numerics = cases[i].exact ? NUMERICS_EXACT
+                                                                        : NUMERICS_WATERTIGHT};
+        struct fixture f =
+            fixture_open(rings_under(light, cases[i].moved, cases[i].slope), &accel, &params);
+        struct image alone = picture_in_packets(&f, params, RENDER_PACKETS_OFF);
+        struct image together = picture_in_packets(&f, params, RENDER_PACKETS_ON);
+        uint32_t other = 0;
+        for (size_t k = 0; k < (size_t)4 * params.width * params.height; ++k)
+            other += memcmp(&alone.pixels[k], &together.pixels[k], sizeof(float)) != 0;
+        print_message("  light %zu: sum %g, %u values other\n", i, pixel_sum(&alone), other);
+        assert_true(pixel_sum(&alone) > 0.0);
+        assert_int_equal(other, 0);
+        image_finish(&alone);
+        image_finish(&together);
+        fixture_close(&f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -409,6 +506,7 @@ int main(void)
         cmocka_unit_test(emitters_do_not_light_themselves),
         cmocka_unit_test(all_effects_change_nothing),
         cmocka_unit_test(trees_change_nothing),
+        cmocka_unit_test(packets_to_a_light_shade_as_rays_do),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
