@@ -169,10 +169,10 @@ struct accel {
 WHIT_CHECK whit_result accel_create(const struct log *log, const struct scene *scene,
                                     const struct accel_params *params, struct accel **out);
 void accel_destroy(struct accel *accel);
-/* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh is there twice, nothing
-   moves, vertices are rounded by next to nothing when they are placed, and memory is enough. It is
-   no news for one instance that is where its mesh is. The same on every machine, but for memory.
-   WHIT_ERROR_MEMORY, logged. */
+/* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh but a single ball is
+   there twice, nothing moves, vertices are rounded by next to nothing when they are placed, and
+   memory is enough. It is no news for one instance that is where its mesh is. The same on every
+   machine, but for memory. WHIT_ERROR_MEMORY, logged. */
 WHIT_CHECK whit_result accel_flat_suits(const struct scene *scene, const struct scene_pose *pose,
                                         bool *out);
 /* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */

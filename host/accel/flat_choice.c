@@ -37,7 +37,13 @@ static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *f
     return farthest <= FARTHEST * longest && farthest <= FLAT_COORDINATE_MOST;
 }
 
-/* A mesh that is there twice would be in the tree twice. */
+static bool is_one_ball(const struct scene_mesh *mesh)
+{
+    return mesh->sphere_count == 1 && mesh->triangle_count == 0;
+}
+
+/* A mesh that is there twice would be in the tree twice. A single ball may be: its record takes no
+   more than its instance did. */
 static whit_result find_repeated(const struct scene *scene, bool *each_once)
 {
     uint8_t *seen = array_alloc_zeroed(scene->mesh_count, 1);
@@ -47,7 +53,8 @@ static whit_result find_repeated(const struct scene *scene, bool *each_once)
     }
     *each_once = true;
     for (uint32_t i = 0; *each_once && i < scene->instance_count; ++i)
-        *each_once = seen[scene->instances[i].mesh]++ == 0;
+        *each_once = seen[scene->instances[i].mesh]++ == 0 ||
+                     is_one_ball(&scene->meshes[scene->instances[i].mesh]);
     free(seen);
     return WHIT_OK;
 }

@@ -43,10 +43,10 @@ typedef struct whit_scene_info {
     uint64_t hash;
     uint32_t channel_count; /* animated properties of nodes */
     double time_end_s;      /* 0: nothing moves */
-    bool one_tree; /* what WHIT_INSTANCES_AUTO takes it for: no mesh is there twice, nothing moves
-                      with time, objects are no farther from the origin than 256 of their longest
-                      sides, spheres are not turned, mirrored or stretched, memory is enough, and it
-                      is not one instance that is where its mesh is */
+    bool one_tree; /* what WHIT_INSTANCES_AUTO takes it for: no mesh but a ball is there twice,
+                      nothing moves with time, objects are no farther from the origin than 256 of
+                      their longest sides, spheres are not turned, mirrored or stretched, memory is
+                      enough, and it is not one instance that is where its mesh is */
     double lo[3], hi[3];     /* world bounds at time 0; lo > hi when empty */
     const char *environment; /* "gradient" or "map": what rays that miss see */
     bool environment_made_by_whit;

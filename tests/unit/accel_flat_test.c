@@ -407,6 +407,10 @@ static void a_scene_takes_one_tree_where_nothing_is_lost(void **state)
     struct scene *twice = two_objects(&aside);
     scene_put_again(twice, 0, NULL);
     takes_one_tree(twice, 0, false);
+
+    struct scene *balls = two_objects(&aside);
+    scene_put_again(balls, 1, NULL);
+    takes_one_tree(balls, 0, true);
 }
 
 static void one_object_takes_it_if_it_is_moved(void **state)
