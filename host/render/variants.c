@@ -50,6 +50,15 @@ static void refine_effects(const struct renderer *renderer, const struct scene_e
     spec->SPEC_FILTER_DETAIL = detail ? FILTERS_PATTERNED : FILTERS_PLAIN;
 }
 
+static bool priorities_differ(const struct scene *scene)
+{
+    for (uint32_t i = 1; i < scene->material_count; ++i) {
+        if (scene->materials[i].priority != scene->materials[0].priority)
+            return true;
+    }
+    return false;
+}
+
 static struct gpu_spec make_spec(const struct target *target, const struct scene_effects *effects,
                                  bool secondary)
 {
@@ -129,6 +138,7 @@ struct gpu_spec variant_spec(const struct target *target)
                                                                              : FILTERS_PLAIN;
     if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_touch(renderer))
         spec.SPEC_MEDIA = MEDIA_ALONE;
+    spec.SPEC_PRIORITIES = renderer->params.all_effects || priorities_differ(renderer->scene);
     narrow_textures(renderer, SCENE_MATERIALS_ALL, &spec);
     return spec;
 }

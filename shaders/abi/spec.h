@@ -128,7 +128,8 @@
     X(48, SPEC_LIT_PARTS, 7)          /* LIT_HAS_* */                                              \
     X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */                                       \
     X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */                                             \
-    X(51, SPEC_WIDE_ROWS, 0)          /* rows are written in words of 64 bits: for lavapipe */
+    X(51, SPEC_WIDE_ROWS, 0)          /* rows are written in words of 64 bits: for lavapipe */       \
+    X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

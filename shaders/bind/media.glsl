@@ -63,10 +63,10 @@ uvec4 media_with(uvec4 media, uint entry, inout uint status)
     bool higher = false;
     do {
         higher = false;
-        if (at > 0u)
+        if (at > 0u && SPEC_PRIORITIES != 0u)
             higher = medium_priority(media_entry(media, at - 1u)) > priority;
         at -= uint(higher);
-    } while (higher);
+    } while (SPEC_PRIORITIES != 0u && higher);
     uvec4 even = media & 0xffffu, odd = media >> 16;
     uvec4 even_moved = uvec4(0u, odd.xyz), odd_moved = even;
     even_moved = mix(even_moved, uvec4(entry), equal(MEDIA_EVEN, uvec4(at)));

@@ -56,6 +56,9 @@ change(host/render/upload.c [[frame->uv1_row, TRIANGLE_UV_ROWS, fill_second_uvs]
 
 # ---- Only what is called for ----
 
+mutation(priorities_unseen render_media RED priority_hides_what_is_inside)
+change(host/render/variants.c [[!= scene->materials[0].priority)]] [[== 256)]])
+
 mutation(fallback_unsaid device_fallback RED kernels_go_to_the_driver_whole)
 change(host/device/pipeline.c prepare_kernel [[if \([^()]*specialized\)]] [[if (false)]])
 
