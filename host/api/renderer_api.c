@@ -131,6 +131,7 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .schlick = params->schlick,
         .opaque_shadows = params->opaque_shadows,
         .compile_beside = params->compile_beside,
+        .many_pictures = params->many_pictures,
         .tile_size = params->tile_size,
         .cancel = params->cancel,
         .progress = params->progress,

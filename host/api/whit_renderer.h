@@ -49,6 +49,9 @@ typedef struct whit_renderer_params {
        compiles that of the scene; the pictures are the same. Errors of that thread are logged from
        it. */
     bool compile_beside;
+    /* The renderer is for many pictures: kernels that take longer to make are right where they draw
+       faster. */
+    bool many_pictures;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */

@@ -220,6 +220,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.packets = request->packets;
     params.one_class = request->one_class;
     params.segments = request->segments;
+    params.many_pictures = request->frames.given;
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count = request->view.given || request->counters;

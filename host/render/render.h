@@ -31,7 +31,7 @@ struct render_params {
     bool all_effects; /* compile everything */
     /* Bits 1 << SCENE_EFFECT_*: compiled though not called for; left out though called for. */
     uint64_t effects_added, effects_removed;
-    bool compile_beside;
+    bool compile_beside, many_pictures;
     uint32_t tile_size; /* 16..512; 0: by measured time */
     const volatile bool *cancel;
     void (*progress)(void *user, double done);

@@ -332,8 +332,8 @@ whit_result upload_wide(struct renderer *renderer)
 }
 
 /* Rays of a lane that pay for their kernels by one picture's camera rays and their shadow rays;
-   what is compiled beside is for many pictures. 1: none, as in instances packets lose what they
-   gain outside. */
+   for many pictures those of two always do, and where nobody waits for them those of four. 1: none,
+   as in instances packets lose what they gain outside. */
 static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const struct render_params *params = &renderer->params;
@@ -345,7 +345,8 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
     uint32_t chosen = 1;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
         bool pays = rays * halvings * packet_choices[i].saved_ns >= packet_choices[i].kernels_ns;
-        if (halvings > 0.0 && (pays || params->compile_beside))
+        bool many = params->compile_beside || (params->many_pictures && i == 0);
+        if (halvings > 0.0 && (pays || many))
             chosen = packet_choices[i].rays;
     }
     return accel->flat || accel->single_identity ? chosen : 1;

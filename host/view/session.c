@@ -94,6 +94,7 @@ static whit_result warm_up(struct session *session)
     params.width = WARM_WIDTH;
     params.height = WARM_HEIGHT;
     params.samples = 1;
+    params.many_pictures = true;
     params.cancel = &session->cancel;
     params.progress = note_part;
     params.progress_user = session;

@@ -381,18 +381,21 @@ static void packets_are_chosen_where_they_pay(void **state)
     (void)state;
     static const struct {
         uint32_t steps, side;
-        bool instances, beside;
+        bool instances, beside, many;
         uint32_t rays; /* of a lane */
     } cases[] = {
-        {96, 16, false, false, 1},  {96, 1024, false, false, 2}, {96, 4096, false, false, 4},
-        {96, 1024, true, false, 1}, {96, 16, false, true, 4},    {4, 1024, false, false, 1},
-        {4, 16, false, true, 1},
+        {96, 16, false, false, false, 1},   {96, 1024, false, false, false, 2},
+        {96, 4096, false, false, false, 4}, {96, 1024, true, false, false, 1},
+        {96, 16, false, true, false, 4},    {96, 16, false, false, true, 2},
+        {4, 1024, false, false, false, 1},  {4, 16, false, true, false, 1},
+        {4, 16, false, false, true, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const struct render_params params = {.width = cases[i].side,
                                              .height = cases[i].side,
                                              .depth = 1,
-                                             .compile_beside = cases[i].beside};
+                                             .compile_beside = cases[i].beside,
+                                             .many_pictures = cases[i].many};
         struct scene *scene = dark_scene((double[]){0, 9, 9}, (double[]){0, 0, 0});
         add_object(scene, mesh_terrain(8, 1, cases[i].steps, 1), material_plain("ground"), 0, 0, 0);
         scene_put_lamp(scene, 3, 4, 3, 1);
