@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/accel_inside.h"
 #include "accel/hard.h"
 #include "base/array.h"
 #include "base/hash.h"
@@ -162,11 +163,40 @@ static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ra
     return (double)t * dir <= BESIDE * size;
 }
 
+/* Whether the ray starts in the plane of the triangle, as far as floats tell: then they do not say
+   on which side, and a ray along the plane may begin far from where it goes through. */
+static bool starts_in_plane(const struct hard_scene *hard, const struct gpu_ray *ray,
+                            const struct rational_hit *hit)
+{
+    const struct scene_mesh *mesh =
+        &hard->scene->meshes[hard->scene->instances[hit->instance].mesh];
+    struct gpu_ray local = accel_local_ray(&hard->accel->instances[hit->instance], ray);
+    double corners[3][3], e1[3], e2[3], normal[3], reach = 0.0;
+    if (mesh->sphere_count > 0)
+        return false;
+    for (int i = 0; i < 3; ++i) {
+        uint32_t vertex = mesh->indices[3 * (size_t)hit->primitive + (uint32_t)i];
+        for (int k = 0; k < 3; ++k) {
+            corners[i][k] =
+                (double)mesh->positions[3 * (size_t)vertex + (uint32_t)k] - (double)local.origin[k];
+            reach = fmax(reach, fabs(corners[i][k]));
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        e1[k] = corners[1][k] - corners[0][k];
+        e2[k] = corners[2][k] - corners[0][k];
+    }
+    double3_cross(e1, e2, normal);
+    return fabs(double3_dot(corners[0], normal)) <=
+           BESIDE * reach * sqrt(double3_dot(normal, normal));
+}
+
 static bool is_leak(const struct hard_judgement *j, struct rational *rational, uint64_t i)
 {
     const struct gpu_ray *ray = &j->rays[i].ray;
     return j->hard->truth == HARD_MUST_HIT ||
-           (!starts_there(j->hard, ray, j->exact[i].t) && !touches_open_edge(j, &j->exact[i]) &&
+           (!starts_there(j->hard, ray, j->exact[i].t) &&
+            !starts_in_plane(j->hard, ray, &j->exact[i]) && !touches_open_edge(j, &j->exact[i]) &&
             is_surrounded(rational, ray));
 }
 

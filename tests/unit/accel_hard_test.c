@@ -154,6 +154,50 @@ static void the_judge_sees(void **state)
     shots_free(shots);
 }
 
+/* A ray from the middle of triangle `i`, which lies to one side of it by rounding alone, almost
+   along it and outwards: it may go through that very triangle, but far from its start. */
+static struct hard_ray ray_in_plane(const struct scene_mesh *mesh, uint32_t i)
+{
+    const float *v[3];
+    struct hard_ray made = {.ray.t_max = INFINITY, .instance = HIT_NONE, .primitive = HIT_NONE};
+    for (int c = 0; c < 3; ++c)
+        v[c] = &mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)i + (size_t)c]];
+    for (int k = 0; k < 3; ++k) {
+        made.ray.origin[k] = (v[0][k] + v[1][k] + v[2][k]) / 3.0f;
+        made.ray.dir[k] = (v[0][k] - made.ray.origin[k]) + 3e-7f * made.ray.origin[k];
+    }
+    return made;
+}
+
+static void rays_in_a_plane_are_no_leaks(void **state)
+{
+    (void)state;
+    static const struct hard_case sphere = {"sphere", HARD_SPHERE, HARD_AIMED, 0, 1, false, false};
+    struct shots *shots = shots_make(&sphere, 1);
+    const struct scene_mesh *mesh = &shots->hard.scene->meshes[0];
+    uint32_t far = 0;
+    shots->hard.truth = HARD_ORACLE; /* as of a scene that is not known to be closed */
+    for (uint32_t i = 0; i < RAYS; ++i)
+        shots->rays[i] = ray_in_plane(mesh, i % mesh->triangle_count);
+    assert_int_equal(hard_trace_exact(&shots->hard, shots->rays, RAYS, THREADS, shots->exact),
+                     WHIT_OK);
+    for (uint32_t i = 0; i < RAYS; ++i) {
+        struct rational_hit *exact = &shots->exact[i];
+        bool own = exact->primitive == i % mesh->triangle_count && exact->t > 1e-3f;
+        far += own;
+        *exact = own ? *exact : (struct rational_hit){INFINITY, HIT_NONE, HIT_NONE, 0};
+        shots->hits[i] =
+            (struct gpu_hit){.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
+    }
+    struct hard_tally tally = shots_judge(shots, NUMERICS_WATERTIGHT);
+    print_message("  %u rays go through the triangle that they start on; leaks %u\n", far,
+                  (uint32_t)tally.leaks);
+    assert_true(far > 10);
+    assert_int_equal(tally.misses, far);
+    assert_int_equal(tally.leaks, 0);
+    shots_free(shots);
+}
+
 /* The convex body is left without a hit; a hit made up is a self-hit. */
 static void self_hits_are_seen(void **state)
 {
@@ -239,9 +283,8 @@ static void surfaces_are_described(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cases_are_what_they_say),
-        cmocka_unit_test(the_judge_sees),
-        cmocka_unit_test(self_hits_are_seen),
+        cmocka_unit_test(cases_are_what_they_say),      cmocka_unit_test(the_judge_sees),
+        cmocka_unit_test(rays_in_a_plane_are_no_leaks), cmocka_unit_test(self_hits_are_seen),
         cmocka_unit_test(surfaces_are_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
