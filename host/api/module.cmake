@@ -15,7 +15,7 @@ target_link_libraries(whit
   PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
   PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP
     PkgConfig::SECCOMP Vulkan::Vulkan
-    SPIRV-Tools-opt stdc++ Threads::Threads m)
+    Threads::Threads m)
 
 set(public_headers api/whit.h api/whit_accel.h api/whit_compare.h api/whit_device.h api/whit_file.h
   api/whit_hard.h api/whit_image.h api/whit_probe.h api/whit_reference.h api/whit_renderer.h

@@ -95,32 +95,17 @@ fail:
     return result;
 }
 
-static bool fill_in(const struct pipeline_params *params, bool with_calls, struct kernel_words *out)
+static bool specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
     *out = (struct kernel_words){.word_count = word_count};
-    out->flat =
-        !with_calls && spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
-                                      &out->specialized, &out->word_count);
-    return out->flat || spirv_specialize(params->spirv, word_count, params->spec,
-                                         params->spec_count, &out->specialized, &out->word_count);
-}
-
-static bool specialize_kernel(const struct pipeline_params *params, bool with_calls,
-                              struct kernel_words *out)
-{
-    if (kernel_cache_load(params, out)) {
-        if (!out->flat || !with_calls)
-            return true;
-        free(out->specialized);
-    }
-    if (!fill_in(params, with_calls, out) ||
-        !spirv_inspect(out->specialized, out->word_count, &out->info)) {
-        free(out->specialized);
+    if (!spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
+                        &out->specialized, &out->word_count))
         return false;
-    }
-    kernel_cache_save(params, out);
-    return true;
+    if (spirv_inspect(out->specialized, out->word_count, &out->info))
+        return true;
+    free(out->specialized);
+    return false;
 }
 
 static bool specializing_is_off(void)
@@ -134,20 +119,18 @@ static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_para
                            struct kernel_words *kernel)
 {
     struct pipeline_info *info = &pipeline->info;
-    /* GPU-assisted checks make of a flat kernel what lavapipe refuses (VK_ERROR_UNKNOWN). */
-    bool with_calls = pipeline->device->validation_of_shaders;
-    info->specialized = !specializing_is_off() && specialize_kernel(params, with_calls, kernel);
+    info->specialized = !specializing_is_off() && specialize_kernel(params, kernel);
     if (!info->specialized) {
+        struct spirv_info found;
         *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
         if (!specializing_is_off())
             log_warning(&pipeline->device->log,
-                        "pipeline \"%s\": SPIRV-Tools cannot specialize its kernel, which goes to "
-                        "the driver whole: slower to compile, no slower to run",
+                        "pipeline \"%s\": its kernel cannot be specialized and goes to the driver "
+                        "whole: slower to compile, no slower to run",
                         pipeline->name);
+        if (spirv_inspect(params->spirv, kernel->word_count, &found))
+            kernel->info.instructions = found.instructions;
         kernel->info.bindings = UINT64_MAX;
-        struct spirv_info whole;
-        if (spirv_inspect(params->spirv, kernel->word_count, &whole))
-            kernel->info.instructions = whole.instructions;
     }
     info->instructions = kernel->info.instructions;
     for (uint32_t i = 0; i < pipeline->binding_count; ++i) {
@@ -165,7 +148,7 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
 {
     struct kernel_words kernel;
     *info = (struct pipeline_info){0};
-    if (!specialize_kernel(params, false, &kernel))
+    if (!specialize_kernel(params, &kernel))
         return false;
     free(kernel.specialized);
     *info = (struct pipeline_info){

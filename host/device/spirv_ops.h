@@ -108,7 +108,12 @@ enum spirv_op {
 
 enum { STORAGE_FUNCTION = 7 };
 enum { CAPABILITY_INT64 = 11 };
-enum { DECORATION_SPEC_ID = 1, DECORATION_BUILTIN = 11, DECORATION_NO_CONTRACTION = 42 };
+enum {
+    DECORATION_SPEC_ID = 1,
+    DECORATION_BUILTIN = 11,
+    DECORATION_BINDING = 33,
+    DECORATION_NO_CONTRACTION = 42,
+};
 
 /* Words of an instruction's head: the length and number, and with a result its type and id. */
 enum { HEAD_WORDS = 1, HEAD_WORDS_RESULT = 3 };

@@ -115,13 +115,8 @@ void cache_close(struct device *device); /* saves, destroys */
 struct kernel_words {
     uint32_t *specialized; /* owned; NULL: as it came */
     size_t word_count;
-    bool flat; /* without calls, see spirv_evaluate */
     struct spirv_info info;
 };
-
-/* kernel_cache.c: specialized kernels of earlier runs. */
-bool kernel_cache_load(const struct pipeline_params *params, struct kernel_words *out);
-void kernel_cache_save(const struct pipeline_params *params, const struct kernel_words *kernel);
 
 /* device.c */
 void device_read_fault(struct device *device);

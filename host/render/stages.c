@@ -149,7 +149,7 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
     bool counted = count_set(&job, &own_info, &largest);
     stages_job_init(target, &general, false, &job);
     if (!counted || !count_set(&job, &general_info, &general_largest)) {
-        log_error(&renderer->log, "SPIRV-Tools cannot specialize the kernels");
+        log_error(&renderer->log, "the kernels cannot be specialized");
         return WHIT_ERROR_DEVICE;
     }
     *info = (struct render_kernel_info){
