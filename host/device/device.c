@@ -99,6 +99,11 @@ void device_read_fault(struct device *device)
     device->fault.result = *rest == ':' ? (int32_t)strtol(rest + 1, NULL, 10) : 0;
 }
 
+uint32_t device_compile_threads(const struct device *device)
+{
+    return device->validation || device->fault.call[0] ? 1 : 0;
+}
+
 bool device_fault(struct device *device, const char *expression)
 {
     struct fault *fault = &device->fault;

@@ -77,6 +77,10 @@ WHIT_CHECK whit_result device_create(const struct log *log, const struct device_
                                      struct device **out);
 void device_destroy(struct device *device);
 const struct device_info *device_get_info(const struct device *device);
+/* Of how many threads pipelines are to be made at once, see threads_for: of all, or of the caller's
+   alone where layers check (Debian's crash otherwise) or a fault is asked for, which counts calls.
+ */
+uint32_t device_compile_threads(const struct device *device);
 /* Warnings and errors of the validation layers so far (each was logged). */
 uint32_t device_validation_messages(const struct device *device);
 

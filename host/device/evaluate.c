@@ -9,18 +9,18 @@
 void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
 {
     if (!e->failed && !ARRAY_PUSH(list->words, list->count, list->capacity, word))
-        e->failed = true;
+        e->failed = e->starved = true;
 }
 
 /* 0, which is nobody's, when it cannot be had. */
 uint32_t evaluate_new_id(struct evaluation *e)
 {
     const struct result_id fresh = {0};
-    if (e->failed || e->result_count >= SPIRV_BOUND_MOST ||
-        !ARRAY_PUSH(e->results, e->result_count, e->result_capacity, fresh)) {
-        e->failed = true;
+    e->failed = e->failed || e->result_count >= SPIRV_BOUND_MOST;
+    if (!e->failed && !ARRAY_PUSH(e->results, e->result_count, e->result_capacity, fresh))
+        e->failed = e->starved = true;
+    if (e->failed)
         return 0;
-    }
     return e->result_count - 1;
 }
 
@@ -582,6 +582,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
         walk_function(e, &in, e->source[e->entry].at);
 }
 
+/* False: it is no module, or memory runs out. */
 static bool begin(struct evaluation *e)
 {
     if (e->count <= SPIRV_HEADER_WORDS || e->words[0] != SPIRV_MAGIC || e->words[3] == 0 ||
@@ -590,17 +591,20 @@ static bool begin(struct evaluation *e)
     e->source_count = e->result_count = e->result_capacity = e->words[3];
     e->source = array_alloc_zeroed(e->source_count, sizeof *e->source);
     e->results = array_alloc_zeroed(e->source_count, sizeof *e->results);
-    return e->source && e->results;
+    e->starved = !e->source || !e->results;
+    return !e->starved;
 }
 
-bool spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                    uint32_t spec_count, uint32_t **out, size_t *out_words)
+whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                           uint32_t spec_count, uint32_t **out, size_t *out_words)
 {
     struct evaluation e = {.words = words, .count = (uint32_t)word_count};
     uint32_t *spec_of = NULL;
     *out = NULL;
-    if (word_count < UINT32_MAX / 2 && begin(&e))
+    if (word_count < UINT32_MAX / 2 && begin(&e)) {
         spec_of = array_alloc(e.source_count, sizeof *spec_of);
+        e.starved = !spec_of;
+    }
     if (spec_of) {
         memset(spec_of, 0xff, e.source_count * sizeof *spec_of);
         if (evaluate_read(&e, spec_of)) {
@@ -615,5 +619,5 @@ bool spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *sp
     free(e.constants.words);
     free(e.variables.words);
     free(e.body.words);
-    return *out != NULL;
+    return *out ? WHIT_OK : e.starved ? WHIT_ERROR_MEMORY : WHIT_ERROR_INPUT;
 }

@@ -85,6 +85,7 @@ struct evaluation {
     uint32_t label;       /* that it begins with */
     uint32_t delayed;     /* source: block that the last one goes on in; 0: none */
     bool failed;          /* refused, or out of memory */
+    bool starved;         /* the latter */
 };
 
 /* evaluate_read.c: false when the module is broken. spec_of[id]: number of a specialization

@@ -95,17 +95,15 @@ fail:
     return result;
 }
 
-static bool specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
+static whit_result specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
 {
     size_t word_count = params->spirv_bytes / sizeof *out->specialized;
     *out = (struct kernel_words){.word_count = word_count};
-    if (!spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
-                        &out->specialized, &out->word_count))
-        return false;
-    if (spirv_inspect(out->specialized, out->word_count, &out->info))
-        return true;
-    free(out->specialized);
-    return false;
+    whit_result result = spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
+                                        &out->specialized, &out->word_count);
+    if (result == WHIT_OK && !spirv_inspect(out->specialized, out->word_count, &out->info))
+        result = WHIT_ERROR_MEMORY;
+    return result;
 }
 
 static bool specializing_is_off(void)
@@ -115,11 +113,17 @@ static bool specializing_is_off(void)
 }
 
 /* Fills constants in, and leaves of the pipeline's bindings those that are used then. */
-static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_params *params,
-                           struct kernel_words *kernel)
+static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeline_params *params,
+                                  struct kernel_words *kernel)
 {
     struct pipeline_info *info = &pipeline->info;
-    info->specialized = !specializing_is_off() && specialize_kernel(params, kernel);
+    whit_result result =
+        specializing_is_off() ? WHIT_ERROR_INPUT : specialize_kernel(params, kernel);
+    if (result == WHIT_ERROR_MEMORY) {
+        log_error(&pipeline->device->log, "pipeline \"%s\": out of memory", pipeline->name);
+        return result;
+    }
+    info->specialized = result == WHIT_OK;
     if (!info->specialized) {
         struct spirv_info found;
         *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
@@ -142,14 +146,17 @@ static void prepare_kernel(struct pipeline *pipeline, const struct pipeline_para
         if (i < 64 && pipeline->bindings[i] != BINDING_NONE)
             info->bindings |= UINT64_C(1) << i;
     }
+    return WHIT_OK;
 }
 
 bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info)
 {
     struct kernel_words kernel;
     *info = (struct pipeline_info){0};
-    if (!specialize_kernel(params, &kernel))
+    if (specialize_kernel(params, &kernel) != WHIT_OK) {
+        free(kernel.specialized);
         return false;
+    }
     free(kernel.specialized);
     *info = (struct pipeline_info){
         .specialized = true,
@@ -235,12 +242,13 @@ static bool copy_bindings(struct pipeline *pipeline, const struct pipeline_param
 
 static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
 {
-    struct kernel_words kernel;
+    struct kernel_words kernel = {0};
     whit_result result = check_kernel(pipeline, params);
     if (result != WHIT_OK)
         return result;
-    prepare_kernel(pipeline, params, &kernel);
-    result = check_limits(pipeline);
+    result = prepare_kernel(pipeline, params, &kernel);
+    if (result == WHIT_OK)
+        result = check_limits(pipeline);
     if (result == WHIT_OK)
         result = make_set_layout(pipeline);
     if (result == WHIT_OK)

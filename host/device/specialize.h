@@ -8,13 +8,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/whit_base.h"
+
 /* `spec[i]` is the value of constant i. *out is malloc()ed, free() it; *out_words counts words.
    Operations keep their order and their NoContraction, so results keep their bits. */
 
-/* One function without calls, in a few ms, of a kernel as glslang makes it (see evaluate.h). False
-   and *out NULL when it is no such kernel, or memory runs out: then it is to be used as it is. */
-bool spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                    uint32_t spec_count, uint32_t **out, size_t *out_words);
+/* One function without calls, in a few ms, of a kernel as glslang makes it (see evaluate.h).
+   WHIT_ERROR_INPUT and *out NULL when it is no such kernel: then it is to be used as it is.
+   WHIT_ERROR_MEMORY when memory runs out. Neither is logged. */
+WHIT_CHECK whit_result spirv_evaluate(const uint32_t *words, size_t word_count,
+                                      const uint32_t *spec, uint32_t spec_count, uint32_t **out,
+                                      size_t *out_words);
 
 /* What a module has in its functions. What is called twice is there twice where calls are gone. */
 struct spirv_info {

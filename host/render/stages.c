@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/threads.h"
 #include "render/renderer.h"
 
 /* Generations of the first tile, before it is known how many there are. */
@@ -38,18 +39,34 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     }
 }
 
+/* A set in the making: stages are made at once, as far as there are threads. */
+struct set_making {
+    struct device *device;
+    const struct stages_job *job;
+    struct stage_set *set;
+    whit_result results[STAGE_COUNT];
+};
+
+static void make_stage(void *context, uint32_t i)
+{
+    struct set_making *making = context;
+    if (making->job->wanted[i])
+        making->results[i] =
+            variant_job_run(making->device, &making->job->stages[i], &making->set->passes[i]);
+}
+
 whit_result stages_job_run(struct device *device, const struct stages_job *job,
                            struct stage_set *out)
 {
+    struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
     *out = (struct stage_set){.classes = job->classes};
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
                         job->spec.SPEC_PROBE; /* there sums are recorded */
-    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
-        if (job->wanted[i])
-            result = variant_job_run(device, &job->stages[i], &out->passes[i]);
-    }
+    threads_for(device_compile_threads(device), STAGE_COUNT, make_stage, &making);
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i)
+        result = making.results[i];
     if (result != WHIT_OK)
         stage_set_finish(out);
     return result;

@@ -31,8 +31,8 @@ static int write_evaluated(const char *path, const char *name, const char *value
     }
     for (int i = 0; i < KERNEL_COUNT; ++i) {
         if (strcmp(kernels[i].name, name) == 0 &&
-            !spirv_evaluate(kernels[i].words, kernels[i].bytes / sizeof *words, spec,
-                            GPU_SPEC_COUNT, &words, &count))
+            spirv_evaluate(kernels[i].words, kernels[i].bytes / sizeof *words, spec, GPU_SPEC_COUNT,
+                           &words, &count) != WHIT_OK)
             return EXIT_FAILURE;
     }
     bool written = words && write_file(path, words, count * sizeof *words);

@@ -2,15 +2,15 @@
    below in the place of spirv_evaluate. */
 #include "affine_fixture.h"
 
-bool __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                           uint32_t spec_count, uint32_t **out, size_t *out_words);
+whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                  uint32_t spec_count, uint32_t **out, size_t *out_words);
 
-bool __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                           uint32_t spec_count, uint32_t **out, size_t *out_words)
+whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                  uint32_t spec_count, uint32_t **out, size_t *out_words)
 {
     (void)words, (void)word_count, (void)spec, (void)spec_count, (void)out_words;
     *out = NULL;
-    return false;
+    return WHIT_ERROR_INPUT;
 }
 
 static void kernels_go_to_the_driver_whole(void **state)

@@ -1,7 +1,8 @@
 /* Linked into tests around pipeline_create, pipeline_destroy and device_destroy (-Wl,--wrap): who
    asks a device twice for the same pipeline gets the one of the first time, which is destroyed with
    the device. The driver takes up to half a second for a pipeline, and tests make many small
-   pictures with few kernels. Not thread-safe. */
+   pictures with few kernels. One is made at a time. */
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,7 @@ struct shared {
 };
 
 static struct shared *first;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 static const char *specializing(void)
 {
@@ -59,8 +61,8 @@ static void *copy(const void *from, size_t count, size_t size_bytes)
     return to;
 }
 
-whit_result __wrap_pipeline_create(struct device *device, const struct pipeline_params *params,
-                                   struct pipeline **out)
+static whit_result share(struct device *device, const struct pipeline_params *params,
+                         struct pipeline **out)
 {
     for (const struct shared *i = first; i; i = i->next) {
         if (same(i, device, params)) {
@@ -82,6 +84,15 @@ whit_result __wrap_pipeline_create(struct device *device, const struct pipeline_
         .specializing = string_copy(specializing())};
     first = copy(&made, 1, sizeof made);
     return WHIT_OK;
+}
+
+whit_result __wrap_pipeline_create(struct device *device, const struct pipeline_params *params,
+                                   struct pipeline **out)
+{
+    pthread_mutex_lock(&lock);
+    whit_result result = share(device, params, out);
+    pthread_mutex_unlock(&lock);
+    return result;
 }
 
 void __wrap_pipeline_destroy(struct pipeline *pipeline)
