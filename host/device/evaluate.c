@@ -609,7 +609,9 @@ whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint3
         memset(spec_of, 0xff, e.source_count * sizeof *spec_of);
         if (evaluate_read(&e, spec_of)) {
             walk_module(&e, spec_of, spec, spec_count);
-            *out = e.failed ? NULL : evaluate_write(&e, out_words);
+            bool refused = e.failed;
+            *out = refused ? NULL : evaluate_write(&e, out_words);
+            e.starved = e.starved || (!refused && !*out); /* writing takes memory alone */
         }
     }
     free(spec_of);
