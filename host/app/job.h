@@ -100,8 +100,8 @@ enum job_id {
     {                                                                                              \
         JOB_INSTANCES, "instances", "auto|on|off",                                                 \
             "off: one tree over the triangles of all instances, placed\n"                          \
-            "in the world; auto: where nothing moves and no mesh is\n"                             \
-            "there twice (auto)"                                                                   \
+            "in the world; auto: where nothing moves and no mesh but a\n"                          \
+            "single ball is there twice (auto)"                                                    \
     }
 #define JOB_OPTION_BUILDING                                                                        \
     {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)"}, JOB_OPTION_INSTANCES,        \

@@ -77,9 +77,9 @@ WHIT_CHECK whit_result device_create(const struct log *log, const struct device_
                                      struct device **out);
 void device_destroy(struct device *device);
 const struct device_info *device_get_info(const struct device *device);
-/* Of how many threads pipelines are to be made at once, see threads_for: of all, or of the caller's
-   alone where layers check (Debian's crash otherwise) or a fault is asked for, which counts calls.
- */
+/* How many threads may make pipelines of the device at once, as threads_for takes it: 0 is as many
+   as there are cores. 1 while validation layers check, since those of Debian 12 crash where threads
+   make devices at once and were not tried with pipelines; and while WHIT_FAULT counts calls. */
 uint32_t device_compile_threads(const struct device *device);
 /* Warnings and errors of the validation layers so far (each was logged). */
 uint32_t device_validation_messages(const struct device *device);

@@ -1,4 +1,4 @@
-/* What is in a module, specialized or not. */
+/* Counts the instructions of a SPIR-V module's functions, and finds the bindings they name. */
 #include "device/specialize.h"
 
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* A kernel with its specialization constants filled in and what they switch off taken out, before
-   a driver sees it. Drivers do the same, but late, and for every pass of theirs the whole kernel is
-   there. */
+   a driver sees it. Drivers do the same, but only after passes of theirs over the whole kernel. */
 #ifndef DEVICE_SPECIALIZE_H
 #define DEVICE_SPECIALIZE_H
 

@@ -60,10 +60,10 @@
 /* SPEC_PACKET_STACK at most. */
 #define PACKET_STACK_MOST 32u
 
-/* What the rays of a packet have in common. */
+/* Which point all rays of a packet share. */
 #define BEAM_NONE   0u
-#define BEAM_STARTS 1u /* where they start */
-#define BEAM_ENDS   2u /* where they end, or pass by: a light */
+#define BEAM_STARTS 1u /* that where they start */
+#define BEAM_ENDS   2u /* the light that they end at, or pass by within rounding */
 
 /* Filters whose depth is not that of their record alone. */
 #define FILTERS_PLAIN     0u

@@ -99,17 +99,6 @@ void cross_all(Crossed crossed, inout Crossing c, inout uint status)
     } while (i < crossed.count);
 }
 
-// The same for one surface alone.
-void cross_alone(uint entry, bool leaves, inout Crossing c, inout uint status)
-{
-    bool known = media_have(c.before, entry);
-    uint full = 0u;
-    uvec4 with = media_with(c.before, entry, full), without = media_without(c.before, entry);
-    status |= leaves && known ? 0u : full;
-    c.after = !leaves ? with : known ? without : c.before;
-    c.before = leaves && !known ? with : c.before;
-}
-
 // Adds the surfaces of other media that the ray crosses at the place of `hit`, and makes `s` and
 // `inside` those of the surface that is seen there: of the material with the highest priority, of
 // equal ones one that is entered. A body that is entered twice on end has been met at an edge, by
@@ -198,15 +187,13 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
         c.seen = false;
         return c;
     }
+    Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uvec4(hit.instance, 0u, 0u, 0u),
+                              uint(inside), 1u);
     if (SPEC_MEDIA == MEDIA_TOUCH) {
-        Crossed crossed = Crossed(uvec4(s.material + 1u, 0u, 0u, 0u), uvec4(hit.instance, 0u, 0u, 0u),
-                                  uint(inside), 1u);
         gather_touching(slot, ray, hit, crossed, c, s, inside, status);
         m = fetch_material(s.material);
-        cross_all(crossed, c, status);
-    } else {
-        cross_alone(s.material + 1u, inside, c, status);
     }
+    cross_all(crossed, c, status);
     uint from = media_top(c.before), to = media_top(c.after);
     c.eta = medium_ior(from) / medium_ior(to);
     c.seen = from != to;

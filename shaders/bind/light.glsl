@@ -70,7 +70,7 @@ vec3 emitter_point(gpu_light light, uint index)
     return light.position + light.edge_u * u + light.edge_v * v;
 }
 
-// Where turn `index` of a light comes from; of a directional light it is nowhere.
+// The point that turn `index` of a light comes from. A directional light has none: its result means nothing.
 vec3 light_point(gpu_light light, uint index)
 {
     return is_flat(light) ? emitter_point(light, index) : light.position;

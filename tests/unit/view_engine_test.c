@@ -92,6 +92,23 @@ static void a_lost_device_is_made_again_or_given_up(void **state)
     assert_true(mended >= gave_up);
 }
 
+/* A large tree is drawn in packets, as a picture of the window's size is, although the engine's
+   renderer is made for a small one. */
+static void large_trees_are_drawn_in_packets(void **state)
+{
+    (void)state;
+    struct engine *engine;
+    struct engine_frame frame = {0};
+    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct view_settings settings = settings_of("8k.json");
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    assert_true(frame.whole);
+    assert_true(frame.stats.packets == (frame.device.subgroup_size == 8)); /* lavapipe */
+    engine_frame_finish(&frame);
+    assert_int_equal(engine_destroy(engine), 0);
+}
+
 /* ---- Memory ---- */
 
 static pthread_t window_thread;
@@ -269,6 +286,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lost_device_is_made_again_or_given_up),
+        cmocka_unit_test(large_trees_are_drawn_in_packets),
         cmocka_unit_test(memory_that_runs_out_is_said),
         cmocka_unit_test(no_look_is_cut_short),
         cmocka_unit_test(a_switch_keeps_the_picture),
