@@ -257,6 +257,20 @@ whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_
     return result;
 }
 
+whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
+                              const whit_renderer_params *params, whit_kernel *kernels,
+                              uint32_t *count)
+{
+    const whit_renderer_params defaults = {0};
+    struct render_params inner;
+    *count = 0;
+    whit_result result =
+        render_params_from_public(&device->log, params ? params : &defaults, &inner);
+    return result == WHIT_OK ? render_list_kernels(&device->log, device->device, accel->accel,
+                                                   &inner, kernels, count)
+                             : result;
+}
+
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
 {
     *out = NULL;

@@ -110,6 +110,12 @@ typedef struct whit_kernel_info {
 WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
                                                 whit_kernel_info *info);
 
+/* Makes the kernels of a picture with these params one after the other, and no picture: takes no
+   memory of the device. `kernels`: room for WHIT_KERNELS_MOST. */
+WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
+                                         const whit_renderer_params *params, whit_kernel *kernels,
+                                         uint32_t *count);
+
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */

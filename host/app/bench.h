@@ -113,9 +113,13 @@ struct bench_child {
     bool is_tried;                /* what goes wrong is not said */
     const char *out, *err; /* files that take what it prints; NULL: it prints where whit does */
 };
-/* Waits for its end: an error unless that was exit code 0. *cpu_ms, or NULL: all its threads and
-   children took. */
-WHIT_CHECK whit_result bench_child_run(const struct bench_child *child, double *cpu_ms);
+struct bench_child_times {
+    double cpu_ms; /* all its threads and children took */
+    double clock_ms;
+};
+/* Waits for its end: an error unless that was exit code 0. `times` may be NULL. */
+WHIT_CHECK whit_result bench_child_run(const struct bench_child *child,
+                                       struct bench_child_times *times);
 
 /* ---- Tables ---- */
 

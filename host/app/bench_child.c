@@ -102,8 +102,9 @@ static double ms_of(struct timeval time)
     return (double)time.tv_sec * 1e3 + (double)time.tv_usec * 1e-3;
 }
 
-whit_result bench_child_run(const struct bench_child *child, double *cpu_ms)
+whit_result bench_child_run(const struct bench_child *child, struct bench_child_times *times)
 {
+    double start_ms = whit_clock_ms();
     posix_spawn_file_actions_t actions;
     const int flags = O_WRONLY | O_CREAT | O_TRUNC;
     pid_t pid;
@@ -126,7 +127,10 @@ whit_result bench_child_run(const struct bench_child *child, double *cpu_ms)
     }
     struct rusage usage = {0};
     int status = wait_for(pid, &usage);
-    if (cpu_ms)
-        *cpu_ms = ms_of(usage.ru_utime) + ms_of(usage.ru_stime);
+    if (times)
+        *times = (struct bench_child_times){
+            .cpu_ms = ms_of(usage.ru_utime) + ms_of(usage.ru_stime),
+            .clock_ms = whit_clock_ms() - start_ms,
+        };
     return judge_end(child, status);
 }

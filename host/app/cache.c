@@ -15,6 +15,7 @@
 /* Mesa's own limit holds in each of its folders. */
 enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };
 static const char mesa_size[] = "MESA_SHADER_CACHE_MAX_SIZE", mesa_size_text[] = "128M";
+static const char gallivm_how[] = "GALLIVM_PERF", plain[] = "nopt";
 static const char mesa_place[] = "MESA_SHADER_CACHE_DIR", mesa_off[] = "MESA_SHADER_CACHE_DISABLE";
 
 /* ---- Which driver ---- */
@@ -119,9 +120,9 @@ static uint32_t count_folders(int folder, char oldest[256])
 static void choose_folder(const char *folder)
 {
     char path[4200], oldest[256];
-    const char *width = getenv("LP_NATIVE_VECTOR_WIDTH");
-    snprintf(path, sizeof path, "%s/mesa-%016llx-%u", folder, (unsigned long long)drivers_hash(),
-             width ? (unsigned)strtoul(width, NULL, 0) : 0);
+    const char *width = getenv("LP_NATIVE_VECTOR_WIDTH"), *how = getenv(gallivm_how);
+    snprintf(path, sizeof path, "%s/mesa-%016llx-%u%s", folder, (unsigned long long)drivers_hash(),
+             width ? (unsigned)strtoul(width, NULL, 0) : 0, how && strstr(how, plain) ? plain : "");
     if (mkdir(path, 0700) != 0)
         (void)utimensat(AT_FDCWD, path, NULL, AT_SYMLINK_NOFOLLOW);
     (void)setenv(mesa_place, path, 0);
@@ -132,6 +133,11 @@ static void choose_folder(const char *folder)
         (void)walk(fd, oldest, true);
     if (fd >= 0)
         close(fd);
+}
+
+void cache_plain_code(void)
+{
+    (void)setenv(gallivm_how, plain, 0);
 }
 
 void cache_prepare(bool off)

@@ -11,6 +11,10 @@
    before Vulkan. */
 void cache_prepare(bool off);
 
+/* Before cache_prepare: lavapipe is not to optimize the machine code of kernels, which takes half
+   of the time to make them, unless the environment says otherwise. Results have the same bits. */
+void cache_plain_code(void);
+
 /* Where both are, how large and how large they may grow. */
 json_t *cache_document(void);
 void cache_print(void);

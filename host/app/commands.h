@@ -30,6 +30,9 @@ struct render_request {
     struct frames frames;     /* with them `output` and `ids` are patterns */
 };
 
+/* kernels.c: of a picture, printed. */
+int kernels_run(struct job *job, const struct picture *picture, bool json);
+
 /* ---- Options of pictures: what `render` and `view` share (picture.c) ---- */
 
 enum { PICTURE_DEPTH_DEFAULT = 8, PICTURE_DEPTH_MOST = 255 };

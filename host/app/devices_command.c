@@ -2,6 +2,7 @@
 
 #include "app/cache.h"
 #include "app/commands.h"
+#include "app/device_hints.h"
 #include "app/document.h"
 
 enum { ID_JSON = JOB_ID_END };
@@ -46,7 +47,16 @@ static void print_device(const whit_device_info *info)
         printf("     not usable: %s\n", cli_shown(info->why_not));
 }
 
-static int print_json(const whit_device_info *infos, uint32_t count)
+static json_t *hints_document(const struct device_hints *hints)
+{
+    json_t *list = document_array();
+    for (uint32_t i = 0; i < hints->count; ++i)
+        document_append(list, json_string(hints->list[i]));
+    return list;
+}
+
+static int print_json(const whit_device_info *infos, uint32_t count,
+                      const struct device_hints *hints)
 {
     json_t *list = document_array();
     for (uint32_t i = 0; i < count; ++i)
@@ -54,15 +64,20 @@ static int print_json(const whit_device_info *infos, uint32_t count)
     json_t *root = document_object();
     document_text(root, "whit", WHIT_VERSION);
     document_put(root, "devices", list);
+    document_put(root, "hints", hints_document(hints));
     document_put(root, "cache", cache_document());
     return cli_print_json(root);
 }
 
-static int print_text(const whit_device_info *infos, uint32_t count)
+static int print_text(const whit_device_info *infos, uint32_t count,
+                      const struct device_hints *hints)
 {
     for (uint32_t i = 0; i < count; ++i)
         print_device(&infos[i]);
-    puts("\n* is what `--device auto` takes.");
+    if (count > 0)
+        puts("\n* is what `--device auto` takes.");
+    for (uint32_t i = 0; i < hints->count; ++i)
+        printf("%s%s\n", i == 0 ? "\n" : "", hints->list[i]);
     cache_print();
     return cli_finish_stdout(EXIT_FINE);
 }
@@ -80,14 +95,16 @@ static int list(bool json)
 {
     whit_device_info *infos;
     uint32_t count;
+    struct device_hints hints;
     whit_result result = whit_device_list(&cli_log, &infos, &count);
-    if (result != WHIT_OK)
+    if (result != WHIT_OK && result != WHIT_ERROR_NO_DEVICE)
         return cli_exit_of(result);
-    int status = json ? print_json(infos, count) : print_text(infos, count);
-    if (status == EXIT_FINE && !any_usable(infos, count)) {
+    device_hints_find("", getenv("NVIDIA_DRIVER_CAPABILITIES"), infos, count, &hints);
+    int status = json ? print_json(infos, count, &hints) : print_text(infos, count, &hints);
+    if (status == EXIT_FINE && count > 0 && !any_usable(infos, count))
         cli_error("none of these devices is usable");
+    if (status == EXIT_FINE && !any_usable(infos, count))
         status = EXIT_DEVICE;
-    }
     free(infos);
     return status;
 }

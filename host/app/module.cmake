@@ -2,7 +2,7 @@
 add_executable(whit_program
   app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
   app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
-  app/receipt.c app/receipt_output.c app/listing.c app/listing_output.c app/triangles.c
+  app/receipt.c app/receipt_output.c app/kernels.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
   app/bench_section.c app/bench_table.c app/bench_child.c app/hard_command.c app/hard_output.c app/compare_command.c
   app/probe_command.c app/probe_output.c
@@ -10,7 +10,7 @@ add_executable(whit_program
   app/cost_choice.c
   app/page.c app/plot.c
   app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c
-  app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c)
+  app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c app/device_hints.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 # What a program made of these sources links; tests make some more of them.

@@ -3,6 +3,8 @@
 #include <ctype.h>
 #include <stdlib.h>
 
+#include "app/cache.h"
+
 enum probe_id { ID_PIXEL = PICTURE_ID_END, ID_JSON, ID_RAYS };
 
 enum { RAYS_MOST = 16383 };
@@ -115,6 +117,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct cli_reader reader;
     struct probe probe = {.request = picture_request_default()};
     job_init(&probe.job);
+    cache_plain_code(); /* kernels for the rays of one pixel */
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &probe);

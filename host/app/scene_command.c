@@ -7,6 +7,7 @@ enum scene_id {
     ID_TRIANGLES,
     ID_ALL,
     ID_EFFECTS,
+    ID_KERNELS,
     ID_SIZE,
     ID_CAMERA,
     ID_AA,
@@ -26,10 +27,15 @@ static const struct cli_option options[] = {
      "with and without it in turns, and what the picture\n"
      "would lose; --size, --camera, --aa and --depth are those\n"
      "of `whit render`"},
-    {ID_SIZE, "size", "WxH", "pixels, for --effects (320x240)"},
-    {ID_CAMERA, "camera", "NAME|N|numbers", "for --effects (the scene's first)"},
-    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for --effects (1)"},
-    {ID_DEPTH, "depth", "N", "for --effects (8)"},
+    {ID_KERNELS, "kernels", NULL,
+     "the kernels of such a picture, what they take to make,\n"
+     "and what the device's driver tells of them: subgroup\n"
+     "size, registers and the like"},
+    {ID_SIZE, "size", "WxH", "pixels, for --effects and --kernels (320x240)"},
+    {ID_CAMERA, "camera", "NAME|N|numbers", "for the same (the scene's first)"},
+    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for the same (1)"},
+    {ID_DEPTH, "depth", "N", "for the same (8)"},
+    {JOB_NUMERICS, "numerics", "fast|watertight|exact", "for the same (watertight)"},
     JOB_OPTION_DEVICE,
     {JOB_TIME, "time", "T", "time of the triangles, or of the picture, in seconds (0)"},
     {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation"},
@@ -42,9 +48,9 @@ static const struct cli_option options[] = {
 
 struct scene_request {
     const char *triangles; /* NULL: none */
-    bool json, all, effects;
-    struct picture picture; /* of --effects */
-    bool for_effects;       /* an option that needs --effects was given */
+    bool json, all, effects, kernels;
+    struct picture picture; /* of --effects and --kernels */
+    bool for_picture;       /* an option that needs one of these was given */
 };
 
 static int work(struct job *job, const struct scene_request *request)
@@ -57,6 +63,8 @@ static int work(struct job *job, const struct scene_request *request)
         return cli_exit_of(result);
     if (request->effects)
         return receipt_run(job, &request->picture, request->json);
+    if (request->kernels)
+        return kernels_run(job, &request->picture, request->json);
     whit_scene_get_info(job->scene, &info);
     if (request->json)
         return listing_print_json(job, &info);
@@ -67,7 +75,7 @@ static void read_option(struct job *job, struct cli_reader *reader, int id,
                         struct scene_request *request)
 {
     struct picture *picture = &request->picture;
-    request->for_effects |= id >= ID_SIZE && id <= ID_DEPTH;
+    request->for_picture |= (id >= ID_SIZE && id <= ID_DEPTH) || id == JOB_NUMERICS;
     switch (id) {
     case ID_JSON:
         request->json = true;
@@ -80,6 +88,9 @@ static void read_option(struct job *job, struct cli_reader *reader, int id,
         break;
     case ID_EFFECTS:
         request->effects = true;
+        break;
+    case ID_KERNELS:
+        request->kernels = true;
         break;
     case ID_SIZE:
         cli_size(reader, &picture->width, &picture->height);
@@ -112,8 +123,14 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (!job_options_done(&job, &reader) ||
         !cli_no_dash(&reader, "--triangles", request.triangles, "for a pipe give /dev/stdout"))
         return reader.status;
-    if (request.for_effects && !request.effects) {
-        cli_misuse(&reader, "--size, --camera, --aa and --depth are for the pictures of --effects");
+    if (request.for_picture && !request.effects && !request.kernels) {
+        cli_misuse(&reader,
+                   "--size, --camera, --aa, --depth and --numerics are for the pictures of "
+                   "--effects and --kernels");
+        return reader.status;
+    }
+    if (request.effects && request.kernels) {
+        cli_misuse(&reader, "--effects and --kernels are two listings: give one of them");
         return reader.status;
     }
     if (request.triangles && !cli_can_write(request.triangles))

@@ -2,6 +2,7 @@
 #ifndef WHIT_BASE_H
 #define WHIT_BASE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -65,6 +66,22 @@ const char *whit_result_name(whit_result result);
    What drivers and libraries then fail with has other names, or they crash. Safe in signal
    handlers. */
 const char *whit_shortage(uint64_t room_bytes);
+
+/* A number that a driver tells of a kernel that it made, under a name of the driver's. */
+typedef struct whit_statistic {
+    char name[64];
+    double value;
+} whit_statistic;
+enum { WHIT_STATISTICS_MOST = 48, WHIT_KERNELS_MOST = 16 };
+/* A kernel of a picture as the device's driver makes it. */
+typedef struct whit_kernel {
+    const char *name;      /* of its stage: "camera", "shade glass" */
+    bool deferred;         /* for the rays that the one before leaves open, at exact numerics */
+    uint32_t instructions; /* SPIR-V, of its functions */
+    double create_ms;      /* by the clock; lavapipe goes on at the first dispatch */
+    whit_statistic statistics[WHIT_STATISTICS_MOST];
+    uint32_t statistic_count; /* 0: the driver tells nothing */
+} whit_kernel;
 
 /* ---- Text that others wrote ---- */
 

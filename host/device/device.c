@@ -155,7 +155,7 @@ static bool environment_on(const char *name)
     return value && *value && strcmp(value, "0") != 0;
 }
 
-static bool has_portability_subset(struct device *device)
+static bool has_extension(struct device *device, const char *name)
 {
     uint32_t count = 0;
     if (vkEnumerateDeviceExtensionProperties(device->physical, NULL, &count, NULL) < 0)
@@ -165,7 +165,7 @@ static bool has_portability_subset(struct device *device)
     if (extensions &&
         vkEnumerateDeviceExtensionProperties(device->physical, NULL, &count, extensions) >= 0)
         for (uint32_t i = 0; i < count && !found; ++i)
-            found = strcmp(extensions[i].extensionName, "VK_KHR_portability_subset") == 0;
+            found = strcmp(extensions[i].extensionName, name) == 0;
     free(extensions);
     return found;
 }
@@ -192,10 +192,15 @@ static whit_result logical_create(struct device *device)
         device->timestamp_mask =
             timestamp_bits >= 64 ? UINT64_MAX : (UINT64_C(1) << timestamp_bits) - 1;
 
-    const char *extensions[2];
+    static const char portability[] = "VK_KHR_portability_subset";
+    static const char executables[] = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    const char *extensions[3];
     uint32_t extension_count = 0;
-    if (has_portability_subset(device))
-        extensions[extension_count++] = "VK_KHR_portability_subset";
+    if (has_extension(device, portability))
+        extensions[extension_count++] = portability;
+    bool tells = has_extension(device, executables);
+    if (tells)
+        extensions[extension_count++] = executables;
     if (device->surface)
         extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     VkPhysicalDeviceFeatures can;
@@ -214,8 +219,13 @@ static whit_result logical_create(struct device *device)
         .shaderInt64 = device->info.int64,
         .shaderStorageImageWriteWithoutFormat = device->writes_any_format,
     };
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR telling = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+        .pipelineExecutableInfo = VK_TRUE,
+    };
     VkDeviceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .pNext = tells ? &telling : NULL,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
         .enabledExtensionCount = extension_count,
@@ -224,6 +234,13 @@ static whit_result logical_create(struct device *device)
     };
     VK_TRY(device, vkCreateDevice(device->physical, &info, NULL, &device->vk));
     vkGetDeviceQueue(device->vk, device->queue_family, 0, &device->queue);
+    if (tells) {
+        device->get_executables = (PFN_vkGetPipelineExecutablePropertiesKHR)vkGetDeviceProcAddr(
+            device->vk, "vkGetPipelineExecutablePropertiesKHR");
+        device->get_executable_statistics =
+            (PFN_vkGetPipelineExecutableStatisticsKHR)vkGetDeviceProcAddr(
+                device->vk, "vkGetPipelineExecutableStatisticsKHR");
+    }
     if (device->debug_utils) {
         device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(
             device->vk, "vkSetDebugUtilsObjectNameEXT");
@@ -288,7 +305,6 @@ void device_destroy(struct device *device)
     if (!device)
         return;
     if (device->vk) {
-        (void)vkDeviceWaitIdle(device->vk); /* a lost device has nothing left to wait for */
         commands_destroy(device->transfer);
         buffer_destroy(device->staging);
         cache_close(device);

@@ -115,6 +115,7 @@ struct pipeline_params {
     const enum binding_kind *bindings; /* of binding number i in set 0; NONE leaves a gap */
     uint32_t binding_count;
     uint32_t push_bytes;
+    bool asks_statistics; /* for pipeline_get_statistics */
     const char *name;
 };
 
@@ -131,6 +132,12 @@ WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipel
                                        struct pipeline **out);
 void pipeline_destroy(struct pipeline *pipeline);
 void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info);
+/* What the driver tells of a pipeline that was made with asks_statistics: subgroup size, registers
+   and the like, under the driver's names. None where it has no
+   VK_KHR_pipeline_executable_properties. *count: at most WHIT_STATISTICS_MOST, the rest is left
+   out. */
+WHIT_CHECK whit_result pipeline_get_statistics(const struct pipeline *pipeline,
+                                               whit_statistic *statistics, uint32_t *count);
 /* The same without a pipeline or a device. False when the kernel cannot be specialized. */
 bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info);
 

@@ -208,6 +208,7 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
     };
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .flags = pipeline->asks_statistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
@@ -268,6 +269,7 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
     if (pipeline) {
         pipeline->device = device;
         pipeline->push_bytes = params->push_bytes;
+        pipeline->asks_statistics = params->asks_statistics && device->get_executables;
         snprintf(pipeline->name, sizeof pipeline->name, "%s", params->name ? params->name : "");
         if (!copy_bindings(pipeline, params))
             result = WHIT_ERROR_MEMORY;

@@ -59,6 +59,9 @@ struct device {
     PFN_vkSetDebugUtilsObjectNameEXT set_object_name; /* these three are NULL without debug_utils */
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
+    /* Both NULL where the driver tells nothing of its kernels. */
+    PFN_vkGetPipelineExecutablePropertiesKHR get_executables;
+    PFN_vkGetPipelineExecutableStatisticsKHR get_executable_statistics;
 
     struct buffer *staging; /* both made when first needed */
     struct commands *transfer;
@@ -86,6 +89,7 @@ struct pipeline {
     uint32_t binding_count, storage_count, texels_count;
     struct pipeline_info info;
     uint32_t push_bytes;
+    bool asks_statistics;
     char name[OBJECT_NAME_BYTES];
 };
 

@@ -138,6 +138,12 @@ struct render_kernel_info {
 WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer,
                                            struct render_kernel_info *info);
 
+/* Makes the kernels of a picture one after the other, and nothing else: no memory of the device is
+   taken. `kernels`: WHIT_KERNELS_MOST. */
+WHIT_CHECK whit_result render_list_kernels(const struct log *log, struct device *device,
+                                           struct accel *accel, const struct render_params *params,
+                                           whit_kernel *kernels, uint32_t *count);
+
 /* With params.count: the costs of rays of `kind` (RAY_*) of each pixel's first sample, as 8 integer
    channels in the order of struct gpu_cost. */
 WHIT_CHECK whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind,

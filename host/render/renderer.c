@@ -16,9 +16,6 @@ bool renderer_bounces(const struct renderer *renderer)
 static whit_result create_parts(struct renderer *renderer)
 {
     double start_ms = clock_ms();
-    renderer->has_secondary = renderer_bounces(renderer);
-    renderer->node_stack_size = accel_stack_size(renderer->accel);
-    renderer->single_identity = renderer->accel->single_identity;
     whit_result result =
         pixels_create(&renderer->picture, renderer->params.height, renderer->params.tile_size);
     if (result == WHIT_OK)
@@ -52,13 +49,9 @@ whit_result renderer_compile(struct renderer *renderer)
     return result;
 }
 
-whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
-                            const struct render_params *params, struct renderer **out)
+whit_result renderer_init(struct renderer *renderer, const struct log *log, struct device *device,
+                          struct accel *accel, const struct render_params *params)
 {
-    *out = NULL;
-    struct renderer *renderer = calloc(1, sizeof *renderer);
-    if (!renderer)
-        return WHIT_ERROR_MEMORY;
     renderer->picture.renderer = renderer->probe.renderer = renderer;
     renderer->probe.probed = true;
     renderer->log = *log;
@@ -80,6 +73,20 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
         result = scene_pose_init(renderer->scene, renderer->params.time_s, &renderer->pose);
     if (result == WHIT_OK)
         result = accel_pose(accel, &renderer->pose);
+    renderer->has_secondary = renderer_bounces(renderer);
+    renderer->node_stack_size = accel_stack_size(accel);
+    renderer->single_identity = accel->single_identity;
+    return result;
+}
+
+whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
+                            const struct render_params *params, struct renderer **out)
+{
+    *out = NULL;
+    struct renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = renderer_init(renderer, log, device, accel, params);
     if (result == WHIT_OK)
         result = create_parts(renderer);
     if (result == WHIT_OK && renderer->params.compile_beside)
@@ -92,10 +99,8 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
     return WHIT_OK;
 }
 
-void renderer_destroy(struct renderer *renderer)
+void renderer_finish(struct renderer *renderer)
 {
-    if (!renderer)
-        return;
     commands_destroy(renderer->commands);
     passes_finish(renderer);
     beside_finish(renderer);
@@ -108,5 +113,12 @@ void renderer_destroy(struct renderer *renderer)
     scene_pose_finish(&renderer->pose);
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer)
+        return;
+    renderer_finish(renderer);
     free(renderer);
 }

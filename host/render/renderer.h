@@ -173,6 +173,11 @@ enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive pic
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
+/* What a zeroed renderer knows without memory of the device. renderer_finish in any case. */
+WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const struct log *log,
+                                     struct device *device, struct accel *accel,
+                                     const struct render_params *params);
+void renderer_finish(struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
@@ -219,6 +224,10 @@ WHIT_CHECK whit_result queues_grow(struct target *target);
 /* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
+/* How kernels read the trees, and whether rays walk in packets; upload_scene begins with it. */
+void upload_choose(struct renderer *renderer);
+/* Makes the nodes of eight that packets need on the host, and says what stack they take. */
+WHIT_CHECK whit_result upload_widen(struct renderer *renderer);
 /* Whether rays can walk in packets here, as far as device, trees and parameters go. */
 bool upload_can_widen(const struct renderer *renderer);
 /* Nodes of eight children, where there are none yet: renderer->wide. */
@@ -290,6 +299,9 @@ struct variant_job {
 /* pass->pipeline and, where rays wait, pass->looks. */
 WHIT_CHECK whit_result variant_job_run(struct device *device, const struct variant_job *job,
                                        struct pass *pass);
+/* Whether a kernel leaves rays to a second one that has exact integers, and the constants of that.
+ */
+bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec);
 /* `spec`: of the set of stages, which has `classes` shading kernels. */
 void variant_job_init(const struct target *target, const struct gpu_spec *spec, uint32_t classes,
                       enum stage stage, struct variant_job *job);

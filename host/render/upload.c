@@ -94,17 +94,23 @@ static whit_result upload_instances(struct renderer *renderer)
                        &renderer->scene_buffers.instances);
 }
 
-/* Before the instances, which name their roots. */
-static whit_result upload_nodes8(struct renderer *renderer)
+whit_result upload_widen(struct renderer *renderer)
 {
-    const struct accel_bvh8 *bvh8 = &renderer->accel->bvh8;
     if (!renderer->wide)
         return WHIT_OK;
     whit_result result = accel_widen(renderer->accel);
     uint32_t stack_size = accel_packet_stack_size(renderer->accel);
     if (stack_size > renderer->packet_stack_size)
         renderer->packet_stack_size = stack_size;
-    if (result == WHIT_OK)
+    return result;
+}
+
+/* Before the instances, which name their roots. */
+static whit_result upload_nodes8(struct renderer *renderer)
+{
+    const struct accel_bvh8 *bvh8 = &renderer->accel->bvh8;
+    whit_result result = upload_widen(renderer);
+    if (result == WHIT_OK && renderer->wide)
         result =
             store_words(renderer, bvh8->nodes, (uint64_t)bvh8->node_count * 8 * sizeof *bvh8->nodes,
                         "nodes of eight", &renderer->scene_buffers.nodes8);
@@ -360,11 +366,16 @@ static bool choose_packets(struct renderer *renderer)
     return upload_can_widen(renderer) && renderer->packet_rays > 1;
 }
 
+void upload_choose(struct renderer *renderer)
+{
+    renderer->scene_buffers.texel_loads = choose_texel_loads(renderer);
+    renderer->packets = renderer->wide = choose_packets(renderer);
+}
+
 whit_result upload_scene(struct renderer *renderer)
 {
     struct scene_buffers *buffers = &renderer->scene_buffers;
-    buffers->texel_loads = choose_texel_loads(renderer);
-    renderer->packets = renderer->wide = choose_packets(renderer);
+    upload_choose(renderer);
     whit_result result = buffer_create(renderer->device, 16, BUFFER_STORAGE | BUFFER_TEXELS,
                                        "nothing", &buffers->none);
     if (result == WHIT_OK)

@@ -262,19 +262,26 @@ static struct bindings bind_stages(const struct target *target)
     return bindings;
 }
 
+bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
+{
+    memcpy(spec, params->spec, sizeof *spec);
+    if (spec->SPEC_LOOKS)
+        return false;
+    spec->SPEC_LOOKS = 1;
+    spec->SPEC_PACKETS = 0; /* few rays */
+    spec->SPEC_PACKET_RAYS = 1;
+    return true;
+}
+
 /* Both pipelines of the pass, of which `params` tells the first. */
 static whit_result create_pipelines(struct device *device, const struct pipeline_params *params,
                                     struct pass *pass)
 {
     struct gpu_spec spec;
-    memcpy(&spec, params->spec, sizeof spec);
     whit_result result = pipeline_create(device, params, &pass->pipeline);
-    if (result != WHIT_OK || spec.SPEC_LOOKS)
+    if (result != WHIT_OK || !variant_defers(params, &spec))
         return result;
     struct pipeline_params looks = *params;
-    spec.SPEC_LOOKS = 1;
-    spec.SPEC_PACKETS = 0; /* few rays */
-    spec.SPEC_PACKET_RAYS = 1;
     looks.spec = (const uint32_t *)&spec;
     return pipeline_create(device, &looks, &pass->looks);
 }

@@ -2,14 +2,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
-
-double figures_cpu_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 struct bench_times figures_ratio(const struct bench_times *a, const struct bench_times *b)
 {

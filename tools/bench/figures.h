@@ -39,7 +39,6 @@ WHIT_CHECK whit_result figures_end(struct figures *figures, const char *title, w
 json_t *figures_times(const struct bench_times *times); /* `median spread runs` */
 /* Of each run of `a` that of `b` at the same turn. */
 struct bench_times figures_ratio(const struct bench_times *a, const struct bench_times *b);
-double figures_cpu_ms(void); /* of all threads of this process */
 
 /* figures_plot.c: how far each is from what it must, as SVG. */
 WHIT_CHECK whit_result figures_plot(const struct figures *figures, const char *title,

@@ -166,6 +166,7 @@ static whit_result run_frame(const struct peers *peers, const char *name, const 
                           .height = bench->height,
                           .small_width = 32,
                           .small_height = path ? 18 : 24,
+                          .is_cpu = strcmp(bench->device_info.kind, "cpu") == 0,
                           .peer = {.socket = -1}};
     whit_result result = WHIT_OK;
     double megabytes = 0.0;
@@ -268,16 +269,16 @@ static void say_how(struct figures *figures)
                 "the width of the middle half.",
                 cli_shown(device->name), cli_shown(device->driver), bench->width, bench->height,
                 bench->width * 3 / 4, bench->height, bench->runs);
-    section_say(&figures->section,
-                "ms: processor time of all threads of a process of its own, less that of a picture "
-                "32 wide, caches filled; figure: times the time of what is beside it. Reference: "
-                "the same picture in double.");
+    bool is_cpu = strcmp(device->kind, "cpu") == 0;
+    section_say(
+        &figures->section,
+        "ms: %s a process of its own, less that of a picture 32 wide, caches filled; figure: "
+        "times the time of what is beside it. Reference: the same picture in double.",
+        is_cpu ? "processor time of all threads of"
+               : "time by the clock, as this device is no CPU, of");
     section_say(&figures->section,
                 "Depth 8, bailout 1/1024, 16 points of an area light, one sample; beside POV-Ray "
                 "depth 10 (wine: 2) and bailout 0.0005.");
-    if (strcmp(device->kind, "cpu") != 0)
-        section_say(&figures->section,
-                    "This device is no CPU: what it computes is not in these times.");
     if (bench->quick)
         section_say(&figures->section, "Quick run: small pictures, not for figures to be quoted.");
 }

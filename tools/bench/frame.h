@@ -35,13 +35,14 @@ struct frame {
     const char *bailout;
     uint32_t depth, width, height;
     uint32_t small_width, small_height; /* a picture whose time is taken off; 0: none */
+    bool is_cpu;                        /* the device: else times are by the clock */
     struct bench_scene loaded;
     whit_accel *accel;
     whit_reference *reference;
     struct peer peer;
     enum frame_side sides[FRAME_SIDES]; /* who draws */
     uint32_t side_count;
-    struct bench_times ms[FRAME_SIDES]; /* processor time of all threads, by side */
+    struct bench_times ms[FRAME_SIDES]; /* by side; of the processor, all threads together */
 };
 
 /* The scene, its trees and the reference. */

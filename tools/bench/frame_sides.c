@@ -40,6 +40,20 @@ void frame_finish(struct frame *frame)
 
 /* ---- Programs ---- */
 
+/* What a device that is no CPU computes shows by the clock alone. */
+static whit_result run_child(const struct frame *frame, const struct bench_child *child, double *ms)
+{
+    struct bench_child_times times = {0};
+    whit_result result = bench_child_run(child, &times);
+    *ms = frame->is_cpu ? times.cpu_ms : times.clock_ms;
+    return result;
+}
+
+static double now_ms(const struct frame *frame)
+{
+    return frame->is_cpu ? whit_clock_cpu_ms() : whit_clock_ms();
+}
+
 static whit_result run_whit(const struct frame *frame, enum frame_side side, uint32_t width,
                             uint32_t height, double *ms)
 {
@@ -71,7 +85,7 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
                                       .arguments = arguments,
                                       .folder = frame->folder,
                                       .err = "whit.err"};
-    return bench_child_run(&child, ms);
+    return run_child(frame, &child, ms);
 }
 
 static whit_result run_pov(const struct frame *frame, uint32_t width, uint32_t height, double *ms)
@@ -90,15 +104,15 @@ static whit_result run_pov(const struct frame *frame, uint32_t width, uint32_t h
                                       .folder = frame->folder,
                                       .out = "pov.out",
                                       .err = "pov.err"};
-    return bench_child_run(&child, ms);
+    return run_child(frame, &child, ms);
 }
 
 static whit_result run_reference(const struct frame *frame, double *ms)
 {
     whit_image *color = NULL;
-    double before = figures_cpu_ms();
+    double before = now_ms(frame);
     whit_result result = whit_reference_render(frame->reference, &color, NULL);
-    *ms = figures_cpu_ms() - before;
+    *ms = now_ms(frame) - before;
     whit_image_destroy(color);
     return result;
 }
@@ -116,7 +130,8 @@ static whit_result run_embree(struct frame *frame, double *ms)
         result = peer_trace(&frame->peer, "single", false, false, forth);
     if (result == WHIT_OK)
         result = peer_trace(&frame->peer, "single", true, false, back);
-    *ms = closest[0] + fmin(forth[0], back[0]);
+    int clock = frame->is_cpu ? 0 : 1;
+    *ms = closest[clock] + fmin(forth[clock], back[clock]);
     return result;
 }
 

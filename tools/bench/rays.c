@@ -25,7 +25,8 @@ static void put_ns(const struct model *model, const struct bench_times *times)
     if (times->count == 0 || model->count == 0)
         table_cell(table, "-");
     else
-        table_cell(table, "%.1f", bench_median(times) * 1e6 / (double)model->count);
+        table_cell(table, "%.*f", model->is_cpu ? 1 : 3,
+                   bench_median(times) * 1e6 / (double)model->count);
 }
 
 static json_t *row_document(const struct model *model, uint32_t kind, const struct batch *batches,

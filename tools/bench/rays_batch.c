@@ -78,10 +78,10 @@ static double thread_ms(void)
    a driver on the CPU computes in threads of its own. Of other devices it is their own time. */
 static whit_result trace_here(struct model *model, double *ms)
 {
-    double all = figures_cpu_ms(), own = thread_ms();
+    double all = whit_clock_cpu_ms(), own = thread_ms();
     whit_result result = whit_trace(model->renderer, WHIT_TRACE_DEVICE, model->rays, model->count,
                                     model->batch->any, model->traced, NULL);
-    *ms = model->is_cpu ? figures_cpu_ms() - all - (thread_ms() - own)
+    *ms = model->is_cpu ? whit_clock_cpu_ms() - all - (thread_ms() - own)
                         : whit_trace_device_ms(model->renderer);
     return result;
 }

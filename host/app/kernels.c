@@ -1,0 +1,90 @@
+/* `whit scene --kernels`: the kernels of a picture, and what the device's driver tells of them. */
+#include "app/commands.h"
+#include "app/document.h"
+
+enum { LINE_MOST = 100 };
+
+static void print_kernel(const whit_kernel *kernel)
+{
+    int used = 0;
+    printf("  %s%s\n      %u instructions, %.1f ms to make", kernel->name,
+           kernel->deferred ? ", deferred rays" : "", kernel->instructions, kernel->create_ms);
+    for (uint32_t i = 0; i < kernel->statistic_count; ++i) {
+        char text[192];
+        int length = snprintf(text, sizeof text, "%s %.10g", cli_shown(kernel->statistics[i].name),
+                              kernel->statistics[i].value);
+        bool wraps = i == 0 || used + length > LINE_MOST;
+        printf("%s%s", wraps ? "\n      " : ", ", text);
+        used = wraps ? length : used + length + 2;
+    }
+    putchar('\n');
+}
+
+static int print_text(const struct job *job, const whit_device_info *device,
+                      const whit_kernel *kernels, uint32_t count)
+{
+    uint32_t told = 0;
+    printf("%s\n  device    %s (%s)\n\n", cli_shown(job->scene_path), cli_shown(device->name),
+           cli_shown(stats_driver(device)));
+    for (uint32_t i = 0; i < count; ++i) {
+        print_kernel(&kernels[i]);
+        told += kernels[i].statistic_count;
+    }
+    if (told == 0)
+        puts("\n  The driver tells nothing of its kernels: it has no "
+             "VK_KHR_pipeline_executable_properties.");
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+static json_t *kernel_document(const whit_kernel *kernel)
+{
+    json_t *object = document_object(), *told = document_object();
+    document_text(object, "name", kernel->name);
+    document_flag(object, "deferred", kernel->deferred);
+    document_count(object, "instructions", kernel->instructions);
+    document_ms(object, "create_ms", kernel->create_ms);
+    for (uint32_t i = 0; i < kernel->statistic_count; ++i)
+        document_number(told, kernel->statistics[i].name, kernel->statistics[i].value);
+    document_put(object, "driver", told);
+    return object;
+}
+
+static int print_json(const struct job *job, const struct picture *picture,
+                      const whit_device_info *info, const whit_kernel *kernels, uint32_t count)
+{
+    json_t *root = document_object(), *device = document_object(), *list = document_array();
+    json_t *of = document_object();
+    document_text(root, "whit", WHIT_VERSION);
+    document_text(root, "file", job->scene_path);
+    document_text(device, "name", info->name);
+    document_text(device, "driver", info->driver);
+    document_text(device, "kind", info->kind);
+    document_count(device, "subgroup_size", info->subgroup_size);
+    document_put(root, "device", device);
+    picture_describe(picture, job, of);
+    document_put(root, "picture", of);
+    for (uint32_t i = 0; i < count; ++i)
+        document_append(list, kernel_document(&kernels[i]));
+    document_put(root, "kernels", list);
+    return cli_print_json(root);
+}
+
+int kernels_run(struct job *job, const struct picture *picture, bool json)
+{
+    static whit_kernel kernels[WHIT_KERNELS_MOST];
+    whit_device_info device;
+    uint32_t count = 0;
+    whit_result result = job_build(job);
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (result == WHIT_OK) {
+        whit_renderer_params params = picture_params(picture, job);
+        result = whit_kernels_list(job->device, job->accel, &params, kernels, &count);
+    }
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    whit_device_get_info(job->device, &device);
+    int status = json ? print_json(job, picture, &device, kernels, count)
+                      : print_text(job, &device, kernels, count);
+    return status == EXIT_FINE ? job_check_validation(job) : status;
+}

@@ -1,0 +1,62 @@
+/* The kernels of a picture, one by one, with what the driver tells of them. */
+#include "base/clock.h"
+#include "render/renderer.h"
+
+_Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MOST, "room for all kernels");
+
+static whit_result list_kernel(struct device *device, const struct pipeline_params *params,
+                               bool deferred, whit_kernel *kernel)
+{
+    struct pipeline *pipeline = NULL;
+    struct pipeline_info info;
+    double start_ms = clock_ms();
+    whit_result result = pipeline_create(device, params, &pipeline);
+    *kernel = (whit_kernel){
+        .name = params->name, .deferred = deferred, .create_ms = clock_ms() - start_ms};
+    if (result != WHIT_OK)
+        return result;
+    pipeline_get_info(pipeline, &info);
+    kernel->instructions = info.instructions;
+    result = pipeline_get_statistics(pipeline, kernel->statistics, &kernel->statistic_count);
+    pipeline_destroy(pipeline);
+    return result;
+}
+
+static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, uint32_t *count)
+{
+    struct stages_job job;
+    struct gpu_spec spec = variant_spec(&renderer->picture), deferred;
+    whit_result result = WHIT_OK;
+    stages_job_init(&renderer->picture, &spec, true, &job);
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
+        struct pipeline_params params = job.stages[i].params;
+        if (!job.wanted[i])
+            continue;
+        params.asks_statistics = true;
+        bool defers = variant_defers(&params, &deferred);
+        result = list_kernel(renderer->device, &params, false, &kernels[(*count)++]);
+        params.spec = (const uint32_t *)&deferred;
+        if (result == WHIT_OK && defers)
+            result = list_kernel(renderer->device, &params, true, &kernels[(*count)++]);
+    }
+    return result;
+}
+
+whit_result render_list_kernels(const struct log *log, struct device *device, struct accel *accel,
+                                const struct render_params *params, whit_kernel *kernels,
+                                uint32_t *count)
+{
+    struct renderer renderer = {0};
+    *count = 0;
+    whit_result result = renderer_init(&renderer, log, device, accel, params);
+    if (result == WHIT_OK) {
+        upload_choose(&renderer);
+        result = upload_widen(&renderer);
+    }
+    if (result == WHIT_OK)
+        result = frame_fill(&renderer);
+    if (result == WHIT_OK)
+        result = list_stages(&renderer, kernels, count);
+    renderer_finish(&renderer);
+    return result;
+}

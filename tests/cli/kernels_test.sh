@@ -1,0 +1,38 @@
+#!/bin/sh
+# `whit scene --kernels`: each kernel of a picture, on lavapipe, and where Mesa's driver for AMD is
+# installed also by its compiler, which needs no GPU for that.
+. "$(dirname "$0")/common.sh"
+needs jq
+
+refuse 2 "both listings" "give one of them" scene "$CUBE" --kernels --effects
+refuse 2 "--numerics without a listing" "for the pictures of" scene "$CUBE" --numerics exact
+refuse 3 "no such device" "." scene "$CUBE" --kernels --device "no such device"
+
+W=$SCENES/whitted.json
+expect 0 "as JSON" scene "$W" --kernels --size 64x48 --json
+check "all stages of whitted" test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
+    "camera, closest, shade, shade glass, shadow, shadow later, resolve, resolve later"
+check "each was made" jq -e 'all(.kernels[]; .instructions > 100 and .create_ms > 0)' "$OUT/stdout"
+sum=$(jq '[.kernels[].instructions] | add' "$OUT/stdout")
+expect 0 "the picture" render "$W" -o "$OUT/w.pfm" --size 64x48 --stats text --quiet
+check "together they are those of the picture ($sum)" grep -q "^  $sum of " "$OUT/stdout"
+expect 0 "as text" scene "$CUBE" --kernels --size 64x48
+check "cube calls for no second generation" test "$(grep -c 'to make$' "$OUT/stdout")" -eq 4
+expect 0 "exact" scene "$CUBE" --kernels --numerics exact --size 64x48
+check "with kernels for deferred rays" test "$(grep -c ', deferred rays$' "$OUT/stdout")" -eq 3
+
+radeon=$(ls /usr/share/vulkan/icd.d/radeon_icd*.json 2>/dev/null | head -n 1)
+if [ -z "$radeon" ]; then
+    echo "SKIPPED, the compiler for AMD: its driver is not installed (Debian: mesa-vulkan-drivers)"
+    finish
+fi
+export VK_ICD_FILENAMES="$radeon" VK_DRIVER_FILES="$radeon" RADV_FORCE_FAMILY=navi21
+unset VK_LOADER_DRIVERS_SELECT VK_LOADER_DRIVERS_DISABLE
+for scene in whitted room sphereflake; do
+    expect 0 "$scene by AMD's compiler" scene "$SCENES/$scene.json" --kernels --no-cache --json
+    check "$scene: subgroups are not of 8 lanes" \
+        jq -e 'all(.kernels[]; .driver["lanes of a subgroup"] >= 32)' "$OUT/stdout"
+    check "$scene: registers suffice" \
+        jq -e 'all(.kernels[]; .driver["Spilled VGPRs"] == 0 and .driver["VGPRs"] <= 168)' "$OUT/stdout"
+done
+finish
