@@ -146,7 +146,9 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .packets = params->packets == WHIT_PACKETS_ON    ? RENDER_PACKETS_ON
                    : params->packets == WHIT_PACKETS_OFF ? RENDER_PACKETS_OFF
                                                          : RENDER_PACKETS_AUTO,
-        .one_class = params->one_class,
+        .classes = params->classes == WHIT_CLASSES_ONE    ? RENDER_CLASSES_ONE
+                   : params->classes == WHIT_CLASSES_MANY ? RENDER_CLASSES_MANY
+                                                          : RENDER_CLASSES_AUTO,
         .segments = params->segments,
         .count = params->count,
     };

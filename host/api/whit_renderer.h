@@ -61,10 +61,10 @@ typedef struct whit_renderer_params {
     const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
     whit_traversal traversal;
     whit_numerics numerics;
-    /* How the kernels work; pictures are the same. `one_class`: one shading kernel for all
-       materials. `segments` of lists: 1 or 2; 0: as the device likes. */
+    /* How the kernels work; pictures are the same. `segments` of lists: 1 or 2; 0: as the device
+       likes. */
     whit_packets packets;
-    bool one_class;
+    whit_classes classes;
     uint32_t segments;
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;

@@ -18,7 +18,7 @@ struct render_request {
     double bailout; /* 0: every ray is traced */
     uint32_t light_samples, tile_size, segments;
     whit_packets packets;
-    bool one_class;
+    whit_classes classes;
     bool no_shadows, opaque_shadows, schlick;
     const char *effects; /* NULL: auto */
     /* 0: not asked for; else settings are chosen (cost_choice.c), none may be given. */

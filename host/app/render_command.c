@@ -41,9 +41,10 @@ static const struct cli_option options[] = {
     {ID_PACKETS, "packets", "auto|on|off",
      "whether camera rays and the shadow rays of what they meet\n"
      "walk together; auto: where that is quicker (auto)"},
-    {ID_CLASSES, "classes", "one|many",
-     "one: all materials are shaded by one kernel; many: those\n"
-     "that let light pass by one of their own (many)"},
+    {ID_CLASSES, "classes", "auto|one|many",
+     "one: a kernel for all materials, and for camera rays and\n"
+     "later ones; many: for each its own; auto: many where the\n"
+     "picture has enough rays to pay for them (auto)"},
     {ID_SEGMENTS, "segments", "auto|1|2",
      "how many segments lists have; 2: one for each thread of\n"
      "lavapipe (auto)"},
@@ -62,10 +63,12 @@ static void read_packets(struct cli_reader *reader, struct render_request *reque
 
 static void read_classes(struct cli_reader *reader, struct render_request *request)
 {
-    static const char *const choices[] = {"one", "many", NULL};
+    static const char *const choices[] = {"auto", "one", "many", NULL};
     uint32_t choice;
     if (cli_choice(reader, choices, &choice))
-        request->one_class = choice == 0;
+        request->classes = choice == 0   ? WHIT_CLASSES_AUTO
+                           : choice == 1 ? WHIT_CLASSES_ONE
+                                         : WHIT_CLASSES_MANY;
 }
 
 static void read_option(struct cli_reader *reader, int id, struct job *job,
@@ -218,7 +221,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
     whit_renderer_params params = picture_request_params(request, job);
     params.tile_size = request->tile_size;
     params.packets = request->packets;
-    params.one_class = request->one_class;
+    params.classes = request->classes;
     params.segments = request->segments;
     params.many_pictures = request->frames.given;
     params.progress = frames_progress_update;

@@ -64,7 +64,7 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
 static whit_result take_over(struct renderer *renderer)
 {
     struct beside_job *job = renderer->beside.job;
-    if (!job->set.passes[STAGE_CAMERA].pipeline)
+    if (!stage_set_is_made(&job->set))
         return WHIT_OK;
     whit_result result = stages_take(&renderer->picture, &job->set);
     if (result != WHIT_OK)

@@ -13,6 +13,7 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
+enum render_classes { RENDER_CLASSES_AUTO, RENDER_CLASSES_ONE, RENDER_CLASSES_MANY };
 enum render_packets { RENDER_PACKETS_AUTO, RENDER_PACKETS_ON, RENDER_PACKETS_OFF };
 enum render_load_path { RENDER_LOAD_AUTO, RENDER_LOAD_STORAGE, RENDER_LOAD_TEXEL };
 
@@ -41,7 +42,7 @@ struct render_params {
     uint32_t order;              /* ORDER_* */
     uint32_t numerics;           /* NUMERICS_* */
     enum render_packets packets; /* see whit_packets */
-    bool one_class;              /* of materials: one shading kernel */
+    enum render_classes classes; /* see whit_classes */
     uint32_t segments;           /* of lists, 1 or 2; 0: as the device likes */
     bool count;                  /* count what traversals cost */
     /* Most rays that renderer_trace will be given, so that buffers need not be larger; 0: any. */

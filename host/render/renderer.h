@@ -73,9 +73,11 @@ enum stage {
 
 /* The kernels that draw a picture together. */
 struct stage_set {
-    struct pass passes[STAGE_COUNT]; /* empty where a stage has nothing to do */
-    uint32_t classes;                /* of materials, each with a shading kernel of its own */
-    bool calls[CLASSES_MOST];        /* whether hits of a class call for rays */
+    struct pass
+        passes[STAGE_COUNT];    /* empty where a stage has nothing to do, or shares another's */
+    enum stage of[STAGE_COUNT]; /* whose kernel a stage runs: its own, or a later one's */
+    uint32_t classes;           /* of materials, each with a shading kernel of its own */
+    bool calls[CLASSES_MOST];   /* whether hits of a class call for rays */
 };
 
 /* Of the tile in hand, see stage_times.c. */
@@ -283,7 +285,9 @@ struct gpu_spec variant_general_spec(const struct target *target);
 struct gpu_spec variant_beside_spec(const struct target *target);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
-uint32_t variant_classes(const struct renderer *renderer);
+uint32_t variant_classes(const struct target *target);
+/* Whether one kernel draws what has several in larger pictures. */
+bool variant_few_kernels(const struct target *target);
 /* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
 bool variant_waits(const struct target *target);
@@ -324,7 +328,8 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool wanted[STAGE_COUNT];
+    bool wanted[STAGE_COUNT];   /* a kernel of its own */
+    enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];
 };
 /* `own`: the kernels for the scene, else general ones with `spec`. */
@@ -338,6 +343,7 @@ WHIT_CHECK whit_result stages_take(struct target *target, struct stage_set *set)
 WHIT_CHECK whit_result stages_compile(struct target *target);
 /* Binds the set to the buffers that there are, where it is not bound. */
 WHIT_CHECK whit_result stages_bind(struct target *target);
+bool stage_set_is_made(const struct stage_set *set);
 bool stages_are_made(const struct target *target);
 void stages_unbind(struct stages *stages);
 void stage_set_finish(struct stage_set *set);

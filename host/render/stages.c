@@ -24,19 +24,39 @@ struct tile_run {
     double longest_ms;   /* of those before */
 };
 
+/* One kernel for camera rays and later ones, where nothing but that tells the two apart. */
+static void share_kernel(struct stages_job *job, enum stage first, enum stage later)
+{
+    struct gpu_spec spec = job->stages[first].spec;
+    if (!job->wanted[later])
+        return;
+    spec.SPEC_GENERATIONS = job->stages[later].spec.SPEC_GENERATIONS;
+    if (memcmp(&spec, &job->stages[later].spec, sizeof spec) != 0)
+        return;
+    job->stages[later].spec.SPEC_GENERATIONS = 3;
+    job->wanted[first] = false;
+    job->of[first] = later;
+}
+
 void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
                      struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
     *job = (struct stages_job){.spec = *spec};
-    job->classes = own ? variant_classes(renderer) : 1;
+    job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
+        job->of[i] = (enum stage)i;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!later || renderer->has_secondary) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MOST);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
+    if (own && !variant_few_kernels(target))
+        return;
+    share_kernel(job, STAGE_CAMERA, STAGE_CLOSEST);
+    share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
+    share_kernel(job, STAGE_RESOLVE, STAGE_RESOLVE_LATER);
 }
 
 /* A set in the making: stages are made at once, as far as there are threads. */
@@ -61,6 +81,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
     *out = (struct stage_set){.classes = job->classes};
+    memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
                         job->spec.SPEC_PROBE; /* there sums are recorded */
@@ -79,16 +100,21 @@ void stage_set_finish(struct stage_set *set)
     *set = (struct stage_set){0};
 }
 
+bool stage_set_is_made(const struct stage_set *set)
+{
+    return set->passes[set->of[STAGE_CAMERA]].pipeline != NULL;
+}
+
 bool stages_are_made(const struct target *target)
 {
-    return target->stages.set.passes[STAGE_CAMERA].pipeline != NULL;
+    return stage_set_is_made(&target->stages.set);
 }
 
 whit_result stages_bind(struct target *target)
 {
     struct stages *stages = &target->stages;
     whit_result result = WHIT_OK;
-    if (stages->set.passes[STAGE_CAMERA].set)
+    if (stages->set.passes[stages->set.of[STAGE_CAMERA]].set)
         return WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         if (stages->set.passes[i].pipeline)
@@ -258,7 +284,7 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
     struct target *target = run->target;
     struct gpu_chunk *chunk = &run->chunk;
     struct commands *commands = target->renderer->commands;
-    const struct pass *pass = &target->stages.set.passes[stage];
+    const struct pass *pass = &target->stages.set.passes[target->stages.set.of[stage]];
     struct buffer *waiting = target->buffers.queues.waiting;
     whit_result result = split_submission(run);
     if (result != WHIT_OK)

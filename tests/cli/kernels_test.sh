@@ -9,12 +9,15 @@ refuse 2 "--numerics without a listing" "for the pictures of" scene "$CUBE" --nu
 refuse 3 "no such device" "." scene "$CUBE" --kernels --device "no such device"
 
 W=$SCENES/whitted.json
-expect 0 "as JSON" scene "$W" --kernels --size 64x48 --json
+expect 0 "of a small picture" scene "$W" --kernels --size 64x48 --json
+check "one for all materials, and for all generations" \
+    test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = "closest, shade, shadow later, resolve later"
+expect 0 "as JSON" scene "$W" --kernels --size 480x320 --json
 check "all stages of whitted" test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
     "camera, closest, shade, shade glass, shadow, shadow later, resolve, resolve later"
 check "each was made" jq -e 'all(.kernels[]; .instructions > 100 and .create_ms > 0)' "$OUT/stdout"
 sum=$(jq '[.kernels[].instructions] | add' "$OUT/stdout")
-expect 0 "the picture" render "$W" -o "$OUT/w.pfm" --size 64x48 --stats text --quiet
+expect 0 "the picture" render "$W" -o "$OUT/w.pfm" --size 480x320 --stats text --quiet
 check "together they are those of the picture ($sum)" grep -q "^  $sum of " "$OUT/stdout"
 expect 0 "as text" scene "$CUBE" --kernels --size 64x48
 check "cube calls for no second generation" test "$(grep -c 'to make$' "$OUT/stdout")" -eq 4

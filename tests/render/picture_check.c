@@ -1,18 +1,17 @@
 /* What holds of the picture of every scene:
-       picture_check SCENE [full | validated | levels | all-levels | flat | small-flat | stages |
-                            few-stages]
-   The picture is finite, neither black nor of one colour, and nothing that may not change it does
-   so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
-   for the scene is smaller than the one with every effect, which traces the same rays, and none of
-   a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
-   which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
-   `validated`: the same picture under GPU-assisted validation. `levels`: the kernel with every
-   effect beside the scene's own at the other levels of numerics; at `exact` both without
-   refraction, whose traversal makes the driver take twice as long. `all-levels`: with it. `flat`:
-   where the scene is one tree by itself, at most one pixel in 10,000 is more than 1/255 off what it
-   is with instances, and as few show another primitive; `small-flat`: of a small picture.
-       picture_check PICTURE WIDTH HEIGHT
-   A picture in a file is finite, of that size, neither black nor of one colour. */
+       picture_check SCENE [full | validated | stored | levels | all-levels | flat | small-flat |
+   stages | few-stages] The picture is finite, neither black nor of one colour, and nothing that may
+   not change it does so by one bit: tiles, threads, load paths, builders, a kernel with more
+   effects. The kernel made for the scene is smaller than the one with every effect, which traces
+   the same rays, and none of a kind that the scene does not call for. `full`: also the whole kernel
+   by storage buffers, for which the driver takes up to 7 s; else that load path has a kernel of
+   camera rays and lights. `validated`: the same picture under GPU-assisted validation; `stored`: by
+   storage buffers, as GPUs read. `levels`: the kernel with every effect beside the scene's own at
+   the other levels of numerics; at `exact` both without refraction, whose traversal makes the
+   driver take twice as long. `all-levels`: with it. `flat`: where the scene is one tree by itself,
+   at most one pixel in 10,000 is more than 1/255 off what it is with instances, and as few show
+   another primitive; `small-flat`: of a small picture. picture_check PICTURE WIDTH HEIGHT A picture
+   in a file is finite, of that size, neither black nor of one colour. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -312,9 +311,12 @@ static void check_usual(const struct subject *subject, const char *what)
     struct drawn first;
     if (draw(subject, &usual, &first)) {
         check_picture(subject->path, first.color, WIDTH, HEIGHT);
-        if (strcmp(what, "validated") == 0) {
+        const whit_renderer_params storage = {.load_path = "storage"};
+        bool stored = strcmp(what, "stored") == 0;
+        if (stored || strcmp(what, "validated") == 0) {
             setenv("WHIT_VALIDATION", "1", 1);
-            check_apart(subject, &first, NULL, &usual, "GPU-assisted validation");
+            check_apart(subject, &first, NULL, stored ? &storage : &usual,
+                        "GPU-assisted validation");
         } else {
             check_threads(subject, &first);
             check_ways(subject, &first);
@@ -352,10 +354,12 @@ static void check_stages(const struct subject *subject, whit_numerics level, boo
         whit_renderer_params params;
     } ways[] = {
         {"--packets on --segments 1", {.packets = WHIT_PACKETS_ON, .segments = 1}},
-        {"--packets off --classes one", {.packets = WHIT_PACKETS_OFF, .one_class = true}},
+        {"--packets off --classes many",
+         {.packets = WHIT_PACKETS_OFF, .classes = WHIT_CLASSES_MANY}},
         {"--packets on", {.packets = WHIT_PACKETS_ON}},
         {"--packets off", {.packets = WHIT_PACKETS_OFF}},
-        {"--classes one", {.one_class = true}},
+        {"--classes one", {.classes = WHIT_CLASSES_ONE}},
+        {"--classes many", {.classes = WHIT_CLASSES_MANY}},
         {"--segments 1", {.segments = 1}},
         {"--segments 2", {.segments = 2}},
         {"--tile-size 17", {.tile_size = 17}},
@@ -451,14 +455,16 @@ int main(int argc, char **argv)
 {
     const char *what = argc == 3 ? argv[2] : "";
     bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "validated") == 0 ||
-                 strcmp(what, "levels") == 0 || strcmp(what, "all-levels") == 0 ||
-                 strcmp(what, "flat") == 0 || strcmp(what, "small-flat") == 0 ||
-                 strcmp(what, "stages") == 0 || strcmp(what, "few-stages") == 0;
+                 strcmp(what, "stored") == 0 || strcmp(what, "levels") == 0 ||
+                 strcmp(what, "all-levels") == 0 || strcmp(what, "flat") == 0 ||
+                 strcmp(what, "small-flat") == 0 || strcmp(what, "stages") == 0 ||
+                 strcmp(what, "few-stages") == 0;
     if (argc < 2 || argc > 4 || !known) {
-        fputs("usage: picture_check SCENE [full | validated | levels | all-levels | flat | "
-              "small-flat | stages | few-stages]\n"
-              "       picture_check PICTURE WIDTH HEIGHT\n",
-              stderr);
+        fputs(
+            "usage: picture_check SCENE [full | validated | stored | levels | all-levels | flat | "
+            "small-flat | stages | few-stages]\n"
+            "       picture_check PICTURE WIDTH HEIGHT\n",
+            stderr);
         return 2;
     }
     if (argc == 4)

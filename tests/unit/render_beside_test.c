@@ -124,12 +124,13 @@ static void both_kernels_draw_the_same(void **state)
     static const char *const cameras[] = {glass_camera, "0,6,9,0,0,0,0,1,0,40",
                                           "0,6,14,0,0,0,0,1,0,40"};
     for (int i = 0; i < 3; ++i) {
-        /* Packets are chosen by whether kernels are for many pictures. */
+        /* Packets and classes are chosen by whether kernels are for many pictures. */
         struct render_params params = {.width = 50,
                                        .height = 30,
                                        .depth = 4,
                                        .camera = cameras[i],
                                        .packets = RENDER_PACKETS_OFF,
+                                       .classes = RENDER_CLASSES_MANY,
                                        .compile_beside = true};
         params.effects_removed = i == 0 ? 0 : removed;
         struct fixture f = fixture_open(make[i](), NULL, &params);

@@ -529,7 +529,8 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 static void check_shares(const struct accel_params *accel)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
-    const struct render_params params = {.width = WIDTH, .height = HEIGHT, .tile_size = 32};
+    const struct render_params params = {
+        .width = WIDTH, .height = HEIGHT, .tile_size = 32, .classes = RENDER_CLASSES_MANY};
     struct fixture f = fixture_open(mixed_scene(), accel, &params);
     struct image ids;
     struct render_stats stats;
