@@ -7,7 +7,7 @@
 
 #include "base/array.h"
 
-enum { TEXEL_BYTES = 16 };
+enum { TEXEL_BYTES = 16, POISON = 0xa5 };
 
 enum placement {
     PLACE_DEVICE,  /* fast for the device, out of the host's reach */
@@ -197,11 +197,11 @@ static whit_result transfer_run(struct device *device)
     return result == WHIT_OK ? commands_wait(device->transfer, -1.0) : result;
 }
 
-static whit_result clear(struct buffer *buffer)
+static whit_result fill(struct buffer *buffer, uint8_t byte)
 {
     struct device *device = buffer->device;
     if (buffer->mapped) {
-        memset(buffer->mapped, 0, buffer->size_bytes);
+        memset(buffer->mapped, byte, buffer->size_bytes);
         return WHIT_OK;
     }
     whit_result result = transfer_ready(device);
@@ -209,7 +209,7 @@ static whit_result clear(struct buffer *buffer)
         result = commands_begin(device->transfer);
     if (result != WHIT_OK)
         return result;
-    commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0);
+    commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0x01010101u * byte);
     return transfer_run(device);
 }
 
@@ -240,8 +240,8 @@ whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t u
     }
     if (result == WHIT_OK && (uses & BUFFER_TEXELS))
         result = make_view(buffer);
-    if (result == WHIT_OK)
-        result = clear(buffer);
+    if (result == WHIT_OK && ((uses & BUFFER_ZEROED) || device->poisons))
+        result = fill(buffer, uses & BUFFER_ZEROED ? 0 : POISON);
     if (result != WHIT_OK) {
         buffer_destroy(buffer);
         return result;

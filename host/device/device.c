@@ -274,6 +274,7 @@ whit_result device_create(const struct log *log, const struct device_params *par
     if (device->validation)
         layers_expect();
     device->staged = environment_on("WHIT_STAGING");
+    device->poisons = environment_on("WHIT_POISON");
     device_read_fault(device);
 
     device->surface_source = params ? params->surface : NULL;

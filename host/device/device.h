@@ -90,9 +90,10 @@ enum buffer_use {
     BUFFER_TEXELS = 2,   /* uniform texel buffer view, four uint32 per element */
     BUFFER_INDIRECT = 4, /* arguments of a dispatch */
     BUFFER_HOST = 8,     /* read or written by the host often: prefer host-visible memory */
+    BUFFER_ZEROED = 16,  /* contents start as zeros, else as they come */
 };
 
-/* Contents start as zeros. Over the device's limits is WHIT_ERROR_DEVICE, logged with name, size
+/* Over the device's limits is WHIT_ERROR_DEVICE, logged with name, size
    and limit. `name` is copied and becomes the debug name. */
 WHIT_CHECK whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
                                      const char *name, struct buffer **out);

@@ -5,8 +5,9 @@
                         NAME `*` is any function) with VK_ERROR_OUT_OF_DEVICE_MEMORY, or
                         VK_ERROR_DEVICE_LOST for vkQueueSubmit and vkWaitForFences. The call itself
                         is not made. For tests of the error paths.
-   WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so that the
-                        path of discrete GPUs can be tested on a CPU device. */
+   WHIT_POISON=1        buffers without BUFFER_ZEROED start as bytes 0xa5, so that what relies on
+   zeros shows. WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so
+   that the path of discrete GPUs can be tested on a CPU device. */
 #ifndef DEVICE_VULKAN_H
 #define DEVICE_VULKAN_H
 
@@ -31,7 +32,7 @@ struct fault {
 struct device {
     struct log log;
     struct fault fault;
-    bool validation, staged;
+    bool validation, staged, poisons;
     bool validation_of_shaders; /* GPU-assisted checks too */
     bool lost;                  /* every later call fails at once */
     bool abandoned;             /* a library broke off: what it left behind is not complained of */

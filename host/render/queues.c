@@ -68,7 +68,9 @@ whit_result queues_create(struct target *target)
     uint64_t heads = sizeof(struct gpu_tally) +
                      (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
     uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
-    const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS;
+    /* Invocations without an item of their own read that of another, which may not have been
+       written yet: zeros are ids that there are. */
+    const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_ZEROED;
     const struct {
         struct buffer **buffer;
         uint64_t bytes;

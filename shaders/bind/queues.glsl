@@ -144,7 +144,8 @@ uint ray_place(uint id, uint generation)
     uvec2 firsts = fetch_firsts(generation);
     bool back = SPEC_SEGMENTS == 2u && id >= middle_id();
     uint at = back ? generation_capacity() - (chunk.ray_capacity - firsts.y - id) : id - firsts.x;
-    return at + (generation & 1u) * generation_capacity();
+    // An invocation without a ray asks for id 0, which is of another generation.
+    return min(at, generation_capacity() - 1u) + (generation & 1u) * generation_capacity();
 }
 
 Ray queued_ray(uint id, out uint slot)

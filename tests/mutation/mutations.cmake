@@ -182,6 +182,12 @@ mutation(beam_ends_early render_light RED packets_to_a_light_shade_as_rays_do)
 change(shaders/bind/beam.glsl [[= abs(beam_origin[r].z - beam.eye.z);]]
   [[= 0.98 * abs(beam_origin[r].z - beam.eye.z);]])
 
+mutation(no_ray_reads_outside scene_whitted_stored RED "the validation layers had nothing to say" TARGET picture_check)
+change(shaders/bind/queues.glsl [[min(at, generation_capacity() - 1u)]] [[at]])
+
+mutation(queues_start_as_they_come cli_render RED "--load-path storage: exit code 0" TARGET whit_program)
+change(host/render/queues.c [[BUFFER_TEXELS | BUFFER_ZEROED;]] [[BUFFER_TEXELS;]])
+
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
 change(host/accel/intersect.h make_ray_setup
   [[vec3_make\(1\.0f / ([a-z]+)\.x, ([^;]+), ([^;]+)\);]]

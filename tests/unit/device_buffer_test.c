@@ -100,8 +100,8 @@ static void starts_as_zeros(void **state)
     (void)state;
     uint8_t bytes[4096];
     for (int turn = 0; turn < 8; ++turn) {
-        struct buffer *buffer =
-            buffer_make(device, sizeof bytes, turn & 1 ? BUFFER_HOST : BUFFER_STORAGE, "zeros");
+        uint32_t uses = (turn & 1 ? BUFFER_HOST : BUFFER_STORAGE) | BUFFER_ZEROED;
+        struct buffer *buffer = buffer_make(device, sizeof bytes, uses, "zeros");
         memset(bytes, 0xa5, sizeof bytes);
         assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
         for (size_t i = 0; i < sizeof bytes; ++i)

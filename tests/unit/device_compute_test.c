@@ -30,7 +30,8 @@ static void constants_reach_the_shader(void **state)
     enum { COUNT = 1000 };
     const uint32_t specs[][3] = {{64, 3, 7}, {16, 0xffffffffu, 5}, {1, 2, 0}};
     for (size_t i = 0; i < 3; ++i) {
-        struct buffer *buffer = buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE, "values");
+        struct buffer *buffer =
+            buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE | BUFFER_ZEROED, "values");
         struct pipeline_params params = affine_params(specs[i]);
         struct kernel_run run = kernel_make(device, &params, &buffer);
         struct commands *commands = commands_make(device);
@@ -106,7 +107,7 @@ static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
 static void indirect_dispatch_takes_its_arguments(void **state)
 {
     (void)state;
-    struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE, "count");
+    struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
     struct pipeline_params params = count_params();
     struct kernel_run run = kernel_make(device, &params, &count);
@@ -129,8 +130,8 @@ static void indirect_dispatch_takes_its_arguments(void **state)
 static void fill_and_copy_keep_to_their_range(void **state)
 {
     (void)state;
-    struct buffer *a = buffer_make(device, 64, BUFFER_STORAGE, "a");
-    struct buffer *b = buffer_make(device, 64, BUFFER_HOST, "b");
+    struct buffer *a = buffer_make(device, 64, BUFFER_STORAGE | BUFFER_ZEROED, "a");
+    struct buffer *b = buffer_make(device, 64, BUFFER_HOST | BUFFER_ZEROED, "b");
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_fill(commands, a, 8, 16, 0x12345678u);
@@ -209,7 +210,7 @@ static void time_two_spans(struct commands *commands, const struct kernel_run *r
 static void spans_are_timed(void **state)
 {
     (void)state;
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_span_count(commands), 0);
@@ -265,7 +266,7 @@ VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkWaitForFences(VkDevice vk, uint32_t coun
 static void wait_obeys_its_limit(void **state)
 {
     (void)state;
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_wait(commands, 0.0), WHIT_OK); /* nothing to wait for */
@@ -292,7 +293,7 @@ static void wait_obeys_its_limit(void **state)
 static void recording_errors_surface_at_submit(void **state)
 {
     (void)state;
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct pipeline_params params = count_params();
     struct kernel_run run = kernel_make(device, &params, &buffer);
     struct commands *commands = commands_make(device);
@@ -356,7 +357,7 @@ static void recording_errors_surface_at_submit(void **state)
 static void later_submissions_see_earlier_ones(void **state)
 {
     (void)state;
-    struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE, "count");
+    struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct pipeline_params params = count_params();
     struct kernel_run run = kernel_make(device, &params, &buffer);
     struct commands *commands[2] = {commands_make(device), commands_make(device)};
