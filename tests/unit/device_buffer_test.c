@@ -112,6 +112,19 @@ static void starts_as_zeros(void **state)
     }
 }
 
+/* So that what relies on zeros shows. */
+static void others_are_poisoned_in_tests(void **state)
+{
+    (void)state;
+    uint8_t bytes[256] = {0};
+    assert_non_null(getenv("WHIT_POISON"));
+    struct buffer *buffer = buffer_make(device, sizeof bytes, BUFFER_STORAGE, "poisoned");
+    assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
+    for (size_t i = 0; i < sizeof bytes; ++i)
+        assert_int_equal(bytes[i], 0xa5);
+    buffer_destroy(buffer);
+}
+
 static void keeps_what_is_written_where(void **state)
 {
     (void)state;
@@ -213,6 +226,7 @@ int main(void)
         cmocka_unit_test(sizes_are_rounded_up),
         cmocka_unit_test(texel_buffers_are_of_one_kind_for_lavapipe),
         cmocka_unit_test(starts_as_zeros),
+        cmocka_unit_test(others_are_poisoned_in_tests),
         cmocka_unit_test(keeps_what_is_written_where),
         cmocka_unit_test(refuses_access_outside),
         cmocka_unit_test(refuses_what_is_over_the_limits),

@@ -50,7 +50,9 @@ void figures_row(struct figures *figures, const struct figure *figure, json_t *r
     const struct goal *goal = &figure->goal;
     const char *space = figure->unit[0] ? " " : "";
     const char *verdict = goal->must == 0.0 ? "" : is_reached(figure) ? "held" : "short";
-    if (figure->spread > 0.0)
+    if (isnan(figure->value)) /* there is nothing to compare with */
+        table_cell(table, "-");
+    else if (figure->spread > 0.0)
         table_cell(table, "%.3g ± %.1g%s%s", figure->value, figure->spread, space, figure->unit);
     else
         table_cell(table, "%.3g%s%s", figure->value, space, figure->unit);

@@ -1,0 +1,162 @@
+#!/bin/sh
+# How whit does on the GPU of this machine: ./run [FOLDER] [DEVICE]
+# Made by whit's tools/gpu-report. Needs an x86-64 Linux with glibc 2.35 or later and a Vulkan driver, no
+# network, and writes nothing but FOLDER (whit-gpu-report), within 8 minutes:
+#     report.txt    everything below in words: read this first
+#     devices.json kernels.json hard.json rays.json frame.json    figures of single parts
+#     log.txt       what went wrong
+# DEVICE: a number or a part of a name, as in `whit render --device` (auto: the best GPU).
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+out=${1:-whit-gpu-report}
+device=${2:-auto}
+busybox=$here/bin/busybox
+trace_scenes="cube 34k 54k atrium room sphereflake"
+kernel_scenes="34k whitted default room"
+levels="watertight exact"
+for tool in awk basename cat cmp cut date ls mkdir rm sed sha256sum tail timeout wc; do
+    eval "$tool() { \"\$busybox\" $tool \"\$@\"; }"
+done
+mkdir -p "$out" || exit 2
+out=$(cd "$out" && pwd)
+scratch=$out/scratch
+rm -rf "$scratch"
+mkdir -p "$scratch" || exit 2
+trap '"$busybox" rm -rf "$scratch"' EXIT
+trap 'exit 130' INT TERM
+log=$out/log.txt
+report=$out/report.txt
+: >"$log"
+: >"$report"
+begun=$(date +%s)
+ends=$((begun + 470))
+export XDG_CACHE_HOME="$scratch/cache" TMPDIR="$scratch"
+
+say() {
+    echo "$*" | "$busybox" tee -a "$report"
+}
+
+# whit LIMIT_S ARGUMENT...: at most so long, and never beyond the end of all.
+whit() {
+    limit=$1
+    shift
+    left=$((ends - $(date +%s)))
+    [ "$left" -lt "$limit" ] && limit=$left
+    if [ "$limit" -le 0 ]; then
+        echo "no time left for: whit $*" >>"$log"
+        return 124
+    fi
+    LD_LIBRARY_PATH=$libraries "$busybox" timeout -k 8 "$limit" "$here/bin/whit" "$@" 2>>"$log"
+}
+
+# The machine's own C++ library where it will do: its driver may need a newer one than whit's.
+libraries=$here/lib
+if ! LD_LIBRARY_PATH=$libraries "$here/bin/whit" --version >/dev/null 2>&1; then
+    libraries=$here/lib:$here/cxx
+fi
+if ! version=$(whit 20 --version); then
+    say "whit does not run here: it needs glibc 2.35 or later. What was said:"
+    cat "$log"
+    exit 1
+fi
+say "$version, commit $(cat "$here/commit.txt" 2>/dev/null), $(date -u +%Y-%m-%dT%H:%MZ)"
+
+# A container may have the driver, and no manifest where the loader looks.
+if [ -z "${VK_DRIVER_FILES:-}" ] && ! whit 30 devices --json | "$busybox" grep -q '"kind": "[diov]'; then
+    for manifest in /usr/local/nvidia/share/vulkan/icd.d/*.json /opt/*/share/vulkan/icd.d/*.json; do
+        [ -f "$manifest" ] || continue
+        export VK_DRIVER_FILES="$manifest" VK_ICD_FILENAMES="$manifest"
+        say "drivers  $manifest"
+        break
+    done
+fi
+say ""
+say "== Devices"
+whit 30 devices >"$scratch/devices.txt"
+code=$?
+say "$("$busybox" grep -v '^cache\|^mesa' "$scratch/devices.txt")"
+whit 30 devices --json >"$out/devices.json"
+if [ "$code" -ne 0 ]; then
+    say "There is no device that whit can use (exit code $code)."
+    tail -n 3 "$log"
+    exit 3
+fi
+
+say ""
+say "== Hits: rays whose hits differ by a bit from lavapipe's"
+"$busybox" printf '%-24s %-11s %8s %10s\n' rays numerics rays differing | "$busybox" tee -a "$report"
+while read -r name numerics hash; do
+    scene=$here/scenes/${name%%-*}.json
+    rays=$(($(wc -c <"$here/rays/$name.rays") / 32))
+    if ! whit 30 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/hits" --numerics "$numerics" --device "$device" -q; then
+        differing=failed
+    elif [ "$(sha256sum <"$scratch/hits" | cut -d ' ' -f 1)" = "$hash" ]; then
+        differing=0
+    else # the twin has lavapipe's bits
+        whit 60 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q
+        differing=$(cmp -l "$scratch/twin" "$scratch/hits" | awk '{ ray = int(($1 - 1) / 32); count += ray != last || NR == 1; last = ray } END { print count + 0 }')
+        [ "$(sha256sum <"$scratch/twin" | cut -d ' ' -f 1)" = "$hash" ] || differing="$differing, and the twin's differ from lavapipe's"
+    fi
+    "$busybox" printf '%-24s %-11s %8d %10s\n' "$name" "$numerics" "$rays" "$differing" | "$busybox" tee -a "$report"
+done <"$here/hits.txt"
+
+say ""
+say "== Pictures at 320x240 beside lavapipe's: pixels that are not the same, largest difference, FLIP; ids that are not"
+"$busybox" printf '%-18s %-11s %8s %12s %12s %6s\n' scene numerics pixels largest flip ids | "$busybox" tee -a "$report"
+field() {
+    awk -v key="$1" -v column="$2" '$1 == key { gsub(/[(;]/, "", $column); print $column }' "$3"
+}
+for scene in "$here"/scenes/*.json; do
+    name=$(basename "$scene" .json)
+    for numerics in $levels; do
+        expected=$here/pictures/$name-$numerics
+        if ! whit 60 render "$scene" -o "$scratch/p.exr" --ids "$scratch/i.exr" --size 320x240 --numerics "$numerics" --device "$device" -q; then
+            say "$name $numerics failed: $(tail -n 1 "$log")"
+            continue
+        fi
+        whit 30 compare "$scratch/p.exr" "$expected.exr" >"$scratch/c.txt"
+        whit 30 compare "$scratch/i.exr" "$expected-ids.exr" >"$scratch/i.txt"
+        "$busybox" printf '%-18s %-11s %8s %12s %12s %6s\n' "$name" "$numerics" "$(field differing 3 "$scratch/c.txt")" \
+            "$(field largest 2 "$scratch/c.txt")" "$(field flip 2 "$scratch/c.txt")" "$(field differing 3 "$scratch/i.txt")" |
+            "$busybox" tee -a "$report"
+    done
+done
+
+say ""
+say "== Kernels: registers and the like, where the driver tells them"
+echo "[" >"$out/kernels.json"
+comma=
+for name in $kernel_scenes; do
+    for numerics in $levels; do
+        echo "$comma" >>"$out/kernels.json"
+        whit 60 scene "$here/scenes/$name.json" --kernels --numerics "$numerics" --device "$device" --json >"$scratch/k.json" ||
+            echo null >"$scratch/k.json"
+        cat "$scratch/k.json" >>"$out/kernels.json"
+        comma=,
+    done
+done
+echo "]" >>"$out/kernels.json"
+whit 60 scene "$here/scenes/default.json" --kernels --device "$device" >"$scratch/k.txt"
+say "$(cat "$scratch/k.txt")"
+
+say ""
+say "== whit hard --quick"
+whit 120 hard --quick --device "$device" --json "$out/hard.json" -q >"$scratch/hard.txt"
+say "exit code $?"
+say "$(tail -n 6 "$scratch/hard.txt")"
+say "lavapipe's $("$busybox" grep -o '"hash_met": "[^"]*"' "$here/hard.json")"
+
+# bench NAME LIMIT_S ARGUMENT...: what is done when the time is over is kept.
+bench() {
+    name=$1
+    most=$2
+    shift 2
+    say ""
+    say "== whit bench $name"
+    whit "$most" bench "$name" "$@" --scenes "$here/scenes" --device "$device" --json "$out/$name.json" -q >"$scratch/bench.txt"
+    say "$(cat "$scratch/bench.txt")"
+}
+bench rays 120 --runs 3
+bench frame 300 34k default whitted room --runs 2
+say ""
+say "$(($(date +%s) - begun)) s; files: $(ls "$out" | "$busybox" grep -v scratch | "$busybox" tr '\n' ' ')"
