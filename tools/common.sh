@@ -1,4 +1,4 @@
-# Sourced by tools/quickstart and tools/test, with $root set to the repository.
+# Sourced by tools/quickstart, tools/test and tools/gpu-report, with $root set to the repository.
 
 say() {
     printf '\n== %s\n' "$*"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # How whit does on the GPU of this machine: ./run [FOLDER] [DEVICE]
-# Made by whit's tools/gpu-report. Needs an x86-64 Linux with glibc 2.35 or later and a Vulkan driver, no
+# Made by whit's tools/gpu-report. Needs an x86-64 Linux with glibc 2.36 or later (2.35 where
+# it has its own C++ library) and a Vulkan driver, no
 # network, and writes nothing but FOLDER (whit-gpu-report), within 8 minutes:
 #     report.txt    everything below in words: read this first
 #     devices.json kernels.json hard.json rays.json frame.json    figures of single parts
@@ -19,8 +20,7 @@ for tool in awk basename cat cmp cut date ls mkdir rm sed sha256sum tail timeout
 done
 mkdir -p "$out" || exit 2
 out=$(cd "$out" && pwd)
-scratch=$out/scratch
-rm -rf "$scratch"
+scratch=$out/whit-scratch.$$
 mkdir -p "$scratch" || exit 2
 trap '"$busybox" rm -rf "$scratch"' EXIT
 trap 'exit 130' INT TERM
@@ -74,7 +74,7 @@ say ""
 say "== Devices"
 whit 30 devices >"$scratch/devices.txt"
 code=$?
-say "$("$busybox" grep -v '^cache\|^mesa' "$scratch/devices.txt")"
+say "$("$busybox" grep -v '^cache\|^ *Mesa' "$scratch/devices.txt")"
 whit 30 devices --json >"$out/devices.json"
 if [ "$code" -ne 0 ]; then
     say "There is no device that whit can use (exit code $code)."
@@ -88,12 +88,14 @@ say "== Hits: rays whose hits differ by a bit from lavapipe's"
 while read -r name numerics hash; do
     scene=$here/scenes/${name%%-*}.json
     rays=$(($(wc -c <"$here/rays/$name.rays") / 32))
+    rm -f "$scratch/hits" "$scratch/twin"
     if ! whit 30 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/hits" --numerics "$numerics" --device "$device" -q; then
         differing=failed
     elif [ "$(sha256sum <"$scratch/hits" | cut -d ' ' -f 1)" = "$hash" ]; then
         differing=0
+    elif ! whit 60 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q; then
+        differing="some: its twin failed"
     else # the twin has lavapipe's bits
-        whit 60 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q
         differing=$(cmp -l "$scratch/twin" "$scratch/hits" | awk '{ ray = int(($1 - 1) / 32); count += ray != last || NR == 1; last = ray } END { print count + 0 }')
         [ "$(sha256sum <"$scratch/twin" | cut -d ' ' -f 1)" = "$hash" ] || differing="$differing, and the twin's differ from lavapipe's"
     fi
@@ -129,14 +131,14 @@ comma=
 for name in $kernel_scenes; do
     for numerics in $levels; do
         echo "$comma" >>"$out/kernels.json"
-        whit 60 scene "$here/scenes/$name.json" --kernels --numerics "$numerics" --device "$device" --json >"$scratch/k.json" ||
+        whit 60 scene "$here/scenes/$name.json" --kernels --size 1280x720 --numerics "$numerics" --device "$device" --json >"$scratch/k.json" ||
             echo null >"$scratch/k.json"
         cat "$scratch/k.json" >>"$out/kernels.json"
         comma=,
     done
 done
 echo "]" >>"$out/kernels.json"
-whit 60 scene "$here/scenes/default.json" --kernels --device "$device" >"$scratch/k.txt"
+whit 60 scene "$here/scenes/default.json" --kernels --size 1280x720 --device "$device" >"$scratch/k.txt"
 say "$(cat "$scratch/k.txt")"
 
 say ""
@@ -159,4 +161,4 @@ bench() {
 bench rays 120 --runs 3
 bench frame 300 34k default whitted room --runs 2
 say ""
-say "$(($(date +%s) - begun)) s; files: $(ls "$out" | "$busybox" grep -v scratch | "$busybox" tr '\n' ' ')"
+say "$(($(date +%s) - begun)) s; files: $(ls "$out" | "$busybox" grep -v whit-scratch | "$busybox" tr '\n' ' ')"

@@ -157,6 +157,13 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
                              : result;
 }
 
+whit_classes whit_classes_of(const whit_renderer_params *params)
+{
+    struct render_params inner;
+    whit_result result = render_params_from_public(&(struct log){0}, params, &inner);
+    return result == WHIT_OK && render_few_kernels(&inner) ? WHIT_CLASSES_ONE : WHIT_CLASSES_MANY;
+}
+
 static whit_result pose_on_cpu(struct accel *accel, double time_s)
 {
     struct scene_pose pose = {0};

@@ -69,6 +69,9 @@ typedef struct whit_renderer_params {
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 
+/* What WHIT_CLASSES_AUTO comes to for a renderer that is made with these params. */
+whit_classes whit_classes_of(const whit_renderer_params *params);
+
 /* `device` may be NULL: then only whit_trace on the CPU works. */
 WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
                                             const whit_renderer_params *params,

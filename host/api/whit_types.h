@@ -41,7 +41,7 @@ typedef enum whit_packets {
 /* How many kernels draw a picture. One for several stages and materials is sooner made, one for
    each draws faster. */
 typedef enum whit_classes {
-    WHIT_CLASSES_AUTO = 0, /* by how many rays the picture has */
+    WHIT_CLASSES_AUTO = 0, /* by how many rays the picture has that a renderer is made for */
     WHIT_CLASSES_ONE,      /* one for all materials, and for camera rays and later ones */
     WHIT_CLASSES_MANY,
 } whit_classes;

@@ -157,5 +157,7 @@ whit_result bench_view(struct bench *bench);
 /* tools/bench/: rays beside Embree; whole pictures beside POV-Ray, another whit and more. */
 whit_result bench_rays(struct bench *bench);
 whit_result bench_frame(struct bench *bench);
+/* The first picture beside another whit. */
+whit_result bench_start(struct bench *bench);
 
 #endif

@@ -27,8 +27,8 @@ static const struct cli_option options[] = {
      "seconds for sweep-naive, which is estimated beyond (60;\n"
      "quick: 0.2)"},
     {ID_PLOT, "plot", "FILE.svg",
-     "rays and frame: also draw how far each row is from what it must"},
-    {ID_AGAINST, "against", "PROGRAM", "frame: another whit, whose pictures are timed in turns"},
+     "rays, frame, start: also draw how far each row is from what it must"},
+    {ID_AGAINST, "against", "PROGRAM", "frame, start: another whit, timed in turns"},
     {ID_KEEP, "keep", "FOLDER", "rays: leave rays, triangles and hits there"},
     {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},
     {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP},
@@ -52,6 +52,8 @@ static const struct bench_kind {
     {"rays", "[MODEL...]: rays beside Embree's on the same ray files", bench_rays, 1280, 720, true},
     {"frame", "[SCENE...]: whole pictures beside POV-Ray, another whit, and the levels",
      bench_frame, 1280, 720, true},
+    {"start", "the first picture, whole processes with empty caches, beside another whit",
+     bench_start, 320, 240, false},
 #endif
 };
 enum { BENCH_COUNT = sizeof benches / sizeof benches[0] };
@@ -182,15 +184,16 @@ static int work(struct bench *bench, uint32_t index)
 static bool check_request(struct cli_reader *reader, struct bench *bench, uint32_t index)
 {
     const struct bench_kind *kind = &benches[index];
-    bool is_rays = strcmp(kind->name, "rays") == 0, is_frame = strcmp(kind->name, "frame") == 0;
+    bool is_rays = strcmp(kind->name, "rays") == 0, is_start = strcmp(kind->name, "start") == 0;
+    bool has_peers = is_start || strcmp(kind->name, "frame") == 0;
     bench->names = reader->others;
     bench->name_count = reader->other_count;
     if (!kind->is_speed && bench->name_count)
         return cli_misuse(reader, "`%s` is one argument too many", bench->names[0]);
-    if (bench->plot && !kind->is_speed)
+    if (bench->plot && !kind->is_speed && !is_start)
         return cli_misuse(reader, "--plot: `whit bench %s` draws none", kind->name);
-    if (bench->against && !is_frame)
-        return cli_misuse(reader, "--against is an option of `whit bench frame`");
+    if (bench->against && !has_peers)
+        return cli_misuse(reader, "--against is an option of `whit bench frame` and `start`");
     if (bench->keep && !is_rays)
         return cli_misuse(reader, "--keep is an option of `whit bench rays`");
     if (!cli_no_dash(reader, "--json", bench->json, "figures go to a file; tables are printed") ||

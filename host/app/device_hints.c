@@ -53,7 +53,7 @@ static void hint_nvidia(const char *root, const char *asked, struct device_hints
             "An NVIDIA GPU is here and Vulkan does not list it: a container shows it only when it "
             "was "
             "started with NVIDIA_DRIVER_CAPABILITIES=all, which is %s here.",
-            asked ? whit_text_show(asked, shown, sizeof shown) : "not set");
+            asked && *asked ? whit_text_show(asked, shown, sizeof shown) : "not set");
     add(hints,
         "%s: install its Vulkan driver of the same version as the kernel's (Ubuntu: "
         "libnvidia-gl-%s; Debian: nvidia-vulkan-icd).",
@@ -69,7 +69,8 @@ static bool find_render_node(const char *root, char name[64], bool *opens)
     DIR *nodes = opendir(folder);
     name[0] = 0;
     for (struct dirent *entry; nodes && (entry = readdir(nodes));) {
-        if (strncmp(entry->d_name, "renderD", 7) == 0 && strlen(entry->d_name) < 48)
+        bool first = !name[0] || strcmp(entry->d_name, name) < 0;
+        if (first && strncmp(entry->d_name, "renderD", 7) == 0 && strlen(entry->d_name) < 48)
             snprintf(name, 64, "%.47s", entry->d_name);
     }
     if (nodes)

@@ -1,4 +1,5 @@
-/* Part of whit's public face: results and logging, shared by every module. */
+/* Part of whit's public face, shared by every module: results, logging, text, and what a driver
+   tells of kernels. */
 #ifndef WHIT_BASE_H
 #define WHIT_BASE_H
 

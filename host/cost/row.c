@@ -14,6 +14,9 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct k
                                    uint32_t width, uint32_t height)
 {
     whit_renderer_params params = target->picture;
+    params.width = measure->report->width;
+    params.height = measure->report->height;
+    params.classes = whit_classes_of(&params); /* as of the whole picture */
     params.width = width;
     params.height = height;
     params.time_limit_s = measure_left_s(measure);

@@ -5,9 +5,12 @@
                         NAME `*` is any function) with VK_ERROR_OUT_OF_DEVICE_MEMORY, or
                         VK_ERROR_DEVICE_LOST for vkQueueSubmit and vkWaitForFences. The call itself
                         is not made. For tests of the error paths.
+
    WHIT_POISON=1        buffers without BUFFER_ZEROED start as bytes 0xa5, so that what relies on
-   zeros shows. WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so
-   that the path of discrete GPUs can be tested on a CPU device. */
+                        zeros shows.
+
+   WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so that the
+                        path of discrete GPUs can be tested on a CPU device. */
 #ifndef DEVICE_VULKAN_H
 #define DEVICE_VULKAN_H
 

@@ -40,7 +40,7 @@ static struct beside_job *job_start(const struct renderer *renderer, const struc
     if (!job)
         return NULL;
     job->device = renderer->device;
-    stages_job_init(&renderer->picture, spec, true, &job->stages);
+    stages_job_init(&renderer->picture, spec, true, renderer->few_kernels, &job->stages);
     job->thread = thread_start(compile_job, job);
     if (job->thread)
         return job;
@@ -52,7 +52,7 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
 {
     struct stages_job job;
     struct stage_set set;
-    stages_job_init(&renderer->picture, spec, false, &job);
+    stages_job_init(&renderer->picture, spec, false, true, &job);
     whit_result result = stages_job_run(renderer->device, &job, &set);
     if (result == WHIT_OK)
         result = stages_take(&renderer->picture, &set);

@@ -27,7 +27,7 @@ static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, 
     struct stages_job job;
     struct gpu_spec spec = variant_spec(&renderer->picture), deferred;
     whit_result result = WHIT_OK;
-    stages_job_init(&renderer->picture, &spec, true, &job);
+    stages_job_init(&renderer->picture, &spec, true, renderer->few_kernels, &job);
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
         struct pipeline_params params = job.stages[i].params;
         if (!job.wanted[i])

@@ -127,6 +127,10 @@ WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct sc
 WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t most,
                                             struct gpu_ray **rays, uint64_t *count);
 
+/* Whether a renderer that is made with these params has one kernel where others have several: what
+   RENDER_CLASSES_AUTO comes to. */
+bool render_few_kernels(const struct render_params *params);
+
 /* Whether kernels are made with an effect. */
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
 /* What is left of the kernel for this renderer, and of the same with every effect. */

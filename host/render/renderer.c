@@ -74,6 +74,7 @@ whit_result renderer_init(struct renderer *renderer, const struct log *log, stru
     if (result == WHIT_OK)
         result = accel_pose(accel, &renderer->pose);
     renderer->has_secondary = renderer_bounces(renderer);
+    renderer->few_kernels = render_few_kernels(&renderer->params);
     renderer->node_stack_size = accel_stack_size(accel);
     renderer->single_identity = accel->single_identity;
     return result;

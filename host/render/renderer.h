@@ -151,6 +151,7 @@ struct renderer {
     struct target probe; /* a row of blocks; without buffers before the first probe */
     bool packets;        /* rays of pictures may walk in packets, through nodes of eight children */
     uint32_t packet_rays; /* of a lane, in these */
+    bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
     struct trace_state trace;
     struct beside_state beside;
@@ -283,13 +284,14 @@ struct gpu_spec variant_spec(const struct target *target);
 struct gpu_spec variant_general_spec(const struct target *target);
 /* Every effect that the renderer's buffers allow and its params do not remove. */
 struct gpu_spec variant_beside_spec(const struct target *target);
-/* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
-   they are counted or probed, which is to tell of every ray at once. */
+/* Classes of materials that have shading kernels of their own. */
 uint32_t variant_classes(const struct target *target);
-/* Whether one kernel draws what has several in larger pictures. */
+/* Whether one kernel draws what has several elsewhere: renderer->few_kernels, and probes. */
 bool variant_few_kernels(const struct target *target);
 /* Whether the shading kernel with `spec` sends rays on: CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
+/* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
+   they are counted or probed, which is to tell of every ray at once. */
 bool variant_waits(const struct target *target);
 /* Rows of 16 bytes of a hit: HIT_ROWS of bind/queues.glsl. */
 uint32_t variant_hit_rows(const struct renderer *renderer);
@@ -332,8 +334,9 @@ struct stages_job {
     enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];
 };
-/* `own`: the kernels for the scene, else general ones with `spec`. */
-void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
+/* `own`: the kernels for the scene, else general ones with `spec`. `few`: one kernel for stages
+   that differ by their generation alone. */
+void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
                      struct stages_job *job);
 WHIT_CHECK whit_result stages_job_run(struct device *device, const struct stages_job *job,
                                       struct stage_set *out);

@@ -38,7 +38,7 @@ static void share_kernel(struct stages_job *job, enum stage first, enum stage la
     job->of[first] = later;
 }
 
-void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own,
+void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
                      struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
@@ -52,7 +52,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
-    if (own && !variant_few_kernels(target))
+    if (!few)
         return;
     share_kernel(job, STAGE_CAMERA, STAGE_CLOSEST);
     share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
@@ -151,7 +151,7 @@ whit_result stages_compile(struct target *target)
     struct gpu_spec spec = variant_spec(target);
     if (stages_are_made(target))
         return stages_bind(target);
-    stages_job_init(target, &spec, true, &job);
+    stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
     whit_result result = stages_job_run(target->renderer->device, &job, &set);
     return result == WHIT_OK ? stages_take(target, &set) : result;
 }
@@ -188,9 +188,10 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
     struct pipeline_info own_info, general_info;
     uint32_t largest, general_largest;
     *info = (struct render_kernel_info){0};
-    stages_job_init(target, &own, true, &job);
+    bool few = variant_few_kernels(target);
+    stages_job_init(target, &own, true, few, &job);
     bool counted = count_set(&job, &own_info, &largest);
-    stages_job_init(target, &general, false, &job);
+    stages_job_init(target, &general, false, few, &job);
     if (!counted || !count_set(&job, &general_info, &general_largest)) {
         log_error(&renderer->log, "the kernels cannot be specialized");
         return WHIT_ERROR_DEVICE;

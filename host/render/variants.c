@@ -1,4 +1,5 @@
 /* Which specialization constants a scene gets, and the pipelines made with them. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -306,14 +307,18 @@ whit_result variant_job_run(struct device *device, const struct variant_job *job
    longer to make where the driver has them in its cache, 300 to 500 where not. */
 enum { RAYS_FOR_MANY = 150000 };
 
-bool variant_few_kernels(const struct target *target)
+bool render_few_kernels(const struct render_params *params)
 {
-    const struct render_params *params = &target->renderer->params;
-    double samples = params->adaptive > 0.0 ? 4.0 : (double)params->samples;
-    if (target->probed || params->classes != RENDER_CLASSES_AUTO)
-        return target->probed || params->classes == RENDER_CLASSES_ONE;
+    double samples = params->adaptive > 0.0 ? 4.0 : fmax((double)params->samples, 1.0);
+    if (params->classes != RENDER_CLASSES_AUTO)
+        return params->classes == RENDER_CLASSES_ONE;
     return !params->many_pictures && !params->compile_beside &&
            (double)params->width * params->height * samples < RAYS_FOR_MANY;
+}
+
+bool variant_few_kernels(const struct target *target)
+{
+    return target->probed || target->renderer->few_kernels;
 }
 
 /* Classes of materials that have kernels of their own. */

@@ -106,7 +106,7 @@ bool is_queue_full()
 // Of a camera ray.
 uint slot_of(uint id)
 {
-    return SPEC_LISTED != 0u && chunk.listed != 0u ? listed_slots[id] : id;
+    return SPEC_LISTED != 0u && chunk.listed != 0u ? listed_slots[min(id, chunk.listed - 1u)] : id;
 }
 
 uint camera_ray_count()

@@ -1,17 +1,24 @@
 /* What holds of the picture of every scene:
+
        picture_check SCENE [full | validated | stored | levels | all-levels | flat | small-flat |
-   stages | few-stages] The picture is finite, neither black nor of one colour, and nothing that may
-   not change it does so by one bit: tiles, threads, load paths, builders, a kernel with more
-   effects. The kernel made for the scene is smaller than the one with every effect, which traces
-   the same rays, and none of a kind that the scene does not call for. `full`: also the whole kernel
-   by storage buffers, for which the driver takes up to 7 s; else that load path has a kernel of
-   camera rays and lights. `validated`: the same picture under GPU-assisted validation; `stored`: by
-   storage buffers, as GPUs read. `levels`: the kernel with every effect beside the scene's own at
-   the other levels of numerics; at `exact` both without refraction, whose traversal makes the
-   driver take twice as long. `all-levels`: with it. `flat`: where the scene is one tree by itself,
-   at most one pixel in 10,000 is more than 1/255 off what it is with instances, and as few show
-   another primitive; `small-flat`: of a small picture. picture_check PICTURE WIDTH HEIGHT A picture
-   in a file is finite, of that size, neither black nor of one colour. */
+                            stages | few-stages]
+
+   The picture is finite, neither black nor of one colour, and nothing that may not change it does
+   so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
+   for the scene is smaller than the one with every effect, which traces the same rays, and none of
+   a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
+   which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
+   `validated`: the same picture under GPU-assisted validation; `stored`: by storage buffers, as
+   GPUs read. `levels`: the kernel with every effect beside the scene's own at the other levels of
+   numerics; at `exact` both without refraction, whose traversal makes the driver take twice as
+   long. `all-levels`: with it. `flat`: where the scene is one tree by itself, at most one pixel in
+   10,000 is more than 1/255 off what it is with instances, and as few show another primitive;
+   `small-flat`: of a small picture. `stages`: by all ways of stages, at three levels; `few-stages`:
+   by some, at one.
+
+       picture_check PICTURE WIDTH HEIGHT
+
+   A picture in a file is finite, of that size, neither black nor of one colour. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

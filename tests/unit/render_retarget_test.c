@@ -137,10 +137,31 @@ static void nonsense_is_refused(void **state)
     fixture_close(&f);
 }
 
+/* The number of kernels is that for the picture which the renderer was made for. */
+static void a_larger_view_keeps_the_kernels(void **state)
+{
+    (void)state;
+    const struct render_params small = {.width = 20, .height = 16, .depth = 4};
+    const struct render_params large = {.width = 600, .height = 300, .depth = 4};
+    struct render_stats before, after;
+    struct fixture f = fixture_open(load("whitted"), NULL, &small);
+    assert_true(f.renderer->few_kernels && render_few_kernels(&small));
+    assert_false(render_few_kernels(&large));
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    renderer_get_stats(f.renderer, &before);
+    assert_int_equal(renderer_set_view(f.renderer, &large), WHIT_OK);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    renderer_get_stats(f.renderer, &after);
+    assert_true(f.renderer->few_kernels);
+    assert_int_equal(after.kernel_instructions, before.kernel_instructions);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_those_of_new_renderers),
+        cmocka_unit_test(a_larger_view_keeps_the_kernels),
         cmocka_unit_test(media_touch_for_cameras_far_away),
         cmocka_unit_test(without_trees),
         cmocka_unit_test(rays_are_traced_in_between),

@@ -14,6 +14,8 @@ struct peers {
     bool wants_pov, has_pov, has_embree;
 };
 
+/* The whit that --against names, or says that there is none. WHIT_ERROR_INPUT: it is no whit. */
+WHIT_CHECK whit_result peers_find_against(struct peers *peers);
 /* Looks who is here, and says who is left out. WHIT_ERROR_INPUT: --against is no whit. */
 WHIT_CHECK whit_result frame_find_peers(struct peers *peers);
 
@@ -42,7 +44,8 @@ struct frame {
     struct peer peer;
     enum frame_side sides[FRAME_SIDES]; /* who draws */
     uint32_t side_count;
-    struct bench_times ms[FRAME_SIDES]; /* by side; of the processor, all threads together */
+    struct bench_times
+        ms[FRAME_SIDES]; /* by side: processor time of all threads, or by the clock */
 };
 
 /* The scene, its trees and the reference. */

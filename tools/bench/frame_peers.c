@@ -53,7 +53,7 @@ static void find_pov(struct peers *peers)
     }
 }
 
-whit_result frame_find_peers(struct peers *peers)
+whit_result peers_find_against(struct peers *peers)
 {
     struct bench *bench = peers->figures->section.bench;
     char line[128];
@@ -69,6 +69,14 @@ whit_result frame_find_peers(struct peers *peers)
     } else {
         figures_leave_out(peers->figures, "another whit", "--against PROGRAM names it");
     }
+    return WHIT_OK;
+}
+
+whit_result frame_find_peers(struct peers *peers)
+{
+    whit_result result = peers_find_against(peers);
+    if (result != WHIT_OK)
+        return result;
     peers->has_embree = peer_is_here();
     if (!peers->has_embree)
         figures_leave_out(peers->figures, "Embree",

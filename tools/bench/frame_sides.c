@@ -74,6 +74,8 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
     if (side != FRAME_AGAINST) {
         arguments[count++] = "--packets";
         arguments[count++] = "on";
+        arguments[count++] = "--classes";
+        arguments[count++] = "many";
     }
     if (bench->device_name) {
         arguments[count++] = "--device";
