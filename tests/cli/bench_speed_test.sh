@@ -1,5 +1,5 @@
 #!/bin/sh
-# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays` and `whit bench frame`: rows, verdicts, JSON, the drawing, ray files and hits, peers
+# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays`, `frame` and (all) `start`: rows, verdicts, JSON, the drawing, ray files and hits, peers
 # that are not here, refusals. No figure is judged: they belong to the machine.
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -58,6 +58,13 @@ if [ "${3:-}" = all ]; then
             "default moving, size 1/N - - 6 4"
     } | sort >"$OUT/musts"
     check "every row, with its goal" sh -c "sort '$OUT/rows' | diff '$OUT/musts' -"
+    J=$OUT/files/start.json
+    expect 0 "start, quick" bench start --quick --runs 1 --scenes "$SCENES" --against "$WHIT" --json "$J"
+    check "verdicts at the ends of rows alone" verdicts
+    check "first pictures of three scenes, by the clock and of the processor" \
+        holds '[.tables[0].rows[] | select(.start | endswith(", 320x240"))] |
+            length == 6 and all(.beside_ms.median > 0 and .figure > 0 and .must > 0)'
+    check "caches that are filled" holds '.tables[0].rows | any(.start == "cube, 1280x720, filled")'
     finish
 fi
 

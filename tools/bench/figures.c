@@ -49,8 +49,7 @@ void figures_row(struct figures *figures, const struct figure *figure, json_t *r
     struct table *table = &figures->section.table;
     const struct goal *goal = &figure->goal;
     const char *space = figure->unit[0] ? " " : "";
-    bool judged = goal->must > 0.0 && !isnan(figure->value);
-    const char *verdict = !judged ? "" : is_reached(figure) ? "held" : "short";
+    const char *verdict = goal->must == 0.0 ? "" : is_reached(figure) ? "held" : "short";
     if (isnan(figure->value)) /* there is nothing to compare with */
         table_cell(table, "-");
     else if (figure->spread > 0.0)
@@ -72,7 +71,7 @@ void figures_row(struct figures *figures, const struct figure *figure, json_t *r
     document_number(row, "must", goal->must > 0.0 ? goal->must : NAN);
     document_number(row, "aim", goal->must > 0.0 ? goal->aim : NAN);
     document_flag(row, "more_is_better", goal->more);
-    document_text(row, "verdict", judged ? verdict : NULL);
+    document_text(row, "verdict", goal->must > 0.0 ? verdict : NULL);
     document_append(figures->section.rows, row);
     if (figures->count < TABLE_ROWS_MOST)
         figures->list[figures->count++] = *figure;

@@ -86,10 +86,11 @@ static void put_row(struct starting *s, const char *what, const struct bench_tim
 {
     struct figures *figures = s->peers.figures;
     struct bench_times ratio = figures_ratio(&of[0], &of[1]);
-    struct figure figure = {.unit = "", .value = NAN, .goal = goal};
+    struct figure figure = {.unit = "", .value = NAN};
     json_t *row = document_object();
     snprintf(figure.name, sizeof figure.name, "%s, %s", s->start->label, what);
     if (ratio.count) {
+        figure.goal = goal;
         figure.value = bench_median(&ratio);
         figure.spread = bench_spread(&ratio);
     }
