@@ -38,7 +38,7 @@ struct device_info {
     uint32_t max_push_bytes, max_group_count_x, max_group_invocations;
     uint32_t subgroup_size;
     bool float64, int64, timestamps;
-    bool loop_limited; /* a driver known to end shaders after 65535 loop turns (lavapipe) */
+    bool loop_limited; /* a driver that may end shaders after 65535 iterations (old lavapipe) */
     bool usable;       /* has what whit needs */
     char why_not[128]; /* when not usable */
 };

@@ -295,6 +295,14 @@ static uint64_t device_memory(VkPhysicalDevice physical)
     return largest;
 }
 
+/* Mesa 22.3.6 ends the loops of an invocation after 65,535 iterations in all, 25.0.7 does not. A
+   version that cannot be read counts as one that does. */
+static bool lavapipe_ends_loops(const char *driver_info)
+{
+    const char *mesa = strstr(driver_info, "Mesa ");
+    return !mesa || strtoul(mesa + 5, NULL, 10) < 25;
+}
+
 /* What only a 1.2 device can be asked. */
 static void fill_details(VkPhysicalDevice physical, struct device_info *info)
 {
@@ -308,7 +316,8 @@ static void fill_details(VkPhysicalDevice physical, struct device_info *info)
     snprintf(info->driver, sizeof info->driver, "%.127s %.127s", v12.driverName, v12.driverInfo);
     info->max_allocation_bytes = v11.maxMemoryAllocationSize;
     info->subgroup_size = v11.subgroupSize;
-    info->loop_limited = v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+    info->loop_limited =
+        v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && lavapipe_ends_loops(v12.driverInfo);
 
     VkPhysicalDeviceFeatures features;
     vkGetPhysicalDeviceFeatures(physical, &features);
