@@ -1,9 +1,9 @@
 #!/bin/sh
 # How whit does on the GPU of this machine: ./run [FOLDER] [DEVICE]
-# Made by whit's tools/gpu-report. Needs an x86-64 Linux with glibc 2.36 or later (2.35 where
-# it has its own C++ library) and a Vulkan driver, no
-# network, and writes nothing but FOLDER (whit-gpu-report), within 8 minutes:
-#     report.txt    everything below in words: read this first
+# Made by whit's tools/gpu-report. Needs an x86-64 Linux with a Vulkan driver and glibc 2.36 or later (2.35
+# where it has a C++ library of its own), and no network. Writes nothing but FOLDER (whit-gpu-report), within
+# 8 minutes:
+#     report.txt    all results as text: read this first
 #     devices.json kernels.json hard.json rays.json frame.json    figures of single parts
 #     log.txt       what went wrong
 # DEVICE: a number or a part of a name, as in `whit render --device` (auto: the best GPU).

@@ -30,7 +30,7 @@ double whit_clock_cpu_ms(void); /* used by all threads of this process */
 /* In $XDG_CACHE_HOME/whit or ~/.cache/whit, which is closed to others; nothing where that folder
    cannot be had, belongs to somebody else or may be written by others (a warning, once), and where
    WHIT_NO_CACHE is set. What is kept has a checksum; files used longest ago are removed beyond
-   512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines and kernels there. */
+   512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines there. */
 
 /* What was kept under `name`, with one zero byte behind its size: free() it. False: nothing, or
    what was there was damaged, and is thrown away. */

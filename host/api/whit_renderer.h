@@ -69,7 +69,8 @@ typedef struct whit_renderer_params {
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 
-/* What WHIT_CLASSES_AUTO comes to for a renderer that is made with these params. */
+/* Gives the choice that WHIT_CLASSES_AUTO makes for a renderer with these params: _ONE or _MANY,
+   and _MANY too where the params are refused. */
 whit_classes whit_classes_of(const whit_renderer_params *params);
 
 /* `device` may be NULL: then only whit_trace on the CPU works. */
@@ -114,7 +115,9 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
                                                 whit_kernel_info *info);
 
 /* Makes the kernels of a picture with these params one after the other, and no picture: takes no
-   memory of the device. `kernels`: room for WHIT_KERNELS_MOST. */
+   memory of the device. `kernels`: room for WHIT_KERNELS_MOST; `params` may be NULL.
+   WHIT_ERROR_USAGE for params that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a
+   kernel cannot be made. */
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                          const whit_renderer_params *params, whit_kernel *kernels,
                                          uint32_t *count);

@@ -40,20 +40,22 @@ static const struct bench_kind {
     const char *name, *summary;
     whit_result (*run)(struct bench *bench);
     uint32_t width, height; /* of its pictures */
-    bool is_speed;          /* takes models or scenes, and the options of speed */
+    bool has_goals;         /* rows have verdicts, which --plot draws */
+    bool takes_names;       /* of models or scenes */
 } benches[] = {
     {"report", "the tables of the report that whit comes from, beside its figures", bench_report,
-     640, 480, false},
+     640, 480, false, false},
 #ifdef WHIT_VIEWER
     {"view", "the viewer: pictures a second, waits, what it takes when idle; on a display",
-     bench_view, 640, 480, false},
+     bench_view, 640, 480, false, false},
 #endif
 #ifdef WHIT_BENCH
-    {"rays", "[MODEL...]: rays beside Embree's on the same ray files", bench_rays, 1280, 720, true},
+    {"rays", "[MODEL...]: rays beside Embree's on the same ray files", bench_rays, 1280, 720, true,
+     true},
     {"frame", "[SCENE...]: whole pictures beside POV-Ray, another whit, and the levels",
-     bench_frame, 1280, 720, true},
+     bench_frame, 1280, 720, true, true},
     {"start", "the first picture, whole processes with empty caches, beside another whit",
-     bench_start, 320, 240, false},
+     bench_start, 320, 240, true, false},
 #endif
 };
 enum { BENCH_COUNT = sizeof benches / sizeof benches[0] };
@@ -146,7 +148,7 @@ static whit_result write_json(struct bench *bench, uint32_t index)
     document_flag(settings, "quick", bench->quick);
     document_count(settings, "width", bench->width);
     document_count(settings, "height", bench->height);
-    if (!benches[index].is_speed) {
+    if (!benches[index].has_goals) {
         document_count(settings, "samples", 1);
         document_count(settings, "depth", 0);
     }
@@ -184,15 +186,14 @@ static int work(struct bench *bench, uint32_t index)
 static bool check_request(struct cli_reader *reader, struct bench *bench, uint32_t index)
 {
     const struct bench_kind *kind = &benches[index];
-    bool is_rays = strcmp(kind->name, "rays") == 0, is_start = strcmp(kind->name, "start") == 0;
-    bool has_peers = is_start || strcmp(kind->name, "frame") == 0;
+    bool is_rays = strcmp(kind->name, "rays") == 0;
     bench->names = reader->others;
     bench->name_count = reader->other_count;
-    if (!kind->is_speed && bench->name_count)
+    if (!kind->takes_names && bench->name_count)
         return cli_misuse(reader, "`%s` is one argument too many", bench->names[0]);
-    if (bench->plot && !kind->is_speed && !is_start)
+    if (bench->plot && !kind->has_goals)
         return cli_misuse(reader, "--plot: `whit bench %s` draws none", kind->name);
-    if (bench->against && !has_peers)
+    if (bench->against && (is_rays || !kind->has_goals))
         return cli_misuse(reader, "--against is an option of `whit bench frame` and `start`");
     if (bench->keep && !is_rays)
         return cli_misuse(reader, "--keep is an option of `whit bench rays`");

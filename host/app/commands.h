@@ -30,7 +30,7 @@ struct render_request {
     struct frames frames;     /* with them `output` and `ids` are patterns */
 };
 
-/* kernels.c: of a picture, printed. */
+/* Makes the kernels of a picture and prints them (kernels.c). Gives the exit code. */
 int kernels_run(struct job *job, const struct picture *picture, bool json);
 
 /* ---- Options of pictures: what `render` and `view` share (picture.c) ---- */

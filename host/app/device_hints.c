@@ -50,18 +50,17 @@ static void hint_nvidia(const char *root, const char *asked, struct device_hints
     read_nvidia_series(root, series);
     if (!shows)
         add(hints,
-            "An NVIDIA GPU is here and Vulkan does not list it: a container shows it only when it "
-            "was "
+            "An NVIDIA GPU is here and Vulkan does not list it: a container shows it only when "
             "started with NVIDIA_DRIVER_CAPABILITIES=all, which is %s here.",
             asked && *asked ? whit_text_show(asked, shown, sizeof shown) : "not set");
     add(hints,
         "%s: install its Vulkan driver of the same version as the kernel's (Ubuntu: "
         "libnvidia-gl-%s; Debian: nvidia-vulkan-icd).",
-        shows ? "An NVIDIA GPU is here and Vulkan does not list it" : "Where that is no container",
+        shows ? "An NVIDIA GPU is here and Vulkan does not list it" : "Where this is no container",
         series[0] ? series : "VERSION");
 }
 
-/* Of the first one that there is, whether this user may open it. */
+/* Finds the first render node, and whether this user may open it. */
 static bool find_render_node(const char *root, char name[64], bool *opens)
 {
     char folder[PATH_BYTES], path[PATH_BYTES + 64];
@@ -82,8 +81,7 @@ static bool find_render_node(const char *root, char name[64], bool *opens)
 
 static void hint_render_node(const char *root, struct device_hints *hints)
 {
-    char name[64];
-    char shown[64];
+    char name[64], shown[64];
     bool opens;
     if (!find_render_node(root, name, &opens))
         return;
@@ -95,9 +93,8 @@ static void hint_render_node(const char *root, struct device_hints *hints)
             shown);
     else
         add(hints,
-            "A GPU is here (/dev/dri/%s) which this user may not open: who is in the group "
-            "`render` "
-            "may.",
+            "A GPU is here (/dev/dri/%s), but this user may not open it: members of the group "
+            "`render` may.",
             shown);
 }
 

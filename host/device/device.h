@@ -71,8 +71,8 @@ struct device_params {
 };
 
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
-   Compiled pipelines, and kernels with their constants filled in, are kept from one run to the next
-   (base/store.h), unless WHIT_NO_CACHE=1 is in the environment. */
+   Compiled pipelines are kept from one run to the next (base/store.h), unless WHIT_NO_CACHE=1 is in
+   the environment. */
 WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);
@@ -133,10 +133,9 @@ WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipel
                                        struct pipeline **out);
 void pipeline_destroy(struct pipeline *pipeline);
 void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info);
-/* What the driver tells of a pipeline that was made with asks_statistics: subgroup size, registers
-   and the like, under the driver's names. None where it has no
-   VK_KHR_pipeline_executable_properties. *count: at most WHIT_STATISTICS_MOST, the rest is left
-   out. */
+/* Reads the numbers that the driver keeps of a pipeline made with asks_statistics: subgroup size,
+   registers and the like, under the driver's names. `statistics`: room for WHIT_STATISTICS_MOST;
+   more are left out. *count is 0 where the driver has no VK_KHR_pipeline_executable_properties. */
 WHIT_CHECK whit_result pipeline_get_statistics(const struct pipeline *pipeline,
                                                whit_statistic *statistics, uint32_t *count);
 /* The same without a pipeline or a device. False when the kernel cannot be specialized. */

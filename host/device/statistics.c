@@ -1,4 +1,6 @@
-/* What a driver tells of the kernels that it made (VK_KHR_pipeline_executable_properties). */
+/* Reads the numbers that a driver keeps of its compiled kernels
+ * (VK_KHR_pipeline_executable_properties).
+ */
 #include "device/vulkan.h"
 
 #include <stdio.h>

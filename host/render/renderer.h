@@ -176,7 +176,9 @@ enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive pic
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
-/* What a zeroed renderer knows without memory of the device. renderer_finish in any case. */
+/* Fills in of a zeroed renderer what needs no memory of the device. Call renderer_finish in any
+ * case.
+ */
 WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const struct log *log,
                                      struct device *device, struct accel *accel,
                                      const struct render_params *params);

@@ -62,7 +62,7 @@
 
 /* Which point all rays of a packet share. */
 #define BEAM_NONE   0u
-#define BEAM_STARTS 1u /* that where they start */
+#define BEAM_STARTS 1u /* the point where they start */
 #define BEAM_ENDS   2u /* the light that they end at, or pass by within rounding */
 
 /* Filters whose depth is not that of their record alone. */

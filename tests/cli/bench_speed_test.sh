@@ -1,6 +1,7 @@
 #!/bin/sh
-# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays`, `frame` and (all) `start`: rows, verdicts, JSON, the drawing, ray files and hits, peers
-# that are not here, refusals. No figure is judged: they belong to the machine.
+# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays` and `frame`, with `all` also `start`: rows, verdicts,
+# JSON, the drawing, ray files and hits, peers that are not here, refusals. No figure is judged: they belong to the
+# machine.
 . "$(dirname "$0")/common.sh"
 needs jq
 needs xmllint

@@ -66,6 +66,10 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
         arguments[count++] = bench->quick ? "32x24" : start->size;
     }
     arguments[count++] = "--quiet";
+    if (bench->device_name && !start->second) {
+        arguments[count++] = "--device";
+        arguments[count++] = bench->device_name;
+    }
     const struct bench_child child = {.program = "env",
                                       .arguments = arguments,
                                       .folder = s->peers.folder,
@@ -173,6 +177,9 @@ whit_result bench_start(struct bench *bench)
         "medians, with half the width of the middle half. Figure: times the time of the "
         "other whit.",
         cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver), bench->runs);
+    if (bench->quick)
+        section_say(&figures.section,
+                    "Quick run: pictures of 32x24, not for figures to be quoted.");
     find_second(&s);
     result = peers_find_against(&s.peers);
     for (size_t i = 0; result == WHIT_OK && i < STARTS; ++i)
