@@ -5,6 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/platform.h"
+
+enum { LARGE_BYTES = 4 << 20 };
+
+static void *expect_much(void *memory, size_t bytes)
+{
+    if (memory && bytes >= LARGE_BYTES)
+        platform_expect_much(memory, bytes);
+    return memory;
+}
+
 bool array_reserve(void **items, uint32_t count, uint32_t *capacity, size_t element_bytes)
 {
     if (count < *capacity)
@@ -14,7 +25,8 @@ bool array_reserve(void **items, uint32_t count, uint32_t *capacity, size_t elem
     uint32_t grown = *capacity < 8 ? 8 : *capacity > UINT32_MAX / 2 ? UINT32_MAX : *capacity * 2;
     if (element_bytes && grown > SIZE_MAX / element_bytes)
         return false;
-    void *moved = realloc(*items, (size_t)grown * element_bytes);
+    size_t bytes = grown * element_bytes;
+    void *moved = expect_much(realloc(*items, bytes), bytes);
     if (!moved)
         return false;
     *items = moved;
@@ -35,13 +47,13 @@ static bool product(size_t count, size_t element_bytes, size_t *bytes)
 void *array_alloc(size_t count, size_t element_bytes)
 {
     size_t bytes;
-    return product(count, element_bytes, &bytes) ? malloc(bytes) : NULL;
+    return product(count, element_bytes, &bytes) ? expect_much(malloc(bytes), bytes) : NULL;
 }
 
 void *array_alloc_zeroed(size_t count, size_t element_bytes)
 {
     size_t bytes;
-    return product(count, element_bytes, &bytes) ? calloc(1, bytes) : NULL;
+    return product(count, element_bytes, &bytes) ? expect_much(calloc(1, bytes), bytes) : NULL;
 }
 
 void *array_alloc_aligned(size_t count, size_t element_bytes)
@@ -50,7 +62,7 @@ void *array_alloc_aligned(size_t count, size_t element_bytes)
     if (!product(count, element_bytes, &bytes))
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
-    void *memory = aligned_alloc(64, bytes);
+    void *memory = expect_much(aligned_alloc(64, bytes), bytes);
     if (memory)
         memset(memory, 0, bytes);
     return memory;

@@ -6,8 +6,9 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/platform.h"
 
-enum { TEXEL_BYTES = 16, POISON = 0xa5 };
+enum { TEXEL_BYTES = 16, POISON = 0xa5, LARGE_PAGE_BYTES = 2 << 20 };
 
 enum placement {
     PLACE_DEVICE,  /* fast for the device, out of the host's reach */
@@ -118,6 +119,21 @@ static uint64_t vulkan_bytes(const struct buffer *buffer)
                : buffer->size_bytes;
 }
 
+/* Memory of a CPU device is the process's own. A page of 4 KiB that is touched for the first time
+   takes longer to come by than to fill, and a kernel walks through many; so what is large starts
+   and ends with a large page. */
+static bool is_large(const struct device *device, enum placement placement, uint64_t size_bytes)
+{
+    return device->info.kind == DEVICE_CPU && placement != PLACE_DEVICE &&
+           size_bytes >= LARGE_PAGE_BYTES / 2 &&
+           size_bytes <= device->info.max_allocation_bytes - 2 * LARGE_PAGE_BYTES;
+}
+
+static uint64_t round_to_large(uint64_t bytes)
+{
+    return (bytes + LARGE_PAGE_BYTES - 1) / LARGE_PAGE_BYTES * LARGE_PAGE_BYTES;
+}
+
 static whit_result allocate(struct buffer *buffer)
 {
     struct device *device = buffer->device;
@@ -138,24 +154,29 @@ static whit_result allocate(struct buffer *buffer)
 
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device->vk, buffer->vk, &needs);
+    bool large = is_large(device, placement, needs.size);
     VkMemoryAllocateInfo allocation = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
+        .allocationSize = large ? round_to_large(needs.size) + LARGE_PAGE_BYTES : needs.size,
     };
     if (!find_memory_type(device, needs.memoryTypeBits, placement, &allocation.memoryTypeIndex)) {
         log_error(&device->log, "buffer \"%s\": the device has no memory for it", buffer->name);
         return WHIT_ERROR_DEVICE;
     }
     VK_TRY(device, vkAllocateMemory(device->vk, &allocation, NULL, &buffer->memory));
-    VK_TRY(device, vkBindBufferMemory(device->vk, buffer->vk, buffer->memory, 0));
+    uint64_t offset_bytes = 0;
     if (placement != PLACE_DEVICE) {
         VkMemoryPropertyFlags flags =
             device->memory.memoryTypes[allocation.memoryTypeIndex].propertyFlags;
         void *mapped = NULL;
         VK_TRY(device, vkMapMemory(device->vk, buffer->memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-        buffer->mapped = mapped;
+        offset_bytes = large ? round_to_large((uintptr_t)mapped) - (uintptr_t)mapped : 0;
+        buffer->mapped = (uint8_t *)mapped + offset_bytes;
         buffer->fast_to_read = (flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0;
+        if (large)
+            platform_expect_much(buffer->mapped, round_to_large(needs.size));
     }
+    VK_TRY(device, vkBindBufferMemory(device->vk, buffer->vk, buffer->memory, offset_bytes));
 fail:
     return result;
 }
