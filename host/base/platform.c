@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -39,6 +40,25 @@ void platform_expect_much(void *data, size_t size_bytes)
     if (from < to)
         (void)madvise((void *)from, to - from, MADV_HUGEPAGE);
 #endif
+}
+
+void platform_zero(void *data, size_t size_bytes)
+{
+#ifdef MADV_DONTNEED
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), from = ((uintptr_t)data + page - 1) & -page;
+    uintptr_t to = ((uintptr_t)data + size_bytes) & -page;
+    if (from < to) {
+        /* Pages of a file or of shared memory keep what they hold, without an error. */
+        volatile uint8_t *last = (uint8_t *)to - 1;
+        *last = 1;
+        if (madvise((void *)from, to - from, MADV_DONTNEED) == 0 && *last == 0) {
+            memset(data, 0, from - (uintptr_t)data);
+            memset((void *)to, 0, (uintptr_t)data + size_bytes - to);
+            return;
+        }
+    }
+#endif
+    memset(data, 0, size_bytes);
 }
 
 bool platform_is_terminal(int fd)

@@ -18,6 +18,9 @@ void platform_trim_heaps(void);
 
 /* These will all be written: in large pages, as small ones take longer to come by than to fill. */
 void platform_expect_much(void *data, size_t size_bytes);
+/* Makes all of it zero. Where its pages are the process's own they go back to the system, so that
+   only what is written later takes memory and time. */
+void platform_zero(void *data, size_t size_bytes);
 
 bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */

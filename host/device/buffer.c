@@ -222,7 +222,10 @@ static whit_result fill(struct buffer *buffer, uint8_t byte)
 {
     struct device *device = buffer->device;
     if (buffer->mapped) {
-        memset(buffer->mapped, byte, buffer->size_bytes);
+        if (byte == 0 && device->info.kind == DEVICE_CPU)
+            platform_zero(buffer->mapped, buffer->size_bytes);
+        else
+            memset(buffer->mapped, byte, buffer->size_bytes);
         return WHIT_OK;
     }
     whit_result result = transfer_ready(device);
