@@ -1,10 +1,10 @@
 /* Building trees, side by side with Embree (LOW, MEDIUM, HIGH) on the same triangles.
 
        bench_build SCENE|soup:N|terrain:N [--runs N] [--threads A,B,..] [--builders A,B,..]
-                   [--leaf N] [--traversal-cost C] [--deadline SECONDS]
+                   [--leaf N] [--traversal-cost C]
 
    All instances of a scene are one list of triangles in world space. Builders are named as in `whit
-   --build`: median, binned:K, sweep, sweep-naive, spatial, each with +opt. Runs are interleaved;
+   --build`: median, binned:K, sweep, spatial, each with +opt. Runs are interleaved;
    printed are medians, and the spread as the half-width of the middle half. whit's time is for the
    boxes and the tree over them, Embree's for rtcCommitScene. `peak` is the most memory in use
    during the build, the boxes and what is returned included, by triangle; for Embree as its memory
@@ -222,7 +222,6 @@ struct bench {
     uint32_t row_count;
     int runs;
     uint32_t threads;
-    double deadline_s;
 #ifdef BENCH_EMBREE
     RTCDevice device;
 #endif
@@ -248,7 +247,6 @@ static bool builder_parse(const char *text, struct bvh_params *params)
     } names[] = {{"binned", BVH_BINNED},
                  {"median", BVH_MEDIAN},
                  {"sweep", BVH_SWEEP},
-                 {"sweep-naive", BVH_SWEEP_NAIVE},
                  {"spatial", BVH_SPATIAL}};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
         if (strcmp(name, names[i].name) == 0) {
@@ -302,7 +300,6 @@ static void build_whit(const struct bench *bench, struct row *row)
     struct bvh_params params = row->params;
     params.thread_count = bench->threads;
     params.triangles = &bench->triangles;
-    params.deadline_ms = bench->deadline_s > 0.0 ? clock_ms() + 1e3 * bench->deadline_s : 0.0;
     int64_t before = atomic_load(&bytes_now);
     atomic_store(&bytes_peak, before);
     struct bvh_box *boxes = array_alloc(count, sizeof *boxes);
@@ -449,8 +446,6 @@ int main(int argc, char **argv)
             common.leaf_limit = (uint32_t)atoi(argv[++i]);
         else if (strcmp(argv[i], "--traversal-cost") == 0 && more)
             common.traversal_cost = (float)atof(argv[++i]);
-        else if (strcmp(argv[i], "--deadline") == 0 && more)
-            bench.deadline_s = atof(argv[++i]);
         else if (strcmp(argv[i], "--no-embree") == 0)
             peer = false;
         else
@@ -458,7 +453,7 @@ int main(int argc, char **argv)
     }
     if (!path || bench.runs < 1 || bench.runs > RUNS_MAX)
         fail("usage: bench_build SCENE|soup:N|terrain:N [--runs N] [--threads A,B] "
-             "[--builders A,B] [--leaf N] [--traversal-cost C] [--deadline S] [--no-embree]");
+             "[--builders A,B] [--leaf N] [--traversal-cost C] [--no-embree]");
     mesh_make(&bench.mesh, path);
     bench.triangles = (struct bvh_triangles){bench.mesh.positions, bench.mesh.indices, NULL};
     rows_add(&bench, builders, &common);

@@ -4,7 +4,6 @@
 
 #include "accel/accel.h"
 #include "accel/accel_inside.h"
-#include "accel/bvh_file.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/text.h"
@@ -85,53 +84,11 @@ static void build_small(void *context, uint32_t index)
     creation->results[mesh] = mesh_build(creation, mesh, 1);
 }
 
-/* The file is for this geometry, whatever its materials were. */
-static whit_result check_whole(const struct creation *creation, uint32_t index)
-{
-    const struct accel *accel = creation->accel;
-    const struct scene_mesh *mesh = &accel->scene->meshes[index];
-    const struct bvh *tree = &creation->trees[index];
-    whit_result result = WHIT_OK;
-    if (tree->reference_count == tree->primitive_count)
-        return WHIT_OK;
-    uint8_t *whole = array_alloc(scene_mesh_primitives(mesh), 1);
-    if (!whole) {
-        log_error(&accel->log, "%s: mesh %s: out of memory", accel->params.tree_file,
-                  text_token(mesh->name).text);
-        return WHIT_ERROR_MEMORY;
-    }
-    material_bits_whole(accel->scene, creation->materials, mesh, whole);
-    for (uint32_t i = 0; result == WHIT_OK && i < tree->reference_count; ++i) {
-        uint8_t *once = &whole[tree->order[i]];
-        if (*once == 2) {
-            log_error(&accel->log,
-                      "%s: mesh %s: it splits a triangle that filters light, or a sphere (%u)",
-                      accel->params.tree_file, text_token(mesh->name).text, tree->order[i]);
-            result = WHIT_ERROR_INPUT;
-        }
-        *once = *once ? 2 : 0;
-    }
-    free(whole);
-    return result;
-}
-
-static whit_result trees_read(struct creation *creation)
-{
-    struct accel *accel = creation->accel;
-    whit_result result = bvh_file_read(&accel->log, accel->params.tree_file, accel->scene,
-                                       &accel->params.mesh, creation->trees);
-    for (uint32_t i = 0; result == WHIT_OK && i < accel->mesh_count; ++i)
-        result = check_whole(creation, i);
-    return result;
-}
-
 /* Large meshes one after the other by all threads, small ones side by side. */
 static whit_result meshes_build(struct creation *creation)
 {
     struct accel *accel = creation->accel;
     uint32_t threads = accel->params.mesh.thread_count;
-    if (accel->params.tree_file)
-        return trees_read(creation);
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         if (scene_mesh_primitives(&accel->scene->meshes[i]) < MESH_LARGE)
             creation->small[creation->small_count++] = i;
@@ -351,7 +308,7 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
     accel->log = log ? *log : (struct log){0};
     accel->params = params ? *params : (struct accel_params){0};
     accel->params.instances.leaf_limit = 1;
-    accel->no_trees = accel->params.mesh.builder == BVH_NONE && !accel->params.tree_file;
+    accel->no_trees = accel->params.mesh.builder == BVH_NONE;
     struct creation creation = {.accel = accel};
     whit_result result = WHIT_OK;
     if (accel->no_trees) {

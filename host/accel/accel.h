@@ -17,12 +17,11 @@ struct bvh_box {
 };
 
 enum bvh_builder {
-    BVH_BINNED,      /* SAH over equal bins */
-    BVH_MEDIAN,      /* halves */
-    BVH_SWEEP,       /* SAH over every position, sorted once */
-    BVH_SPATIAL,     /* SAH over object and spatial splits (SBVH): needs `triangles` */
-    BVH_SWEEP_NAIVE, /* SAH over every position, each summed up anew: the report's, quadratic */
-    BVH_NONE, /* no choice: the order of the input, full leaves, every box that of everything */
+    BVH_BINNED,  /* SAH over equal bins */
+    BVH_MEDIAN,  /* halves */
+    BVH_SWEEP,   /* SAH over every position, sorted once */
+    BVH_SPATIAL, /* SAH over object and spatial splits (SBVH): needs `triangles` */
+    BVH_NONE,    /* no choice: the order of the input, full leaves, every box that of everything */
 };
 
 /* The triangles that the boxes are of. */
@@ -44,9 +43,6 @@ struct bvh_params {
                              tried (Stich et al. 2009, 4.5); 0: 1e-5 */
     float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;
                              < 0: none */
-    double deadline_ms;   /* by clock_ms: WHIT_ERROR_TIME_LIMIT after it; 0: none. Obeyed by the
-                             slow builder, BVH_SWEEP_NAIVE */
-    const volatile bool *cancel; /* the same, WHIT_ERROR_CANCELLED; NULL: never */
 };
 
 /* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
@@ -119,10 +115,9 @@ struct accel_params {
        for the one it has. */
     enum accel_update update;
     bool validate;
-    uint32_t stack_floor;  /* accel_stack_size is not below it: the size is part of a kernel, and so
-                              scenes of different depth share one */
-    bool flatten;          /* one tree for the whole scene, in world space */
-    const char *tree_file; /* mesh trees from bvh_file.c instead of building them; NULL: build */
+    uint32_t stack_floor; /* accel_stack_size is not below it: the size is part of a kernel, and so
+                             scenes of different depth share one */
+    bool flatten;         /* one tree for the whole scene, in world space */
 };
 
 /* The same trees with up to eight children a node, for kernels of which each lane tests one child.

@@ -104,12 +104,6 @@ enum build_choice split_binned(struct build_record *records, const struct build_
 void split_median(struct build_record *records, const struct build_range *range,
                   uint32_t *left_count, struct build_bounds halves[2]);
 
-/* The search of BVH_SWEEP_NAIVE, and what ends it early. */
-struct naive;
-whit_result naive_build(const struct log *log, struct build_record *records,
-                        const struct build_bounds *bounds, uint32_t count,
-                        const struct bvh_params *params, struct bvh *out);
-
 /* ---- Small subtrees (small.c) ---- */
 
 /* At most BUILD_SMALL boxes, and their order along each axis. */

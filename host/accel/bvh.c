@@ -13,7 +13,6 @@ static bool builder_known(enum bvh_builder builder)
     case BVH_MEDIAN:
     case BVH_SWEEP:
     case BVH_SPATIAL:
-    case BVH_SWEEP_NAIVE:
     case BVH_NONE:
         return true;
     }
@@ -58,7 +57,6 @@ static whit_result build(const struct log *log, const struct bvh_box *boxes, uin
     case BVH_NONE:
     case BVH_BINNED:
     case BVH_MEDIAN:
-    case BVH_SWEEP_NAIVE:
         return records_build(log, boxes, count, params, out);
     case BVH_SWEEP:
         return sweep_build(log, boxes, count, params, out);

@@ -164,10 +164,7 @@ whit_result records_build(const struct log *log, const struct bvh_box *boxes, ui
     }
     if (resolved->builder == BVH_NONE)
         methods.halve = halve_nothing;
-    if (resolved->builder == BVH_SWEEP_NAIVE)
-        result = naive_build(log, context.records, &bounds, count, resolved, out);
-    else
-        result = topdown_grow(log, &methods, resolved, &bounds, count, out);
+    result = topdown_grow(log, &methods, resolved, &bounds, count, out);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
         out->order[i] = context.records[i].primitive;
     free(context.records);

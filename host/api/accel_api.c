@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "accel/boxes.h"
-#include "accel/bvh_file.h"
 #include "accel/report.h"
 #include "api/handles.h"
 #include "base/array.h"
@@ -40,11 +39,6 @@ static whit_result check_params(const struct log *log, const whit_accel_params *
         log_error(log, "instances %d: auto, on and off are what there is", (int)params->instances);
         return WHIT_ERROR_USAGE;
     }
-    if (params->tree_path && params->instances == WHIT_INSTANCES_OFF) {
-        log_error(log, "%s: saved trees are of single meshes, not of a flattened scene",
-                  params->tree_path);
-        return WHIT_ERROR_USAGE;
-    }
     return WHIT_OK;
 }
 
@@ -53,7 +47,7 @@ static enum bvh_builder builder_of(whit_build build)
     static const enum bvh_builder builders[] = {
         [WHIT_BUILD_BINNED] = BVH_BINNED, [WHIT_BUILD_MEDIAN] = BVH_MEDIAN,
         [WHIT_BUILD_SWEEP] = BVH_SWEEP,   [WHIT_BUILD_SPATIAL] = BVH_SPATIAL,
-        [WHIT_BUILD_NONE] = BVH_NONE,     [WHIT_BUILD_SWEEP_NAIVE] = BVH_SWEEP_NAIVE,
+        [WHIT_BUILD_NONE] = BVH_NONE,
     };
     return builders[build];
 }
@@ -75,22 +69,21 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
     }
     accel->log = scene->log;
     const struct accel_params inner = {
-        .mesh = {.builder = builder_of(params->build),
-                 .bins = params->bins,
-                 .leaf_limit = params->leaf_limit,
-                 .thread_count = params->threads,
-                 .optimize = params->optimize,
-                 .spatial_alpha = params->spatial_alpha,
-                 .spatial_budget = params->spatial_budget,
-                 .deadline_ms =
-                     params->time_limit_s > 0.0 ? clock_ms() + 1e3 * params->time_limit_s : 0.0,
-                 .cancel = params->cancel},
+        .mesh =
+            {
+                .builder = builder_of(params->build),
+                .bins = params->bins,
+                .leaf_limit = params->leaf_limit,
+                .thread_count = params->threads,
+                .optimize = params->optimize,
+                .spatial_alpha = params->spatial_alpha,
+                .spatial_budget = params->spatial_budget,
+            },
         .instances = {.builder = builder_of(params->instance_build),
                       .leaf_limit = 1,
                       .thread_count = params->threads},
         .update = params->instance_refit ? ACCEL_REFIT : ACCEL_REBUILD,
-        .flatten = !params->tree_path && api_one_tree(scene, params->instances),
-        .tree_file = params->tree_path,
+        .flatten = api_one_tree(scene, params->instances),
         .validate = params->validate || ALWAYS_VALIDATE,
     };
     result = accel_create(&scene->log, scene->scene, &inner, &accel->accel);
@@ -113,8 +106,8 @@ void whit_accel_destroy(whit_accel *accel)
 static void builder_name(const struct bvh_params *params, char *out, size_t out_bytes)
 {
     static const char *const names[] = {
-        [BVH_BINNED] = "binned",   [BVH_MEDIAN] = "median",           [BVH_SWEEP] = "sweep",
-        [BVH_SPATIAL] = "spatial", [BVH_SWEEP_NAIVE] = "sweep-naive", [BVH_NONE] = "none",
+        [BVH_BINNED] = "binned",   [BVH_MEDIAN] = "median", [BVH_SWEEP] = "sweep",
+        [BVH_SPATIAL] = "spatial", [BVH_NONE] = "none",
     };
     char numbers[40] = "";
     if (params->builder == BVH_BINNED && params->bins)
@@ -174,11 +167,6 @@ whit_result whit_accel_validate(const whit_accel *handle)
 {
     whit_result result = accel_validate(handle->accel);
     return result == WHIT_ERROR_FAILED ? WHIT_ERROR_STATUS : result;
-}
-
-whit_result whit_accel_save(const whit_accel *handle, const char *path)
-{
-    return bvh_file_write(handle->accel, path);
 }
 
 enum { REPORT_RAYS = 1 << 15 };

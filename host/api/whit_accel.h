@@ -9,11 +9,10 @@ extern "C" {
 #endif
 
 typedef enum whit_build {
-    WHIT_BUILD_BINNED = 0,  /* surface area heuristic over equal bins */
-    WHIT_BUILD_MEDIAN,      /* halves */
-    WHIT_BUILD_SWEEP,       /* surface area heuristic over every position */
-    WHIT_BUILD_SPATIAL,     /* splits space too, which may put a triangle in several leaves */
-    WHIT_BUILD_SWEEP_NAIVE, /* the tree of SWEEP in quadratic time, for comparison */
+    WHIT_BUILD_BINNED = 0, /* surface area heuristic over equal bins */
+    WHIT_BUILD_MEDIAN,     /* halves */
+    WHIT_BUILD_SWEEP,      /* surface area heuristic over every position */
+    WHIT_BUILD_SPATIAL,    /* splits space too, which may put a triangle in several leaves */
     WHIT_BUILD_NONE, /* no choice: every box is that of everything, so rays test every triangle.
                         WHIT_ERROR_USAGE above 40,000 over all instances, or some 10,000
                         instances; renderers draw fewer of them under many lights */
@@ -30,11 +29,7 @@ typedef struct whit_accel_params {
     whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
     bool instance_refit;       /* moving instances keep their tree, with new boxes */
     whit_instances instances;
-    bool validate;         /* check the tree after the build (always in debug builds) */
-    const char *tree_path; /* mesh trees saved by whit_accel_save, instead of building; then
-                              WHIT_INSTANCES_AUTO is WHIT_INSTANCES_ON. NULL: build */
-    double time_limit_s;   /* for WHIT_BUILD_SWEEP_NAIVE; 0: none */
-    const volatile bool *cancel;
+    bool validate; /* check the tree after the build (always in debug builds) */
 } whit_accel_params;
 
 WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
@@ -47,16 +42,13 @@ typedef struct whit_accel_info {
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
     bool one_tree;                                /* in world space, see whit_instances */
-    char builder[48]; /* of the mesh trees, also of saved ones: "binned:7", "spatial+opt" */
+    char builder[48];                             /* of the mesh trees: "binned:7", "spatial+opt" */
 } whit_accel_info;
 void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
 
 /* Checks every tree: each triangle in a leaf, children inside parents, indices in range, no cycle,
    leaf sizes, depth. WHIT_ERROR_STATUS, with the first violation in the log. */
 WHIT_CHECK whit_result whit_accel_validate(const whit_accel *accel);
-/* Saves the mesh trees with a checksum, for whit_accel_params.tree_path and the same scene; what is
-   one tree has none: build it with WHIT_INSTANCES_ON. */
-WHIT_CHECK whit_result whit_accel_save(const whit_accel *accel, const char *path);
 
 enum { WHIT_DEPTH_BINS = 130, WHIT_LEAF_BINS = 16 };
 /* What trees are like: of all mesh trees together, a mesh with several instances once. */

@@ -25,7 +25,6 @@ struct bench {
     bool quick, quiet, no_cache;
     uint32_t runs;
     uint32_t width, height;
-    double naive_limit_s;
     whit_device *device;
     whit_device_info device_info;
     struct cli_progress progress;

@@ -10,7 +10,6 @@ enum bench_id {
     ID_RUNS,
     ID_JSON,
     ID_SCENES,
-    ID_NAIVE,
     ID_PLOT,
     ID_AGAINST,
     ID_KEEP,
@@ -23,9 +22,7 @@ static const struct cli_option options[] = {
     {ID_RUNS, "runs", "N", "of each case, 1 to 99 (7; quick: 2)"},
     {ID_JSON, "json", "FILE", "also write all figures as JSON"},
     {ID_SCENES, "scenes", "FOLDER", "where whit's scenes are (./scenes, or beside the program)"},
-    {ID_NAIVE, "naive-limit", "S",
-     "seconds for sweep-naive, which is estimated beyond (60;\n"
-     "quick: 0.2)"},
+    {CLI_GONE, "naive-limit", NULL, "is gone with the builder sweep-naive"},
     {ID_PLOT, "plot", "FILE.svg",
      "rays, frame, start: also draw how far each row is from what it must"},
     {ID_AGAINST, "against", "PROGRAM", "frame, start: another whit, timed in turns"},
@@ -75,9 +72,6 @@ static void read_option(struct cli_reader *reader, int id, struct bench *bench)
     case ID_SCENES:
         bench->scenes = reader->value;
         break;
-    case ID_NAIVE:
-        cli_number(reader, 1e-3, 1e6, &bench->naive_limit_s);
-        break;
     case ID_PLOT:
         bench->plot = reader->value;
         break;
@@ -107,8 +101,6 @@ static void complete(struct bench *bench, const struct bench_kind *kind)
     bench->height = bench->quick ? kind->height / 10 : kind->height;
     if (bench->runs == 0)
         bench->runs = bench->quick ? 2 : 7;
-    if (bench->naive_limit_s == 0.0)
-        bench->naive_limit_s = bench->quick ? 0.2 : 60.0;
 }
 
 static int list_benches(void)

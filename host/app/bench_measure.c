@@ -213,11 +213,9 @@ static whit_result build_once(void *user, uint32_t index, uint32_t run)
     const struct turns *turns = user;
     struct bench_case *c = &turns->cases[index];
     (void)run;
-    whit_accel_params params = c->accel_params;
-    params.cancel = &cli_cancel;
     whit_accel_destroy(c->accel);
     c->accel = NULL;
-    whit_result result = whit_accel_create(c->scene->scene, &params, &c->accel);
+    whit_result result = whit_accel_create(c->scene->scene, &c->accel_params, &c->accel);
     if (result != WHIT_OK)
         return result;
     whit_accel_get_info(c->accel, &c->accel_info);

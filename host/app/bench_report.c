@@ -112,99 +112,15 @@ static whit_result trees_on_and_off(struct bench *bench)
 
 /* ---- Bins or every position ---- */
 
-/* The build of `sweep-naive`, measured or estimated. */
-struct naive {
-    double build_ms;
-    bool estimated;
-    double exponent;   /* of the growth between the sizes below */
-    uint32_t sizes[2]; /* triangles of the landscapes it was estimated from */
-    double sizes_ms[2];
-};
-
-/* A landscape like that of 54k.json. */
-static whit_result landscape(const char *folder, uint32_t steps, struct bench_scene *scene)
-{
-    char path[512], text[256];
-    snprintf(path, sizeof path, "%s/whit-bench-%u-%.0f.json", folder, steps, whit_clock_ms());
-    int size = snprintf(text, sizeof text,
-                        "{\"objects\":[{\"shape\":\"terrain\",\"size\":12,\"height\":2.8,"
-                        "\"steps\":%u,\"seed\":4}]}\n",
-                        steps);
-    *scene = (struct bench_scene){.name = "landscape"};
-    whit_result result = whit_file_write(path, text, (size_t)size, &cli_log);
-    if (result != WHIT_OK)
-        return result;
-    result = bench_load_file(path, false, scene);
-    remove(path);
-    return result;
-}
-
-/* Each node sums up all of its triangles for each position: quadratic work. The fastest of three
-   runs, as other load only ever adds. */
-static whit_result estimate_naive(struct bench *bench, uint32_t triangles, struct naive *out)
-{
-    const uint32_t steps[2] = {bench->quick ? 20 : 58, bench->quick ? 28 : 82};
-    const char *folder = getenv("TMPDIR");
-    whit_result result = WHIT_OK;
-    for (int i = 0; result == WHIT_OK && i < 2; ++i) {
-        struct bench_scene scene = {0};
-        struct bench_case c = {
-            .label = "sweep-naive", .scene = &scene, .accel_params.build = WHIT_BUILD_SWEEP_NAIVE};
-        result = landscape(folder && folder[0] ? folder : "/tmp", steps[i], &scene);
-        if (result == WHIT_OK)
-            result = bench_build(bench, &c, 1, 3);
-        out->sizes[i] = (uint32_t)scene.info.triangle_count;
-        out->sizes_ms[i] = bench_least(&c.build);
-        bench_case_finish(&c, 1);
-        bench_unload(&scene);
-    }
-    if (result != WHIT_OK)
-        return result;
-    out->exponent = log(out->sizes_ms[1] / out->sizes_ms[0]) /
-                    log((double)out->sizes[1] / (double)out->sizes[0]);
-    double larger = (double)triangles / out->sizes[1];
-    out->build_ms = out->sizes_ms[1] * larger * larger;
-    out->estimated = true;
-    return WHIT_OK;
-}
-
-static whit_result measure_naive(struct bench *bench, struct naive *out)
-{
-    struct bench_scene scene;
-    struct bench_case c = {
-        .label = "sweep-naive",
-        .scene = &scene,
-        .accel_params = {.build = WHIT_BUILD_SWEEP_NAIVE, .time_limit_s = bench->naive_limit_s}};
-    *out = (struct naive){0};
-    whit_result result = bench_load(bench, "54k", true, &scene);
-    if (result == WHIT_OK)
-        result = bench_build(bench, &c, 1, 1);
-    uint32_t triangles = (uint32_t)scene.info.triangle_count;
-    out->build_ms = c.accel_info.build_ms;
-    bench_case_finish(&c, 1);
-    bench_unload(&scene);
-    return result == WHIT_ERROR_TIME_LIMIT ? estimate_naive(bench, triangles, out) : result;
-}
-
-static void judge_builds(struct section *section, const struct bench_case *cases,
-                         const struct naive *naive)
+static void judge_builds(struct section *section, const struct bench_case *cases)
 {
     const struct bench_case *binned = &cases[0], *sweep = &cases[1];
     double binned_ms = bench_median(&binned->build), sweep_ms = bench_median(&sweep->build);
-    if (naive->estimated)
-        section_say(
-            section,
-            "sweep-naive was stopped after %g s and is estimated: a landscape of the same kind "
-            "with %u "
-            "triangles took %.1f ms (fastest of 3), times the square of how many more there are "
-            "here, as its work grows (from %u triangles, %.1f ms, it grew as n^%.2f).",
-            section->bench->naive_limit_s, naive->sizes[1], naive->sizes_ms[1], naive->sizes[0],
-            naive->sizes_ms[0], naive->exponent);
     section_say(
         section,
-        "Trying every position in the report's way takes %.0f times as long as 7 bins (report: "
-        "%.0f); sorted once it gives the same tree in %.1f times as long.",
-        naive->build_ms / binned_ms, report_build_s[1] / report_build_s[0], sweep_ms / binned_ms);
+        "Every position, sorted once, takes %.1f times as long as 7 bins; summed up anew for each "
+        "position it took the report %.0f times as long.",
+        sweep_ms / binned_ms, report_build_s[1] / report_build_s[0]);
     int faster = bench_compare(&binned->frame, &sweep->frame);
     section_say(
         section,
@@ -216,59 +132,35 @@ static void judge_builds(struct section *section, const struct bench_case *cases
         bench_fps(sweep) / bench_fps(binned), report_build_fps[1] / report_build_fps[0]);
 }
 
-static void rows_of_builds(struct section *section, const struct bench_case *cases,
-                           const struct naive *naive)
+static void rows_of_builds(struct section *section, const struct bench_case *cases)
 {
     static const char *const heads[] = {"build",       "report, s",    "whit, ms",
                                         "report, fps", "whit, fps",    "ms a frame",
                                         "SAH cost",    "visits a ray", NULL};
-    static const char *const names[3] = {"binned:7", "sweep-naive", "sweep"};
     struct table *table = &section->table;
     table_begin(table, heads);
-    for (int i = 0; i < 3; ++i) {
-        const struct bench_case *c = &cases[i ? 1 : 0];
+    for (int i = 0; i < 2; ++i) {
         table_row(table);
-        table_cell(table, "%s", names[i]);
-        if (i < 2)
-            table_cell(table, "%g", report_build_s[i]);
-        else
-            table_cell(table, "-");
-        if (i == 1)
-            table_cell(table, naive->estimated ? "%.0f (estimated)" : "%.0f", naive->build_ms);
-        else
-            table_ms(table, &c->build);
-        if (i < 2)
-            table_cell(table, "%.1f", report_build_fps[i]);
-        else
-            table_cell(table, "-");
-        table_cell(table, i == 1 ? "as sweep" : "%.1f", bench_fps(c));
-        table_ms(table, &c->frame);
-        table_cell(table, "%.2f", c->accel_info.sah_cost);
-        table_cell(table, "%.2f", bench_visits(c));
+        table_cell(table, "%s", cases[i].label);
+        table_cell(table, "%g", report_build_s[i]);
+        table_ms(table, &cases[i].build);
+        table_cell(table, "%.1f", report_build_fps[i]);
+        table_cell(table, "%.1f", bench_fps(&cases[i]));
+        table_ms(table, &cases[i].frame);
+        table_cell(table, "%.2f", cases[i].accel_info.sah_cost);
+        table_cell(table, "%.2f", bench_visits(&cases[i]));
     }
-}
-
-static void keep_naive(struct section *section, const struct naive *naive)
-{
-    json_t *row = document_object();
-    document_text(row, "case", "sweep-naive");
-    document_number(row, "build_ms_once", naive->build_ms);
-    document_flag(row, "estimated", naive->estimated);
-    document_number(row, "report_build_s", report_build_s[1]);
-    document_number(row, "report_fps", report_build_fps[1]);
-    document_append(section->rows, row);
 }
 
 static whit_result bins_or_all(struct bench *bench)
 {
     struct bench_scene scene = {0};
     struct section section;
-    struct naive naive = {0};
     struct bench_case cases[] = {
         {.label = "binned:7", .scene = &scene, .accel_params.bins = 7},
         {.label = "sweep", .scene = &scene, .accel_params.build = WHIT_BUILD_SWEEP},
     };
-    section_begin(&section, bench, "builds", 4 * bench->runs + 11);
+    section_begin(&section, bench, "builds", 4 * bench->runs + 4);
     whit_result result = bench_load(bench, "54k", false, &scene);
     if (result == WHIT_OK)
         result = bench_build(bench, cases, CASES(cases), bench->runs);
@@ -276,14 +168,11 @@ static whit_result bins_or_all(struct bench *bench)
         result = bench_render(bench, cases, CASES(cases), bench->runs);
     if (result == WHIT_OK)
         result = bench_count(bench, cases, CASES(cases));
-    if (result == WHIT_OK)
-        result = measure_naive(bench, &naive);
     if (result == WHIT_OK) {
-        rows_of_builds(&section, cases, &naive);
+        rows_of_builds(&section, cases);
         section_keep(&section, &cases[0], "report_fps", report_build_fps[0]);
-        keep_naive(&section, &naive);
-        section_keep(&section, &cases[1], "report_fps", 0.0);
-        judge_builds(&section, cases, &naive);
+        section_keep(&section, &cases[1], "report_fps", report_build_fps[1]);
+        judge_builds(&section, cases);
     }
     bench_case_finish(cases, CASES(cases));
     bench_unload(&scene);

@@ -1,4 +1,4 @@
-/* Names of tree builders: binned[:K], median, sweep, spatial[:ALPHA[,BUDGET]], sweep-naive, each
+/* Names of tree builders: binned[:K], median, sweep, spatial[:ALPHA[,BUDGET]], each
    with `+opt`. */
 #include <ctype.h>
 #include <stdlib.h>
@@ -10,16 +10,15 @@ static const struct {
     const char *name;
     whit_build build;
 } builders[] = {
-    {"binned", WHIT_BUILD_BINNED}, {"median", WHIT_BUILD_MEDIAN},
-    {"sweep", WHIT_BUILD_SWEEP},   {"spatial", WHIT_BUILD_SPATIAL},
-    {"none", WHIT_BUILD_NONE},     {"sweep-naive", WHIT_BUILD_SWEEP_NAIVE},
+    {"binned", WHIT_BUILD_BINNED},   {"median", WHIT_BUILD_MEDIAN}, {"sweep", WHIT_BUILD_SWEEP},
+    {"spatial", WHIT_BUILD_SPATIAL}, {"none", WHIT_BUILD_NONE},
 };
 enum { BUILDER_COUNT = sizeof builders / sizeof builders[0], TEXT_MAX = 100 };
 
 static bool refuse(struct cli_reader *reader, const char *text)
 {
     return cli_misuse(reader,
-                      "--%s `%s`: one of binned, median, sweep, spatial, sweep-naive is needed, "
+                      "--%s `%s`: one of binned, median, sweep, spatial is needed, "
                       "with +opt behind it or not",
                       reader->option->name, text);
 }

@@ -12,8 +12,6 @@ enum bvh_id {
     ID_RUNS,
     ID_RAYS,
     ID_VALIDATE,
-    ID_SAVE,
-    ID_LOAD,
     ID_JSON,
     ID_NO_TRACE,
 };
@@ -31,8 +29,8 @@ static const struct cli_option options[] = {
     {ID_RAYS, "rays", "N", "rays of each kind: primary, shadow, diffuse (100000)"},
     {ID_NO_TRACE, "no-trace", NULL, "trees only, no rays on a device"},
     {ID_VALIDATE, "validate", NULL, "check every tree; exit code 1 when one is wrong"},
-    {ID_SAVE, "save", "FILE", "save the trees of the one builder, for --tree and --load"},
-    {ID_LOAD, "load", "FILE", "also trees that were saved; without --build only these"},
+    {CLI_GONE, "save", NULL, "is gone: trees are built for each run"},
+    {CLI_GONE, "load", NULL, "is gone: trees are built for each run"},
     {ID_JSON, "json", NULL, "everything as JSON"},
     JOB_OPTION_BUILDING,
     JOB_OPTION_WALKING,
@@ -47,7 +45,7 @@ static const struct cli_option options[] = {
 
 /* What the options say before they become rows. */
 struct request {
-    const char *builders, *load_path; /* NULL: not given */
+    const char *builders; /* NULL: not given */
     bool has_threads;
 };
 
@@ -139,12 +137,6 @@ static void read_option(struct cli_reader *reader, int id, struct study *study,
     case ID_VALIDATE:
         study->validate = true;
         break;
-    case ID_SAVE:
-        study->save_path = reader->value;
-        break;
-    case ID_LOAD:
-        request->load_path = reader->value;
-        break;
     case ID_JSON:
         study->json = true;
         break;
@@ -154,34 +146,6 @@ static void read_option(struct cli_reader *reader, int id, struct study *study,
     default:
         break;
     }
-}
-
-static bool check_request(struct cli_reader *reader, struct study *study,
-                          const struct request *request)
-{
-    const struct job *job = &study->job;
-    if (!cli_no_dash(reader, "--save", study->save_path, "trees are saved in a file") ||
-        !cli_no_dash(reader, "--load", request->load_path, "trees are read from a file"))
-        return false;
-    if (request->load_path && (job->instances == WHIT_INSTANCES_OFF || job->leaf_limit))
-        return cli_misuse(reader, "--load and %s: the trees in the file are built already",
-                          job->leaf_limit ? "--leaf" : "--instances off");
-    if (study->save_path && job->instances == WHIT_INSTANCES_OFF)
-        return cli_misuse(reader, "--save and --instances off: files hold trees of single meshes");
-    if ((study->save_path || request->load_path) && job->instances == WHIT_INSTANCES_AUTO)
-        study->job.instances = WHIT_INSTANCES_ON;
-    if (!request->builders && !request->load_path &&
-        !read_builders(study, reader, builders_default))
-        return false;
-    if (request->load_path &&
-        !add_row(study, reader, (struct study_row){.path = request->load_path, .name = "saved"}))
-        return false;
-    if (study->save_path && study->row_count != 1)
-        return cli_misuse(reader, "--save needs one builder: --build NAME");
-    if (!study->save_path || cli_can_write(study->save_path))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
 }
 
 static void default_threads(struct study *study)
@@ -259,7 +223,9 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)
         read_option(&reader, id, &study, &request);
-    if (!job_options_done(&study.job, &reader) || !check_request(&reader, &study, &request))
+    if (!job_options_done(&study.job, &reader))
+        return reader.status;
+    if (!request.builders && !read_builders(&study, &reader, builders_default))
         return reader.status;
     if (!request.has_threads)
         default_threads(&study);
@@ -273,8 +239,8 @@ const struct cli_command command_bvh = {
     .arguments = "SCENE [options]",
     .summary = "Builds trees in several ways and compares what they cost.",
     .details =
-        "Builders: binned[:K] with 2 to 256 bins, median, sweep, spatial[:ALPHA[,BUDGET]],\n"
-        "sweep-naive; +opt behind one improves its trees by reinsertion.\n"
+        "Builders: binned[:K] with 2 to 256 bins, median, sweep, spatial[:ALPHA[,BUDGET]];\n"
+        "+opt behind one improves its trees by reinsertion.\n"
         "SAH: expected cost of a random line by areas, in triangle tests. EPO: area of surfaces "
         "in\n"
         "boxes that they do not belong to. Pairs and tests: inner nodes opened and triangles\n"

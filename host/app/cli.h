@@ -22,6 +22,8 @@ enum cli_exit {
 
 /* Ids from here on are of options for those who work on whit, which --help-all alone lists. */
 enum { CLI_DEVELOPER = 1000 };
+/* The id of an option that is gone; `help` says what stands in its place. */
+enum { CLI_GONE = CLI_DEVELOPER - 2 };
 
 /* One long option; `value` names its argument, NULL when it takes none. `help` may have several
    lines; NULL: it is never listed. */

@@ -98,9 +98,6 @@ static bool tree_option(struct job *job, struct cli_reader *reader, int id)
     case JOB_LEAF:
         cli_unsigned(reader, 1, 15, &job->leaf_limit);
         return true;
-    case JOB_TREE:
-        job->tree_path = reader->value;
-        return true;
     case JOB_INSTANCES:
         read_instances(job, reader);
         return true;
@@ -195,17 +192,7 @@ static bool check_trees(const struct job *job, struct cli_reader *reader)
         return cli_misuse(reader, "--no-bvh and --build: either there are trees or there are none");
     if (job->no_trees && job->leaf_limit)
         return cli_misuse(reader, "--no-bvh and --leaf: without trees there are no leaves");
-    if (!job->tree_path)
-        return true;
-    if (!cli_no_dash(reader, "--tree", job->tree_path, "trees are read from a file"))
-        return false;
-    if (job->has_build || job->no_trees || job->leaf_limit)
-        return cli_misuse(reader, "--tree and %s: the trees in the file are built already",
-                          job->has_build  ? "--build"
-                          : job->no_trees ? "--no-bvh"
-                                          : "--leaf");
-    return job->instances != WHIT_INSTANCES_OFF ||
-           cli_misuse(reader, "--tree and --instances off: files hold trees of single meshes");
+    return true;
 }
 
 bool job_options_done(struct job *job, struct cli_reader *reader)
@@ -293,9 +280,6 @@ whit_accel_params job_accel_params(const struct job *job)
         .instance_build = job->instance_build,
         .instance_refit = job->instance_refit,
         .instances = job->instances,
-        .tree_path = job->tree_path,
-        .time_limit_s = cli_time_left_s(),
-        .cancel = &cli_cancel,
     };
 }
 

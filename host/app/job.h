@@ -34,7 +34,6 @@ struct job {
     uint32_t leaf_limit; /* 0: the default */
     whit_traversal traversal;
     whit_numerics numerics;
-    const char *tree_path; /* of saved trees, or NULL */
     uint32_t threads, texture_limit;
     uint64_t memory_limit;
     const char *load_path; /* NULL: auto */
@@ -62,7 +61,6 @@ enum job_id {
     JOB_BUILD,
     JOB_NO_TREES,
     JOB_LEAF,
-    JOB_TREE,
     JOB_TRAVERSAL,
     JOB_NUMERICS,
     JOB_INSTANCES,
@@ -125,14 +123,13 @@ enum job_id {
 #define JOB_OPTION_BUILD                                                                           \
     {JOB_BUILD, "build", "BUILDER[+opt]",                                                          \
      "how trees are built: binned[:K] with 2 to 256 bins,\n"                                       \
-     "median, sweep, spatial[:ALPHA[,BUDGET]], sweep-naive;\n"                                     \
+     "median, sweep, spatial[:ALPHA[,BUDGET]];\n"                                                  \
      "+opt improves them by reinsertion (binned)"},                                                \
     {                                                                                              \
         JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle"                         \
     }
 #define JOB_OPTION_TREES                                                                           \
-    JOB_OPTION_BUILD,                                                                              \
-        {JOB_TREE, "tree", "FILE", "trees that `whit bvh --save` wrote, instead of building"},     \
+    JOB_OPTION_BUILD, {CLI_GONE, "tree", NULL, "is gone: trees are built for each run"},           \
         JOB_OPTION_BUILDING, JOB_OPTION_WALKING,                                                   \
     {                                                                                              \
         JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)"                    \

@@ -100,7 +100,9 @@ static struct option *long_options(const struct cli_command *command,
     for (uint32_t i = 0; (option = option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
         table[i] = (struct option){
             .name = option->name,
-            .has_arg = option->value ? required_argument : no_argument,
+            .has_arg = option->id == CLI_GONE ? optional_argument
+                       : option->value        ? required_argument
+                                              : no_argument,
             .val = option->id,
         };
         table[i + 1] = (struct option){0};
@@ -131,9 +133,11 @@ static void unknown_option(struct cli_reader *reader)
     if (strncmp(word, "--", 2) == 0)
         snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     const char *names[OPTIONS_MAX];
-    uint32_t count = count_options(reader->command);
-    for (uint32_t i = 0; i < count && i < OPTIONS_MAX; ++i)
-        names[i] = reader->command->options[i].name;
+    uint32_t count = 0;
+    for (const struct cli_option *option = reader->command->options; option->name; ++option) {
+        if (option->id != CLI_GONE && count < OPTIONS_MAX)
+            names[count++] = option->name;
+    }
     const char *nearest = cli_nearest(name, names, count);
     if (nearest)
         cli_misuse(reader, "there is no option `--%s`; did you mean `--%s`?", name, nearest);
@@ -163,7 +167,8 @@ int cli_next(struct cli_reader *reader)
     long_options(reader->command, table, shorts);
     while (!reader->done) {
         optopt = 0;
-        int id = getopt_long(reader->argc, reader->argv, shorts, table, NULL);
+        int place = 0;
+        int id = getopt_long(reader->argc, reader->argv, shorts, table, &place);
         if (id == 1) {
             take_positional(reader, optarg);
         } else if (id == -1) {
@@ -174,6 +179,9 @@ int cli_next(struct cli_reader *reader)
             const struct cli_option *option = find_option(reader->command, optopt);
             cli_misuse(reader, "option `--%s` needs a value: %s", option ? option->name : "?",
                        option ? option->value : "?");
+        } else if (id == CLI_GONE) {
+            const struct cli_option *gone = option_at(reader->command, (uint32_t)place);
+            cli_misuse(reader, "option `--%s` %s", gone->name, gone->help);
         } else if (id == '?') {
             unknown_option(reader);
         } else if ((id == ID_HELP || id == ID_HELP_ALL) && reader->where) {
@@ -302,7 +310,7 @@ void cli_print_help(const struct cli_command *command, bool all, FILE *to)
     fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
             command->summary);
     for (uint32_t i = 0; (option = option_at(command, i)); ++i) {
-        if (option->help && (all || option->id < CLI_DEVELOPER))
+        if (option->id != CLI_GONE && (all || option->id < CLI_DEVELOPER))
             print_option(option, to);
     }
     if (command->details)

@@ -56,9 +56,6 @@ static void put_view(FILE *to, const struct job *job, const struct render_reques
     }
     if (job->no_trees) {
         fputs(" --no-bvh", to);
-    } else if (job->tree_path) {
-        fputs(" --tree", to);
-        recipe_put_word(to, job->tree_path);
     } else {
         fprintf(to, " --build %s", build);
     }

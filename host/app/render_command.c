@@ -10,7 +10,6 @@ enum render_id {
     ID_FRAMES,
     ID_COUNTERS,
     ID_TILE = CLI_DEVELOPER,
-    ID_OLD_TILE,
     ID_PACKETS,
     ID_CLASSES,
     ID_SEGMENTS,
@@ -36,7 +35,7 @@ static const struct cli_option options[] = {
     JOB_OPTION_TREES,
     JOB_OPTION_LOADING,
     JOB_OPTION_RUN,
-    {ID_OLD_TILE, "tile", "N", NULL},
+    {CLI_GONE, "tile", NULL, "is `--tile-size` now"},
     {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
     {ID_PACKETS, "packets", "auto|on|off",
      "whether camera rays and the shadow rays of what they meet\n"
@@ -85,9 +84,6 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         break;
     case ID_TILE:
         cli_unsigned(reader, 16, 512, &request->tile_size);
-        break;
-    case ID_OLD_TILE:
-        cli_misuse(reader, "option `--tile` is `--tile-size` now");
         break;
     case ID_PACKETS:
         read_packets(reader, request);

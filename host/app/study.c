@@ -50,7 +50,6 @@ static whit_result build_once(struct study *study, struct study_row *row, uint32
     params.bins = row->build.bins;
     params.spatial_alpha = row->build.alpha;
     params.spatial_budget = row->build.budget;
-    params.tree_path = row->path;
     params.threads = threads;
     whit_result result = whit_accel_create(study->job.scene, &params, &accel);
     if (result != WHIT_OK)
@@ -61,8 +60,6 @@ static whit_result build_once(struct study *study, struct study_row *row, uint32
     if (!row->accel) {
         row->accel = accel;
         row->info = info;
-        if (row->path)
-            snprintf(row->name, sizeof row->name, "%s, saved", info.builder);
         return WHIT_OK;
     }
     whit_accel_destroy(accel);
@@ -113,10 +110,7 @@ whit_result study_report(struct study *study)
         if (result == WHIT_OK)
             result = study_step(study);
     }
-    if (result != WHIT_OK || !study->save_path)
-        return result;
-    cli_set_saving();
-    return whit_accel_save(study->rows[0].accel, study->save_path);
+    return result;
 }
 
 void study_finish(struct study *study)

@@ -13,10 +13,8 @@ struct study_spread {
     double median, least, most;
 };
 
-/* One builder, or a file of trees. */
 struct study_row {
     struct job_build build;
-    const char *path; /* NULL: built */
     char name[JOB_BUILD_NAME];
     whit_accel *accel;
     whit_renderer *renderer; /* NULL: not traced */
@@ -36,7 +34,6 @@ struct study {
     uint32_t threads[STUDY_THREADS_MAX];
     uint32_t row_count, thread_count, run_count, ray_count;
     bool validate, json, no_trace;
-    const char *save_path; /* or NULL */
 
     struct cli_progress progress;
     uint32_t steps, steps_done;
@@ -54,7 +51,7 @@ whit_result study_step(struct study *study);
 
 /* Builds every row with every number of threads, in turns (study.c). */
 whit_result study_build(struct study *study);
-/* Trees checked when asked for, saved when asked for, and reported on. */
+/* Trees checked when asked for, and reported on. */
 whit_result study_report(struct study *study);
 /* Traces the same rays through all rows, in turns, and compares their hits; EXIT_DIFFERS's result
    is WHIT_ERROR_STATUS (study_trace.c). With a device opened. */

@@ -105,11 +105,11 @@ static void print_details(const struct study *study, const struct study_row *row
 {
     const whit_accel_info *info = &row->info;
     const whit_accel_report *report = &row->report;
-    printf("\n%s%s%s\n", row->name, row->path ? " in " : "", cli_shown(row->path));
+    printf("\n%s\n", row->name);
     for (uint32_t i = 0; i < study->thread_count; ++i)
-        printf("  %-9s%.2f ms (%.2f to %.2f) by %u thread%s\n", row->path ? "read" : "build",
-               row->build_ms[i].median, row->build_ms[i].least, row->build_ms[i].most,
-               study->threads[i], study->threads[i] == 1 ? "" : "s");
+        printf("  %-9s%.2f ms (%.2f to %.2f) by %u thread%s\n", "build", row->build_ms[i].median,
+               row->build_ms[i].least, row->build_ms[i].most, study->threads[i],
+               study->threads[i] == 1 ? "" : "s");
     uint32_t primitives = info->triangle_count + info->sphere_count;
     printf("  %-9s%u nodes, %u leaves, ", "trees", info->node_count, info->leaf_count);
     print_primitives(info->triangle_count, info->sphere_count);
@@ -211,7 +211,6 @@ static json_t *row_document(const struct study *study, const struct study_row *r
     const whit_accel_report *report = &row->report;
     json_t *object = document_object();
     document_text(object, "builder", info->builder);
-    document_text(object, "file", row->path);
     document_put(object, "build_ms", build_document(study, row));
     document_count(object, "nodes", info->node_count);
     document_count(object, "leaves", info->leaf_count);

@@ -203,9 +203,6 @@ static void fill_settings(const struct job *job, const struct render_request *re
     char *opt = strstr(settings->build, "+opt"); /* stands beside */
     if (opt)
         *opt = '\0';
-    settings->trees.cancel = NULL;
-    settings->trees.tree_path = NULL;
-    settings->trees.time_limit_s = 0.0;
     whit_renderer_params *p = &settings->picture;
     p->camera = NULL;
     p->effects = NULL;

@@ -67,7 +67,7 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
         .progress_user = prices,
         .log = log,
     };
-    request.accel_params.cancel = request.picture.cancel = &prices->cancel;
+    request.picture.cancel = &prices->cancel;
     request.picture.count = false;
     return cost_measure(&request, report);
 }
@@ -109,13 +109,11 @@ static void run(void *context)
     const whit_log log = {on_message, prices, WHIT_LOG_ERROR};
     const whit_device_params params = {.selector = settings->device[0] ? settings->device : NULL,
                                        .validation = settings->validation};
-    whit_accel_params trees = settings->trees;
     whit_device *device = NULL;
     whit_accel *accel = NULL;
     struct cost_report *report = NULL;
-    trees.cancel = &prices->cancel;
     tell(prices, 0.0, prices->seconds, "building trees");
-    whit_result result = whit_accel_create(prices->scene->scene, &trees, &accel);
+    whit_result result = whit_accel_create(prices->scene->scene, &settings->trees, &accel);
     if (result == WHIT_OK)
         result = whit_device_create(&params, &log, &device);
     if (result == WHIT_OK)

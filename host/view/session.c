@@ -71,10 +71,9 @@ static whit_result load(struct session *session, const whit_log *log)
 
 static whit_result build(struct session *session)
 {
-    whit_accel_params params = session->settings.trees;
-    params.cancel = &session->cancel;
     double start_ms = whit_clock_ms();
-    whit_result result = whit_accel_create(session->scene->scene, &params, &session->accel);
+    whit_result result =
+        whit_accel_create(session->scene->scene, &session->settings.trees, &session->accel);
     session->build_ms = whit_clock_ms() - start_ms;
     if (result == WHIT_OK)
         whit_accel_get_info(session->accel, &session->accel_info);

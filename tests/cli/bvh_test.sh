@@ -11,7 +11,7 @@ has() {
 }
 
 expect 0 "help" bvh --help
-check "help names the builders" has "sweep-naive"
+check "help names the builders" has "spatial"
 check "whit names the command" sh -c "'$WHIT' --help | grep -q '^  bvh  '"
 
 # ---- Comparisons ----
@@ -77,53 +77,6 @@ check "no device" jq -e 'has("device") and .device == null' stdout
 check "no hits" jq -e 'has("hits") and .hits == null' stdout
 check "no rates" jq -e '.builders[0].mrays_per_s | has("diffuse") and .diffuse == null' stdout
 
-# ---- Files ----
-
-figures() {
-    "$WHIT" bvh "$BALL" --json --no-trace --runs 1 "$@" |
-        jq 'walk(if type == "object" then del(.median, .least, .most, .file) else . end)'
-}
-expect 0 "--save" bvh "$BALL" --no-trace --build sweep+opt --save a.bvh --runs 2
-expect 0 "--load" bvh "$BALL" --load a.bvh --build median $SMALL
-check "both are shown" test "$(grep -c '^sweep+opt, saved  \|^median  ' stdout)" -eq 2
-check "they give the same hits" has "^hits: 0 of [1-9][0-9]* differ$"
-figures --build sweep+opt >built
-figures --load a.bvh >loaded
-check "a loaded tree is the one that was built" cmp built loaded
-expect 0 "a loaded tree saved again" bvh "$BALL" --no-trace --load a.bvh --save b.bvh
-check "is the same file" cmp a.bvh b.bvh
-
-expect 0 "a picture" render "$BALL" -o a.png --size 64x48 --quiet
-expect 0 "the same with saved trees" render "$BALL" -o b.png --size 64x48 --quiet --tree a.bvh
-check "is the same picture" cmp a.png b.png
-printf 'a ray is just 32 bytes of floats' >rays
-for on in device cpu; do
-    expect 0 "trace --on $on" trace "$BALL" --rays rays -o hits.$on --on $on --tree a.bvh
-done
-check "gives the same hits" cmp hits.device hits.cpu
-
-# Byte 2000, inverted.
-byte=$(od -An -tu1 -j 2000 -N 1 a.bvh)
-{
-    head -c 2000 a.bvh
-    # shellcheck disable=SC2059
-    printf "\\$(printf %o $((255 - byte)))"
-    tail -c +2002 a.bvh
-} >damaged.bvh
-check "the damaged file is as long" test "$(wc -c <a.bvh)" -eq "$(wc -c <damaged.bvh)"
-head -c 3000 a.bvh >short.bvh
-: >empty.bvh
-rm -f b.png
-for how in "bvh $BALL --no-trace --load" "render $BALL -o b.png --quiet --tree"; do
-    refuse 2 "a damaged file" "damaged.bvh: damaged: " $how damaged.bvh
-    refuse 2 "a file cut short" "short.bvh: .*cut short" $how short.bvh
-    refuse 2 "an empty file" "empty.bvh: " $how empty.bvh
-    refuse 2 "a file of something else" "ball.json: this is no file of trees" $how "$BALL"
-    refuse 2 "no file" "none.bvh: " $how none.bvh
-done
-refuse 2 "another scene" "a.bvh: trees of another scene" bvh "$CUBE" --no-trace --load a.bvh
-check "no picture of bad trees" test ! -e b.png
-
 # ---- Refusals ----
 
 for list in best "" binned, ,binned binned,,sweep binned:7,300; do
@@ -135,15 +88,11 @@ done
 refuse 2 "no runs" "from 1 to" bvh "$CUBE" --runs 0
 refuse 2 "no rays" "from 1 to" bvh "$CUBE" --rays 0
 refuse 2 "no scene" "a scene is missing" bvh
-refuse 2 "--save of several" "needs one builder" bvh "$CUBE" --save x.bvh
-refuse 2 "--save -" "--save -: " bvh "$CUBE" --build sweep --save -
-refuse 2 "--load -" "--load -: " bvh "$CUBE" --load -
-refuse 2 "--save nowhere" "nowhere/x.bvh" bvh "$CUBE" --build sweep --save nowhere/x.bvh
-refuse 2 "--save of a flattened scene" "single meshes" \
-    bvh "$CUBE" --build sweep --save x.bvh --instances off
-refuse 2 "--load with --leaf" "built already" bvh "$CUBE" --load a.bvh --leaf 2
-check "nothing was saved" test ! -e x.bvh
-refuse 5 "a time limit" "time" bvh "$SCENES/54k.json" --build sweep-naive --time-limit 0.5
+for option in save load; do
+    refuse 2 "--$option, which is gone" "`--$option` is gone: trees are built" bvh "$CUBE" --$option x.bvh
+done
+refuse 2 "--tree, which is gone" "`--tree` is gone: trees are built" render "$CUBE" -o b.png --tree=x.bvh
+check "no picture" test ! -e b.png
 
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
 # shellcheck disable=SC2086

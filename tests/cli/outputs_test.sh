@@ -54,7 +54,6 @@ one_option .exr render "$CUBE" $small -o ok.pfm --ids
 one_option .png render "$CUBE" $small --view visits -o
 one_option "" trace "$CUBE" --rays "$OUT/rays" --on cpu --quiet -o
 one_option "" scene "$SCENES/spin.json" --quiet --triangles
-one_option .bvh bvh "$SCENES/spin.json" --no-trace --runs 1 --threads 1 --build median --save
 
 refuse 2 "bench --json: no such folder" "nowhere/x: cannot write: No such" \
     bench report --quick --scenes "$SCENES" --json nowhere/x

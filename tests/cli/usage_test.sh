@@ -47,7 +47,7 @@ refuse 2 "--segments 3" "auto, 1, 2" render "$CUBE" -o "$P" --segments 3
 refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
 refuse 2 "--build best" "binned, median" render "$CUBE" -o "$P" --build best
 refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
-for build in binned: binned:257 binned:7x median:3 sweep-naive:2 spatial: spatial:2 spatial:1e-5, \
+for build in binned: binned:257 binned:7x median:3 sweep-naive sweep:2 spatial: spatial:2 spatial:1e-5, \
     spatial:1e-5,-1 spatial:1e-5,1,1 none +opt binned+opt+opt binned+opt:7 ""; do
     refuse 2 "--build '$build'" "need\|take numbers" render "$CUBE" -o "$P" --build "$build"
 done
@@ -59,8 +59,6 @@ refuse 2 "--traversal near" "distance, sign, basic" render "$CUBE" -o "$P" --tra
 refuse 2 "--instances yes" "on, off" render "$CUBE" -o "$P" --instances yes
 refuse 2 "--instance-build sweep" "sah, median" render "$CUBE" -o "$P" --instance-build sweep
 refuse 2 "--instance-update no" "rebuild, refit" render "$CUBE" -o "$P" --instance-update no
-refuse 2 "--tree with --build" "--tree and --build" render "$CUBE" -o "$P" --tree x --build sweep
-refuse 2 "--tree without instances" "single meshes" render "$CUBE" -o "$P" --tree x --instances off
 refuse 2 "--stats xml" "text, json" render "$CUBE" -o "$P" --stats xml
 refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame 2
 

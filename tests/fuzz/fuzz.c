@@ -201,17 +201,6 @@ void fuzz_sign_png(uint8_t *data, size_t size_bytes)
     }
 }
 
-void fuzz_sign_tree(uint8_t *file, size_t size_bytes)
-{
-    enum { SIZE_AT = 16, HEADER_BYTES = 80 };
-    uint64_t size = size_bytes, checksum;
-    if (size_bytes < HEADER_BYTES + sizeof checksum)
-        return;
-    memcpy(file + SIZE_AT, &size, sizeof size);
-    checksum = hash_bytes(HASH_START, file, size_bytes - sizeof checksum);
-    memcpy(file + size_bytes - sizeof checksum, &checksum, sizeof checksum);
-}
-
 /* --- memory --------------------------------------------------------------------------------- */
 
 #ifdef WATCH_MEMORY

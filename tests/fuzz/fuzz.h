@@ -50,8 +50,6 @@ void fuzz_check_trees(const struct scene *scene);
    bytes says how it is damaged. */
 extern void (*fuzz_reply)(struct child_reply *reply);
 
-/* Gives a saved tree the size and the checksum that fit, as who damages it on purpose would. */
-void fuzz_sign_tree(uint8_t *file, size_t size_bytes);
 /* Gives each chunk of a PNG the checksum that fits; nothing to other files. */
 void fuzz_sign_png(uint8_t *data, size_t size_bytes);
 

@@ -7,7 +7,7 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(cd "$1" && pwd)
 shift
-[ $# -gt 0 ] || set -- obj mtl gltf ply scene image texture reply rays tree validate store paths \
+[ $# -gt 0 ] || set -- obj mtl gltf ply scene image texture reply rays validate store paths \
     settings report view
 cd "$root"
 mkdir -p tests/fuzz/corpus
@@ -24,7 +24,6 @@ sources() {
     texture) echo host/load/picture.c host/load/jpeg.c ;;
     reply) echo host/image/image_reply.c host/load/importer.c host/base/foreign.c ;;
     rays) echo host/app/ray_file.c host/accel/traverse.c ;;
-    tree) echo host/accel/bvh_file.c ;;
     validate) echo host/accel/bvh_validate*.c ;;
     store) echo host/base/store.c ;;
     paths) echo host/base/roots.c ;;

@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1
 seconds=$2
 shift 2
-[ $# -gt 0 ] || set -- obj mtl gltf ply scene image texture reply rays tree validate store paths \
+[ $# -gt 0 ] || set -- obj mtl gltf ply scene image texture reply rays validate store paths \
     settings report view
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)

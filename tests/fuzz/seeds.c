@@ -8,7 +8,6 @@
 #include <png.h>
 
 #include "../unit/stb_write_fixture.h"
-#include "accel/bvh_file.h"
 #include "base/array.h"
 #include "base/child.h"
 #include "base/file.h"
@@ -237,7 +236,7 @@ static void write_replies(void)
     fuzz_reply = NULL;
 }
 
-/* --- rays and trees ------------------------------------------------------------------------- */
+/* --- rays and patches ------------------------------------------------------------------------ */
 
 static void write_rays(void)
 {
@@ -253,39 +252,6 @@ static void write_rays(void)
         snprintf(name, sizeof name, "rays%d", where);
         file.where[3] = (uint8_t)where;
         write_seed("rays", name, &file.where[3], 1 + sizeof file.rays);
-    }
-}
-
-static void write_tree(const struct scene *scene, int kind, uint32_t build)
-{
-    char name[24];
-    struct accel_params params = {.mesh = fuzz_bvh_params(build)};
-    struct accel *accel;
-    params.instances.thread_count = 1;
-    fuzz_check(accel_create(&fuzz_log, scene, &params, &accel) == WHIT_OK, "no trees");
-    const char *path = fuzz_file("seed.bvh", "", 0);
-    fuzz_check(bvh_file_write(accel, path) == WHIT_OK, "a tree that cannot be saved");
-    uint8_t *data;
-    size_t size_bytes;
-    fuzz_check(file_read(&fuzz_log, NULL, path, 0, &data, &size_bytes) == WHIT_OK, "no tree");
-    uint8_t *seed = malloc(size_bytes + 1);
-    fuzz_check(seed, "out of memory");
-    seed[0] = (uint8_t)kind;
-    memcpy(seed + 1, data, size_bytes);
-    snprintf(name, sizeof name, "tree%d-%u", kind, build);
-    write_seed("tree", name, seed, size_bytes + 1);
-    free(seed);
-    free(data);
-    accel_destroy(accel);
-}
-
-static void write_trees(void)
-{
-    for (int kind = 0; kind < FUZZ_SCENE_COUNT; kind++) {
-        struct scene *scene = fuzz_scene_make((enum fuzz_scene)kind);
-        for (uint32_t build = 0; build < 4; build++)
-            write_tree(scene, kind, build);
-        scene_destroy(scene);
     }
 }
 
@@ -310,7 +276,6 @@ int main(int argc, char **argv)
     write_pictures();
     write_replies();
     write_rays();
-    write_trees();
     write_patches();
     return 0;
 }

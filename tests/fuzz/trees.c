@@ -105,7 +105,6 @@ struct bvh_params fuzz_bvh_params(uint32_t which)
         {.builder = BVH_MEDIAN, .leaf_limit = 1},
         {.builder = BVH_SWEEP, .optimize = true},
         {.builder = BVH_SPATIAL, .spatial_alpha = 1e-9f, .spatial_budget = 2.0f, .leaf_limit = 1},
-        {.builder = BVH_SWEEP_NAIVE},
         {.builder = BVH_NONE},
     };
     struct bvh_params out = params[which % (sizeof params / sizeof *params)];

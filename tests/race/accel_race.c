@@ -9,7 +9,7 @@
 #include "accel/accel.h"
 #include "base/array.h"
 
-enum { THREADS_MOST = 4, NAIVE_MOST = 500 };
+enum { THREADS_MOST = 4 };
 
 /* From some 2,000 on a tree is built by several threads. */
 static const uint32_t counts[] = {1, 2, 3, 40, 300, 2200, 2500, 4500};
@@ -31,7 +31,6 @@ static const struct bvh_params builders[] = {
     {.builder = BVH_SPATIAL, .spatial_alpha = 1e-8f},
     {.builder = BVH_SWEEP, .optimize = true},
     {.builder = BVH_SPATIAL, .spatial_alpha = 1e-8f, .optimize = true},
-    {.builder = BVH_SWEEP_NAIVE},
 };
 
 struct mesh {
@@ -109,8 +108,6 @@ int main(void)
         struct mesh mesh = {0};
         good = mesh_init(&mesh, m);
         for (size_t b = 0; good && b < sizeof builders / sizeof *builders; ++b) {
-            if (builders[b].builder == BVH_SWEEP_NAIVE && mesh.count > NAIVE_MOST)
-                continue;
             good = check(&mesh, &builders[b]);
             if (!good)
                 fprintf(stderr, "mesh %u, builder %zu: no tree, or another one\n", m, b);

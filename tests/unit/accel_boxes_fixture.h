@@ -162,13 +162,9 @@ static const struct bvh_params every_builder[] = {
     {.builder = BVH_SWEEP, .thread_count = 1, .leaf_limit = BVH_LEAF_MAX, .traversal_cost = 3.0f},
     {.builder = BVH_SPATIAL, .thread_count = 2},
     {.builder = BVH_SPATIAL, .thread_count = 1, .leaf_limit = 1, .spatial_alpha = 1e-9f},
-    {.builder = BVH_SWEEP_NAIVE, .thread_count = 2},
 };
-enum {
-    EVERY_BUILDER = sizeof every_builder / sizeof *every_builder,
-    NAIVE_MOST = 600, /* boxes that a quadratic builder is tried on */
-};
-_Static_assert(BVH_NONE == 5, "every builder is in the list");
+enum { EVERY_BUILDER = sizeof every_builder / sizeof *every_builder };
+_Static_assert(BVH_NONE == 4, "every builder is in the list");
 
 /* All of them on the same boxes. */
 static inline void check_all(const struct bvh_box *boxes, uint32_t count)
@@ -177,8 +173,6 @@ static inline void check_all(const struct bvh_box *boxes, uint32_t count)
     for (size_t i = 0; i < EVERY_BUILDER; ++i) {
         struct bvh_params params = every_builder[i];
         struct bvh bvh;
-        if (params.builder == BVH_SWEEP_NAIVE && count > NAIVE_MOST)
-            continue;
         params.triangles = &triangles;
         build_and_check(boxes, count, &params, &bvh);
         bvh_finish(&bvh);

@@ -1,11 +1,7 @@
-/* The same tree whatever the number of threads and the order of the input; the naive sweep finds
-   the tree of the fast one, and knows when to stop. */
+/* The same tree whatever the number of threads and the order of the input; the sweep finds the
+   splits of a quadratic search. */
 #include "../cases.h"
 #include "accel_boxes_fixture.h"
-
-#include <stdatomic.h>
-
-#include "base/clock.h"
 
 static void assert_same_tree(const struct bvh *a, const struct bvh *b)
 {
@@ -31,9 +27,7 @@ static void same_bytes_for_any_thread_count(void **state)
     for (size_t i = 0; i < EVERY_BUILDER; ++i) {
         struct bvh_params params = every_builder[i];
         /* The first tree has so many nodes that several threads complete it. */
-        uint32_t count = params.builder == BVH_SWEEP_NAIVE ? 2500
-                         : i == 0                          ? 40000
-                                                           : cases_of(40000);
+        uint32_t count = i == 0 ? 40000 : cases_of(40000);
         struct bvh_box *boxes = soup_with_heap(count);
         struct bvh_triangles triangles = triangles_of_boxes(boxes, count);
         struct bvh one, other;
@@ -84,22 +78,21 @@ static void shuffle(struct bvh_box *boxes, uint32_t count)
 static void same_tree_for_any_order(void **state)
 {
     (void)state;
-    static const struct bvh_params params[] = {{.builder = BVH_BINNED},
-                                               {.builder = BVH_BINNED, .bins = 7},
-                                               {.builder = BVH_SWEEP},
-                                               {.builder = BVH_SWEEP_NAIVE}};
-    for (uint32_t k = 0; k < 8; ++k) {
+    static const struct bvh_params params[] = {
+        {.builder = BVH_BINNED}, {.builder = BVH_BINNED, .bins = 7}, {.builder = BVH_SWEEP}};
+    enum { BUILDS = sizeof params / sizeof *params };
+    for (uint32_t k = 0; k < 2 * BUILDS; ++k) {
         random_state = 8;
-        uint32_t count = k < 4 ? 2500 : 13 * 13 * 13;
-        struct bvh_box *boxes = k < 4 ? soup(count, 0.05f) : grid(13);
-        for (uint32_t i = 0; k < 4 && i < count; ++i) { /* both zeros */
+        uint32_t count = k < BUILDS ? 2500 : 13 * 13 * 13;
+        struct bvh_box *boxes = k < BUILDS ? soup(count, 0.05f) : grid(13);
+        for (uint32_t i = 0; k < BUILDS && i < count; ++i) { /* both zeros */
             boxes[i].lo[2] = i % 2 ? 0.0f : -0.0f;
             boxes[i].hi[2] = 0.01f + fabsf(boxes[i].hi[2]);
         }
         struct bvh first, second;
-        build_and_check(boxes, count, &params[k % 4], &first);
+        build_and_check(boxes, count, &params[k % BUILDS], &first);
         shuffle(boxes, count);
-        build_and_check(boxes, count, &params[k % 4], &second);
+        build_and_check(boxes, count, &params[k % BUILDS], &second);
         assert_same_tree(&first, &second);
         bvh_finish(&first);
         bvh_finish(&second);
@@ -107,121 +100,109 @@ static void same_tree_for_any_order(void **state)
     }
 }
 
-/* ---- The naive sweep ---- */
+/* ---- Every position ---- */
 
-static int compare_indices(const void *a, const void *b)
+static double area_of(const struct bvh_box *box)
 {
-    const uint32_t *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
+    double x = (double)box->hi[0] - box->lo[0], y = (double)box->hi[1] - box->lo[1],
+           z = (double)box->hi[2] - box->lo[2];
+    return x * y + y * z + z * x;
 }
 
-/* What is in a leaf, not how it is ordered there. */
-static void leaves_sort(struct bvh *bvh)
+static float centroid_of(const struct bvh_box *box, uint32_t axis)
 {
-    for (uint32_t i = 0; i < bvh->node_count; ++i) {
-        const struct gpu_bvh_node *node = &bvh->nodes[i];
-        if (i != 1 && bvh_count(node) > 0)
-            qsort(bvh->order + node->first, bvh_count(node), sizeof *bvh->order, compare_indices);
+    return box->lo[axis] * 0.25f + box->hi[axis] * 0.25f;
+}
+
+/* Primitives below `node`, written to `out`: how many. */
+static uint32_t gather(const struct bvh *bvh, const struct gpu_bvh_node *node, uint32_t *out)
+{
+    uint32_t count = bvh_count(node);
+    if (count > 0) {
+        memcpy(out, bvh->order + node->first, count * sizeof *out);
+        return count;
     }
+    count = gather(bvh, &bvh->nodes[node->first], out);
+    return count + gather(bvh, &bvh->nodes[node->first + 1], out + count);
 }
 
-static void assert_naive_agrees(const struct bvh_box *boxes, uint32_t count)
+/* What it costs to split the primitives before `plane`; infinity where a side is empty. */
+static double split_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count,
+                         uint32_t axis, float plane)
 {
-    static const uint32_t leaf_limits[] = {1, 4, BVH_LEAF_MAX};
-    for (size_t k = 0; k < 3; ++k) {
-        struct bvh fast, naive;
-        struct bvh_params params = {.builder = BVH_SWEEP, .leaf_limit = leaf_limits[k]};
-        build_and_check(boxes, count, &params, &fast);
-        params.builder = BVH_SWEEP_NAIVE;
-        build_and_check(boxes, count, &params, &naive);
-        assert_same_tree(&fast, &naive);
-        leaves_sort(&fast);
-        leaves_sort(&naive);
-        assert_memory_equal(fast.order, naive.order, count * sizeof *fast.order);
-        bvh_finish(&fast);
-        bvh_finish(&naive);
+    struct bvh_box sides[2];
+    sides[0] = sides[1] =
+        (struct bvh_box){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+    uint32_t counts[2] = {0};
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct bvh_box *box = &boxes[primitives[i]];
+        int side = centroid_of(box, axis) >= plane;
+        box_unite(&sides[side], box->lo, box->hi);
+        ++counts[side];
     }
+    if (counts[0] == 0)
+        return INFINITY;
+    return area_of(&sides[0]) * counts[0] + area_of(&sides[1]) * counts[1];
 }
 
-static void naive_sweep_finds_the_tree_of_the_fast_one(void **state)
+/* The least cost of all splits of three axes, each summed up anew: quadratic. */
+static double least_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count)
+{
+    double least = INFINITY;
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        for (uint32_t i = 0; i < count; ++i) {
+            float plane = centroid_of(&boxes[primitives[i]], axis);
+            least = fmin(least, split_cost(boxes, primitives, count, axis, plane));
+        }
+    }
+    return least;
+}
+
+/* Inner nodes whose split was compared. */
+static uint32_t check_splits(const struct bvh *bvh, const struct bvh_box *boxes,
+                             const struct gpu_bvh_node *node)
+{
+    if (bvh_count(node) > 0)
+        return 0;
+    const struct gpu_bvh_node *pair = &bvh->nodes[node->first];
+    uint32_t *primitives = malloc(bvh->primitive_count * sizeof *primitives), counts[2];
+    assert_non_null(primitives);
+    double cost = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        counts[side] = gather(bvh, &pair[side], primitives);
+        cost += area(&pair[side]) * counts[side];
+    }
+    gather(bvh, node, primitives);
+    double least = least_cost(boxes, primitives, counts[0] + counts[1]);
+    free(primitives);
+    /* The builder's costs are floats; equal centroids on all axes are halved by their order. */
+    if (least < INFINITY)
+        assert_true(cost <= least * (1.0 + 1e-5));
+    return (least < INFINITY) + check_splits(bvh, boxes, &pair[0]) +
+           check_splits(bvh, boxes, &pair[1]);
+}
+
+static void sweep_finds_the_splits_of_the_quadratic_search(void **state)
 {
     (void)state;
-    static const uint32_t counts[] = {1, 2, 3, 5, 16, 31, 32, 33, 34, 64, 65, 200, 1000, 3000};
-    const size_t last = sizeof counts / sizeof *counts - (cases_times() > 0 ? 0 : 1);
-    for (size_t i = 0; i < last; ++i) {
+    static const uint32_t counts[] = {2, 3, 5, 16, 33, 64, 65, 200, 700};
+    uint32_t compared = 0;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
         random_state = 100 + i;
-        struct bvh_box *boxes = soup(counts[i], counts[i] > 500 ? 0.03f : 0.3f);
-        assert_naive_agrees(boxes, counts[i]);
-        for (uint32_t k = 0; k < counts[i]; k += 2) /* equal centroids, other sizes */
-            boxes[k] = (struct bvh_box){{-(float)(k % 40), 0, 0}, {(float)(k % 40), 1, 0}};
-        assert_naive_agrees(boxes, counts[i]);
-        free(boxes);
+        uint32_t count = counts[i];
+        struct bvh_box *all[] = {soup(count, count > 500 ? 0.03f : 0.3f), soup(count, 0.3f)};
+        for (uint32_t k = 0; k < count; k += 2) /* equal centroids, other sizes */
+            all[1][k] = (struct bvh_box){{-(float)(k % 40), 0, 0}, {(float)(k % 40), 1, 0}};
+        for (int kind = 0; kind < 2; ++kind) {
+            struct bvh bvh;
+            build_and_check(all[kind], count,
+                            &(struct bvh_params){.builder = BVH_SWEEP, .leaf_limit = 1}, &bvh);
+            compared += check_splits(&bvh, all[kind], &bvh.nodes[0]);
+            bvh_finish(&bvh);
+            free(all[kind]);
+        }
     }
-    for (uint32_t side = 2; side <= 9; ++side) {
-        struct bvh_box *boxes = grid(side);
-        assert_naive_agrees(boxes, side * side * side);
-        free(boxes);
-    }
-    for (uint32_t round = 0; round < 50; ++round) {
-        random_state = round;
-        struct bvh_box *boxes = garbage(150);
-        assert_naive_agrees(boxes, 150);
-        free(boxes);
-    }
-}
-
-/* In place of clock_ms: a millisecond passes whenever somebody asks for the time. */
-static _Atomic uint32_t asked = 1000; /* a deadline of 0 is none */
-
-double __wrap_clock_ms(void);
-double __wrap_clock_ms(void)
-{
-    return (double)atomic_fetch_add(&asked, 1);
-}
-
-/* The time is asked for, or the order read, many times in the first split and seldom after the end.
- */
-static void assert_stops(struct bvh_params params, whit_result expected, const char *reason)
-{
-    enum { COUNT = 20000, ASKED_MOST = 20 }; /* 1.2e9 visits for the first split */
-    char said[201] = "";
-    struct log log = {keep_message, said, WHIT_LOG_ERROR};
-    random_state = 3;
-    struct bvh_box *boxes = soup(COUNT, 0.02f);
-    struct bvh bvh;
-    params.builder = BVH_SWEEP_NAIVE;
-    for (params.thread_count = 1; params.thread_count <= 2; ++params.thread_count) {
-        const double end_ms = fmax(clock_ms(), params.deadline_ms);
-        said[0] = '\0';
-        assert_int_equal(bvh_build(&log, boxes, COUNT, &params, &bvh), expected);
-        assert_null(bvh.nodes);
-        assert_null(bvh.order);
-        assert_non_null(strstr(said, reason));
-        assert_non_null(strstr(said, "of which the first split alone takes 1.2e+09"));
-        assert_true(clock_ms() - end_ms < ASKED_MOST);
-    }
-    free(boxes);
-}
-
-static void naive_sweep_stops_when_told(void **state)
-{
-    (void)state;
-    volatile bool cancel = true;
-    assert_stops((struct bvh_params){.deadline_ms = clock_ms() - 1.0}, WHIT_ERROR_TIME_LIMIT,
-                 "out of time after 0 splits");
-    assert_stops((struct bvh_params){.deadline_ms = clock_ms() + 50.0}, WHIT_ERROR_TIME_LIMIT,
-                 "out of time after 0 splits");
-    assert_stops((struct bvh_params){.cancel = &cancel}, WHIT_ERROR_CANCELLED,
-                 "cancelled after 0 splits");
-    cancel = false;
-    random_state = 4;
-    struct bvh_box *boxes = soup(300, 0.1f);
-    struct bvh bvh;
-    struct bvh_params params = {
-        .builder = BVH_SWEEP_NAIVE, .deadline_ms = clock_ms() + 1e6, .cancel = &cancel};
-    build_and_check(boxes, 300, &params, &bvh);
-    bvh_finish(&bvh);
-    free(boxes);
+    assert_in_range(compared, 1500, 2200);
 }
 
 /* ---- Quality ---- */
@@ -306,8 +287,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_bytes_for_any_thread_count),
         cmocka_unit_test(same_tree_for_any_order),
-        cmocka_unit_test(naive_sweep_finds_the_tree_of_the_fast_one),
-        cmocka_unit_test(naive_sweep_stops_when_told),
+        cmocka_unit_test(sweep_finds_the_splits_of_the_quadratic_search),
         cmocka_unit_test(sah_is_better_than_medians),
         cmocka_unit_test(sweeping_is_as_good_as_bins),
         cmocka_unit_test(no_tree_is_one_box_for_all),

@@ -2,7 +2,6 @@
    surface. */
 #include <unistd.h>
 
-#include "accel/bvh_file.h"
 #include "accel_fixture.h"
 #include "base/array.h"
 #include "sphere_fixture.h"
@@ -46,13 +45,9 @@ static void check_builders(struct scene *scene, const char *label)
     static struct gpu_ray rays[RAYS];
     static struct gpu_hit wanted[RAYS];
     static const struct bvh_params ways[] = {
-        {.builder = BVH_BINNED},
-        {.builder = BVH_BINNED, .bins = 7, .leaf_limit = 15},
-        {.builder = BVH_MEDIAN},
-        {.builder = BVH_SWEEP},
-        {.builder = BVH_SPATIAL},
-        {.builder = BVH_SWEEP_NAIVE},
-        {.builder = BVH_BINNED, .optimize = true},
+        {.builder = BVH_BINNED},  {.builder = BVH_BINNED, .bins = 7, .leaf_limit = 15},
+        {.builder = BVH_MEDIAN},  {.builder = BVH_SWEEP},
+        {.builder = BVH_SPATIAL}, {.builder = BVH_BINNED, .optimize = true},
         {.builder = BVH_NONE},
     };
     uint32_t hits = 0;
@@ -297,34 +292,6 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
     }
 }
 
-static void trees_of_spheres_are_kept_in_files(void **state)
-{
-    (void)state;
-    char path[] = "/tmp/whit_accel_sphere_XXXXXX", last[256] = "";
-    const struct log log = {.fn = note, .user = last, .level = WHIT_LOG_ERROR};
-    int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
-    random_state = 6;
-    struct scene *scene = sphere_scene(scattered_spheres(200, 1.0, 0.2), true);
-    struct accel *built, *read = NULL;
-    assert_int_equal(accel_create(&silent, scene, NULL, &built), WHIT_OK);
-    assert_int_equal(bvh_file_write(built, path), WHIT_OK);
-    const struct accel_params from_file = {.tree_file = path, .validate = true};
-    assert_int_equal(accel_create(&silent, scene, &from_file, &read), WHIT_OK);
-    assert_int_equal(read->node_count, built->node_count);
-    assert_memory_equal(read->nodes, built->nodes, built->node_count * sizeof *built->nodes);
-    assert_memory_equal(read->triangles, built->triangles,
-                        built->record_count * sizeof *built->triangles);
-    accel_destroy(read);
-    scene->meshes[0].spheres[7] *= 1.5f;
-    assert_int_equal(accel_create(&log, scene, &from_file, &read), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(last, "trees of another scene"));
-    accel_destroy(built);
-    scene_destroy(scene);
-    unlink(path);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,7 +300,6 @@ int main(void)
         cmocka_unit_test(hits_are_those_of_double),
         cmocka_unit_test(rays_leave_their_sphere),
         cmocka_unit_test(flat_keeps_spheres_that_stay_spheres),
-        cmocka_unit_test(trees_of_spheres_are_kept_in_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

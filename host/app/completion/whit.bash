@@ -8,7 +8,7 @@ _whit() {
     else
         case $previous in
         --aa) words="1 4 16 64" ;;
-        --build) words="binned median sweep spatial sweep-naive binned+opt sweep+opt spatial+opt" ;;
+        --build) words="binned median sweep spatial binned+opt sweep+opt spatial+opt" ;;
         --effects) words="auto all" ;;
         --instances) words="auto on off" ;;
         --instance-build) words="sah median" ;;
