@@ -194,22 +194,30 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
     copy3(info->color, light->color);
 }
 
+static const char *camera_kind_name(enum scene_camera_kind kind)
+{
+    switch (kind) {
+    case SCENE_CAMERA_PERSPECTIVE:
+        return "perspective";
+    case SCENE_CAMERA_ORTHOGRAPHIC:
+        return "orthographic";
+    case SCENE_CAMERA_PANORAMA:
+        return "panorama";
+    }
+    return "";
+}
+
 void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
 {
     *info = (whit_camera_info){.name = "", .kind = ""};
     if (index >= handle->pose.camera_count)
         return;
     const struct scene_camera *camera = &handle->pose.cameras[index];
-    static const char *const kinds[] = {
-        [SCENE_CAMERA_PERSPECTIVE] = "perspective",
-        [SCENE_CAMERA_ORTHOGRAPHIC] = "orthographic",
-        [SCENE_CAMERA_PANORAMA] = "panorama",
-    };
     bool perspective = camera->kind == SCENE_CAMERA_PERSPECTIVE;
     bool orthographic = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC;
     *info = (whit_camera_info){
         .name = or_empty(camera->name),
-        .kind = kinds[camera->kind],
+        .kind = camera_kind_name(camera->kind),
         .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
         .height = orthographic ? (double)camera->height : 0.0,
         .lens_radius = (double)camera->lens_radius,

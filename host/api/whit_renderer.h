@@ -178,7 +178,9 @@ typedef struct whit_share {
     uint32_t material; /* of the scene */
     double share;      /* 0..1 */
 } whit_share;
-#define WHIT_SHARES 24
+#define WHIT_SHARES        24
+
+#define WHIT_SAMPLE_LEVELS 7
 
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
@@ -191,9 +193,9 @@ typedef struct whit_stats {
     double weight_cut_depth, weight_cut_bailout;
     /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
     double bailout_bound;
-    uint64_t pixels_by_samples[7]; /* of 1, 4, 16, ... 4096 samples */
-    uint32_t kernel_instructions;  /* SPIR-V, of its functions; see whit_renderer_get_kernel */
-    bool general;                  /* drawn by the general kernel: see params.compile_beside */
+    uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS]; /* of 1, 4, 16, ... 4096 samples */
+    uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
+    bool general;                 /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;
     uint32_t waits;        /* exact numerics: steps of pixels' rays that took more than floats */
     const char *load_path; /* "storage" or "texel" */

@@ -157,6 +157,14 @@ static void add_stats(const whit_stats *from, whit_stats *to)
     to->rays_shadow += from->rays_shadow;
     to->rays_reflected += from->rays_reflected;
     to->rays_refracted += from->rays_refracted;
+    to->rays_cut_depth += from->rays_cut_depth;
+    to->rays_cut_bailout += from->rays_cut_bailout;
+    to->weight_cut_depth = fmax(to->weight_cut_depth, from->weight_cut_depth);
+    to->weight_cut_bailout = fmax(to->weight_cut_bailout, from->weight_cut_bailout);
+    bool bounded = from->bailout_bound >= 0.0 && to->bailout_bound >= 0.0;
+    to->bailout_bound = bounded ? fmax(to->bailout_bound, from->bailout_bound) : -1.0;
+    for (int i = 0; i < WHIT_SAMPLE_LEVELS; ++i)
+        to->pixels_by_samples[i] += from->pixels_by_samples[i];
     to->dispatches += from->dispatches;
     to->tiles += from->tiles;
     to->waits += from->waits;
@@ -288,7 +296,7 @@ whit_result frames_render(struct job *job, const struct render_request *request,
     whit_result result = WHIT_OK;
     *sequence = (struct sequence){0};
     whit_renderer_get_stats(renderer, &sequence->stats);
-    sequence->stats.render_device_ms = 0.0;
+    sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;
     for (uint32_t i = 0; result == WHIT_OK && i < progress->count; ++i) {
         progress->done = i;
         cli_set_written(i, progress->count);

@@ -143,11 +143,12 @@ static bool read_light_values(struct reader *reader, const struct place *place,
 
 static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
 {
-    static const char *const kinds[] = {"point",     "directional", "spot",
-                                        "rectangle", "triangle",    NULL};
-    static const enum scene_light_kind codes[] = {SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL,
-                                                  SCENE_LIGHT_SPOT, SCENE_LIGHT_RECTANGLE,
-                                                  SCENE_LIGHT_TRIANGLE};
+    enum { KINDS = 5 };
+    static const char *const kinds[KINDS + 1] = {"point", "directional", "spot", "rectangle",
+                                                 "triangle"};
+    static const enum scene_light_kind codes[KINDS] = {SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL,
+                                                       SCENE_LIGHT_SPOT, SCENE_LIGHT_RECTANGLE,
+                                                       SCENE_LIGHT_TRIANGLE};
     static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
     static const char *const point[] = {"position", "falloff", "range", NULL};
     static const char *const directional[] = {"direction", "target", NULL};
@@ -155,7 +156,7 @@ static bool read_light(struct reader *reader, const struct place *place, const j
                                        "range",    "inner",     "outer",  NULL};
     static const char *const rectangle[] = {"position", "u", "v", "two_sided", NULL};
     static const char *const triangle[] = {"points", "two_sided", NULL};
-    static const char *const *const own[] = {point, directional, spot, rectangle, triangle};
+    static const char *const *const own[KINDS] = {point, directional, spot, rectangle, triangle};
     uint32_t kind = SCENE_LIGHT_POINT;
     const char *name = "light";
     struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
@@ -164,7 +165,7 @@ static bool read_light(struct reader *reader, const struct place *place, const j
     if (!reader_choice(reader, place, object, "kind", kinds, &kind))
         return false;
     const char *const *lists[] = {common, own[kind]};
-    const char *foreign = reader_foreign_key(object, lists, 2, own, 5);
+    const char *foreign = reader_foreign_key(object, lists, 2, own, KINDS);
     struct place at_foreign = {place, foreign, 0};
     if (foreign)
         return reader_fail(reader, &at_foreign, "a %s light has no `%s`", kinds[kind], foreign);

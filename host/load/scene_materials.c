@@ -346,7 +346,7 @@ static bool check_keys(struct reader *reader, const struct place *place, const j
     static const char *const *const kinds[] = {phong_keys, metal_keys, unlit_keys};
     const char *const *lists[] = {common_keys, own};
     const char *color = own == unlit_keys ? "color" : own == metal_keys ? "base_color" : "diffuse";
-    const char *foreign = reader_foreign_key(value, lists, 2, kinds, 3);
+    const char *foreign = reader_foreign_key(value, lists, 2, kinds, sizeof kinds / sizeof *kinds);
     struct place here = {place, foreign, 0};
     if (!foreign)
         return reader_object_lists(reader, place, value, lists, 2);

@@ -197,21 +197,31 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
         call_by_material(out, SCENE_EFFECT_TINTED_SHADOWS, m, blends ? "alpha blend" : "");
 }
 
+/* A switch, so that a kind without an effect does not compile. */
+static enum scene_effect effect_of_light(enum scene_light_kind kind)
+{
+    switch (kind) {
+    case SCENE_LIGHT_POINT:
+        return SCENE_EFFECT_POINT_LIGHTS;
+    case SCENE_LIGHT_DIRECTIONAL:
+        return SCENE_EFFECT_DIRECTIONAL_LIGHTS;
+    case SCENE_LIGHT_SPOT:
+        return SCENE_EFFECT_SPOT_LIGHTS;
+    case SCENE_LIGHT_AREA_SAMPLE:
+    case SCENE_LIGHT_RECTANGLE:
+    case SCENE_LIGHT_TRIANGLE:
+        return SCENE_EFFECT_AREA_LIGHTS;
+    }
+    return SCENE_EFFECT_AREA_LIGHTS;
+}
+
 static void scan_light(struct scene_effects *out, const struct scene_light *light)
 {
-    static const enum scene_effect effects[] = {
-        [SCENE_LIGHT_POINT] = SCENE_EFFECT_POINT_LIGHTS,
-        [SCENE_LIGHT_DIRECTIONAL] = SCENE_EFFECT_DIRECTIONAL_LIGHTS,
-        [SCENE_LIGHT_SPOT] = SCENE_EFFECT_SPOT_LIGHTS,
-        [SCENE_LIGHT_AREA_SAMPLE] = SCENE_EFFECT_AREA_LIGHTS,
-        [SCENE_LIGHT_RECTANGLE] = SCENE_EFFECT_AREA_LIGHTS,
-        [SCENE_LIGHT_TRIANGLE] = SCENE_EFFECT_AREA_LIGHTS,
-    };
     char place[64];
     place_of(&light->origin, place, sizeof place);
     const char *by = light->made_by_whit ? ", added by whit" : "";
     const struct text_token name = text_token(light->name);
-    call(out, effects[light->kind], "light `%s`%s%s", name.text, by, place);
+    call(out, effect_of_light(light->kind), "light `%s`%s%s", name.text, by, place);
     if (any(light->color))
         call(out, SCENE_EFFECT_SHADOWS, "light `%s`%s%s", name.text, by, place);
 }

@@ -49,6 +49,16 @@ check "the recipe has the counters" has_text a.png '"rays":{"primary":6144,'
 for key in Software whit:device whit:driver whit:scene whit:scene_hash; do
     check "the recipe has $key" has_text a.png $key
 done
+# Every option that a picture can be made with is a key of the recipe, and in the table of the docs.
+expect 0 "all options of a recipe" render "$SCENES/default.json" -o all.png --size 8x8 --quiet --depth 2 \
+    --opaque-shadows --light-samples 4 --fresnel schlick --effects all,-textures --texture-limit 64 \
+    --instances on --numerics fast
+listed=$(sed -n 's/^| `whit:options` | //p' "$SCENES/../docs/cli.md")
+options=$(grep -a -o '{"width":8,[^}]*}' all.png)
+check "the recipe has fifteen keys" test "$(echo "$options" | jq 'keys | length')" -eq 15
+for key in $(echo "$options" | jq -r 'keys[]') adaptive; do
+    check "docs/cli.md names $key" sh -c 'echo "$1" | grep -q "\b$2\b"' - "$listed" "$key"
+done
 cp "$CUBE" "it's a cube.json"
 expect 0 "a name with a quote" render "it's a cube.json" -o q.exr --size 8x8 --quiet
 check "is quoted for the shell" has_text q.exr "whit render 'it'\\''s a cube.json' -o whit.exr"
