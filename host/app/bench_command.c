@@ -18,19 +18,20 @@ enum bench_id {
 };
 
 static const struct cli_option options[] = {
-    {ID_QUICK, "quick", NULL, "tiny pictures and few runs: shows that it works, no more"},
-    {ID_RUNS, "runs", "N", "of each case, 1 to 99 (7; quick: 2)"},
-    {ID_JSON, "json", "FILE", "also write all figures as JSON"},
-    {ID_SCENES, "scenes", "FOLDER", "where whit's scenes are (./scenes, or beside the program)"},
-    {CLI_GONE, "naive-limit", NULL, "is gone with the builder sweep-naive"},
+    {ID_QUICK, "quick", NULL, "tiny pictures and few runs: shows that it works, no more", NULL},
+    {ID_RUNS, "runs", "N", "of each case, 1 to 99 (7; quick: 2)", NULL},
+    {ID_JSON, "json", "FILE", "also write all figures as JSON", NULL},
+    {ID_SCENES, "scenes", "FOLDER", "where whit's scenes are (./scenes, or beside the program)",
+     NULL},
+    {CLI_GONE, "naive-limit", NULL, "is gone with the builder sweep-naive", NULL},
     {ID_PLOT, "plot", "FILE.svg",
-     "rays, frame, start: also draw how far each row is from what it must"},
-    {ID_AGAINST, "against", "PROGRAM", "frame, start: another whit, timed in turns"},
-    {ID_KEEP, "keep", "FOLDER", "rays: leave rays, triangles and hits there"},
-    {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},
-    {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP},
-    {'q', "quiet", NULL, "no progress"},
-    {0, NULL, NULL, NULL},
+     "rays, frame, start: also draw how far each row is from what it must", NULL},
+    {ID_AGAINST, "against", "PROGRAM", "frame, start: another whit, timed in turns", NULL},
+    {ID_KEEP, "keep", "FOLDER", "rays: leave rays, triangles and hits there", NULL},
+    {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)", NULL},
+    {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP, NULL},
+    {'q', "quiet", NULL, "no progress", NULL},
+    {0},
 };
 
 static const struct bench_kind {

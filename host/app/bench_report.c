@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/bench_section.h"
+#include "settings/values.h"
 
 /* What the report says; it names no machine like this one. */
 static const double report_cube_fps[2] = {120.0, 40.0}; /* with a tree, without */
@@ -242,13 +243,14 @@ static whit_result orders(struct bench *bench)
     struct section section;
     const whit_accel_params params = {.bins = 7};
     struct bench_case cases[] = {
-        {.label = "basic", .traversal = WHIT_TRAVERSAL_BASIC},
-        {.label = "distance", .traversal = WHIT_TRAVERSAL_DISTANCE},
-        {.label = "sign", .traversal = WHIT_TRAVERSAL_SIGN},
+        {.traversal = WHIT_TRAVERSAL_BASIC},
+        {.traversal = WHIT_TRAVERSAL_DISTANCE},
+        {.traversal = WHIT_TRAVERSAL_SIGN},
     };
     for (uint32_t i = 0; i < CASES(cases); ++i) {
         cases[i].scene = &scene;
         cases[i].accel_params = params;
+        cases[i].label = value_word(values_traversal, (int)cases[i].traversal);
     }
     section_begin(&section, bench, "orders", CASES(cases) * (3 + bench->runs));
     whit_result result = bench_load(bench, "8k", false, &scene);

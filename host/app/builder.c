@@ -6,21 +6,14 @@
 
 #include "app/job.h"
 
-static const struct {
-    const char *name;
-    whit_build build;
-} builders[] = {
-    {"binned", WHIT_BUILD_BINNED},   {"median", WHIT_BUILD_MEDIAN}, {"sweep", WHIT_BUILD_SWEEP},
-    {"spatial", WHIT_BUILD_SPATIAL}, {"none", WHIT_BUILD_NONE},
-};
-enum { BUILDER_COUNT = sizeof builders / sizeof builders[0], TEXT_MAX = 100 };
+enum { TEXT_MAX = 100 };
 
 static bool refuse(struct cli_reader *reader, const char *text)
 {
-    return cli_misuse(reader,
-                      "--%s `%s`: one of binned, median, sweep, spatial is needed, "
-                      "with +opt behind it or not",
-                      reader->option->name, text);
+    char list[80];
+    return cli_misuse(reader, "--%s `%s`: one of %s is needed, with +opt behind it or not",
+                      reader->option->name, text,
+                      value_list(values_build, ", ", list, sizeof list));
 }
 
 /* A number that ends at the end of the text, or at a comma when `*rest` is wanted. */
@@ -96,22 +89,17 @@ bool job_read_build(struct cli_reader *reader, const char *text, struct job_buil
     char *numbers = strchr(word, ':');
     if (numbers)
         *numbers++ = 0;
-    for (uint32_t i = 0; i < BUILDER_COUNT; ++i) {
-        if (builders[i].build == WHIT_BUILD_NONE || strcmp(builders[i].name, word) != 0)
-            continue;
-        out->build = builders[i].build;
-        return !numbers || read_numbers(reader, text, numbers, out);
-    }
-    return refuse(reader, text);
+    uint32_t found = value_find(values_build, word);
+    if (found == WHIT_NONE)
+        return refuse(reader, text);
+    out->build = (whit_build)values_build[found].value;
+    return !numbers || read_numbers(reader, text, numbers, out);
 }
 
 void job_build_name(const struct job_build *build, char name[JOB_BUILD_NAME])
 {
-    const char *word = "?";
-    for (uint32_t i = 0; i < BUILDER_COUNT; ++i) {
-        if (builders[i].build == build->build)
-            word = builders[i].name;
-    }
+    const char *word =
+        build->build == WHIT_BUILD_NONE ? "none" : value_word(values_build, (int)build->build);
     char numbers[64] = "";
     if (build->bins)
         snprintf(numbers, sizeof numbers, ":%u", build->bins);

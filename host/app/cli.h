@@ -25,11 +25,12 @@ enum { CLI_DEVELOPER = 1000 };
 /* The id of an option that is gone; `help` says what stands in its place. */
 enum { CLI_GONE = CLI_DEVELOPER - 2 };
 
-/* One long option; `value` names its argument, NULL when it takes none. `help` may have several
-   lines; NULL: it is never listed. */
+/* One long option. `value` names its argument; NULL: it is one of the words of `values`, or there
+   is none. `help` may have several lines. */
 struct cli_option {
     int id; /* > 0; also the short option when it is a character */
     const char *name, *value, *help;
+    const struct setting_value *values; /* what the argument may be, or begin with; or NULL */
 };
 
 /* A subcommand. Its options end with a zeroed one; --help is added to them, and --help-all where
@@ -79,7 +80,9 @@ bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint
 bool cli_bytes(struct cli_reader *reader, uint64_t *out);
 bool cli_number(struct cli_reader *reader, double least, double most, double *out);
 bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height);
-bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out);
+/* One of the option's `values`. */
+bool cli_choice(struct cli_reader *reader, int *out);
+bool cli_choice_unsigned(struct cli_reader *reader, uint32_t *out);
 
 /* Misuse when `path` is `-`, which other programs take for a pipe; `hint` says what to write. */
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);

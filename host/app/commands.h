@@ -55,51 +55,59 @@ enum picture_id {
     PICTURE_ID_END,
 };
 #define PICTURE_OPTION_PLACE                                                                       \
-    {PICTURE_SIZE, "size", "WxH", "pixels (640x480)"},                                             \
+    {PICTURE_SIZE, "size", "WxH", "pixels (640x480)", NULL},                                       \
     {                                                                                              \
         PICTURE_CAMERA, "camera", "NAME|N|numbers",                                                \
             "a camera of the scene, by name or number, or\n"                                       \
             "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"                                \
-            "vertical angle in degrees (the scene's first)"                                        \
+            "vertical angle in degrees (the scene's first)",                                       \
+            NULL                                                                                   \
     }
 #define PICTURE_OPTION_SHADING                                                                     \
     {PICTURE_AA, "aa", "1|4|16|...|4096|adaptive:X",                                               \
      "samples a pixel; adaptive: 4, where neighbours differ by\n"                                  \
-     "more than X 16, and then 64 (1)"},                                                           \
-        {PICTURE_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)"},          \
+     "more than X 16, and then 64 (1)",                                                            \
+     values_samples},                                                                              \
+        {PICTURE_DEPTH, "depth", "N", "most bounces; 0: only what is seen directly (8)", NULL},    \
         {PICTURE_BAILOUT, "bailout", "X",                                                          \
          "rays that can add less than X to a pixel are not traced;\n"                              \
-         "0: all are (1/1024)"},                                                                   \
-        {PICTURE_NO_SHADOWS, "no-shadows", NULL, "light reaches everything"},                      \
+         "0: all are (1/1024)",                                                                    \
+         NULL},                                                                                    \
+        {PICTURE_NO_SHADOWS, "no-shadows", NULL, "light reaches everything", NULL},                \
         {PICTURE_OPAQUE_SHADOWS, "opaque-shadows", NULL,                                           \
-         "glass and blended surfaces cast full shadows"},                                          \
-        {PICTURE_LIGHT_SAMPLES, "light-samples", "1|4|16|64",                                      \
-         "points of an area light that are tested (16)"},                                          \
-        {PICTURE_FRESNEL, "fresnel", "exact|schlick",                                              \
-         "or Schlick's approximation in its place (exact)"},                                       \
+         "glass and blended surfaces cast full shadows", NULL},                                    \
+        {PICTURE_LIGHT_SAMPLES, "light-samples", NULL,                                             \
+         "points of an area light that are tested (16)", values_light_samples},                    \
+        {PICTURE_FRESNEL, "fresnel", NULL, "or Schlick's approximation in its place (exact)",      \
+         values_fresnel},                                                                          \
     {                                                                                              \
         PICTURE_EFFECTS, "effects", "auto|all|+NAME,-NAME",                                        \
             "compile what the scene calls for, or everything: the\n"                               \
             "picture is the same; or more and less by name: less\n"                                \
             "changes it. Names and prices: `whit scene --effects`\n"                               \
-            "(auto)"                                                                               \
+            "(auto)",                                                                              \
+            values_effects                                                                         \
     }
 #define PICTURE_OPTION_CHOICE                                                                      \
     {PICTURE_BUDGET, "budget-ms", "T",                                                             \
      "choose the best of these settings that take at most T ms, by\n"                              \
-     "`whit cost`, which measures the scene for 20 s the first time"},                             \
+     "`whit cost`, which measures the scene for 20 s the first time",                              \
+     NULL},                                                                                        \
     {                                                                                              \
-        PICTURE_MAX_ERROR, "max-error", "E", "the cheapest ones with an RMSE of at most E"         \
+        PICTURE_MAX_ERROR, "max-error", "E", "the cheapest ones with an RMSE of at most E", NULL   \
     }
 #define PICTURE_OPTION_VIEW                                                                        \
-    {PICTURE_VIEW, "view", "color|depth|visits|boxes|tris|stack",                                  \
+    {PICTURE_VIEW, "view", NULL,                                                                   \
      "what traversals cost instead of colours: a heat map\n"                                       \
-     "(.png) or the numbers (.exr, .pfm)"},                                                        \
+     "(.png) or the numbers (.exr, .pfm)",                                                         \
+     values_view},                                                                                 \
         {PICTURE_VIEW_RAYS, "view-rays", "KIND",                                                   \
          "of primary, shadow, reflected, refracted or all rays\n"                                  \
-         "(primary)"},                                                                             \
+         "(primary)",                                                                              \
+         values_rays},                                                                             \
     {                                                                                              \
-        PICTURE_VIEW_SCALE, "view-scale", "auto|X", "the number of the brightest colour (auto)"    \
+        PICTURE_VIEW_SCALE, "view-scale", "auto|X", "the number of the brightest colour (auto)",   \
+            NULL                                                                                   \
     }
 /* False when `id` is none of them. */
 bool picture_option(struct cli_reader *reader, int id, struct render_request *request);

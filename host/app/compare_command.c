@@ -4,23 +4,6 @@
 
 enum compare_id { ID_TOLERANCE = JOB_ID_END, ID_METRIC, ID_DIFF, ID_FLIP, ID_JSON, ID_PPD };
 
-static const struct cli_option options[] = {
-    {ID_TOLERANCE, "tolerance", "X", "exit code 1 when the metric is over X"},
-    {ID_METRIC, "metric", "NAME",
-     "which one --tolerance is for, and the only one that is printed:\n"
-     "rmse relmse largest mean over differing flip (flip; of hit\n"
-     "identities differing)"},
-    {ID_DIFF, "diff", "FILE",
-     "B - A: .png as colours, blue where B is darker, brown where it is\n"
-     "brighter; .exr .pfm as linear numbers"},
-    {ID_FLIP, "flip", "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers"},
-    {ID_JSON, "json", "FILE", "all metrics as JSON"},
-    {ID_PPD, "ppd", "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)"},
-    JOB_OPTION_DECODING,
-    {'q', "quiet", NULL, "print nothing but errors"},
-    {0, NULL, NULL, NULL},
-};
-
 enum metric {
     METRIC_RMSE,
     METRIC_RELMSE,
@@ -31,8 +14,30 @@ enum metric {
     METRIC_FLIP,
     METRIC_COUNT
 };
-static const char *const metric_names[] = {"rmse", "relmse",    "largest", "mean",
-                                           "over", "differing", "flip",    NULL};
+static const struct setting_value values_metric[] = {
+    {"rmse", METRIC_RMSE, NULL},       {"relmse", METRIC_RELMSE, NULL},
+    {"largest", METRIC_LARGEST, NULL}, {"mean", METRIC_MEAN, NULL},
+    {"over", METRIC_OVER, NULL},       {"differing", METRIC_DIFFERING, NULL},
+    {"flip", METRIC_FLIP, NULL},       {0}};
+
+static const struct cli_option options[] = {
+    {ID_TOLERANCE, "tolerance", "X", "exit code 1 when the metric is over X", NULL},
+    {ID_METRIC, "metric", "NAME",
+     "which one --tolerance is for, and the only one that is printed:\n"
+     "rmse relmse largest mean over differing flip (flip; of hit\n"
+     "identities differing)",
+     values_metric},
+    {ID_DIFF, "diff", "FILE",
+     "B - A: .png as colours, blue where B is darker, brown where it is\n"
+     "brighter; .exr .pfm as linear numbers",
+     NULL},
+    {ID_FLIP, "flip", "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers", NULL},
+    {ID_JSON, "json", "FILE", "all metrics as JSON", NULL},
+    {ID_PPD, "ppd", "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)", NULL},
+    JOB_OPTION_DECODING,
+    {'q', "quiet", NULL, "print nothing but errors", NULL},
+    {0},
+};
 
 struct compare {
     const char *paths[2];
@@ -85,7 +90,7 @@ static void print_metric(const struct compare *compare, uint32_t metric)
 {
     const whit_difference *found = &compare->found;
     unsigned long long pixels = found->pixel_count;
-    printf("  %-10s %.6g", metric_names[metric], value_of(compare, metric));
+    printf("  %-10s %.6g", value_word(values_metric, (int)metric), value_of(compare, metric));
     if (metric == METRIC_MEAN)
         printf("  (B - A: red %.6g, green %.6g, blue %.6g)", found->mean[0], found->mean[1],
                found->mean[2]);
@@ -165,7 +170,7 @@ static whit_result save_json(const struct compare *compare)
         document_number(flip, "pixels_per_degree", resolution_of(compare));
     }
     document_put(root, "flip", flip);
-    document_text(root, "metric", metric_names[compare->metric]);
+    document_text(root, "metric", value_word(values_metric, (int)compare->metric));
     document_number(root, "tolerance", compare->has_tolerance ? compare->tolerance : (double)NAN);
     document_put(root, "within",
                  compare->has_tolerance ? json_boolean(is_within(compare)) : json_null());
@@ -192,10 +197,10 @@ static int judge(const struct compare *compare)
     double value = value_of(compare, compare->metric);
     if (fabs(value) <= compare->tolerance)
         cli_error("%s is within %.6g, but leaves out %llu pixels that differ and are not finite",
-                  metric_names[compare->metric], compare->tolerance,
+                  value_word(values_metric, (int)compare->metric), compare->tolerance,
                   (unsigned long long)found->nonfinite_differing);
     else
-        cli_error("%s is %.6g, over %.6g", metric_names[compare->metric], value,
+        cli_error("%s is %.6g, over %.6g", value_word(values_metric, (int)compare->metric), value,
                   compare->tolerance);
     return EXIT_DIFFERS;
 }
@@ -269,7 +274,7 @@ static whit_result check_pair(struct compare *compare)
         cli_error("--%s: hit identities have no colours", compare->diff ? "diff" : "flip");
     else if (a.integers && compare->has_metric && compare->metric != METRIC_DIFFERING)
         cli_error("--metric %s: of hit identities there is only `differing`",
-                  metric_names[compare->metric]);
+                  value_word(values_metric, (int)compare->metric));
     else
         return WHIT_OK;
     return WHIT_ERROR_INPUT;
@@ -349,7 +354,7 @@ static void read_option(struct cli_reader *reader, int id, struct compare *compa
     if (id == ID_TOLERANCE)
         compare->has_tolerance = cli_number(reader, 0.0, 1e30, &compare->tolerance);
     else if (id == ID_METRIC)
-        compare->has_metric = cli_choice(reader, metric_names, &compare->metric);
+        compare->has_metric = cli_choice_unsigned(reader, &compare->metric);
     else if (id == ID_DIFF)
         compare->diff = reader->value;
     else if (id == ID_FLIP)

@@ -24,29 +24,35 @@ enum { RAYS_QUICK = 2000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16 };
 /* Drivers cannot be stopped while they compile a kernel, and some take that long. */
 enum { GRACE_MS = 20000 };
 
+static const struct setting_value values_metric[] = {
+    {"rmse", COST_RMSE, NULL}, {"flip", COST_FLIP, NULL}, {0}};
+static const struct setting_value values_reference_samples[] = {
+    {"4", 4, NULL}, {"16", 16, NULL}, {"64", 64, NULL}, {0}};
+
 static const struct cli_option options[] = {
     PICTURE_OPTION_PLACE,
     JOB_OPTION_TIME,
-    {ID_HTML, "html", "FILE", "the report as one page, with plots and pictures"},
-    {ID_JSON, "json", "FILE", "all figures as JSON"},
-    {ID_CSV, "csv", "FILE", "a row for each setting"},
-    {ID_MARKDOWN, "markdown", "FILE", "the tables as Markdown"},
-    {ID_UNDER, "under", "E", "find the cheapest settings with an error of at most E"},
-    {ID_WITHIN, "within", "T", "find the best picture that takes at most T ms"},
-    {ID_METRIC, "metric", "rmse|flip", "what E is (rmse)"},
-    {ID_QUICK, "quick", NULL, "20 s, 16 samples, 2000 rays"},
-    {ID_SPEND, "spend", "S", "seconds that it may take, more or less (150)"},
-    {ID_SAMPLES, "samples", "4|16|64",
-     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)"},
-    {ID_RAYS, "rays", "N", "of each of the two sets; 0: none (20000)"},
-    {ID_KNOBS, "knobs", "NAME,...", "only these (all that the scene calls for)"},
-    {ID_COMPARE, "compare", NULL, "two files of --json in place of the scene: what differs"},
+    {ID_HTML, "html", "FILE", "the report as one page, with plots and pictures", NULL},
+    {ID_JSON, "json", "FILE", "all figures as JSON", NULL},
+    {ID_CSV, "csv", "FILE", "a row for each setting", NULL},
+    {ID_MARKDOWN, "markdown", "FILE", "the tables as Markdown", NULL},
+    {ID_UNDER, "under", "E", "find the cheapest settings with an error of at most E", NULL},
+    {ID_WITHIN, "within", "T", "find the best picture that takes at most T ms", NULL},
+    {ID_METRIC, "metric", NULL, "what E is (rmse)", values_metric},
+    {ID_QUICK, "quick", NULL, "20 s, 16 samples, 2000 rays", NULL},
+    {ID_SPEND, "spend", "S", "seconds that it may take, more or less (150)", NULL},
+    {ID_SAMPLES, "samples", NULL,
+     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",
+     values_reference_samples},
+    {ID_RAYS, "rays", "N", "of each of the two sets; 0: none (20000)", NULL},
+    {ID_KNOBS, "knobs", "NAME,...", "only these (all that the scene calls for)", NULL},
+    {ID_COMPARE, "compare", NULL, "two files of --json in place of the scene: what differs", NULL},
     JOB_OPTION_DEVICE,
     JOB_OPTION_FOREIGN,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
-    {'q', "quiet", NULL, "no notes, no progress, only errors"},
-    {0, NULL, NULL, NULL},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
+    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
+    {0},
 };
 
 /* ---- Options ---- */
@@ -75,14 +81,6 @@ static void read_knobs(struct cli_reader *reader, uint64_t *knobs)
     }
 }
 
-static void read_samples(struct cli_reader *reader, uint32_t *samples)
-{
-    static const char *const choices[] = {"4", "16", "64", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        *samples = 4u << (2 * choice);
-}
-
 /* False when it is none of the files. */
 static bool read_file(struct cli_reader *reader, int id, struct cost *cost)
 {
@@ -98,7 +96,6 @@ static bool read_file(struct cli_reader *reader, int id, struct cost *cost)
 
 static void read_option(struct cli_reader *reader, int id, struct cost *cost)
 {
-    static const char *const metrics[] = {"rmse", "flip", NULL};
     struct render_request request = {.picture = cost->picture};
     if (read_file(reader, id, cost) || job_option(&cost->job, reader, id))
         return;
@@ -110,7 +107,7 @@ static void read_option(struct cli_reader *reader, int id, struct cost *cost)
         cli_number(reader, 1e-3, 1e9, &cost->within_ms);
         break;
     case ID_METRIC:
-        cli_choice(reader, metrics, &cost->metric);
+        cli_choice_unsigned(reader, &cost->metric);
         break;
     case ID_QUICK:
         cost->quick = true;
@@ -119,7 +116,7 @@ static void read_option(struct cli_reader *reader, int id, struct cost *cost)
         cli_number(reader, 0.1, 1e6, &cost->request.seconds);
         break;
     case ID_SAMPLES:
-        read_samples(reader, &cost->request.samples_most);
+        cli_choice_unsigned(reader, &cost->request.samples_most);
         break;
     case ID_RAYS:
         if (cli_unsigned(reader, 0, RAYS_MOST, &cost->request.rays) && cost->request.rays == 0)

@@ -277,7 +277,7 @@ static void find_setting(struct cost_row *row)
     const struct knob *table = knob_table(&count);
     row->knob_index = row->setting_index = WHIT_NONE;
     for (uint32_t s = 0; index != WHIT_NONE && s < knob_setting_count(&table[index]); ++s) {
-        if (strcmp(table[index].settings[s].name, row->setting) == 0) {
+        if (strcmp(knob_setting_name(&table[index], s), row->setting) == 0) {
             row->knob_index = index;
             row->setting_index = s;
             row->change = table[index].change;

@@ -107,7 +107,7 @@ static void put_convergence(struct page *page, const struct cost_report *report,
             continue;
         const struct knob_setting *setting =
             &table->settings[is_usual ? table->usual : row->setting_index];
-        if (strspn(setting->name, "0123456789") != strlen(setting->name))
+        if (table->values || strspn(setting->name, "0123456789") != strlen(setting->name))
             continue;
         /* The same samples as the reference's say nothing of how error falls. */
         if (!alone && setting->value >= report->reference_samples)

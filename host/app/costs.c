@@ -1,9 +1,7 @@
 /* The costs of a picture by kind of ray, for --stats. */
 #include "app/document.h"
 #include "app/view_image.h"
-
-static const char *const kind_names[WHIT_RAY_KINDS] = {"primary", "shadow", "reflected",
-                                                       "refracted"};
+#include "settings/values.h"
 
 enum { FIGURES = 7 };
 static const char *const figure_names[FIGURES] = {"pairs",     "boxes", "leaves", "triangles",
@@ -58,7 +56,7 @@ void costs_print(const whit_stats *stats)
     putchar('\n');
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
         if (stats->costs[kind].rays)
-            print_kind(kind_names[kind], &stats->costs[kind]);
+            print_kind(value_word(values_rays, kind), &stats->costs[kind]);
     }
 }
 
@@ -83,6 +81,6 @@ json_t *costs_document(const whit_stats *stats)
 {
     json_t *costs = document_object();
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
-        document_put(costs, kind_names[kind], kind_document(&stats->costs[kind]));
+        document_put(costs, value_word(values_rays, kind), kind_document(&stats->costs[kind]));
     return costs;
 }

@@ -8,8 +8,8 @@
 enum { ID_JSON = JOB_ID_END };
 
 static const struct cli_option options[] = {
-    {ID_JSON, "json", NULL, "everything as JSON"},
-    {0, NULL, NULL, NULL},
+    {ID_JSON, "json", NULL, "everything as JSON", NULL},
+    {0},
 };
 
 static json_t *device_document(const whit_device_info *info)

@@ -6,28 +6,31 @@ enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS, ID_CASE, ID_VIEW, ID_SIZ
 
 enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
 
+static const struct setting_value values_hard_view[] = {{"leaks", 1, NULL}, {0}};
+
 static const struct cli_option options[] = {
-    {JOB_NUMERICS, "numerics", "fast|watertight|exact", "this level alone (all three)"},
-    {ID_RAYS, "rays", "N", "rays of each row of the table, at least 512 (20000)"},
-    {ID_CASE, "case", "TEXT", "of the built-in cases those with TEXT in their name"},
-    {ID_QUICK, "quick", NULL, "512 rays a row"},
-    {ID_JSON, "json", "FILE", "the table as JSON"},
-    {ID_VIEW, "view", "leaks",
+    {JOB_NUMERICS, "numerics", NULL, "this level alone (all three)", values_numerics},
+    {ID_RAYS, "rays", "N", "rays of each row of the table, at least 512 (20000)", NULL},
+    {ID_CASE, "case", "TEXT", "of the built-in cases those with TEXT in their name", NULL},
+    {ID_QUICK, "quick", NULL, "512 rays a row", NULL},
+    {ID_JSON, "json", "FILE", "the table as JSON", NULL},
+    {ID_VIEW, "view", NULL,
      "instead of the table a picture of what camera rays hit:\n"
      "red where that is wrong, yellow where another triangle is\n"
-     "within the error of floats; by itself of watertight"},
-    {'o', "output", "FILE", "of the picture: .png .exr .pfm"},
-    {ID_SIZE, "size", "WxH", "of the picture (640x480)"},
-    {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`"},
+     "within the error of floats; by itself of watertight",
+     values_hard_view},
+    {'o', "output", "FILE", "of the picture: .png .exr .pfm", NULL},
+    {ID_SIZE, "size", "WxH", "of the picture (640x480)", NULL},
+    {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`", NULL},
     JOB_OPTION_TIME,
     JOB_OPTION_INSTANCES,
     JOB_OPTION_DEVICE,
     JOB_OPTION_FOREIGN,
-    {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)"},
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
-    {'q', "quiet", NULL, "no notes, no progress, only errors"},
-    {0, NULL, NULL, NULL},
+    {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)", NULL},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
+    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
+    {0},
 };
 
 static whit_result prepare(struct job *job)
@@ -90,8 +93,8 @@ static int work_view(struct hard *hard)
     printf(
         "%s: %s: %llu pixel%s wrong (red), %llu with another triangle within the error of floats "
         "(yellow)\n",
-        hard->output, job_numerics_name(hard->job.numerics), (unsigned long long)wrong,
-        wrong == 1 ? "" : "s", (unsigned long long)other);
+        hard->output, value_word(values_numerics, (int)hard->job.numerics),
+        (unsigned long long)wrong, wrong == 1 ? "" : "s", (unsigned long long)other);
     int status = cli_finish_stdout(EXIT_FINE);
     if (status == EXIT_FINE && wrong && hard->job.numerics != WHIT_NUMERICS_FAST)
         status = EXIT_DIFFERS;
@@ -122,14 +125,13 @@ static int work(struct hard *hard)
 
 static void read_option(struct cli_reader *reader, int id, struct hard *hard)
 {
-    static const char *const views[] = {"leaks", NULL};
-    uint32_t choice;
+    int choice;
     if (id == ID_JSON)
         hard->json_path = reader->value;
     else if (id == ID_CASE)
         hard->params.filter = reader->value;
     else if (id == ID_VIEW)
-        hard->drawn = cli_choice(reader, views, &choice);
+        hard->drawn = cli_choice(reader, &choice);
     else if (id == 'o')
         hard->output = reader->value;
     else if (id == ID_SIZE)

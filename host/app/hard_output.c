@@ -59,7 +59,7 @@ static void print_row(const whit_hard_row *row, const whit_hard_row *before, str
     bool again =
         before && strcmp(before->name, row->name) == 0 && strcmp(before->place, row->place) == 0;
     printf("%-*s%-*s%-12s", widths.name, again ? "" : row->name, widths.place,
-           again ? "" : row->place, job_numerics_name(row->numerics));
+           again ? "" : row->place, value_word(values_numerics, (int)row->numerics));
     printf("%9llu%8llu%7llu%8llu%8llu%7llu%8llu%6llu%10.3g", whole(row->rays), whole(row->misses),
            whole(row->leaks), whole(row->false_hits), whole(row->other_ids), whole(row->wrong),
            whole(row->double_hits), whole(row->self_hits), row->ulp_most);
@@ -137,7 +137,7 @@ static json_t *row_document(const whit_hard_row *row)
     json_t *out = document_object();
     document_text(out, "case", row->name);
     document_text(out, "place", row->place);
-    document_text(out, "numerics", job_numerics_name(row->numerics));
+    document_text(out, "numerics", value_word(values_numerics, (int)row->numerics));
     document_count(out, "rays", row->rays);
     document_count(out, "hits", row->hits);
     document_count(out, "misses", row->misses);

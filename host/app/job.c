@@ -6,88 +6,25 @@
 
 enum { NOTES_SHOWN = 20, FRAMES_MAX = 1000000000 };
 
+const struct setting_value job_stats_values[] = {
+    {"text", JOB_STATS_TEXT, NULL}, {"json", JOB_STATS_JSON, NULL}, {0}};
+
 void job_init(struct job *job)
 {
     *job = (struct job){.fps = 24.0, .start_ms = whit_clock_ms()};
 }
 
-/* In the order of whit_instances. */
-static const char *const instances_names[] = {"auto", "on", "off", NULL};
-
-const char *job_instances_name(whit_instances instances)
-{
-    return instances_names[instances];
-}
-
-static void read_instances(struct job *job, struct cli_reader *reader)
-{
-    uint32_t choice;
-    if (cli_choice(reader, instances_names, &choice))
-        job->instances = (whit_instances)choice;
-}
-
-static void read_instance_build(struct job *job, struct cli_reader *reader)
-{
-    static const char *const choices[] = {"sah", "median", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->instance_build = choice ? WHIT_BUILD_MEDIAN : WHIT_BUILD_BINNED;
-}
-
-static void read_instance_update(struct job *job, struct cli_reader *reader)
-{
-    static const char *const choices[] = {"rebuild", "refit", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->instance_refit = choice == 1;
-}
-
-static void read_traversal(struct job *job, struct cli_reader *reader)
-{
-    static const char *const choices[] = {"distance", "sign", "basic", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->traversal = choice == 0   ? WHIT_TRAVERSAL_DISTANCE
-                         : choice == 1 ? WHIT_TRAVERSAL_SIGN
-                                       : WHIT_TRAVERSAL_BASIC;
-}
-
-/* In the order of whit_numerics. */
-static const char *const numerics_names[] = {"watertight", "fast", "exact", NULL};
-
-const char *job_numerics_name(whit_numerics numerics)
-{
-    return numerics_names[numerics];
-}
-
-static void read_numerics(struct job *job, struct cli_reader *reader)
-{
-    uint32_t choice;
-    if (cli_choice(reader, numerics_names, &choice))
-        job->numerics = choice == 0   ? WHIT_NUMERICS_WATERTIGHT
-                        : choice == 1 ? WHIT_NUMERICS_FAST
-                                      : WHIT_NUMERICS_EXACT;
-}
-
 static void read_load_path(struct job *job, struct cli_reader *reader)
 {
-    static const char *const choices[] = {"auto", "storage", "texel", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->load_path = choice ? choices[choice] : NULL;
-}
-
-static void read_stats(struct job *job, struct cli_reader *reader)
-{
-    static const char *const choices[] = {"text", "json", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        job->stats = choice ? JOB_STATS_JSON : JOB_STATS_TEXT;
+    int choice;
+    if (cli_choice(reader, &choice))
+        job->load_path = choice ? value_word(values_load_path, choice) : NULL;
 }
 
 /* Of trees; false when `id` is something else. */
 static bool tree_option(struct job *job, struct cli_reader *reader, int id)
 {
+    int choice;
     switch (id) {
     case JOB_BUILD:
         job->has_build = job_read_build(reader, reader->value, &job->build);
@@ -99,19 +36,24 @@ static bool tree_option(struct job *job, struct cli_reader *reader, int id)
         cli_unsigned(reader, 1, 15, &job->leaf_limit);
         return true;
     case JOB_INSTANCES:
-        read_instances(job, reader);
+        if (cli_choice(reader, &choice))
+            job->instances = (whit_instances)choice;
         return true;
     case JOB_INSTANCE_BUILD:
-        read_instance_build(job, reader);
+        if (cli_choice(reader, &choice))
+            job->instance_build = (whit_build)choice;
         return true;
     case JOB_INSTANCE_UPDATE:
-        read_instance_update(job, reader);
+        if (cli_choice(reader, &choice))
+            job->instance_refit = choice != 0;
         return true;
     case JOB_TRAVERSAL:
-        read_traversal(job, reader);
+        if (cli_choice(reader, &choice))
+            job->traversal = (whit_traversal)choice;
         return true;
     case JOB_NUMERICS:
-        read_numerics(job, reader);
+        if (cli_choice(reader, &choice))
+            job->numerics = (whit_numerics)choice;
         return true;
     case JOB_LOAD_PATH:
         read_load_path(job, reader);
@@ -176,7 +118,7 @@ bool job_option(struct job *job, struct cli_reader *reader, int id)
         cli_number(reader, 1e-3, 1e6, &job->time_limit_s);
         return true;
     case JOB_STATS:
-        read_stats(job, reader);
+        cli_choice_unsigned(reader, &job->stats);
         return true;
     case 'q':
         job->quiet = true;

@@ -3,8 +3,10 @@
 #define APP_JOB_H
 
 #include "app/cli.h"
+#include "settings/values.h"
 
 enum job_stats { JOB_STATS_NONE, JOB_STATS_TEXT, JOB_STATS_JSON };
+extern const struct setting_value job_stats_values[];
 
 /* A builder as --build names it (builder.c); the zeroed one is the default. */
 struct job_build {
@@ -81,91 +83,97 @@ enum job_id {
 
 /* Rows of a command's table of options. */
 #define JOB_OPTION_TIME                                                                            \
-    {JOB_TIME, "time", "T", "seconds of the animation (0)"},                                       \
-        {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation"},                  \
+    {JOB_TIME, "time", "T", "seconds of the animation (0)", NULL},                                 \
+        {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation", NULL},            \
     {                                                                                              \
-        JOB_FPS, "fps", "F", "frames in a second, for --frame (24)"                                \
+        JOB_FPS, "fps", "F", "frames in a second, for --frame (24)", NULL                          \
     }
 #define JOB_NO_CACHE_HELP "keep nothing for the next run, and use nothing that was kept"
 #define JOB_OPTION_DEVICE                                                                          \
-    {JOB_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)"},             \
+    {JOB_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)", NULL},       \
     {                                                                                              \
-        JOB_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP                                          \
+        JOB_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP, NULL                                    \
     }
 /* How trees are built and walked. A command that has its own --build takes JOB_OPTION_BUILDING
    and JOB_OPTION_WALKING alone. */
 #define JOB_OPTION_INSTANCES                                                                       \
     {                                                                                              \
-        JOB_INSTANCES, "instances", "auto|on|off",                                                 \
+        JOB_INSTANCES, "instances", NULL,                                                          \
             "off: one tree over the triangles of all instances, placed\n"                          \
             "in the world; auto: where nothing moves and no mesh but a\n"                          \
-            "single ball is there twice (auto)"                                                    \
+            "single ball is there twice (auto)",                                                   \
+            values_instances                                                                       \
     }
 #define JOB_OPTION_BUILDING                                                                        \
-    {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)"}, JOB_OPTION_INSTANCES,        \
-        {JOB_INSTANCE_BUILD, "instance-build", "sah|median",                                       \
-         "how the tree over instances is built (sah)"},                                            \
+    {JOB_LEAF, "leaf", "N", "most triangles in a leaf, 1 to 15 (4)", NULL}, JOB_OPTION_INSTANCES,  \
+        {JOB_INSTANCE_BUILD, "instance-build", NULL, "how the tree over instances is built (sah)", \
+         values_instance_build},                                                                   \
     {                                                                                              \
-        JOB_INSTANCE_UPDATE, "instance-update", "rebuild|refit",                                   \
+        JOB_INSTANCE_UPDATE, "instance-update", NULL,                                              \
             "for another time: a new tree over instances, or new\n"                                \
-            "boxes for the old one (rebuild)"                                                      \
+            "boxes for the old one (rebuild)",                                                     \
+            values_instance_update                                                                 \
     }
 #define JOB_OPTION_WALKING                                                                         \
-    {JOB_TRAVERSAL, "traversal", "distance|sign|basic",                                            \
+    {JOB_TRAVERSAL, "traversal", NULL,                                                             \
      "which of two nodes comes first: the nearer, by the ray's\n"                                  \
-     "sign, as they come (distance)"},                                                             \
-        {JOB_NUMERICS, "numerics", "fast|watertight|exact",                                        \
+     "sign, as they come (distance)",                                                              \
+     values_traversal},                                                                            \
+        {JOB_NUMERICS, "numerics", NULL,                                                           \
          "what decides hits: quick tests that leak, tests that do\n"                               \
-         "not, exact arithmetic (watertight)"},                                                    \
+         "not, exact arithmetic (watertight)",                                                     \
+         values_numerics},                                                                         \
     {                                                                                              \
-        JOB_LOAD_PATH, "load-path", "auto|storage|texel", "how kernels read the trees (auto)"      \
+        JOB_LOAD_PATH, "load-path", NULL, "how kernels read the trees (auto)", values_load_path    \
     }
 #define JOB_OPTION_BUILD                                                                           \
     {JOB_BUILD, "build", "BUILDER[+opt]",                                                          \
      "how trees are built: binned[:K] with 2 to 256 bins,\n"                                       \
      "median, sweep, spatial[:ALPHA[,BUDGET]];\n"                                                  \
-     "+opt improves them by reinsertion (binned)"},                                                \
+     "+opt improves them by reinsertion (binned)",                                                 \
+     values_build},                                                                                \
     {                                                                                              \
-        JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle"                         \
+        JOB_NO_TREES, "no-bvh", NULL, "no trees: rays test every triangle", NULL                   \
     }
 #define JOB_OPTION_TREES                                                                           \
-    JOB_OPTION_BUILD, {CLI_GONE, "tree", NULL, "is gone: trees are built for each run"},           \
+    JOB_OPTION_BUILD, {CLI_GONE, "tree", NULL, "is gone: trees are built for each run", NULL},     \
         JOB_OPTION_BUILDING, JOB_OPTION_WALKING,                                                   \
     {                                                                                              \
-        JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)"                    \
+        JOB_THREADS, "threads", "N", "threads that build trees (0: one a core)", NULL              \
     }
 /* What code that reads foreign files may do. */
 #define JOB_OPTION_DECODING                                                                        \
     {JOB_IMPORT_LIMIT, "import-limit", "S",                                                        \
      "seconds of the processor for each file that foreign code\n"                                  \
-     "reads (by its size, 8 to 60); ten times that by the clock"},                                 \
+     "reads (by its size, 8 to 60); ten times that by the clock",                                  \
+     NULL},                                                                                        \
     {                                                                                              \
         JOB_REQUIRE_SANDBOX, "require-sandbox", NULL,                                              \
             "fail where such code cannot be locked in, in place of a\n"                            \
-            "warning"                                                                              \
+            "warning",                                                                             \
+            NULL                                                                                   \
     }
 /* And what these files may ask for. */
 #define JOB_OPTION_FOREIGN                                                                         \
     {JOB_ALLOW_PATH, "allow-path", "FOLDER",                                                       \
      "files of the scene may name files below FOLDER too, not\n"                                   \
-     "only below the scene's own; may be given again"},                                            \
+     "only below the scene's own; may be given again",                                             \
+     NULL},                                                                                        \
         {JOB_MEMORY_LIMIT, "memory-limit", "SIZE",                                                 \
          "refuse a scene that takes more on host and device, in bytes\n"                           \
-         "or with K, M, G (half of the machine's)"},                                               \
+         "or with K, M, G (half of the machine's)",                                                \
+         NULL},                                                                                    \
         JOB_OPTION_DECODING
 #define JOB_OPTION_LOADING                                                                         \
-    {JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)"},         \
+    {JOB_TEXTURE_LIMIT, "texture-limit", "N", "halve textures with a longer side (4096)", NULL},   \
         JOB_OPTION_FOREIGN
 #define JOB_OPTION_RUN                                                                             \
-    {JOB_STATS, "stats", "text|json", "print times, rays and figures of the trees"},               \
-        {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},          \
-        {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},             \
+    {JOB_STATS, "stats", NULL, "print times, rays and figures of the trees", job_stats_values},    \
+        {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},    \
+        {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},       \
     {                                                                                              \
-        'q', "quiet", NULL, "no notes, no progress, only errors"                                   \
+        'q', "quiet", NULL, "no notes, no progress, only errors", NULL                             \
     }
-
-const char *job_instances_name(whit_instances instances);
-const char *job_numerics_name(whit_numerics numerics);
 
 void job_init(struct job *job);
 /* False when `id` is not one of the shared options. */

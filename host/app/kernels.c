@@ -62,7 +62,7 @@ static int print_json(const struct job *job, const struct picture *picture,
     document_count(device, "subgroup_size", info->subgroup_size);
     document_put(root, "device", device);
     picture_describe(picture, job, of);
-    document_text(of, "numerics", job_numerics_name(job->numerics));
+    document_text(of, "numerics", value_word(values_numerics, (int)job->numerics));
     document_put(root, "picture", of);
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, kernel_document(&kernels[i]));

@@ -30,8 +30,9 @@ if(WHIT_BENCH) # with what tools/CMakeLists.txt adds
   target_compile_definitions(whit_program PRIVATE WHIT_BENCH)
 endif()
 # In front of the library, which it calls.
-target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_cost>)
-add_dependencies(whit_program_needs whit_cost)
+target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_settings>
+  $<TARGET_OBJECTS:whit_cost>)
+add_dependencies(whit_program_needs whit_settings whit_cost)
 target_link_libraries(whit_program_needs INTERFACE whit PkgConfig::JANSSON
   $<$<BOOL:${WHIT_VIEWER}>:Vulkan::Vulkan> m)
 target_link_libraries(whit_program PRIVATE whit_flags whit_program_needs)

@@ -10,13 +10,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "settings/values.h"
+
 enum { OPTIONS_MAX = 96, ID_HELP = 'h', ID_HELP_ALL = CLI_DEVELOPER - 1, HELP_COLUMN = 27 };
 
 /* Behind those of a command. */
 static const struct cli_option help_options[] = {
-    {ID_HELP, "help", NULL, "print this help"},
-    {ID_HELP_ALL, "help-all", NULL, "and the options for those who work on whit"},
+    {ID_HELP, "help", NULL, "print this help", NULL},
+    {ID_HELP_ALL, "help-all", NULL, "and the options for those who work on whit", NULL},
 };
+
+static bool takes_value(const struct cli_option *option)
+{
+    return option->value || option->values;
+}
+
+/* How the argument is named; "" where there is none. */
+static const char *argument_name(const struct cli_option *option, char *text, size_t text_bytes)
+{
+    if (!option->value && option->values)
+        return value_list(option->values, "|", text, text_bytes);
+    return option->value ? option->value : "";
+}
 
 static uint32_t count_options(const struct cli_command *command)
 {
@@ -101,14 +116,14 @@ static struct option *long_options(const struct cli_command *command,
         table[i] = (struct option){
             .name = option->name,
             .has_arg = option->id == CLI_GONE ? optional_argument
-                       : option->value        ? required_argument
+                       : takes_value(option)  ? required_argument
                                               : no_argument,
             .val = option->id,
         };
         table[i + 1] = (struct option){0};
         if (option->id < 128 && isalpha(option->id)) {
             *shorts++ = (char)option->id;
-            if (option->value)
+            if (takes_value(option))
                 *shorts++ = ':';
         }
     }
@@ -177,8 +192,9 @@ int cli_next(struct cli_reader *reader)
             reader->done = true;
         } else if (id == ':') {
             const struct cli_option *option = find_option(reader->command, optopt);
+            char argument[80] = "?";
             cli_misuse(reader, "option `--%s` needs a value: %s", option ? option->name : "?",
-                       option ? option->value : "?");
+                       option ? argument_name(option, argument, sizeof argument) : argument);
         } else if (id == CLI_GONE) {
             const struct cli_option *gone = option_at(reader->command, (uint32_t)place);
             cli_misuse(reader, "option `--%s` %s", gone->name, gone->help);
@@ -263,19 +279,25 @@ bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height)
     return true;
 }
 
-bool cli_choice(struct cli_reader *reader, const char *const *choices, uint32_t *out)
+bool cli_choice(struct cli_reader *reader, int *out)
 {
-    char list[256] = "";
-    for (uint32_t i = 0; choices[i]; ++i) {
-        if (strcmp(choices[i], reader->value) == 0) {
-            *out = i;
-            return true;
-        }
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
-    }
-    return cli_misuse(reader, "--%s `%s`: one of %s is needed", reader->option->name, reader->value,
-                      list);
+    const struct setting_value *values = reader->option->values;
+    char list[256];
+    uint32_t found = value_find(values, reader->value);
+    if (found == WHIT_NONE)
+        return cli_misuse(reader, "--%s `%s`: one of %s is needed", reader->option->name,
+                          reader->value, value_list(values, ", ", list, sizeof list));
+    *out = values[found].value;
+    return true;
+}
+
+bool cli_choice_unsigned(struct cli_reader *reader, uint32_t *out)
+{
+    int value;
+    bool good = cli_choice(reader, &value);
+    if (good)
+        *out = (uint32_t)value;
+    return good;
 }
 
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
@@ -285,12 +307,12 @@ bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path
 
 static void print_option(const struct cli_option *option, FILE *to)
 {
-    char left[80];
+    char left[120], argument[80];
     char letter[8] = "    ";
     if (option->id < 128 && isalpha(option->id))
         snprintf(letter, sizeof letter, "-%c, ", option->id);
-    snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, option->value ? " " : "",
-             option->value ? option->value : "");
+    snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name,
+             takes_value(option) ? " " : "", argument_name(option, argument, sizeof argument));
     if (strlen(left) + 2 > HELP_COLUMN)
         fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
     else

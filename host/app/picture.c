@@ -3,25 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool picture_read_samples(struct cli_reader *reader, uint32_t most, uint32_t *samples)
-{
-    const char *choices[] = {"1", "4", "16", "64", "256", "1024", "4096", NULL};
-    uint32_t choice;
-    for (int i = 0; i < 7; ++i)
-        choices[i] = 1u << (2 * i) <= most ? choices[i] : NULL;
-    if (!cli_choice(reader, choices, &choice))
-        return false;
-    *samples = 1u << (2 * choice);
-    return true;
-}
-
 bool picture_read_aa(struct cli_reader *reader, struct picture *picture)
 {
     static const char prefix[] = "adaptive:";
     size_t length = strlen(prefix);
     if (strncmp(reader->value, prefix, length) != 0) {
         picture->adaptive = 0.0;
-        return picture_read_samples(reader, WHIT_SAMPLES_MOST, &picture->samples);
+        return cli_choice_unsigned(reader, &picture->samples);
     }
     char *end;
     double contrast = strtod(reader->value + length, &end);
@@ -86,8 +74,7 @@ whit_renderer_params picture_request_params(const struct render_request *request
 
 bool picture_option(struct cli_reader *reader, int id, struct render_request *request)
 {
-    static const char *const fresnels[] = {"exact", "schlick", NULL};
-    uint32_t choice;
+    int choice;
     request->has_shading |= id >= PICTURE_AA && id <= PICTURE_EFFECTS;
     switch (id) {
     case PICTURE_SIZE:
@@ -112,10 +99,10 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
         request->opaque_shadows = true;
         return true;
     case PICTURE_LIGHT_SAMPLES:
-        picture_read_samples(reader, 64, &request->light_samples);
+        cli_choice_unsigned(reader, &request->light_samples);
         return true;
     case PICTURE_FRESNEL:
-        if (cli_choice(reader, fresnels, &choice))
+        if (cli_choice(reader, &choice))
             request->schlick = choice == 1;
         return true;
     case PICTURE_EFFECTS:

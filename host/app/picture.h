@@ -11,9 +11,8 @@ struct picture {
     double adaptive; /* 0: off; else `samples` is not used */
 };
 
-/* --aa, or a number of samples, of the current option; on nonsense misuse, and false. */
+/* --aa of the current option; on nonsense misuse, and false. */
 bool picture_read_aa(struct cli_reader *reader, struct picture *picture);
-bool picture_read_samples(struct cli_reader *reader, uint32_t most, uint32_t *samples);
 
 /* A renderer of the picture at the time of `job`, within what is left of its time limit. Borrows
    from both. */

@@ -10,19 +10,19 @@ enum probe_id { ID_PIXEL = PICTURE_ID_END, ID_JSON, ID_RAYS };
 enum { RAYS_MOST = 16383 };
 
 static const struct cli_option options[] = {
-    {ID_PIXEL, "pixel", "X,Y", "which one, from 0,0 at the upper left"},
-    {ID_JSON, "json", "FILE", "also write all of it as JSON"},
-    {ID_RAYS, "rays", "N", "most rays that are recorded, 1 to 16383 (16383)"},
+    {ID_PIXEL, "pixel", "X,Y", "which one, from 0,0 at the upper left", NULL},
+    {ID_JSON, "json", "FILE", "also write all of it as JSON", NULL},
+    {ID_RAYS, "rays", "N", "most rays that are recorded, 1 to 16383 (16383)", NULL},
     PICTURE_OPTION_PLACE,
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
     JOB_OPTION_LOADING,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
-    {'q', "quiet", NULL, "no notes, no progress, only errors"},
-    {0, NULL, NULL, NULL},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
+    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
+    {0},
 };
 
 static bool read_coordinate(const char **text, char end, uint32_t *out)

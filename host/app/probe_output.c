@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kinds[WHIT_RAY_KINDS] = {"primary", "shadow", "reflected", "refracted"};
-
 /* As pictures show it: 8 bits a channel, sRGB. */
 static uint32_t displayed(float linear)
 {
@@ -94,7 +92,7 @@ static void print_head(const struct probe *probe)
     const float *c = report->color;
     printf("pixel      %u,%u of %u x %u, %u sample%s, %s\n", report->x, report->y, picture->width,
            picture->height, report->samples, report->samples == 1 ? "" : "s",
-           job_numerics_name(probe->job.numerics));
+           value_word(values_numerics, (int)probe->job.numerics));
     printf("colour     %.9g %.9g %.9g linear, #%02x%02x%02x as shown\n", (double)c[0], (double)c[1],
            (double)c[2], displayed(c[0]), displayed(c[1]), displayed(c[2]));
     print_first(probe);
@@ -102,7 +100,7 @@ static void print_head(const struct probe *probe)
     printf("rays       ");
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
         uint32_t count = count_kind(report, (whit_ray_kind)kind);
-        printf("%u %s, ", count, kinds[kind]);
+        printf("%u %s, ", count, value_word(values_rays, (int)kind));
         traced += count;
     }
     for (uint32_t i = 0; i < report->ray_count; ++i) {
@@ -123,7 +121,7 @@ static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char 
                  whit_text_show(light_of(probe, ray->light).name, name, sizeof name),
                  ray->light_sample);
     else
-        snprintf(text, TEXT_MOST, "%*s%s%s", indent, "", kinds[ray->kind],
+        snprintf(text, TEXT_MOST, "%*s%s%s", indent, "", value_word(values_rays, (int)ray->kind),
                  ray->straight ? ", straight on" : "");
 }
 
@@ -261,7 +259,7 @@ static json_t *ray_document(const struct probe *probe, const whit_probe_ray *ray
 {
     json_t *out = document_object();
     bool traced = was_traced(ray);
-    document_text(out, "kind", kinds[ray->kind]);
+    document_text(out, "kind", value_word(values_rays, (int)ray->kind));
     document_flag(out, "straight", ray->straight);
     document_text(out, "end", whit_probe_end_name(ray->end));
     put_index(out, "parent", ray->parent);
@@ -313,7 +311,7 @@ whit_result probe_save_json(const struct probe *probe)
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);
     picture_describe(&probe->request.picture, &probe->job, picture);
-    document_text(picture, "numerics", job_numerics_name(probe->job.numerics));
+    document_text(picture, "numerics", value_word(values_numerics, (int)probe->job.numerics));
     document_put(out, "picture", picture);
     document_put(out, "pixel", pixel_document(probe));
     document_count(out, "differing", report->differing);

@@ -45,7 +45,6 @@ static void put_output(FILE *to, const char *output)
 /* A picture of costs shows what trees and traversals are like: they are part of it. */
 static void put_view(FILE *to, const struct job *job, const struct render_request *request)
 {
-    static const char *const traversals[] = {"distance", "sign", "basic"};
     char build[JOB_BUILD_NAME];
     job_build_name(&job->build, build);
     fprintf(to, " --view %s --view-rays %s", view_name(&request->view),
@@ -65,7 +64,7 @@ static void put_view(FILE *to, const struct job *job, const struct render_reques
         fputs(" --instance-build median", to);
     if (job->instance_refit)
         fputs(" --instance-update refit", to);
-    fprintf(to, " --traversal %s", traversals[job->traversal]);
+    fprintf(to, " --traversal %s", value_word(values_traversal, (int)job->traversal));
 }
 
 /* Only what is left out does. */
@@ -123,9 +122,9 @@ static char *command_line(const struct job *job, const struct render_request *re
         recipe_put_word(to, job->allowed[i]);
     }
     if (job->instances)
-        fprintf(to, " --instances %s", job_instances_name(job->instances));
+        fprintf(to, " --instances %s", value_word(values_instances, (int)job->instances));
     if (job->numerics)
-        fprintf(to, " --numerics %s", job_numerics_name(job->numerics));
+        fprintf(to, " --numerics %s", value_word(values_numerics, (int)job->numerics));
     if (request->view.given)
         put_view(to, job, request);
     bool lacks_memory = ferror(to) != 0;
@@ -153,9 +152,9 @@ static char *options_line(const struct job *job, const struct render_request *re
     if (job->texture_limit)
         document_count(options, "texture_limit", job->texture_limit);
     if (job->instances) /* in one tree triangles are others, by the last bit */
-        document_text(options, "instances", job_instances_name(job->instances));
+        document_text(options, "instances", value_word(values_instances, (int)job->instances));
     if (job->numerics)
-        document_text(options, "numerics", job_numerics_name(job->numerics));
+        document_text(options, "numerics", value_word(values_numerics, (int)job->numerics));
     return document_line(options);
 }
 

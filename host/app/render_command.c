@@ -17,64 +17,50 @@ enum render_id {
 
 enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
 
-static const char *const segment_choices[] = {"auto", "1", "2", NULL};
+static const struct setting_value values_segments[] = {
+    {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
 
 static const struct cli_option options[] = {
-    {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)"},
-    {ID_IDS, "ids", "FILE.exr", "also write what each pixel hits: instance, primitive"},
+    {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)", NULL},
+    {ID_IDS, "ids", "FILE.exr", "also write what each pixel hits: instance, primitive", NULL},
     PICTURE_OPTION_PLACE,
     JOB_OPTION_TIME,
     {ID_FRAMES, "frames", "A-B",
      "frames A to B of the animation, into files with the\n"
-     "number in place of ####: -o name.####.png"},
+     "number in place of ####: -o name.####.png",
+     NULL},
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_CHOICE,
     PICTURE_OPTION_VIEW,
-    {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost"},
+    {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost", NULL},
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
     JOB_OPTION_LOADING,
     JOB_OPTION_RUN,
-    {CLI_GONE, "tile", NULL, "is `--tile-size` now"},
-    {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)"},
-    {ID_PACKETS, "packets", "auto|on|off",
+    {CLI_GONE, "tile", NULL, "is `--tile-size` now", NULL},
+    {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)", NULL},
+    {ID_PACKETS, "packets", NULL,
      "whether camera rays and the shadow rays of what they meet\n"
-     "walk together; auto: where that is quicker (auto)"},
-    {ID_CLASSES, "classes", "auto|one|many",
+     "walk together; auto: where that is quicker (auto)",
+     values_packets},
+    {ID_CLASSES, "classes", NULL,
      "one: a kernel for all materials, and for camera rays and\n"
      "later ones; many: for each its own; auto: many where the\n"
-     "picture has enough rays to pay for them (auto)"},
-    {ID_SEGMENTS, "segments", "auto|1|2",
+     "picture has enough rays to pay for them (auto)",
+     values_classes},
+    {ID_SEGMENTS, "segments", NULL,
      "how many segments lists have; 2: one for each thread of\n"
-     "lavapipe (auto)"},
-    {0, NULL, NULL, NULL},
+     "lavapipe (auto)",
+     values_segments},
+    {0},
 };
-
-static void read_packets(struct cli_reader *reader, struct render_request *request)
-{
-    static const char *const choices[] = {"auto", "on", "off", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        request->packets = choice == 0   ? WHIT_PACKETS_AUTO
-                           : choice == 1 ? WHIT_PACKETS_ON
-                                         : WHIT_PACKETS_OFF;
-}
-
-static void read_classes(struct cli_reader *reader, struct render_request *request)
-{
-    static const char *const choices[] = {"auto", "one", "many", NULL};
-    uint32_t choice;
-    if (cli_choice(reader, choices, &choice))
-        request->classes = choice == 0   ? WHIT_CLASSES_AUTO
-                           : choice == 1 ? WHIT_CLASSES_ONE
-                                         : WHIT_CLASSES_MANY;
-}
 
 static void read_option(struct cli_reader *reader, int id, struct job *job,
                         struct render_request *request)
 {
     if (job_option(job, reader, id) || picture_option(reader, id, request))
         return;
+    int choice;
     switch (id) {
     case 'o':
         request->output = reader->value;
@@ -86,13 +72,15 @@ static void read_option(struct cli_reader *reader, int id, struct job *job,
         cli_unsigned(reader, 16, 512, &request->tile_size);
         break;
     case ID_PACKETS:
-        read_packets(reader, request);
+        if (cli_choice(reader, &choice))
+            request->packets = (whit_packets)choice;
         break;
     case ID_CLASSES:
-        read_classes(reader, request);
+        if (cli_choice(reader, &choice))
+            request->classes = (whit_classes)choice;
         break;
     case ID_SEGMENTS:
-        cli_choice(reader, segment_choices, &request->segments);
+        cli_choice_unsigned(reader, &request->segments);
         break;
     case ID_FRAMES:
         frames_read(reader, &request->frames);

@@ -17,33 +17,36 @@ enum scene_id {
 enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8 };
 
 static const struct cli_option options[] = {
-    {ID_JSON, "json", NULL, "everything as JSON"},
-    {ID_ALL, "all", NULL, "list every item, not only the first of each kind"},
+    {ID_JSON, "json", NULL, "everything as JSON", NULL},
+    {ID_ALL, "all", NULL, "list every item, not only the first of each kind", NULL},
     {ID_TRIANGLES, "triangles", "FILE",
      "write every world-space triangle: little-endian records\n"
-     "float v[9]; uint32 instance; uint32 primitive"},
+     "float v[9]; uint32 instance; uint32 primitive",
+     NULL},
     {ID_EFFECTS, "effects", NULL,
      "what each effect costs, measured on the device: times\n"
      "with and without it in turns, and what the picture\n"
      "would lose; --size, --camera, --aa and --depth are those\n"
-     "of `whit render`"},
+     "of `whit render`",
+     NULL},
     {ID_KERNELS, "kernels", NULL,
      "the kernels of such a picture, what they take to make,\n"
      "and what the device's driver tells of them: subgroup\n"
-     "size, registers and the like"},
-    {ID_SIZE, "size", "WxH", "pixels, for --effects and --kernels (320x240)"},
-    {ID_CAMERA, "camera", "NAME|N|numbers", "for the same (the scene's first)"},
-    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for the same (1)"},
-    {ID_DEPTH, "depth", "N", "for the same (8)"},
-    {JOB_NUMERICS, "numerics", "fast|watertight|exact", "for the same (watertight)"},
+     "size, registers and the like",
+     NULL},
+    {ID_SIZE, "size", "WxH", "pixels, for --effects and --kernels (320x240)", NULL},
+    {ID_CAMERA, "camera", "NAME|N|numbers", "for the same (the scene's first)", NULL},
+    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for the same (1)", values_samples},
+    {ID_DEPTH, "depth", "N", "for the same (8)", NULL},
+    {JOB_NUMERICS, "numerics", NULL, "for the same (watertight)", values_numerics},
     JOB_OPTION_DEVICE,
-    {JOB_TIME, "time", "T", "time of the triangles, or of the picture, in seconds (0)"},
-    {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation"},
-    {JOB_FPS, "fps", "F", "frames in a second, for --frame (24)"},
+    {JOB_TIME, "time", "T", "time of the triangles, or of the picture, in seconds (0)", NULL},
+    {JOB_FRAME, "frame", "N", "instead of --time: frame N of the animation", NULL},
+    {JOB_FPS, "fps", "F", "frames in a second, for --frame (24)", NULL},
     JOB_OPTION_LOADING,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
-    {'q', "quiet", NULL, "print nothing but errors; useful with --triangles"},
-    {0, NULL, NULL, NULL},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
+    {'q', "quiet", NULL, "print nothing but errors; useful with --triangles", NULL},
+    {0},
 };
 
 struct scene_request {

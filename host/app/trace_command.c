@@ -8,23 +8,30 @@ enum trace_id { ID_RAYS = JOB_ID_END, ID_ANY, ID_ON };
 /* Rays in memory at a time. */
 enum { CHUNK = 1 << 20 };
 
+static const struct setting_value values_on[] = {{"device", WHIT_TRACE_DEVICE, NULL},
+                                                 {"cpu", WHIT_TRACE_CPU_FLOAT, NULL},
+                                                 {"brute", WHIT_TRACE_CPU_BRUTE, NULL},
+                                                 {0}};
+
 static const struct cli_option options[] = {
-    {ID_RAYS, "rays", "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax"},
+    {ID_RAYS, "rays", "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax", NULL},
     {'o', "output", "FILE",
      "little-endian records: float t (inf: miss), u, v;\n"
-     "uint32 primitive (0xffffffff: miss), instance; float ng[3]"},
-    {ID_ANY, "any", NULL, "any hit will do: only `primitive` says something"},
-    {ID_ON, "on", "device|cpu|brute",
+     "uint32 primitive (0xffffffff: miss), instance; float ng[3]",
+     NULL},
+    {ID_ANY, "any", NULL, "any hit will do: only `primitive` says something", NULL},
+    {ID_ON, "on", NULL,
      "where: Vulkan, its twin on the CPU, the twin without\n"
-     "trees (device)"},
+     "trees (device)",
+     values_on},
     JOB_OPTION_TIME,
     JOB_OPTION_DEVICE,
     JOB_OPTION_TREES,
     JOB_OPTION_FOREIGN,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5"},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
-    {'q', "quiet", NULL, "no notes, no progress, only errors"},
-    {0, NULL, NULL, NULL},
+    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
+    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
+    {0},
 };
 
 struct trace {
@@ -164,7 +171,6 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
 
 static void read_option(struct cli_reader *reader, int id, struct job *job, struct trace *trace)
 {
-    static const char *const places[] = {"device", "cpu", "brute", NULL};
     if (id == ID_RAYS)
         trace->rays_path = reader->value;
     else if (id == 'o')
@@ -172,7 +178,7 @@ static void read_option(struct cli_reader *reader, int id, struct job *job, stru
     else if (id == ID_ANY)
         trace->any = true;
     else if (id == ID_ON)
-        cli_choice(reader, places, &trace->on);
+        cli_choice_unsigned(reader, &trace->on);
     else
         job_option(job, reader, id);
 }

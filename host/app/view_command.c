@@ -22,27 +22,33 @@ enum view_id {
     ID_SPEND,
 };
 
+static const struct setting_value values_remember[] = {{"yes", 1, NULL}, {"no", 0, NULL}, {0}};
+
 static const struct cli_option options[] = {
     PICTURE_OPTION_PLACE,
-    {ID_FULLSCREEN, "fullscreen", NULL, "the whole screen"},
-    {ID_NO_VSYNC, "no-vsync", NULL, "show pictures as they come, not as the screen does"},
-    {ID_BLIT, "blit", NULL, "copy pictures to the window, in place of writing them there"},
+    {ID_FULLSCREEN, "fullscreen", NULL, "the whole screen", NULL},
+    {ID_NO_VSYNC, "no-vsync", NULL, "show pictures as they come, not as the screen does", NULL},
+    {ID_BLIT, "blit", NULL, "copy pictures to the window, in place of writing them there", NULL},
     {ID_FPS_GOAL, "fps-goal", "F",
      "pictures a second to hold while something moves, by\n"
-     "smaller ones (30)"},
-    {ID_FRAMES_SHOWN, "frames", "N", "end after N pictures were shown"},
-    {ID_RECORD, "record", "FILE", "write down what the user does"},
-    {ID_REPLAY, "replay", "FILE", "do what FILE says, and end"},
-    {ID_REMEMBER, "remember", "yes|no",
+     "smaller ones (30)",
+     NULL},
+    {ID_FRAMES_SHOWN, "frames", "N", "end after N pictures were shown", NULL},
+    {ID_RECORD, "record", "FILE", "write down what the user does", NULL},
+    {ID_REPLAY, "replay", "FILE", "do what FILE says, and end", NULL},
+    {ID_REMEMBER, "remember", NULL,
      "cameras of scenes, from one run to the next (yes; no with\n"
-     "--record and --replay)"},
+     "--record and --replay)",
+     values_remember},
     {ID_STATE, "state", "FILE",
      "options that Ctrl+S saved, one a line; those beside it\n"
-     "here come after them"},
-    {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)"},
+     "here come after them",
+     NULL},
+    {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)", NULL},
     {ID_SPEND, "spend", "S",
      "seconds that measuring costs may take, more or less: for\n"
-     "--budget-ms and --max-error (20), for the list of P (12)"},
+     "--budget-ms and --max-error (20), for the list of P (12)",
+     NULL},
     JOB_OPTION_TIME,
     PICTURE_OPTION_SHADING,
     PICTURE_OPTION_CHOICE,
@@ -52,9 +58,9 @@ static const struct cli_option options[] = {
     JOB_OPTION_BUILDING,
     JOB_OPTION_WALKING,
     JOB_OPTION_LOADING,
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers"},
-    {'q', "quiet", NULL, "no notes, only errors"},
-    {0, NULL, NULL, NULL},
+    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
+    {'q', "quiet", NULL, "no notes, only errors", NULL},
+    {0},
 };
 
 static const char *const start_hint = "Drag turns the camera, the wheel comes nearer, H lists all "
@@ -101,13 +107,12 @@ static void read_state_option(void *user, struct cli_reader *reader, int id)
 
 static void read_option(struct view_request *request, struct cli_reader *reader, int id)
 {
-    static const char *const answers[] = {"no", "yes", NULL};
     struct view_params *view = &request->view;
     if (read_setting(request, reader, id))
         return;
     switch (id) {
     case ID_REMEMBER:
-        cli_choice(reader, answers, &request->remember);
+        cli_choice_unsigned(reader, &request->remember);
         break;
     case ID_FULLSCREEN:
         view->fullscreen = true;

@@ -4,29 +4,20 @@
 #include <string.h>
 #include <strings.h>
 
-/* In the order of whit_view; `color` is no view of costs. */
-static const char *const view_names[] = {"depth", "visits", "boxes", "tris", "stack"};
-static const char *const view_titles[] = {"tree depth reached", "nodes visited", "box tests",
-                                          "triangle tests", "node stack"};
-/* In the order of whit_ray_kind. */
-static const char *const rays_names[] = {"primary", "shadow", "reflected", "refracted", "all"};
+#include "settings/values.h"
 
 void view_read(struct cli_reader *reader, struct cost_view *view)
 {
-    static const char *const choices[] = {"color", "depth", "visits", "boxes",
-                                          "tris",  "stack", NULL};
-    uint32_t choice;
-    if (!cli_choice(reader, choices, &choice))
+    int choice;
+    if (!cli_choice(reader, &choice))
         return;
     view->given = choice > 0;
-    view->view = choice > 0 ? choice - 1 : 0;
+    view->view = choice > 0 ? (uint32_t)choice - 1 : 0;
 }
 
 void view_read_rays(struct cli_reader *reader, struct cost_view *view)
 {
-    static const char *const choices[] = {"primary",   "shadow", "reflected",
-                                          "refracted", "all",    NULL};
-    view->has_rays = cli_choice(reader, choices, &view->rays);
+    view->has_rays = cli_choice_unsigned(reader, &view->rays);
 }
 
 void view_read_scale(struct cli_reader *reader, struct cost_view *view)
@@ -49,12 +40,12 @@ bool view_check(struct cli_reader *reader, const struct cost_view *view)
 
 const char *view_name(const struct cost_view *view)
 {
-    return view->given ? view_names[view->view] : "color";
+    return value_word(values_view, view->given ? 1 + (int)view->view : 0);
 }
 
 const char *view_rays_name(const struct cost_view *view)
 {
-    return rays_names[view->rays];
+    return value_word(values_rays, (int)view->rays);
 }
 
 static void find_figures(const whit_image *values, struct view_figures *out)
@@ -75,7 +66,8 @@ static whit_result heat_map(const struct cost_view *view, const struct view_figu
                             const whit_image *values, whit_image **out)
 {
     char title[80], unit[64];
-    snprintf(title, sizeof title, "%s, %s rays", view_titles[view->view], rays_names[view->rays]);
+    snprintf(title, sizeof title, "%s, %s rays", value_title(values_view, 1 + (int)view->view),
+             view_rays_name(view));
     snprintf(unit, sizeof unit, "mean %.3g, most %g", figures->mean, figures->most);
     const whit_heat_params params = {.scale = figures->scale, .title = title, .unit = unit};
     whit_result result = whit_image_heat(values, &params, out);

@@ -84,7 +84,7 @@ static void apply_instances(const struct knob_setting *setting, struct knob_targ
 
 static void apply_load_path(const struct knob_setting *setting, struct knob_target *target)
 {
-    target->picture.load_path = setting->name;
+    target->picture.load_path = value_word(values_load_path, (int)setting->value);
 }
 
 /* The reference takes the usual settings as they are. */
@@ -142,11 +142,12 @@ static const struct knob table[] = {
                   {"64", 64, "area-lights"}},
      .apply = apply_light_samples},
     {.name = "fresnel",
+     .values = values_fresnel,
      .option = "--fresnel %s",
      .about = "exact, or Schlick's approximation",
      .change = KNOB_SHADING,
      .level = KNOB_KERNEL,
-     .settings = {{"exact", 0, NULL}, {"schlick", 1, "fresnel"}},
+     .settings = {{"", 0, NULL}, {"", 1, "fresnel"}},
      .apply = apply_fresnel},
     {.name = "tinted-shadows",
      .option = "--opaque-shadows",
@@ -184,13 +185,14 @@ static const struct knob table[] = {
      .settings = {{"on", 0, NULL}, {"off", 1, "terminator"}},
      .apply = apply_effect},
     {.name = "numerics",
+     .values = values_numerics,
      .option = "--numerics %s",
      .about = "what decides hits",
      .change = KNOB_HITS,
      .level = KNOB_KERNEL,
-     .settings = {{"watertight", WHIT_NUMERICS_WATERTIGHT, NULL},
-                  {"fast", WHIT_NUMERICS_FAST, NULL},
-                  {"exact", WHIT_NUMERICS_EXACT, NULL}},
+     .settings = {{"", WHIT_NUMERICS_WATERTIGHT, NULL},
+                  {"", WHIT_NUMERICS_FAST, NULL},
+                  {"", WHIT_NUMERICS_EXACT, NULL}},
      .apply = apply_numerics},
     {.name = "arithmetic",
      .option = "",
@@ -200,40 +202,44 @@ static const struct knob table[] = {
      .settings = {{"float", 0, NULL}, {"double", 1, NULL}},
      .apply = apply_arithmetic},
     {.name = "instances",
+     .values = values_instances,
      .option = "--instances %s",
      .about = "off: one tree over all triangles, placed and rounded",
      .change = KNOB_HITS,
      .level = KNOB_TREE,
-     .settings = {{"auto", WHIT_INSTANCES_AUTO, NULL},
-                  {"on", WHIT_INSTANCES_ON, "instances"},
-                  {"off", WHIT_INSTANCES_OFF, "instances"}},
+     .settings = {{"", WHIT_INSTANCES_AUTO, NULL},
+                  {"", WHIT_INSTANCES_ON, "instances"},
+                  {"", WHIT_INSTANCES_OFF, "instances"}},
      .apply = apply_instances},
     {.name = "traversal",
+     .values = values_traversal,
      .option = "--traversal %s",
      .about = "which of two nodes comes first",
      .change = KNOB_NOTHING,
      .level = KNOB_KERNEL,
-     .settings = {{"distance", WHIT_TRAVERSAL_DISTANCE, NULL},
-                  {"sign", WHIT_TRAVERSAL_SIGN, NULL},
-                  {"basic", WHIT_TRAVERSAL_BASIC, NULL}},
+     .settings = {{"", WHIT_TRAVERSAL_DISTANCE, NULL},
+                  {"", WHIT_TRAVERSAL_SIGN, NULL},
+                  {"", WHIT_TRAVERSAL_BASIC, NULL}},
      .apply = apply_traversal},
     {.name = "build",
+     .values = values_build,
      .option = "--build %s",
      .about = "how trees are built",
      .change = KNOB_NOTHING,
      .level = KNOB_TREE,
-     .settings = {{"binned", WHIT_BUILD_BINNED, NULL},
-                  {"median", WHIT_BUILD_MEDIAN, NULL},
-                  {"sweep", WHIT_BUILD_SWEEP, NULL},
-                  {"spatial", WHIT_BUILD_SPATIAL, NULL},
+     .settings = {{"", WHIT_BUILD_BINNED, NULL},
+                  {"", WHIT_BUILD_MEDIAN, NULL},
+                  {"", WHIT_BUILD_SWEEP, NULL},
+                  {"", WHIT_BUILD_SPATIAL, NULL},
                   {"binned+opt", WHIT_BUILD_BINNED + 0.5, NULL}},
      .apply = apply_build},
     {.name = "load-path",
+     .values = values_load_path,
      .option = "--load-path %s",
      .about = "how kernels read trees",
      .change = KNOB_NOTHING,
      .level = KNOB_KERNEL,
-     .settings = {{"auto", 0, NULL}, {"storage", 1, NULL}, {"texel", 1, NULL}},
+     .settings = {{"", 0, NULL}, {"", 1, NULL}, {"", 2, NULL}},
      .apply = apply_load_path},
 };
 
@@ -258,6 +264,12 @@ uint32_t knob_setting_count(const struct knob *knob)
     while (count < KNOB_SETTINGS_MOST && knob->settings[count].name)
         ++count;
     return count;
+}
+
+const char *knob_setting_name(const struct knob *knob, uint32_t setting)
+{
+    const struct knob_setting *s = &knob->settings[setting];
+    return s->name[0] ? s->name : value_word(knob->values, (int)s->value);
 }
 
 /* ---- What a scene calls for ---- */
@@ -292,7 +304,8 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
         return "the scene has spheres";
     if (knob->level == KNOB_TREE && info.triangle_count == 0)
         return "the scene has no triangles";
-    if (knob->apply == apply_load_path && usual_path && strcmp(wanted->name, usual_path) == 0)
+    if (knob->apply == apply_load_path && usual_path &&
+        strcmp(knob_setting_name(knob, setting), usual_path) == 0)
         return "it is what the device takes by itself";
     return NULL;
 }
@@ -321,5 +334,5 @@ void knob_option(const struct knob *knob, uint32_t setting, char *text, size_t t
         snprintf(text, text_bytes, "%s", knob->option);
     else
         snprintf(text, text_bytes, "%.*s%s", (int)(hole - knob->option), knob->option,
-                 knob->settings[setting].name);
+                 knob_setting_name(knob, setting));
 }

@@ -4,6 +4,7 @@
 #define COST_KNOBS_H
 
 #include "api/whit.h"
+#include "settings/values.h"
 
 /* What a setting may change of a picture. */
 enum knob_change {
@@ -31,13 +32,14 @@ struct knob_target {
 };
 
 struct knob_setting {
-    const char *name;   /* as its option takes it, where it has one: "64", "schlick" */
+    const char *name;   /* as its option takes it: "64"; "": the word of `value` */
     double value;       /* what `apply` reads */
     const char *effect; /* that the scene must call for, or NULL */
 };
 enum { KNOB_SETTINGS_MOST = 8 };
 struct knob {
     const char *name;
+    const struct setting_value *values; /* of a setting that has words, or NULL */
     const char *option; /* of `whit render` for one of its settings: "--aa %s"; "": none */
     const char *about;  /* what it is, in a few words */
     enum knob_change change;
@@ -52,6 +54,7 @@ const struct knob *knob_table(uint32_t *count);
 /* Its index, or WHIT_NONE. */
 uint32_t knob_find(const char *name);
 uint32_t knob_setting_count(const struct knob *knob);
+const char *knob_setting_name(const struct knob *knob, uint32_t setting);
 
 /* Why a setting means nothing here, in few words, or NULL where it does. `setting` is not the usual
    one. `usual_path`: how the renderer at hand reads trees (whit_stats.load_path). */

@@ -129,7 +129,8 @@ static void note_absence(struct cost_report *report, const struct knob *knob, ui
     if (report->absent_count == COST_ABSENT_MOST)
         return;
     struct cost_absent *absent = &report->absent[report->absent_count++];
-    snprintf(absent->name, sizeof absent->name, "%s %s", knob->name, knob->settings[setting].name);
+    snprintf(absent->name, sizeof absent->name, "%s %s", knob->name,
+             knob_setting_name(knob, setting));
     snprintf(absent->why, sizeof absent->why, "%s", why);
 }
 
@@ -143,7 +144,7 @@ static void add_row(struct cost_report *report, const struct knob *knob, uint32_
                              .build_ms = -1.0,
                              .ms = {-1.0, -1.0, -1.0}};
     snprintf(row->knob, sizeof row->knob, "%s", knob->name);
-    snprintf(row->setting, sizeof row->setting, "%s", knob->settings[setting].name);
+    snprintf(row->setting, sizeof row->setting, "%s", knob_setting_name(knob, setting));
     knob_option(knob, setting, row->option, sizeof row->option);
 }
 

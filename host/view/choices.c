@@ -1,5 +1,6 @@
 #include "view/choices.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,15 +10,20 @@ static const double ADAPTIVE = 0.05;
 
 struct choice {
     const char *name;
-    const char *const *values; /* NULL: numbers */
-    uint32_t count;
+    const struct setting_value *list; /* NULL: `words`, or numbers */
+    const char *const *words;
+    uint32_t count; /* of words or numbers */
+    size_t
+        field; /* of an enumeration in struct view_settings, where there is a list and no `get` */
     int (*get)(const struct view_settings *settings);
     void (*set)(struct view_settings *settings, uint32_t value);
-    void (*say)(const struct view_settings *settings, char *text, size_t bytes); /* NULL: the value
-                                                                                    by name */
+    /* NULL: the value in a word. */
+    void (*say)(const struct view_settings *settings, char *text, size_t bytes);
     bool told; /* by another choice, where settings differ */
 };
-#define VALUES(names) names, sizeof(names) / sizeof *(names)
+#define WORDS(names)  .words = (names), .count = sizeof(names) / sizeof *(names)
+#define FIELD(member) .field = offsetof(struct view_settings, member)
+_Static_assert(sizeof(whit_numerics) == sizeof(uint32_t), "enumerations are copied as words");
 
 static int find(const uint32_t *list, uint32_t count, uint32_t value)
 {
@@ -26,36 +32,6 @@ static int find(const uint32_t *list, uint32_t count, uint32_t value)
             return (int)i;
     }
     return -1;
-}
-
-/* ---- What rays do ---- */
-
-static const char *const traversals[] = {"distance", "sign", "basic"};
-static const uint32_t traversal_values[] = {WHIT_TRAVERSAL_DISTANCE, WHIT_TRAVERSAL_SIGN,
-                                            WHIT_TRAVERSAL_BASIC};
-
-static int get_traversal(const struct view_settings *settings)
-{
-    return find(traversal_values, 3, settings->picture.traversal);
-}
-
-static void set_traversal(struct view_settings *settings, uint32_t value)
-{
-    settings->picture.traversal = (whit_traversal)traversal_values[value];
-}
-
-static const char *const numerics[] = {"fast", "watertight", "exact"};
-static const uint32_t numerics_values[] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_WATERTIGHT,
-                                           WHIT_NUMERICS_EXACT};
-
-static int get_numerics(const struct view_settings *settings)
-{
-    return find(numerics_values, 3, settings->picture.numerics);
-}
-
-static void set_numerics(struct view_settings *settings, uint32_t value)
-{
-    settings->picture.numerics = (whit_numerics)numerics_values[value];
 }
 
 /* ---- Trees ---- */
@@ -68,18 +44,17 @@ static void set_build(struct view_settings *settings, whit_build build, const ch
     snprintf(settings->build, sizeof settings->build, "%s", name);
 }
 
-static const char *const builders[] = {"binned", "sweep", "spatial", "median"};
-static const uint32_t builder_values[] = {WHIT_BUILD_BINNED, WHIT_BUILD_SWEEP, WHIT_BUILD_SPATIAL,
-                                          WHIT_BUILD_MEDIAN};
-
 static int get_builder(const struct view_settings *settings)
 {
-    return find(builder_values, 4, settings->trees.build);
+    return settings->trees.build == WHIT_BUILD_NONE
+               ? -1
+               : (int)value_place(values_build, (int)settings->trees.build);
 }
 
 static void set_builder(struct view_settings *settings, uint32_t value)
 {
-    set_build(settings, (whit_build)builder_values[value], value == 0 ? "" : builders[value]);
+    set_build(settings, (whit_build)values_build[value].value,
+              value == 0 ? "" : values_build[value].word);
 }
 
 static void say_builder(const struct view_settings *settings, char *text, size_t bytes)
@@ -87,7 +62,7 @@ static void say_builder(const struct view_settings *settings, char *text, size_t
     if (settings->trees.build == WHIT_BUILD_NONE)
         snprintf(text, bytes, "no trees");
     else
-        snprintf(text, bytes, "%s%s", settings->build[0] ? settings->build : "binned",
+        snprintf(text, bytes, "%s%s", settings->build[0] ? settings->build : values_build[0].word,
                  settings->trees.optimize ? "+opt" : "");
 }
 
@@ -130,18 +105,6 @@ static int get_trees(const struct view_settings *settings)
 static void set_trees(struct view_settings *settings, uint32_t value)
 {
     set_build(settings, value ? WHIT_BUILD_NONE : WHIT_BUILD_BINNED, "");
-}
-
-static const char *const instances[] = {"auto", "on", "off: one tree"};
-
-static int get_instances(const struct view_settings *settings)
-{
-    return (int)settings->trees.instances;
-}
-
-static void set_instances(struct view_settings *settings, uint32_t value)
-{
-    settings->trees.instances = (whit_instances)value;
 }
 
 /* ---- Shading ---- */
@@ -211,8 +174,6 @@ static void say_samples(const struct view_settings *settings, char *text, size_t
         snprintf(text, bytes, "%u a pixel", p->samples ? p->samples : 1);
 }
 
-static const char *const light_samples[] = {"1", "4", "16", "64"};
-
 static int get_light_samples(const struct view_settings *settings)
 {
     uint32_t count = settings->picture.light_samples;
@@ -224,8 +185,6 @@ static void set_light_samples(struct view_settings *settings, uint32_t value)
     uint32_t count = sample_values[value];
     settings->picture.light_samples = count == LIGHT_SAMPLES_DEFAULT ? 0 : count;
 }
-
-static const char *const fresnels[] = {"exact", "schlick"};
 
 static int get_fresnel(const struct view_settings *settings)
 {
@@ -250,95 +209,96 @@ static void set_shadows(struct view_settings *settings, uint32_t value)
     settings->picture.opaque_shadows = value == 1;
 }
 
-/* ---- What is painted ---- */
-
-static const char *const paints[] = {"color", "depth", "visits", "boxes", "tris", "stack"};
-
-static int get_paint(const struct view_settings *settings)
-{
-    return (int)settings->paint;
-}
-
-static void set_paint(struct view_settings *settings, uint32_t value)
-{
-    settings->paint = value;
-}
-
-static const char *const rays[] = {"primary", "shadow", "reflected", "refracted", "all"};
-
-static int get_rays(const struct view_settings *settings)
-{
-    return (int)settings->paint_rays;
-}
-
-static void set_rays(struct view_settings *settings, uint32_t value)
-{
-    settings->paint_rays = value;
-}
-
 /* ---- All of them ---- */
 
 static const struct choice choices[CHOICE_COUNT] = {
-    [CHOICE_TRAVERSAL] = {"traversal", VALUES(traversals), get_traversal, set_traversal, NULL,
-                          false},
-    [CHOICE_NUMERICS] = {"numerics", VALUES(numerics), get_numerics, set_numerics, NULL, false},
-    [CHOICE_BUILDER] = {"builder", VALUES(builders), get_builder, set_builder, say_builder, false},
-    [CHOICE_BINS] = {"bins", VALUES(bins), get_bins, set_bins, say_bins, true},
-    [CHOICE_TREES] = {"trees", VALUES(trees), get_trees, set_trees, NULL, true},
-    [CHOICE_INSTANCES] = {"instance tree", VALUES(instances), get_instances, set_instances, NULL,
-                          false},
-    [CHOICE_DEPTH] = {"depth", NULL, DEPTH_COUNT, get_depth, set_depth, NULL, false},
-    [CHOICE_BAILOUT] = {"bail-out", VALUES(bailouts), get_bailout, set_bailout, say_bailout, false},
-    [CHOICE_SAMPLES] = {"anti-aliasing", VALUES(samples), get_samples, set_samples, say_samples,
-                        false},
-    [CHOICE_LIGHT_SAMPLES] = {"light samples", VALUES(light_samples), get_light_samples,
-                              set_light_samples, NULL, false},
-    [CHOICE_FRESNEL] = {"Fresnel", VALUES(fresnels), get_fresnel, set_fresnel, NULL, false},
-    [CHOICE_SHADOWS] = {"shadows", VALUES(shadows), get_shadows, set_shadows, NULL, false},
-    [CHOICE_VIEW] = {"view", VALUES(paints), get_paint, set_paint, NULL, false},
-    [CHOICE_VIEW_RAYS] = {"rays of costs", VALUES(rays), get_rays, set_rays, NULL, false},
+    [CHOICE_TRAVERSAL] = {"traversal", .list = values_traversal, FIELD(picture.traversal)},
+    [CHOICE_NUMERICS] = {"numerics", .list = values_numerics, FIELD(picture.numerics)},
+    [CHOICE_BUILDER] = {"builder", .list = values_build, .get = get_builder, .set = set_builder,
+                        .say = say_builder},
+    [CHOICE_BINS] = {"bins", WORDS(bins), .get = get_bins, .set = set_bins, .say = say_bins,
+                     .told = true},
+    [CHOICE_TREES] = {"trees", WORDS(trees), .get = get_trees, .set = set_trees, .told = true},
+    [CHOICE_INSTANCES] = {"instance tree", .list = values_instances, FIELD(trees.instances)},
+    [CHOICE_DEPTH] = {"depth", .count = DEPTH_COUNT, .get = get_depth, .set = set_depth},
+    [CHOICE_BAILOUT] = {"bail-out", WORDS(bailouts), .get = get_bailout, .set = set_bailout,
+                        .say = say_bailout},
+    [CHOICE_SAMPLES] = {"anti-aliasing", WORDS(samples), .get = get_samples, .set = set_samples,
+                        .say = say_samples},
+    [CHOICE_LIGHT_SAMPLES] = {"light samples", .list = values_light_samples,
+                              .get = get_light_samples, .set = set_light_samples},
+    [CHOICE_FRESNEL] = {"Fresnel", .list = values_fresnel, .get = get_fresnel, .set = set_fresnel},
+    [CHOICE_SHADOWS] = {"shadows", WORDS(shadows), .get = get_shadows, .set = set_shadows},
+    [CHOICE_VIEW] = {"view", .list = values_view, FIELD(paint)},
+    [CHOICE_VIEW_RAYS] = {"rays of costs", .list = values_rays, FIELD(paint_rays)},
 };
+
+static uint32_t count_of(const struct choice *choice)
+{
+    return choice->list ? value_count(choice->list) : choice->count;
+}
 
 const char *choice_name(enum choice_id id)
 {
     return choices[id].name;
 }
 
-const char *const *choice_values(enum choice_id id, uint32_t *count)
+uint32_t choice_words(enum choice_id id, const char *words[CHOICE_WORDS_MOST])
 {
-    *count = choices[id].count;
-    return choices[id].values;
+    const struct choice *choice = &choices[id];
+    uint32_t count = choice->list || choice->words ? count_of(choice) : 0;
+    for (uint32_t i = 0; i < count; ++i)
+        words[i] = choice->list ? choice->list[i].word : choice->words[i];
+    return count;
+}
+
+uint32_t choice_count(enum choice_id id)
+{
+    return count_of(&choices[id]);
 }
 
 int choice_get(const struct view_settings *settings, enum choice_id id)
 {
-    return choices[id].get(settings);
+    const struct choice *choice = &choices[id];
+    uint32_t value;
+    if (choice->get)
+        return choice->get(settings);
+    memcpy(&value, (const char *)settings + choice->field, sizeof value);
+    return (int)value_place(choice->list, (int)value);
 }
 
 void choice_set(struct view_settings *settings, enum choice_id id, uint32_t value)
 {
-    if (value < choices[id].count)
-        choices[id].set(settings, value);
+    const struct choice *choice = &choices[id];
+    if (value >= count_of(choice))
+        return;
+    if (choice->set)
+        choice->set(settings, value);
+    else
+        memcpy((char *)settings + choice->field, &choice->list[value].value, sizeof value);
 }
 
 void choice_turn(struct view_settings *settings, enum choice_id id, int by)
 {
-    int count = (int)choices[id].count, at = choices[id].get(settings);
+    const struct choice *choice = &choices[id];
+    int count = (int)count_of(choice), at = choice_get(settings, id);
     int next = at < 0 ? 0 : at + by;
-    if (choices[id].values)
+    if (choice->list || choice->words)
         next = (next + count) % count;
-    if (next >= 0 && next < count)
-        choices[id].set(settings, (uint32_t)next);
+    if (next >= 0)
+        choice_set(settings, id, (uint32_t)next);
 }
 
 void choice_say(const struct view_settings *settings, enum choice_id id, char *text, size_t bytes)
 {
     const struct choice *choice = &choices[id];
-    int at = choice->get(settings);
+    int at = choice_get(settings, id);
     if (choice->say)
         choice->say(settings, text, bytes);
-    else if (choice->values && at >= 0)
-        snprintf(text, bytes, "%s", choice->values[at]);
+    else if (choice->list && at >= 0)
+        snprintf(text, bytes, "%s", choice->list[at].word);
+    else if (choice->words && at >= 0)
+        snprintf(text, bytes, "%s", choice->words[at]);
     else
         snprintf(text, bytes, "%d", at);
 }

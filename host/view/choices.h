@@ -24,8 +24,10 @@ enum choice_id {
 };
 
 const char *choice_name(enum choice_id id); /* "anti-aliasing" */
-/* The values by name, *count of them; NULL: whole numbers below *count. */
-const char *const *choice_values(enum choice_id id, uint32_t *count);
+/* The values in words, at most CHOICE_WORDS_MOST; 0: they are whole numbers below choice_count. */
+enum { CHOICE_WORDS_MOST = 16 };
+uint32_t choice_words(enum choice_id id, const char *words[CHOICE_WORDS_MOST]);
+uint32_t choice_count(enum choice_id id);
 /* -1: something that the command line said, and that is not among the values. */
 int choice_get(const struct view_settings *settings, enum choice_id id);
 void choice_set(struct view_settings *settings, enum choice_id id, uint32_t value);

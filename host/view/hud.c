@@ -55,8 +55,8 @@ static void draw_names(const struct view *view)
     const struct view_settings *s = &frame->settings;
     bool trees = s->trees.build != WHIT_BUILD_NONE;
     ui_text("%s, %s, %s", trees ? frame->accel.builder : "no trees",
-            settings_traversal_name(s->picture.traversal),
-            settings_numerics_name(s->picture.numerics));
+            value_word(values_traversal, (int)s->picture.traversal),
+            value_word(values_numerics, (int)s->picture.numerics));
 }
 
 /* Shows the three materials that most hits of a shading kernel wear. */
@@ -352,7 +352,7 @@ static void draw_legends(const struct view *view)
                  compare->mode != COMPARE_SPLIT ? ""
                  : side                         ? "B: "
                                                 : "A: ",
-                 settings_paint_title(frame->settings.paint), rays,
+                 value_title(values_view, (int)frame->settings.paint), rays,
                  frame->settings.paint_scale > 0.0 ? "" : ", scale by the picture");
         palette_legend(&view->palette, side ? "legend B" : "legend A", title, frame->scale);
     }

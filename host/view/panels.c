@@ -107,18 +107,18 @@ void panels_load(struct view *view, const char *path)
 
 static void draw_choice(struct view *view, enum choice_id id)
 {
-    uint32_t count;
     char shown[CHOICE_WORDS];
-    const char *const *values = choice_values(id, &count);
+    const char *words[CHOICE_WORDS_MOST];
+    uint32_t count = choice_words(id, words);
     int value = choice_get(&view->settings, id);
-    if (!values) {
+    if (count == 0) {
         uint32_t number = (uint32_t)value;
-        if (ui_slider_count(choice_name(id), &number, 0, 32) && number < count)
+        if (ui_slider_count(choice_name(id), &number, 0, 32))
             choice_set(&view->settings, id, number);
         return;
     }
     choice_say(&view->settings, id, shown, sizeof shown);
-    if (ui_choice(choice_name(id), shown, values, (int)count, &value))
+    if (ui_choice(choice_name(id), shown, words, (int)count, &value))
         choice_set(&view->settings, id, (uint32_t)value);
 }
 

@@ -10,8 +10,6 @@ static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
-static const char *const kind_names[WHIT_RAY_KINDS] = {"camera", "shadow", "reflected",
-                                                       "refracted"};
 enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7 };
 
 static void ask(struct view *view, double x, double y)
@@ -130,7 +128,7 @@ static void draw_ray(const struct view *view, const whit_probe_ray *ray)
         whit_scene_get_material(view->probe.scene->scene, ray->material, &material);
     ui_table_next();
     ui_text_color(kind_colors[ray->kind % WHIT_RAY_KINDS], "%*s%s", (int)ray->generation, "",
-                  kind_names[ray->kind % WHIT_RAY_KINDS]);
+                  value_word(values_rays, (int)ray->kind));
     ui_table_next();
     draw_hit(&ray->device);
     ui_table_next();

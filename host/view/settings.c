@@ -83,35 +83,6 @@ whit_renderer_params settings_picture(const struct view_settings *settings)
     return params;
 }
 
-const char *settings_paint_name(uint32_t paint)
-{
-    static const char *const names[VIEW_PAINT_COUNT] = {"color", "depth", "visits",
-                                                        "boxes", "tris",  "stack"};
-    return paint < VIEW_PAINT_COUNT ? names[paint] : "";
-}
-
-const char *settings_paint_title(uint32_t paint)
-{
-    static const char *const titles[VIEW_PAINT_COUNT] = {
-        "colours",   "deepest level",  "nodes visited",
-        "box tests", "triangle tests", "most entries on the stack"};
-    return paint < VIEW_PAINT_COUNT ? titles[paint] : "";
-}
-
-const char *settings_traversal_name(whit_traversal traversal)
-{
-    return traversal == WHIT_TRAVERSAL_SIGN    ? "sign"
-           : traversal == WHIT_TRAVERSAL_BASIC ? "basic"
-                                               : "distance";
-}
-
-const char *settings_numerics_name(whit_numerics numerics)
-{
-    return numerics == WHIT_NUMERICS_FAST    ? "fast"
-           : numerics == WHIT_NUMERICS_EXACT ? "exact"
-                                             : "watertight";
-}
-
 /* ---- Words ---- */
 
 struct words {
@@ -166,11 +137,13 @@ static void tree_words(struct words *words, const struct view_settings *settings
     if (trees->leaf_limit)
         option(words, "--leaf", "%u", trees->leaf_limit);
     if (trees->instances)
-        option(words, "--instances", trees->instances == WHIT_INSTANCES_ON ? "on" : "off");
+        option(words, "--instances", "%s", value_word(values_instances, (int)trees->instances));
     if (trees->instance_build == WHIT_BUILD_MEDIAN)
-        option(words, "--instance-build", "median");
+        option(words, "--instance-build", "%s",
+               value_word(values_instance_build, (int)trees->instance_build));
     if (trees->instance_refit)
-        option(words, "--instance-update", "refit");
+        option(words, "--instance-update", "%s",
+               value_word(values_instance_update, trees->instance_refit));
     if (settings->texture_limit)
         option(words, "--texture-limit", "%u", settings->texture_limit);
 }
@@ -192,7 +165,7 @@ static void shading_words(struct words *words, const struct view_settings *setti
     if (p->light_samples)
         option(words, "--light-samples", "%u", p->light_samples);
     if (p->schlick)
-        option(words, "--fresnel", "schlick");
+        option(words, "--fresnel", "%s", value_word(values_fresnel, p->schlick));
     if (p->opaque_shadows)
         option(words, "--opaque-shadows", "%s", "");
     if (p->no_shadows)
@@ -203,12 +176,11 @@ static void shading_words(struct words *words, const struct view_settings *setti
 
 static void paint_words(struct words *words, const struct view_settings *settings)
 {
-    static const char *const kinds[] = {"primary", "shadow", "reflected", "refracted", "all"};
     if (settings->paint == VIEW_PAINT_COLOR)
         return;
-    option(words, "--view", "%s", settings_paint_name(settings->paint));
+    option(words, "--view", "%s", value_word(values_view, (int)settings->paint));
     if (settings->paint_rays > 0 && settings->paint_rays <= WHIT_RAY_KINDS)
-        option(words, "--view-rays", "%s", kinds[settings->paint_rays]);
+        option(words, "--view-rays", "%s", value_word(values_rays, (int)settings->paint_rays));
     if (settings->paint_scale > 0.0)
         option(words, "--view-scale", "%.9g", settings->paint_scale);
 }
@@ -225,9 +197,9 @@ static void all_words(struct words *words, const struct view_settings *settings)
     if (settings->device[0])
         option(words, "--device", "%s", settings->device);
     if (p->traversal != WHIT_TRAVERSAL_DISTANCE)
-        option(words, "--traversal", "%s", settings_traversal_name(p->traversal));
+        option(words, "--traversal", "%s", value_word(values_traversal, (int)p->traversal));
     if (p->numerics != WHIT_NUMERICS_WATERTIGHT)
-        option(words, "--numerics", "%s", settings_numerics_name(p->numerics));
+        option(words, "--numerics", "%s", value_word(values_numerics, (int)p->numerics));
     tree_words(words, settings);
     shading_words(words, settings);
     paint_words(words, settings);

@@ -4,6 +4,7 @@
 #define VIEW_SETTINGS_H
 
 #include "api/whit.h"
+#include "settings/values.h"
 
 enum { VIEW_PATH = 1024, VIEW_TEXT = 256, VIEW_ALLOWED = 8 };
 
@@ -69,10 +70,5 @@ size_t settings_words(const struct view_settings *settings, const char *separato
                       size_t text_bytes);
 /* `whit render SCENE ... -o picture.png`, which makes the picture of the window. */
 size_t settings_render_line(const struct view_settings *settings, char *text, size_t text_bytes);
-
-const char *settings_paint_name(uint32_t paint);  /* "color" */
-const char *settings_paint_title(uint32_t paint); /* "box tests" */
-const char *settings_traversal_name(whit_traversal traversal);
-const char *settings_numerics_name(whit_numerics numerics);
 
 #endif

@@ -56,7 +56,7 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_count(object, "samples", frame->samples);
     put_bool(object, "whole", frame->whole);
     put_text(object, "drawn_words", words);
-    put_text(object, "view", settings_paint_name(frame->settings.paint));
+    put_text(object, "view", value_word(values_view, (int)frame->settings.paint));
     put_text(object, "builder", frame->accel.builder);
     put_number(object, "render_ms", frame->stats.render_ms);
     put_number(object, "visits", frame->visits);

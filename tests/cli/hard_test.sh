@@ -59,7 +59,7 @@ check "is of that size" test "$(head -c 8 "$OUT/cube.pfm" | tr '\n' ' ')" = "PF 
 
 rm "$J"
 refuse 2 "too few rays" "from 512 to" hard --rays 10
-refuse 2 "no such level" "fast, exact" hard --numerics best
+refuse 2 "no such level" "fast, watertight, exact" hard --numerics best
 refuse 2 "JSON to a pipe" "/dev/stdout" hard --json -
 refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
 refuse 2 "no such scene" "missing.json" hard "$OUT/missing.json" --quiet

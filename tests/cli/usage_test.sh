@@ -45,7 +45,7 @@ refuse 2 "--packets some" "auto, on, off" render "$CUBE" -o "$P" --packets some
 refuse 2 "--classes two" "auto, one, many" render "$CUBE" -o "$P" --classes two
 refuse 2 "--segments 3" "auto, 1, 2" render "$CUBE" -o "$P" --segments 3
 refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
-refuse 2 "--build best" "binned, median" render "$CUBE" -o "$P" --build best
+refuse 2 "--build best" "binned, sweep" render "$CUBE" -o "$P" --build best
 refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
 for build in binned: binned:257 binned:7x median:3 sweep-naive sweep:2 spatial: spatial:2 spatial:1e-5, \
     spatial:1e-5,-1 spatial:1e-5,1,1 none +opt binned+opt+opt binned+opt:7 ""; do

@@ -58,7 +58,7 @@ END
 for at in "sign traversal|order|sign" "basic traversal|order|basic" "round traversal|order|distance" \
     "back traversal|order|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
     "median tree|builder|median" "binned tree|builder|binned" "instances instance|tree|on" \
-    "flat instance|tree|off:|one|tree" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
+    "flat instance|tree|off" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
     "watertight numerics|watertight"; do
     state=${at%% *}
     key=${at#* }

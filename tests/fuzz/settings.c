@@ -8,14 +8,16 @@
 
 #include "app/state_file.h"
 #include "cost/words.h"
+#include "settings/values.h"
 
 enum { ID_FLAG = 'q', ID_TEXT = 256, ID_COUNT, ID_BYTES, ID_NUMBER, ID_SIZE, ID_CHOICE };
 
+static const struct setting_value choices[] = {{"a", 1, NULL}, {"b", 2, NULL}, {0}};
 static const struct cli_option options[] = {
-    {ID_FLAG, "quiet", NULL, "a flag"},       {ID_TEXT, "text", "T", "a text"},
-    {ID_COUNT, "count", "N", "a count"},      {ID_BYTES, "bytes", "B", "bytes"},
-    {ID_NUMBER, "number", "X", "a number"},   {ID_SIZE, "size", "WxH", "two counts"},
-    {ID_CHOICE, "choice", "a|b", "a choice"}, {0, NULL, NULL, NULL},
+    {ID_FLAG, "quiet", NULL, "a flag", NULL},         {ID_TEXT, "text", "T", "a text", NULL},
+    {ID_COUNT, "count", "N", "a count", NULL},        {ID_BYTES, "bytes", "B", "bytes", NULL},
+    {ID_NUMBER, "number", "X", "a number", NULL},     {ID_SIZE, "size", "WxH", "two counts", NULL},
+    {ID_CHOICE, "choice", NULL, "a choice", choices}, {0},
 };
 static const struct cli_command command = {
     .name = "fuzz", .arguments = "", .summary = "", .options = options};
@@ -24,7 +26,6 @@ static char *text; /* the last one that --text gave */
 
 static void read_option(void *user, struct cli_reader *reader, int id)
 {
-    static const char *const choices[] = {"a", "b", NULL};
     uint32_t a = 7, b = 7;
     uint64_t bytes = 7;
     double number = 7.0;
@@ -42,8 +43,8 @@ static void read_option(void *user, struct cli_reader *reader, int id)
         fuzz_check(number >= -2.0 && number <= 9.0, "`%s` is %g", reader->value, number);
     if (id == ID_SIZE && cli_size(reader, &a, &b))
         fuzz_check(a > 0 && b > 0, "`%s` is %ux%u", reader->value, a, b);
-    if (id == ID_CHOICE && cli_choice(reader, choices, &a))
-        fuzz_check(a < 2, "`%s` is choice %u", reader->value, a);
+    if (id == ID_CHOICE && cli_choice_unsigned(reader, &a))
+        fuzz_check(a == 1 || a == 2, "`%s` is choice %u", reader->value, a);
 }
 
 static bool read_file(const char *path, char *said, size_t said_bytes)

@@ -1,0 +1,42 @@
+/* The values of enumerations by their words. Options, help, completion, recipes, JSON, keys, panels
+   and prices all take them from here, in this order. */
+#ifndef SETTINGS_VALUES_H
+#define SETTINGS_VALUES_H
+
+#include "api/whit.h"
+
+/* One value; a list ends with a word that is NULL. Lists of a bool have 0 and 1. */
+struct setting_value {
+    const char *word;  /* "watertight": as options take it */
+    int value;         /* of the enumeration */
+    const char *title; /* in messages and panels; NULL: the word */
+};
+
+extern const struct setting_value values_build[];           /* whit_build, without _NONE */
+extern const struct setting_value values_instances[];       /* whit_instances */
+extern const struct setting_value values_instance_build[];  /* whit_build */
+extern const struct setting_value values_instance_update[]; /* whit_accel_params.instance_refit */
+extern const struct setting_value values_traversal[];       /* whit_traversal */
+extern const struct setting_value values_numerics[];        /* whit_numerics */
+extern const struct setting_value values_load_path[];       /* 0: by the device, 1, 2 */
+extern const struct setting_value values_packets[];         /* whit_packets */
+extern const struct setting_value values_classes[];         /* whit_classes */
+extern const struct setting_value values_fresnel[];         /* whit_renderer_params.schlick */
+extern const struct setting_value values_effects[];         /* what the text begins with */
+extern const struct setting_value values_samples[];         /* of a pixel: powers of 4 */
+extern const struct setting_value values_light_samples[];   /* of an area light */
+extern const struct setting_value values_view[];            /* 0: colours; 1 + whit_view */
+extern const struct setting_value values_rays[];            /* whit_ray_kind; WHIT_RAY_KINDS: all */
+
+/* The word of a value, and its title; "" where the list lacks it. */
+const char *value_word(const struct setting_value *values, int value);
+const char *value_title(const struct setting_value *values, int value);
+/* Where the list has a word, or a value; WHIT_NONE: nowhere. */
+uint32_t value_find(const struct setting_value *values, const char *word);
+uint32_t value_place(const struct setting_value *values, int value);
+uint32_t value_count(const struct setting_value *values);
+/* All words, `separator` between them, cut where `text` ends; gives `text`. */
+const char *value_list(const struct setting_value *values, const char *separator, char *text,
+                       size_t text_bytes);
+
+#endif

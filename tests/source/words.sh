@@ -1,0 +1,24 @@
+#!/bin/sh
+# words.sh ROOT: the words of an enumeration stand in host/settings/values.c alone. Names each file above
+# host/api/ (tools/bench_build.c is below it) in which three words of one list (two, where there are no more) follow each other as strings.
+cd "$1" || exit 1
+bad=0
+lists=$(tr '\n' ' ' <host/settings/values.c | grep -o 'values_[a-z_]*\[\] = {[^;]*;' | sed 's/ = .*//; s/\[\]//')
+for list in $lists; do
+    words=$(tr '\n' ' ' <host/settings/values.c | grep -o "$list\[\] = {[^;]*;" |
+        grep -o '{"[^"]*"' | tr -d '{"' | paste -sd '|')
+    case $list in
+    # Words that many lists share, and numbers.
+    values_packets | values_classes | values_instances | values_effects | *samples) continue ;;
+    esac
+    one="\"($words)\"" next="[^\";]{0,60}\"($words)\""
+    case $words in *\|*\|*) next=$next$next ;; esac
+    # shellcheck disable=SC2046
+    if grep -lzE "$one$next" \
+        $(git ls-files 'host/settings/*.[ch]' 'host/cost/*.[ch]' 'host/view/*.[ch]' 'host/app/*.[ch]' \
+            'tools/*.c' 2>/dev/null | grep -v '^host/settings/values.c$\|^tools/bench_build.c$'); then
+        echo "$list: its words stand in the files above too"
+        bad=1
+    fi
+done
+[ -n "$lists" ] && exit "$bad"
