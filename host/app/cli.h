@@ -44,6 +44,8 @@ struct cli_command {
     bool takes_two;  /* arguments that are no options; else one */
     bool takes_many; /* after the first one: CLI_OTHERS_MOST */
     int (*run)(const struct cli_command *command, int argc, char **argv);
+    /* Word `index` of what an option takes beside its values; NULL: no more. May be NULL. */
+    const char *(*word)(const char *option, uint32_t index);
 };
 
 enum { CLI_OTHERS_MOST = 64 };
@@ -87,6 +89,10 @@ bool cli_choice_unsigned(struct cli_reader *reader, uint32_t *out);
 /* Misuse when `path` is `-`, which other programs take for a pipe; `hint` says what to write. */
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);
 
+/* Option `i` of a command, those of help and those that are gone too; NULL: there are no more. */
+const struct cli_option *cli_option_at(const struct cli_command *command, uint32_t i);
+/* How its argument is named; "" where there is none. `text` may hold it. */
+const char *cli_argument_name(const struct cli_option *option, char *text, size_t text_bytes);
 void cli_print_help(const struct cli_command *command, bool all, FILE *to);
 /* The name nearest to `word`, or NULL when none is near. */
 const char *cli_nearest(const char *word, const char *const *names, uint32_t count);

@@ -326,6 +326,13 @@ static int run(const struct cli_command *command, int argc, char **argv)
     return status;
 }
 
+static const char *knob_word(const char *option, uint32_t index)
+{
+    uint32_t count;
+    const struct knob *knobs = knob_table(&count);
+    return strcmp(option, "knobs") == 0 && index < count ? knobs[index].name : NULL;
+}
+
 const struct cli_command command_cost = {
     .name = "cost",
     .arguments = "SCENE [options]",
@@ -341,4 +348,5 @@ const struct cli_command command_cost = {
     .options = options,
     .takes_two = true,
     .run = run,
+    .word = knob_word,
 };

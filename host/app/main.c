@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "app/commands.h"
+#include "app/describe.h"
 
 static const struct cli_command *const commands[] = {
     &command_render, &command_scene, &command_trace,   &command_probe, &command_bvh,
@@ -63,6 +64,10 @@ int main(int argc, char **argv)
         puts("whit " WHIT_VERSION);
         return cli_finish_stdout(EXIT_FINE);
     }
+    if (strcmp(word, "--complete") == 0)
+        return describe_complete(commands, COMMAND_COUNT, (const char *const *)argv + 2);
+    if (strcmp(word, "--manual") == 0 && argc == 3)
+        return describe_manual(commands, COMMAND_COUNT, argv[2]);
     const struct cli_command *command = find_command(word);
     if (!command)
         return refuse(word);

@@ -1,6 +1,6 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
-  app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
+  app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/describe.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
   app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
   app/receipt.c app/receipt_output.c app/kernels.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
@@ -37,7 +37,15 @@ target_link_libraries(whit_program_needs INTERFACE whit PkgConfig::JANSSON
   $<$<BOOL:${WHIT_VIEWER}>:Vulkan::Vulkan> m)
 target_link_libraries(whit_program PRIVATE whit_flags whit_program_needs)
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# Manual pages, from the tables of options.
+add_custom_command(TARGET whit_program POST_BUILD
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
+  COMMAND whit_program --manual ${PROJECT_BINARY_DIR}/man)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES app/completion/whit.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)
+install(FILES app/completion/_whit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES app/completion/whit.fish
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/whit
   FILES_MATCHING PATTERN "*.json")

@@ -25,8 +25,7 @@ static bool takes_value(const struct cli_option *option)
     return option->value || option->values;
 }
 
-/* How the argument is named; "" where there is none. */
-static const char *argument_name(const struct cli_option *option, char *text, size_t text_bytes)
+const char *cli_argument_name(const struct cli_option *option, char *text, size_t text_bytes)
 {
     if (!option->value && option->values)
         return value_list(option->values, "|", text, text_bytes);
@@ -47,8 +46,7 @@ static bool has_developers(const struct cli_command *command)
     return count && command->options[count - 1].id >= CLI_DEVELOPER;
 }
 
-/* Option `i` of the command, then those of help; NULL: there are no more. */
-static const struct cli_option *option_at(const struct cli_command *command, uint32_t i)
+const struct cli_option *cli_option_at(const struct cli_command *command, uint32_t i)
 {
     uint32_t count = count_options(command);
     if (i < count)
@@ -59,7 +57,7 @@ static const struct cli_option *option_at(const struct cli_command *command, uin
 static const struct cli_option *find_option(const struct cli_command *command, int id)
 {
     const struct cli_option *option;
-    for (uint32_t i = 0; (option = option_at(command, i)); ++i) {
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
         if (option->id == id)
             return option;
     }
@@ -112,7 +110,7 @@ static struct option *long_options(const struct cli_command *command,
     const struct cli_option *option;
     *shorts++ = '-'; /* arguments that are no options come in their place, as id 1 */
     *shorts++ = ':';
-    for (uint32_t i = 0; (option = option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
+    for (uint32_t i = 0; (option = cli_option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
         table[i] = (struct option){
             .name = option->name,
             .has_arg = option->id == CLI_GONE ? optional_argument
@@ -194,9 +192,9 @@ int cli_next(struct cli_reader *reader)
             const struct cli_option *option = find_option(reader->command, optopt);
             char argument[80] = "?";
             cli_misuse(reader, "option `--%s` needs a value: %s", option ? option->name : "?",
-                       option ? argument_name(option, argument, sizeof argument) : argument);
+                       option ? cli_argument_name(option, argument, sizeof argument) : argument);
         } else if (id == CLI_GONE) {
-            const struct cli_option *gone = option_at(reader->command, (uint32_t)place);
+            const struct cli_option *gone = cli_option_at(reader->command, (uint32_t)place);
             cli_misuse(reader, "option `--%s` %s", gone->name, gone->help);
         } else if (id == '?') {
             unknown_option(reader);
@@ -312,7 +310,7 @@ static void print_option(const struct cli_option *option, FILE *to)
     if (option->id < 128 && isalpha(option->id))
         snprintf(letter, sizeof letter, "-%c, ", option->id);
     snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name,
-             takes_value(option) ? " " : "", argument_name(option, argument, sizeof argument));
+             takes_value(option) ? " " : "", cli_argument_name(option, argument, sizeof argument));
     if (strlen(left) + 2 > HELP_COLUMN)
         fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
     else
@@ -331,7 +329,7 @@ void cli_print_help(const struct cli_command *command, bool all, FILE *to)
     const struct cli_option *option;
     fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
             command->summary);
-    for (uint32_t i = 0; (option = option_at(command, i)); ++i) {
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
         if (option->id != CLI_GONE && (all || option->id < CLI_DEVELOPER))
             print_option(option, to);
     }

@@ -1,0 +1,151 @@
+/* What the tables of commands and options say, for shells and as manual pages. */
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/describe.h"
+#include "settings/values.h"
+
+/* ---- Completion ---- */
+
+static void print_word(const char *word, const char *about)
+{
+    printf("%s\t%.*s\n", word, (int)strcspn(about, "\n"), about);
+}
+
+static void print_options(const struct cli_command *command)
+{
+    const struct cli_option *option;
+    char word[80];
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
+        snprintf(word, sizeof word, "--%s", option->name);
+        if (option->id != CLI_GONE)
+            print_word(word, option->help);
+    }
+}
+
+/* Nothing for values that are no words, such as files. */
+static void print_values(const struct cli_command *command, const char *name)
+{
+    const struct cli_option *option;
+    const char *word;
+    name += strspn(name, "-");
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
+        if (strcmp(option->name, name) != 0 || option->id == CLI_GONE)
+            continue;
+        for (uint32_t k = 0; option->values && option->values[k].word; ++k)
+            print_word(option->values[k].word, "");
+        for (uint32_t k = 0; command->word && (word = command->word(name, k)); ++k)
+            print_word(word, "");
+    }
+}
+
+int describe_complete(const struct cli_command *const *commands, uint32_t count,
+                      const char *const *words)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!words[0])
+            print_word(commands[i]->name, commands[i]->summary);
+        else if (strcmp(commands[i]->name, words[0]) == 0 && !words[1])
+            print_options(commands[i]);
+        else if (strcmp(commands[i]->name, words[0]) == 0)
+            print_values(commands[i], words[1]);
+    }
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+/* ---- Manual pages ---- */
+
+/* Text that troff takes for nothing but text. */
+static void put_text(FILE *to, const char *text)
+{
+    for (bool begins = true; *text; begins = *text++ == '\n') {
+        if (begins && (*text == '.' || *text == '\''))
+            fputs("\\&", to);
+        if (*text == '\\' || *text == '-')
+            fputs(*text == '-' ? "\\-" : "\\e", to);
+        else
+            fputc(*text, to);
+    }
+}
+
+static void put_head(FILE *to, const char *name, const char *summary)
+{
+    fputs(".TH ", to);
+    for (const char *at = name; *at; ++at)
+        fputc(toupper((unsigned char)*at), to);
+    fprintf(to, " 1 \"\" \"whit %s\"\n.SH NAME\n", WHIT_VERSION);
+    put_text(to, name);
+    fputs(" \\- ", to);
+    put_text(to, summary);
+    fputs("\n.SH SYNOPSIS\n", to);
+}
+
+static void put_option(FILE *to, const struct cli_option *option)
+{
+    char list[80], text[200], letter[8] = "";
+    const char *argument = cli_argument_name(option, list, sizeof list);
+    if (option->id < 128 && isalpha(option->id))
+        snprintf(letter, sizeof letter, "-%c, ", option->id);
+    fputs(".TP\n.B ", to);
+    snprintf(text, sizeof text, "%s--%s%s%s", letter, option->name, argument[0] ? " " : "",
+             argument);
+    put_text(to, text);
+    fputc('\n', to);
+    put_text(to, option->help);
+    fputc('\n', to);
+}
+
+static void put_command(FILE *to, const struct cli_command *command)
+{
+    const struct cli_option *option;
+    char name[64];
+    snprintf(name, sizeof name, "whit-%s", command->name);
+    put_head(to, name, command->summary);
+    fprintf(to, ".B whit %s\n", command->name);
+    put_text(to, command->arguments);
+    fputs("\n.SH OPTIONS\n", to);
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
+        if (option->id != CLI_GONE)
+            put_option(to, option);
+    }
+    if (command->details) {
+        fputs(".SH DESCRIPTION\n.nf\n", to);
+        put_text(to, command->details);
+        fputs(".fi\n", to);
+    }
+    fputs(".SH SEE ALSO\n.BR whit (1)\n", to);
+}
+
+static void put_program(FILE *to, const struct cli_command *const *commands, uint32_t count)
+{
+    put_head(to, "whit", "a Whitted ray tracer on Vulkan compute");
+    fputs(".B whit\nCOMMAND [options]\n.SH COMMANDS\n", to);
+    for (uint32_t i = 0; i < count; ++i) {
+        fprintf(to, ".TP\n.BR whit\\-%s (1)\n", commands[i]->name);
+        put_text(to, commands[i]->summary);
+        fputc('\n', to);
+    }
+}
+
+int describe_manual(const struct cli_command *const *commands, uint32_t count, const char *folder)
+{
+    for (uint32_t i = 0; i <= count; ++i) {
+        char path[1024];
+        char *text = NULL;
+        size_t size;
+        FILE *to = open_memstream(&text, &size);
+        snprintf(path, sizeof path, "%s/whit%s%s.1", folder, i ? "-" : "",
+                 i ? commands[i - 1]->name : "");
+        if (to && i)
+            put_command(to, commands[i - 1]);
+        else if (to)
+            put_program(to, commands, count);
+        whit_result result = !to || fclose(to) != 0 ? WHIT_ERROR_MEMORY
+                                                    : whit_file_write(path, text, size, &cli_log);
+        free(text);
+        if (result != WHIT_OK)
+            return cli_exit_of(result);
+    }
+    return EXIT_FINE;
+}

@@ -1,0 +1,52 @@
+#!/bin/sh
+# What the tables of options say elsewhere: completion, manual pages, and the tables of docs/cli.md.
+. "$(dirname "$0")/common.sh"
+needs bash
+DOCS=$SCENES/../docs/cli.md
+mkdir "$OUT/man" && expect 0 "manual pages" --manual "$OUT/man"
+check "a page for whit" test -s "$OUT/man/whit.1"
+tab=$(printf '\t')
+
+for command in $("$WHIT" --complete | cut -f 1); do
+    "$WHIT" "$command" --help >"$OUT/help"
+    check "$command has a page" test -s "$OUT/man/whit-$command.1"
+    sed 's/\\-/-/g' "$OUT/man/whit-$command.1" >"$OUT/page"
+    "$WHIT" --complete "$command" >"$OUT/options"
+    check "$command: as many options as in its help" test \
+        "$(grep -c '^--' "$OUT/options")" -ge "$(grep -cE '^(  -., |      )--' "$OUT/help")"
+    missing=
+    for option in $(cut -f 1 "$OUT/options"); do
+        grep -qE "^\.B (-., )?$option( |\$)" "$OUT/page" || missing="$missing page:$option"
+        case $option in
+        --help | --help-all | --quiet) ;;
+        *) # A row, or the sentence of `whit COMMAND`.
+            sed 's/\\|//g' "$DOCS" | grep -qE "^\|[^|]*$option[^a-z-][^|]*\| [^|]*\b$command\b" ||
+                missing="$missing docs:$option" ;;
+        esac
+    done
+    check "$command: its page and docs/cli.md have all options$missing" test -z "$missing"
+done
+if command -v groff >/dev/null; then
+    for page in "$OUT"/man/*.1; do
+        groff -man -Tutf8 -ww "$page" >/dev/null 2>>"$OUT/troff"
+    done
+    check "troff has nothing to say" test ! -s "$OUT/troff"
+else
+    echo "SKIPPED part: no groff"
+fi
+
+# complete LINE...: the words that bash offers for the last one.
+complete_words() {
+    bash -c 'whit=$1; shift; set -- "$@"
+        . "$0" && COMP_WORDS=("$whit" "$@") && COMP_CWORD=$# && _whit "$whit" && echo "${COMPREPLY[@]}"' \
+        "$SCENES/../host/app/completion/whit.bash" "$WHIT" "$@"
+}
+check "commands" test "$(complete_words ren)" = render
+check "options" test "$(complete_words render --nu)" = --numerics
+check "words of an enumeration" test "$(complete_words render --numerics "")" = "fast watertight exact"
+check "knobs, arithmetic too" test "$(complete_words cost --knobs ar)" = arithmetic
+check "gone options are not offered" test -z "$("$WHIT" --complete render | grep '^--tree')"
+(cd "$SCENES" && complete_words render cub) >"$OUT/files"
+check "files" test "$(cat "$OUT/files")" = cube.json
+check "an about behind each word" test -z "$("$WHIT" --complete | grep -v "$tab.")"
+finish
