@@ -146,8 +146,10 @@ static whit_result render(const struct sheet *sheet, whit_device *device, const 
                           whit_image **image)
 {
     const whit_load_params load = {.texture_limit = sheet->texture_limit};
-    const whit_renderer_params params = {
-        .width = sheet->width, .height = sheet->height, .samples = sheet->samples};
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = sheet->width;
+    params.height = sheet->height;
+    params.samples = sheet->samples;
     whit_scene *scene = NULL;
     whit_accel *accel = NULL;
     whit_renderer *renderer = NULL;

@@ -22,7 +22,7 @@ struct whit_reference {
 whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,
                                   uint32_t threads, whit_reference **out)
 {
-    const whit_renderer_params defaults = {0};
+    const whit_renderer_params defaults = whit_renderer_defaults();
     struct reference_params inner = {.thread_count = threads};
     *out = NULL;
     whit_result result =

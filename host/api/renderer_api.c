@@ -112,6 +112,15 @@ bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect)
            renderer_compiles(renderer->renderer, (enum scene_effect)effect);
 }
 
+whit_renderer_params whit_renderer_defaults(void)
+{
+    return (whit_renderer_params){.width = 640,
+                                  .height = 480,
+                                  .samples = 1,
+                                  .depth = DEPTH_DEFAULT,
+                                  .bailout = WHIT_BAILOUT_DEFAULT};
+}
+
 whit_result render_params_from_public(const struct log *log, const whit_renderer_params *params,
                                       struct render_params *out)
 {
@@ -121,15 +130,13 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .camera = params->camera,
         .time_s = params->time_s,
         .samples = params->samples,
-        .depth = params->no_bounces ? 0
-                 : params->depth    ? params->depth
-                                    : DEPTH_DEFAULT,
-        .bailout = params->bailout,
-        .no_shadows = params->no_shadows,
+        .depth = params->depth,
+        .bailout = params->bailout > 0.0 ? params->bailout : -1.0,
+        .no_shadows = params->shadows == WHIT_SHADOWS_NONE,
         .adaptive = params->adaptive,
         .light_samples = params->light_samples,
         .schlick = params->schlick,
-        .opaque_shadows = params->opaque_shadows,
+        .opaque_shadows = params->shadows == WHIT_SHADOWS_OPAQUE,
         .compile_beside = params->compile_beside,
         .many_pictures = params->many_pictures,
         .tile_size = params->tile_size,
@@ -177,7 +184,7 @@ static whit_result pose_on_cpu(struct accel *accel, double time_s)
 whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
                                  const whit_renderer_params *params, whit_renderer **out)
 {
-    const whit_renderer_params defaults = {0};
+    const whit_renderer_params defaults = whit_renderer_defaults();
     if (!params)
         params = &defaults;
     *out = NULL;
@@ -270,7 +277,7 @@ whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                               const whit_renderer_params *params, whit_kernel *kernels,
                               uint32_t *count)
 {
-    const whit_renderer_params defaults = {0};
+    const whit_renderer_params defaults = whit_renderer_defaults();
     struct render_params inner;
     *count = 0;
     whit_result result =

@@ -25,22 +25,28 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest */
 } whit_numerics;
 
+/* What lights that something stands before still do. */
+typedef enum whit_shadows {
+    WHIT_SHADOWS_TINTED = 0, /* glass and blended surfaces let light through */
+    WHIT_SHADOWS_OPAQUE,     /* they cast full shadows too */
+    WHIT_SHADOWS_NONE,       /* light reaches everything */
+} whit_shadows;
+
+/* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
     const char *camera;     /* name or index of a camera of the scene, or
                                "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
     double time_s;          /* of the animation */
     uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MOST; 0: 1 */
-    uint32_t depth;         /* most bounces; 0: 8 */
-    bool no_bounces;        /* depth 0: what the primary ray sees, with its shadows */
+    uint32_t depth;         /* most bounces; 0: what the camera ray sees, with its shadows */
     double bailout;         /* rays that can add less than this to a pixel are not traced;
-                               0: 1/1024, < 0: all are */
-    bool no_shadows;
+                               0: all are */
+    whit_shadows shadows;
     double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
                                instead of 4, and then 64; `samples` is not read; 0: off */
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
-    bool opaque_shadows;    /* glass and blended surfaces cast full shadows */
     /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
        for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
        changes the picture. */
@@ -69,6 +75,10 @@ typedef struct whit_renderer_params {
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 
+/* 640 x 480, one sample, depth 8, bailout WHIT_BAILOUT_DEFAULT, the rest zero. It is what a call
+   takes whose params are NULL. */
+whit_renderer_params whit_renderer_defaults(void);
+
 /* Gives the choice that WHIT_CLASSES_AUTO makes for a renderer with these params: _ONE or _MANY,
    and _MANY too where the params are refused. */
 whit_classes whit_classes_of(const whit_renderer_params *params);
@@ -88,7 +98,7 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   samples, adaptive, light_samples, bailout, depth and no_bounces, and nothing else. `camera` is
+   samples, adaptive, light_samples, bailout and depth, and nothing else. `camera` is
    borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
    After an error there is nothing to render before a call that succeeds. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,

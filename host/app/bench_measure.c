@@ -239,8 +239,6 @@ static whit_result create_renderer(struct bench *bench, struct bench_case *c, bo
     const whit_renderer_params params = {
         .width = c->width,
         .height = c->height,
-        .no_bounces = true,
-        .bailout = -1.0,
         .traversal = c->traversal,
         .effects = c->effects,
         .count = counting,

@@ -19,7 +19,8 @@ struct render_request {
     uint32_t light_samples, tile_size, segments;
     whit_packets packets;
     whit_classes classes;
-    bool no_shadows, opaque_shadows, schlick;
+    whit_shadows shadows;
+    bool schlick;
     const char *effects; /* NULL: auto */
     /* 0: not asked for; else settings are chosen (cost_choice.c), none may be given. */
     double budget_ms, max_error;
@@ -35,7 +36,7 @@ int kernels_run(struct job *job, const struct picture *picture, bool json);
 
 /* ---- Options of pictures: what `render` and `view` share (picture.c) ---- */
 
-enum { PICTURE_DEPTH_DEFAULT = 8, PICTURE_DEPTH_MOST = 255 };
+enum { PICTURE_DEPTH_MOST = 255 };
 enum picture_id {
     PICTURE_SIZE = JOB_ID_END,
     PICTURE_CAMERA,

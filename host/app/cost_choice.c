@@ -90,12 +90,11 @@ static void take(const struct cost_choice *choice, const struct job *job,
     cost_choice_apply(choice, &target);
     request->picture.samples = target.picture.samples;
     request->picture.adaptive = target.picture.adaptive;
-    request->picture.depth = target.picture.no_bounces ? 0 : target.picture.depth;
-    request->bailout = target.picture.bailout > 0.0 ? target.picture.bailout : 0.0;
+    request->picture.depth = target.picture.depth;
+    request->bailout = target.picture.bailout;
     request->light_samples = target.picture.light_samples;
     request->schlick = target.picture.schlick;
-    request->opaque_shadows = target.picture.opaque_shadows;
-    request->no_shadows = target.picture.no_shadows;
+    request->shadows = target.picture.shadows;
     if (target.picture.effects) {
         snprintf(request->chosen_effects, sizeof request->chosen_effects, "%s", target.effects);
         request->effects = request->chosen_effects;

@@ -22,21 +22,20 @@ bool picture_read_aa(struct cli_reader *reader, struct picture *picture)
 
 whit_renderer_params picture_params(const struct picture *picture, const struct job *job)
 {
-    return (whit_renderer_params){
-        .width = picture->width,
-        .height = picture->height,
-        .camera = picture->camera,
-        .time_s = job->time_s,
-        .samples = picture->samples,
-        .adaptive = picture->adaptive,
-        .depth = picture->depth,
-        .no_bounces = picture->depth == 0,
-        .cancel = &cli_cancel,
-        .time_limit_s = cli_time_left_s(),
-        .load_path = job->load_path,
-        .traversal = job->traversal,
-        .numerics = job->numerics,
-    };
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = picture->width;
+    params.height = picture->height;
+    params.camera = picture->camera;
+    params.time_s = job->time_s;
+    params.samples = picture->samples;
+    params.adaptive = picture->adaptive;
+    params.depth = picture->depth;
+    params.cancel = &cli_cancel;
+    params.time_limit_s = cli_time_left_s();
+    params.load_path = job->load_path;
+    params.traversal = job->traversal;
+    params.numerics = job->numerics;
+    return params;
 }
 
 void picture_describe(const struct picture *picture, const struct job *job, json_t *object)
@@ -54,20 +53,22 @@ void picture_describe(const struct picture *picture, const struct job *job, json
 
 struct render_request picture_request_default(void)
 {
-    return (struct render_request){
-        .picture = {.width = 640, .height = 480, .samples = 1, .depth = PICTURE_DEPTH_DEFAULT},
-        .bailout = WHIT_BAILOUT_DEFAULT};
+    const whit_renderer_params usual = whit_renderer_defaults();
+    return (struct render_request){.picture = {.width = usual.width,
+                                               .height = usual.height,
+                                               .samples = usual.samples,
+                                               .depth = usual.depth},
+                                   .bailout = usual.bailout};
 }
 
 whit_renderer_params picture_request_params(const struct render_request *request,
                                             const struct job *job)
 {
     whit_renderer_params params = picture_params(&request->picture, job);
-    params.bailout = request->bailout > 0.0 ? request->bailout : -1.0;
-    params.no_shadows = request->no_shadows;
+    params.bailout = request->bailout;
+    params.shadows = request->shadows;
     params.light_samples = request->light_samples;
     params.schlick = request->schlick;
-    params.opaque_shadows = request->opaque_shadows;
     params.effects = request->effects;
     return params;
 }
@@ -93,10 +94,11 @@ bool picture_option(struct cli_reader *reader, int id, struct render_request *re
         cli_number(reader, 0.0, 1.0, &request->bailout);
         return true;
     case PICTURE_NO_SHADOWS:
-        request->no_shadows = true;
+        request->shadows = WHIT_SHADOWS_NONE;
         return true;
     case PICTURE_OPAQUE_SHADOWS:
-        request->opaque_shadows = true;
+        if (request->shadows != WHIT_SHADOWS_NONE)
+            request->shadows = WHIT_SHADOWS_OPAQUE;
         return true;
     case PICTURE_LIGHT_SAMPLES:
         cli_choice_unsigned(reader, &request->light_samples);

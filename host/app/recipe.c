@@ -103,9 +103,9 @@ static char *command_line(const struct job *job, const struct render_request *re
         fputs(" --bailout", to);
         put_number(to, request->bailout);
     }
-    if (request->no_shadows)
+    if (request->shadows == WHIT_SHADOWS_NONE)
         fputs(" --no-shadows", to);
-    if (request->opaque_shadows)
+    if (request->shadows == WHIT_SHADOWS_OPAQUE)
         fputs(" --opaque-shadows", to);
     if (request->light_samples)
         fprintf(to, " --light-samples %u", request->light_samples);
@@ -140,8 +140,8 @@ static char *options_line(const struct job *job, const struct render_request *re
     json_t *options = document_object();
     picture_describe(&request->picture, job, options);
     document_number(options, "bailout", request->bailout);
-    document_flag(options, "shadows", !request->no_shadows);
-    if (request->opaque_shadows)
+    document_flag(options, "shadows", request->shadows != WHIT_SHADOWS_NONE);
+    if (request->shadows == WHIT_SHADOWS_OPAQUE)
         document_flag(options, "opaque_shadows", true);
     if (request->light_samples)
         document_count(options, "light_samples", request->light_samples);

@@ -14,7 +14,7 @@ enum scene_id {
     ID_DEPTH,
 };
 
-enum { DEPTH_MOST = 32, DEPTH_DEFAULT = 8 };
+enum { DEPTH_MOST = 32 };
 
 static const struct cli_option options[] = {
     {ID_JSON, "json", NULL, "everything as JSON", NULL},
@@ -118,7 +118,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct cli_reader reader;
     struct job job;
     struct scene_request request = {
-        .picture = {.width = 320, .height = 240, .samples = 1, .depth = DEPTH_DEFAULT}};
+        .picture = {
+            .width = 320, .height = 240, .samples = 1, .depth = whit_renderer_defaults().depth}};
     job_init(&job);
     cli_reader_init(&reader, command, argc, argv);
     for (int id; (id = cli_next(&reader)) != 0;)

@@ -214,9 +214,6 @@ static void fill_settings(const struct job *job, const struct render_request *re
     p->load_path = NULL;
     p->cancel = NULL;
     p->time_limit_s = 0.0;
-    p->depth = p->depth == PICTURE_DEPTH_DEFAULT ? 0 : p->depth;
-    p->bailout = request->bailout == WHIT_BAILOUT_DEFAULT ? 0.0 : p->bailout;
-    p->samples = p->samples == 1 ? 0 : p->samples;
 }
 
 /* And back, for the recipe of a picture. */
@@ -236,17 +233,12 @@ static void fill_request(const struct view_settings *settings, struct job *job,
         .width = p->width,
         .height = p->height,
         .camera = settings->camera[0] ? settings->camera : NULL,
-        .samples = p->samples ? p->samples : 1,
+        .samples = p->samples,
         .adaptive = p->adaptive,
-        .depth = p->no_bounces ? 0
-                 : p->depth    ? p->depth
-                               : PICTURE_DEPTH_DEFAULT,
+        .depth = p->depth,
     };
-    request->bailout = p->bailout == 0.0  ? WHIT_BAILOUT_DEFAULT
-                       : p->bailout < 0.0 ? 0.0
-                                          : p->bailout;
-    request->no_shadows = p->no_shadows;
-    request->opaque_shadows = p->opaque_shadows;
+    request->bailout = p->bailout;
+    request->shadows = p->shadows;
     request->light_samples = p->light_samples;
     request->schlick = p->schlick;
     request->effects = settings->effects[0] ? settings->effects : NULL;

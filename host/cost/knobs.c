@@ -21,12 +21,11 @@ static void apply_aa(const struct knob_setting *setting, struct knob_target *tar
 static void apply_depth(const struct knob_setting *setting, struct knob_target *target)
 {
     target->picture.depth = (uint32_t)setting->value;
-    target->picture.no_bounces = setting->value == 0.0;
 }
 
 static void apply_bailout(const struct knob_setting *setting, struct knob_target *target)
 {
-    target->picture.bailout = setting->value > 0.0 ? setting->value : -1.0;
+    target->picture.bailout = setting->value;
 }
 
 static void apply_light_samples(const struct knob_setting *setting, struct knob_target *target)
@@ -41,12 +40,16 @@ static void apply_fresnel(const struct knob_setting *setting, struct knob_target
 
 static void apply_opaque_shadows(const struct knob_setting *setting, struct knob_target *target)
 {
-    target->picture.opaque_shadows = setting->value == 1.0;
+    if (target->picture.shadows != WHIT_SHADOWS_NONE)
+        target->picture.shadows = setting->value == 1.0 ? WHIT_SHADOWS_OPAQUE : WHIT_SHADOWS_TINTED;
 }
 
 static void apply_shadows(const struct knob_setting *setting, struct knob_target *target)
 {
-    target->picture.no_shadows = setting->value == 1.0;
+    if (setting->value == 1.0)
+        target->picture.shadows = WHIT_SHADOWS_NONE;
+    else if (target->picture.shadows == WHIT_SHADOWS_NONE)
+        target->picture.shadows = WHIT_SHADOWS_TINTED;
 }
 
 /* Leaves the setting's effect out. */

@@ -26,7 +26,6 @@ static whit_renderer_params reference_params(const struct measure *measure, uint
     params.time_limit_s = measure_left_s(measure);
     params.adaptive = 0.0;
     params.depth = MEASURE_DEPTH;
-    params.no_bounces = false;
     params.bailout = MEASURE_BAILOUT;
     params.light_samples = measure->report->reference_light_samples;
     return params;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_DEFAULT = 8, DEPTH_COUNT = 256, LIGHT_SAMPLES_DEFAULT = 16 };
+enum { DEPTH_COUNT = 256, LIGHT_SAMPLES_DEFAULT = 16 };
 static const double ADAPTIVE = 0.05;
 
 struct choice {
@@ -111,18 +111,16 @@ static void set_trees(struct view_settings *settings, uint32_t value)
 
 static int get_depth(const struct view_settings *settings)
 {
-    const whit_renderer_params *p = &settings->picture;
-    return p->no_bounces ? 0 : p->depth ? (int)p->depth : DEPTH_DEFAULT;
+    return (int)settings->picture.depth;
 }
 
 static void set_depth(struct view_settings *settings, uint32_t value)
 {
-    settings->picture.no_bounces = value == 0;
-    settings->picture.depth = value == DEPTH_DEFAULT ? 0 : value;
+    settings->picture.depth = value;
 }
 
 static const char *const bailouts[] = {"0: every ray", "1/4096", "1/1024", "1/256", "1/64", "1/16"};
-static const double bailout_values[] = {-1.0,        1.0 / 4096.0, 0.0 /* the default */,
+static const double bailout_values[] = {0.0,         1.0 / 4096.0, WHIT_BAILOUT_DEFAULT,
                                         1.0 / 256.0, 1.0 / 64.0,   1.0 / 16.0};
 
 static int get_bailout(const struct view_settings *settings)
@@ -162,7 +160,7 @@ static void set_samples(struct view_settings *settings, uint32_t value)
 {
     whit_renderer_params *p = &settings->picture;
     p->adaptive = value == 4 ? ADAPTIVE : 0.0;
-    p->samples = value == 0 || value == 4 ? 0 : sample_values[value];
+    p->samples = sample_values[value % 4];
 }
 
 static void say_samples(const struct view_settings *settings, char *text, size_t bytes)
@@ -200,13 +198,12 @@ static const char *const shadows[] = {"through glass", "opaque", "none"};
 
 static int get_shadows(const struct view_settings *settings)
 {
-    return settings->picture.no_shadows ? 2 : settings->picture.opaque_shadows ? 1 : 0;
+    return (int)settings->picture.shadows;
 }
 
 static void set_shadows(struct view_settings *settings, uint32_t value)
 {
-    settings->picture.no_shadows = value == 2;
-    settings->picture.opaque_shadows = value == 1;
+    settings->picture.shadows = (whit_shadows)value;
 }
 
 /* ---- All of them ---- */

@@ -36,9 +36,8 @@ bool settings_same_kernel(const struct view_settings *a, const struct view_setti
     bool counts = a->paint != VIEW_PAINT_COLOR, other_counts = b->paint != VIEW_PAINT_COLOR;
     return settings_same_scene(a, b) && strcmp(a->device, b->device) == 0 &&
            same_trees(&a->trees, &b->trees) && strcmp(a->effects, b->effects) == 0 &&
-           p->no_shadows == q->no_shadows && p->schlick == q->schlick &&
-           p->opaque_shadows == q->opaque_shadows && p->traversal == q->traversal &&
-           p->numerics == q->numerics && p->no_bounces == q->no_bounces &&
+           p->shadows == q->shadows && p->schlick == q->schlick && p->traversal == q->traversal &&
+           p->numerics == q->numerics && (p->depth == 0) == (q->depth == 0) &&
            (counts || (p->adaptive > 0.0) == (q->adaptive > 0.0)) && counts == other_counts;
 }
 
@@ -150,25 +149,24 @@ static void tree_words(struct words *words, const struct view_settings *settings
 
 static void shading_words(struct words *words, const struct view_settings *settings)
 {
+    const whit_renderer_params usual = whit_renderer_defaults();
     const whit_renderer_params *p = &settings->picture;
     bool costs = settings->paint != VIEW_PAINT_COLOR; /* which are not for adaptive samples */
     if (p->adaptive > 0.0 && !costs)
         option(words, "--aa", "adaptive:%.9g", p->adaptive);
     else if (p->adaptive <= 0.0 && p->samples > 1)
         option(words, "--aa", "%u", p->samples);
-    if (p->no_bounces)
-        option(words, "--depth", "0");
-    else if (p->depth)
+    if (p->depth != usual.depth)
         option(words, "--depth", "%u", p->depth);
-    if (p->bailout != 0.0)
-        option(words, "--bailout", "%.9g", p->bailout < 0.0 ? 0.0 : p->bailout);
+    if (p->bailout != usual.bailout)
+        option(words, "--bailout", "%.9g", p->bailout);
     if (p->light_samples)
         option(words, "--light-samples", "%u", p->light_samples);
     if (p->schlick)
         option(words, "--fresnel", "%s", value_word(values_fresnel, p->schlick));
-    if (p->opaque_shadows)
+    if (p->shadows == WHIT_SHADOWS_OPAQUE)
         option(words, "--opaque-shadows", "%s", "");
-    if (p->no_shadows)
+    if (p->shadows == WHIT_SHADOWS_NONE)
         option(words, "--no-shadows", "%s", "");
     if (settings->effects[0])
         option(words, "--effects", "%s", settings->effects);

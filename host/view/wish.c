@@ -32,10 +32,15 @@ static uint64_t shading_knobs(void)
 /* The usual ones in place of what was chosen before. */
 static void set_usual(struct view_settings *settings)
 {
+    const whit_renderer_params usual = whit_renderer_defaults();
     whit_renderer_params *p = &settings->picture;
-    p->samples = p->depth = p->light_samples = 0;
-    p->adaptive = p->bailout = 0.0;
-    p->no_bounces = p->schlick = p->opaque_shadows = p->no_shadows = false;
+    p->samples = usual.samples;
+    p->depth = usual.depth;
+    p->bailout = usual.bailout;
+    p->light_samples = usual.light_samples;
+    p->adaptive = usual.adaptive;
+    p->shadows = usual.shadows;
+    p->schlick = usual.schlick;
     settings->effects[0] = '\0';
 }
 

@@ -68,7 +68,9 @@ static whit_result save(whit_renderer *renderer, const char *path, const whit_lo
 int main(int argc, char **argv)
 {
     const whit_log log = {.fn = on_message, .level = WHIT_LOG_WARNING};
-    const whit_renderer_params params = {.width = 160, .height = 120};
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = 160;
+    params.height = 120;
     whit_scene *scene = NULL;
     whit_accel *accel = NULL;
     whit_device *device = NULL;

@@ -147,6 +147,9 @@ static bool draw(const struct subject *subject, const whit_renderer_params *para
 {
     whit_renderer_params sized = *params;
     whit_renderer *renderer = NULL;
+    const whit_renderer_params usual = whit_renderer_defaults();
+    sized.depth = usual.depth; /* nobody asks for others */
+    sized.bailout = usual.bailout;
     sized.width = sized.width ? sized.width : WIDTH;
     sized.height = sized.height ? sized.height : HEIGHT;
     *out = (struct drawn){.color = NULL};

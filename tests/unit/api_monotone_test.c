@@ -24,10 +24,13 @@ struct opened {
     whit_renderer *renderer;
 };
 
-static const whit_renderer_params usual = {.width = WIDTH, .height = HEIGHT};
+static whit_renderer_params usual;
 
 static struct opened open_scene(whit_device *device, const char *name)
 {
+    usual = whit_renderer_defaults();
+    usual.width = WIDTH;
+    usual.height = HEIGHT;
     char path[1024];
     struct opened o = {0};
     snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, name);
@@ -145,7 +148,6 @@ static void check_depth(struct opened *o, const char *name, struct tally *tally)
     for (size_t i = 0; i < sizeof depths / sizeof *depths; ++i) {
         whit_renderer_params view = usual;
         view.depth = depths[i];
-        view.no_bounces = depths[i] == 0;
         const struct error error = measure(o, reference, &view);
         compare(tally, name, "depth", depths[i], &before, &error);
         before = error;

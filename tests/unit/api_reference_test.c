@@ -43,11 +43,12 @@ static void draws_pictures_and_ray_trees(void **state)
     (void)state;
     struct opened o = open_scene(WHIT_SCENES_DIR "/default.json");
     double last = 0.0;
-    const whit_renderer_params params = {.width = WIDTH,
-                                         .height = HEIGHT,
-                                         .effects = "all",
-                                         .progress = note_progress,
-                                         .progress_user = &last};
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.effects = "all";
+    params.progress = note_progress;
+    params.progress_user = &last;
     whit_reference *reference = NULL;
     whit_image *color = NULL, *ids = NULL;
     assert_int_equal(whit_reference_create(o.accel, &params, 0, &reference), WHIT_OK);

@@ -317,7 +317,8 @@ whit_result frame_memory(const struct frame *frame, double *megabytes)
     whit_renderer_params least = whole;
     uint64_t with = 0, without = 0;
     least.width = least.height = 16;
-    least.no_bounces = least.no_shadows = true;
+    least.depth = 0;
+    least.shadows = WHIT_SHADOWS_NONE;
     whit_result result = device_bytes(frame, &whole, &with);
     if (result == WHIT_OK)
         result = device_bytes(frame, &least, &without);
