@@ -86,18 +86,3 @@ void whit_tree_rays_destroy(whit_tree_ray *rays)
 {
     free(rays);
 }
-
-const char *whit_tree_kind_name(uint32_t kind)
-{
-    static const char *const names[WHIT_TREE_KINDS] = {"primary", "shadow", "reflected",
-                                                       "refracted", "straight"};
-    return kind < WHIT_TREE_KINDS ? names[kind] : NULL;
-}
-
-const char *whit_tree_end_name(uint32_t end)
-{
-    static const char *const names[WHIT_TREE_ENDS] = {"left the scene", "surface", "no further ray",
-                                                      "passed unseen",  "light",   "blocked",
-                                                      "absorbed",       "depth",   "bailout"};
-    return end < WHIT_TREE_ENDS ? names[end] : NULL;
-}

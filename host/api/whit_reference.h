@@ -62,10 +62,6 @@ typedef struct whit_tree_ray {
     double radiance[3];    /* what it added to the sample; 0 for shadow rays */
 } whit_tree_ray;
 
-/* "reflected", "no further ray"; NULL past the last. */
-const char *whit_tree_kind_name(uint32_t kind);
-const char *whit_tree_end_name(uint32_t end);
-
 /* The ray tree of one sample (0: the first) of a pixel from the upper left; the sum of `radiance`
    is the sample's colour. whit_tree_rays_destroy() ends it. WHIT_ERROR_USAGE outside of the
    picture. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include <png.h>
+#include <zlib.h>
 
 #include "base/array.h"
 #include "image/display.h"
@@ -174,10 +175,11 @@ whit_result png_write(const struct image_target *target, const struct image *ima
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_sRGB_gAMA_and_cHRM(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
         set_texts(job, target);
-        /* One filter and a low level: over 3 times as fast as the defaults, files up to 20 %
-           larger. */
+        /* One filter, and matches of the byte before alone: over 3 times as fast as the defaults,
+           files up to 20 % larger. */
         png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-        png_set_compression_level(job->png, 2);
+        png_set_compression_level(job->png, 1);
+        png_set_compression_strategy(job->png, Z_RLE);
         png_write_info(job->png, job->info);
         write_rows(job, image, channels);
         png_write_end(job->png, NULL);

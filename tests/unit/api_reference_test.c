@@ -96,23 +96,11 @@ static void refuses_what_it_cannot_draw(void **state)
     close_scene(&o);
 }
 
-static void every_kind_and_end_has_a_name(void **state)
-{
-    (void)state;
-    for (uint32_t i = 0; i < WHIT_TREE_KINDS; ++i)
-        assert_non_null(whit_tree_kind_name(i));
-    for (uint32_t i = 0; i < WHIT_TREE_ENDS; ++i)
-        assert_non_null(whit_tree_end_name(i));
-    assert_null(whit_tree_kind_name(WHIT_TREE_KINDS));
-    assert_null(whit_tree_end_name(WHIT_TREE_ENDS));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(draws_pictures_and_ray_trees),
         cmocka_unit_test(refuses_what_it_cannot_draw),
-        cmocka_unit_test(every_kind_and_end_has_a_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
