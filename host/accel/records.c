@@ -1,5 +1,5 @@
-/* Builders that move records as they split them: binned, median, and the naive sweep; and the one
-   that splits nothing. */
+/* Builders that move records as they split them: binned and median; and the one that splits
+   nothing. */
 #include <stdlib.h>
 
 #include "accel/build.h"

@@ -131,7 +131,7 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .time_s = params->time_s,
         .samples = params->samples,
         .depth = params->depth,
-        .bailout = params->bailout > 0.0 ? params->bailout : -1.0,
+        .bailout = params->bailout != 0.0 ? params->bailout : -1.0,
         .no_shadows = params->shadows == WHIT_SHADOWS_NONE,
         .adaptive = params->adaptive,
         .light_samples = params->light_samples,

@@ -38,10 +38,12 @@ target_link_libraries(whit_program_needs INTERFACE whit PkgConfig::JANSSON
 target_link_libraries(whit_program PRIVATE whit_flags whit_program_needs)
 install(TARGETS whit_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # Manual pages, from the tables of options.
-add_custom_command(TARGET whit_program POST_BUILD
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
-  COMMAND whit_program --manual ${PROJECT_BINARY_DIR}/man)
-install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+if(NOT CMAKE_CROSSCOMPILING) # the program writes them
+  add_custom_command(TARGET whit_program POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
+    COMMAND whit_program --manual ${PROJECT_BINARY_DIR}/man)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+endif()
 install(FILES app/completion/whit.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME whit)
 install(FILES app/completion/_whit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)

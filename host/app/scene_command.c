@@ -36,7 +36,7 @@ static const struct cli_option options[] = {
      NULL},
     {ID_SIZE, "size", "WxH", "pixels, for --effects and --kernels (320x240)", NULL},
     {ID_CAMERA, "camera", "NAME|N|numbers", "for the same (the scene's first)", NULL},
-    {ID_AA, "aa", "1|4|16|64|adaptive:X", "for the same (1)", values_samples},
+    {ID_AA, "aa", "1|4|16|...|4096|adaptive:X", "for the same (1)", values_samples},
     {ID_DEPTH, "depth", "N", "for the same (8)", NULL},
     {JOB_NUMERICS, "numerics", NULL, "for the same (watertight)", values_numerics},
     JOB_OPTION_DEVICE,

@@ -89,9 +89,9 @@ refuse 2 "no runs" "from 1 to" bvh "$CUBE" --runs 0
 refuse 2 "no rays" "from 1 to" bvh "$CUBE" --rays 0
 refuse 2 "no scene" "a scene is missing" bvh
 for option in save load; do
-    refuse 2 "--$option, which is gone" "`--$option` is gone: trees are built" bvh "$CUBE" --$option x.bvh
+    refuse 2 "--$option, which is gone" "option .--$option. is gone: trees are built" bvh "$CUBE" --$option x.bvh
 done
-refuse 2 "--tree, which is gone" "`--tree` is gone: trees are built" render "$CUBE" -o b.png --tree=x.bvh
+refuse 2 "--tree, which is gone" "option .--tree. is gone: trees are built" render "$CUBE" -o b.png --tree=x.bvh
 check "no picture" test ! -e b.png
 
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
