@@ -56,7 +56,7 @@ endif()
 
 # ---- The copy ----
 
-set(parts CMakeLists.txt docs host scenes shaders tests tools)
+set(parts CMakeLists.txt README.md docs host scenes shaders tests tools)
 
 function(list_files folder out)
   set(files "")

@@ -487,6 +487,7 @@ static void only_pixels_that_see_glass_refract(void **state)
     (void)state;
     struct render_params params = small;
     params.count = true;
+    params.classes = RENDER_CLASSES_MANY; /* each class must have what its materials call for */
     struct fixture f = fixture_open(quarters_scene(), NULL, &params);
     struct image reflected = {0}, refracted = {0};
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
