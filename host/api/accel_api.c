@@ -6,7 +6,6 @@
 #include "accel/report.h"
 #include "api/handles.h"
 #include "base/array.h"
-#include "base/clock.h"
 
 #ifdef NDEBUG
 #define ALWAYS_VALIDATE false

@@ -25,7 +25,7 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest */
 } whit_numerics;
 
-/* What lights that something stands before still do. */
+/* Whether surfaces between a point and a light keep the light from that point. */
 typedef enum whit_shadows {
     WHIT_SHADOWS_TINTED = 0, /* glass and blended surfaces let light through */
     WHIT_SHADOWS_OPAQUE,     /* they cast full shadows too */
@@ -188,9 +188,10 @@ typedef struct whit_share {
     uint32_t material; /* of the scene */
     double share;      /* 0..1 */
 } whit_share;
-#define WHIT_SHARES        24
+#define WHIT_SHARES 24
 
-#define WHIT_SAMPLE_LEVELS 7
+/* Numbers of samples that a pixel may have: 1, 4, 16, ... WHIT_SAMPLES_MOST. */
+enum { WHIT_SAMPLE_LEVELS = 7 };
 
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
@@ -203,7 +204,7 @@ typedef struct whit_stats {
     double weight_cut_depth, weight_cut_bailout;
     /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
     double bailout_bound;
-    uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS]; /* of 1, 4, 16, ... 4096 samples */
+    uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
     uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
     bool general;                 /* drawn by the general kernel: see params.compile_beside */
     uint32_t dispatches, tiles, tile_size;

@@ -62,10 +62,10 @@ struct bench_case {
 /* Where whit's scene of this name is. */
 WHIT_CHECK whit_result bench_find(const struct bench *bench, const char *name, char *path,
                                   size_t bytes);
-/* `name` without .json. `quiet`: what goes wrong with its trees is not said. */
-WHIT_CHECK whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
+/* `name` without .json. */
+WHIT_CHECK whit_result bench_load(const struct bench *bench, const char *name,
                                   struct bench_scene *scene);
-WHIT_CHECK whit_result bench_load_file(const char *path, bool quiet, struct bench_scene *scene);
+WHIT_CHECK whit_result bench_load_file(const char *path, struct bench_scene *scene);
 void bench_unload(struct bench_scene *scene);
 
 /* Steps that a section's cases take, for the progress. */
@@ -88,7 +88,6 @@ void bench_add(struct bench_times *times, double ms); /* the first BENCH_RUNS_MO
 /* The value below which `share` of the times are, between neighbours by a straight line. */
 double bench_quantile(const struct bench_times *times, double share);
 double bench_median(const struct bench_times *times);
-double bench_least(const struct bench_times *times);
 /* Half the width of the middle half. */
 double bench_spread(const struct bench_times *times);
 /* 1: `a` takes longer; -1: `b` does; 0: not to be distinguished, as sample_compare says. */

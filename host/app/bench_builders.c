@@ -33,7 +33,7 @@ static whit_result measure_builders(struct section *section, const char *scene_n
                                     uint32_t count)
 {
     struct bench *bench = section->bench;
-    whit_result result = bench_load(bench, scene_name, false, scene);
+    whit_result result = bench_load(bench, scene_name, scene);
     for (uint32_t i = 0; i < count; ++i)
         cases[i].scene = scene;
     if (result == WHIT_OK)

@@ -28,11 +28,10 @@ static bool find_beside_program(const char *name, char *path, size_t size)
     return false;
 }
 
-whit_result bench_load_file(const char *path, bool quiet, struct bench_scene *scene)
+whit_result bench_load_file(const char *path, struct bench_scene *scene)
 {
     const whit_load_params params = {.cancel = &cli_cancel};
-    whit_result result =
-        whit_scene_load(path, &params, quiet ? NULL : &cli_log_errors, &scene->scene);
+    whit_result result = whit_scene_load(path, &params, &cli_log_errors, &scene->scene);
     if (result == WHIT_OK)
         whit_scene_get_info(scene->scene, &scene->info);
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
@@ -48,15 +47,14 @@ whit_result bench_find(const struct bench *bench, const char *name, char *path, 
     return WHIT_OK;
 }
 
-whit_result bench_load(const struct bench *bench, const char *name, bool quiet,
-                       struct bench_scene *scene)
+whit_result bench_load(const struct bench *bench, const char *name, struct bench_scene *scene)
 {
     char path[BENCH_PATH];
     *scene = (struct bench_scene){0};
     snprintf(scene->name, sizeof scene->name, "%s", name);
     if (bench_find(bench, name, path, sizeof path) != WHIT_OK)
         return WHIT_ERROR_INPUT;
-    return bench_load_file(path, quiet, scene);
+    return bench_load_file(path, scene);
 }
 
 void bench_unload(struct bench_scene *scene)
@@ -104,11 +102,6 @@ double bench_quantile(const struct bench_times *times, double share)
 double bench_median(const struct bench_times *times)
 {
     return bench_quantile(times, 0.5);
-}
-
-double bench_least(const struct bench_times *times)
-{
-    return bench_quantile(times, 0.0);
 }
 
 double bench_spread(const struct bench_times *times)

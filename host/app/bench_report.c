@@ -1,8 +1,4 @@
 /* The tables of the report that whit comes from, on whit's scenes of the same sizes. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "app/bench_section.h"
 #include "settings/values.h"
 
@@ -84,9 +80,9 @@ static whit_result trees_on_and_off(struct bench *bench)
     };
     const uint32_t few = bench->runs < 3 ? bench->runs : 3;
     section_begin(&section, bench, "trees", CASES(cases) + 2 + 2 * bench->runs + 2 * (1 + few));
-    whit_result result = bench_load(bench, "cube", false, &cube);
+    whit_result result = bench_load(bench, "cube", &cube);
     if (result == WHIT_OK)
-        result = bench_load(bench, "34k", false, &many);
+        result = bench_load(bench, "34k", &many);
     if (result == WHIT_OK)
         result = bench_build(bench, cases, CASES(cases), 1);
     if (result == WHIT_OK)
@@ -162,7 +158,7 @@ static whit_result bins_or_all(struct bench *bench)
         {.label = "sweep", .scene = &scene, .accel_params.build = WHIT_BUILD_SWEEP},
     };
     section_begin(&section, bench, "builds", 4 * bench->runs + 4);
-    whit_result result = bench_load(bench, "54k", false, &scene);
+    whit_result result = bench_load(bench, "54k", &scene);
     if (result == WHIT_OK)
         result = bench_build(bench, cases, CASES(cases), bench->runs);
     if (result == WHIT_OK)
@@ -253,7 +249,7 @@ static whit_result orders(struct bench *bench)
         cases[i].label = value_word(values_traversal, (int)cases[i].traversal);
     }
     section_begin(&section, bench, "orders", CASES(cases) * (3 + bench->runs));
-    whit_result result = bench_load(bench, "8k", false, &scene);
+    whit_result result = bench_load(bench, "8k", &scene);
     if (result == WHIT_OK)
         result = bench_build(bench, cases, CASES(cases), 1);
     if (result == WHIT_OK)

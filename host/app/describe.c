@@ -1,4 +1,4 @@
-/* What the tables of commands and options say, for shells and as manual pages. */
+/* Reads the tables of commands and options through cli_option_at, as --help does. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What the tables of commands and options say, for shells and as manual pages. */
+/* Prints commands, options and their words for completion by shells, and writes manual pages. */
 #ifndef APP_DESCRIBE_H
 #define APP_DESCRIBE_H
 

@@ -175,8 +175,8 @@ whit_result png_write(const struct image_target *target, const struct image *ima
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_sRGB_gAMA_and_cHRM(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
         set_texts(job, target);
-        /* One filter, and matches of the byte before alone: over 3 times as fast as the defaults,
-           files up to 20 % larger. */
+        /* One filter, and of matches runs of one byte alone: of rendered pictures files 1 to 22 %
+           smaller than by level 2 with all matches, in 0.85 to 0.95 of its time. */
         png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
         png_set_compression_level(job->png, 1);
         png_set_compression_strategy(job->png, Z_RLE);

@@ -31,7 +31,7 @@ extern const struct setting_value values_rays[];            /* whit_ray_kind; WH
 /* The word of a value, and its title; "" where the list lacks it. */
 const char *value_word(const struct setting_value *values, int value);
 const char *value_title(const struct setting_value *values, int value);
-/* Where the list has a word, or a value; WHIT_NONE: nowhere. */
+/* The index in the list of a word, and of a value; WHIT_NONE where the list lacks it. */
 uint32_t value_find(const struct setting_value *values, const char *word);
 uint32_t value_place(const struct setting_value *values, int value);
 uint32_t value_count(const struct setting_value *values);

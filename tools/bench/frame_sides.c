@@ -22,7 +22,7 @@ static whit_renderer_params params_of(const struct frame *frame)
 whit_result frame_prepare(struct frame *frame)
 {
     const whit_renderer_params params = params_of(frame);
-    whit_result result = bench_load_file(frame->path, false, &frame->loaded);
+    whit_result result = bench_load_file(frame->path, &frame->loaded);
     if (result == WHIT_OK)
         result = whit_accel_create(frame->loaded.scene, NULL, &frame->accel);
     if (result == WHIT_OK)

@@ -128,7 +128,7 @@ static whit_result prepare(struct model *model, const char *path)
     const struct bench *bench = model->bench;
     const whit_renderer_params params = {.width = 16, .height = 16, .cancel = &cli_cancel};
     name_model(model, path);
-    whit_result result = bench_load_file(path, false, &model->loaded);
+    whit_result result = bench_load_file(path, &model->loaded);
     if (result == WHIT_OK && model->loaded.info.triangle_count == 0) {
         cli_error("%s: has no triangles, which rays could meet", path);
         return WHIT_ERROR_INPUT;
