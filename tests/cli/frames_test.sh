@@ -44,27 +44,32 @@ check "stats have times of frames and their median" \
     jq -e 'all(.times, .frames.median, .frames.each[]; .build_instances_ms >= 0)' "$OUT/stdout"
 check "rays are summed up" jq -e '.rays.primary == 768' "$OUT/stdout"
 
-# What is cut, and pixels by samples: sums over frames, of weights and bounds the largest.
-cut="$SCENES/whitted.json --size 40x30 --depth 2 --bailout 0.05 --aa adaptive:0.05 --fps 24 --stats json"
-# shellcheck disable=SC2086
-expect 0 "frames whose rays are cut" render $cut --frames 0-1 -o t.#.png
-jq '[.rays.cut_by_depth, .rays.cut_by_bailout, .rays.bailout_bound, .pixels_by_samples]' \
-    "$OUT/stdout" >sums
-for frame in 0 1; do
+# What is cut, and pixels by samples: sums over frames, of weights and bounds the largest, which here are
+# those of the first frame.
+for option in "--depth 1" "--bailout 0.05"; do
+    cut="$SWARM --size 40x30 $option --aa adaptive:0.05 --fps 1 --stats json"
     # shellcheck disable=SC2086
-    expect 0 "frame $frame alone" render $cut --frame $frame -o t.png
+    expect 0 "frames with $option" render $cut --frames 0-1 -o t.#.png
     jq '[.rays.cut_by_depth, .rays.cut_by_bailout, .rays.bailout_bound, .pixels_by_samples]' \
-        "$OUT/stdout" >"single$frame"
+        "$OUT/stdout" >sums
+    for frame in 0 1; do
+        # shellcheck disable=SC2086
+        expect 0 "frame $frame alone" render $cut --frame $frame -o t.png
+        jq '[.rays.cut_by_depth, .rays.cut_by_bailout, .rays.bailout_bound, .pixels_by_samples]' \
+            "$OUT/stdout" >"single$frame"
+    done
+    check "$option: less is cut in the second frame" jq -es \
+        '(.[0][0].weight_of_a_pixel + .[0][1].weight_of_a_pixel) as $first
+         | (.[1][0].weight_of_a_pixel + .[1][1].weight_of_a_pixel) as $second
+         | $first > $second and $second > 0 and .[0][3]."64" > 0' single0 single1
+    check "$option: cut rays, weights, bound and samples are of all frames" jq -es '
+        def all(a; b): [range(2) as $i | {rays: (a[$i].rays + b[$i].rays),
+            weight_of_a_pixel: ([a[$i].weight_of_a_pixel, b[$i].weight_of_a_pixel] | max)}]
+            + [([a[2], b[2]] | max)]
+            + [a[3] as $x | b[3] as $y | $x | to_entries
+               | map({key, value: (.value + $y[.key])}) | from_entries];
+        .[0] == all(.[1]; .[2])' sums single0 single1
 done
-check "there is something to sum up" jq -e \
-    '.[0].rays > 0 and .[1].rays > 0 and .[2] > 0 and .[3]."4" > 0 and .[3]."64" > 0' single0
-check "cut rays, weights, bound and samples are of all frames" jq -es '
-    def all(a; b): [range(2) as $i | {rays: (a[$i].rays + b[$i].rays),
-        weight_of_a_pixel: ([a[$i].weight_of_a_pixel, b[$i].weight_of_a_pixel] | max)}]
-        + [([a[2], b[2]] | max)]
-        + [a[3] as $x | b[3] as $y | $x | to_entries | map({key, value: (.value + $y[.key])})
-           | from_entries];
-    .[0] == all(.[1]; .[2])' sums single0 single1
 
 expect 0 "--stats text" render "$SWARM" --frames 0-2 -o s.#.png --size 16x16 --stats text
 check "a row a frame" test "$(grep -Ec '^  [0-2] ( +[0-9.]+){4}$' "$OUT/stdout")" -eq 3
