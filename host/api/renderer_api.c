@@ -14,24 +14,7 @@ _Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
                    (uint32_t)WHIT_RAY_REFRACTED == RAY_REFRACTED,
                "kinds of rays");
 
-enum { DEPTH_DEFAULT = 8, CPU_BATCH = 4096 };
-
-static whit_result load_path_from_name(const struct log *log, const char *name,
-                                       enum render_load_path *out)
-{
-    *out = RENDER_LOAD_AUTO;
-    if (!name || strcmp(name, "auto") == 0)
-        return WHIT_OK;
-    if (strcmp(name, "storage") == 0)
-        *out = RENDER_LOAD_STORAGE;
-    else if (strcmp(name, "texel") == 0)
-        *out = RENDER_LOAD_TEXEL;
-    else {
-        log_error(log, "there is no load path `%s`: auto, storage, texel", name);
-        return WHIT_ERROR_USAGE;
-    }
-    return WHIT_OK;
-}
+enum { DEPTH_DEFAULT = 8, LIGHT_SAMPLES_DEFAULT = 16, CPU_BATCH = 4096 };
 
 static uint32_t effect_by_name(const char *name, size_t length)
 {
@@ -118,6 +101,7 @@ whit_renderer_params whit_renderer_defaults(void)
                                   .height = 480,
                                   .samples = 1,
                                   .depth = DEPTH_DEFAULT,
+                                  .light_samples = LIGHT_SAMPLES_DEFAULT,
                                   .bailout = WHIT_BAILOUT_DEFAULT};
 }
 
@@ -157,11 +141,12 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
                    : params->classes == WHIT_CLASSES_MANY ? RENDER_CLASSES_MANY
                                                           : RENDER_CLASSES_AUTO,
         .segments = params->segments,
+        .load_path = params->load_path == WHIT_LOAD_STORAGE ? RENDER_LOAD_STORAGE
+                     : params->load_path == WHIT_LOAD_TEXEL ? RENDER_LOAD_TEXEL
+                                                            : RENDER_LOAD_AUTO,
         .count = params->count,
     };
-    whit_result result = effects_from_text(log, params->effects, out);
-    return result == WHIT_OK ? load_path_from_name(log, params->load_path, &out->load_path)
-                             : result;
+    return effects_from_text(log, params->effects, out);
 }
 
 whit_classes whit_classes_of(const whit_renderer_params *params)

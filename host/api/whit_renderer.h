@@ -32,6 +32,13 @@ typedef enum whit_shadows {
     WHIT_SHADOWS_NONE,       /* light reaches everything */
 } whit_shadows;
 
+/* How kernels read trees. */
+typedef enum whit_load_path {
+    WHIT_LOAD_AUTO = 0, /* by the device */
+    WHIT_LOAD_STORAGE,  /* storage buffers */
+    WHIT_LOAD_TEXEL,    /* texel buffers */
+} whit_load_path;
+
 /* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
@@ -63,8 +70,8 @@ typedef struct whit_renderer_params {
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
     void *progress_user;
-    double time_limit_s;   /* from whit_renderer_create on; 0: none */
-    const char *load_path; /* "auto" or NULL, "storage", "texel": how kernels read trees */
+    double time_limit_s; /* from whit_renderer_create on; 0: none */
+    whit_load_path load_path;
     whit_traversal traversal;
     whit_numerics numerics;
     /* How the kernels work; pictures are the same. `segments` of lists: 1 or 2; 0: as the device
@@ -75,8 +82,8 @@ typedef struct whit_renderer_params {
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
 } whit_renderer_params;
 
-/* 640 x 480, one sample, depth 8, bailout WHIT_BAILOUT_DEFAULT, the rest zero. It is what a call
-   takes whose params are NULL. */
+/* 640 x 480, one sample, 16 of an area light, depth 8, bailout WHIT_BAILOUT_DEFAULT, the rest zero.
+   It is what a call takes whose params are NULL. */
 whit_renderer_params whit_renderer_defaults(void);
 
 /* Gives the choice that WHIT_CLASSES_AUTO makes for a renderer with these params: _ONE or _MANY,

@@ -16,13 +16,13 @@ enum {
 
 /* What `whit bench` was asked for, and where its answers go. */
 struct bench {
-    const char *scenes; /* the folder, or NULL: where whit finds it */
-    const char *json;   /* NULL: text only */
-    const char *device_name;
+    const char *scenes;       /* the folder, or NULL: where whit finds it */
+    const char *json;         /* NULL: text only */
     const char *const *names; /* models or scenes that were asked for */
     uint32_t name_count;
     const char *against, *plot, *keep; /* of benches of speed; or NULL */
-    bool quick, quiet, no_cache;
+    bool quick;
+    struct settings settings; /* device, cache, quiet */
     uint32_t runs;
     uint32_t width, height;
     whit_device *device;

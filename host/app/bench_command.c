@@ -4,33 +4,23 @@
 #include "app/bench.h"
 #include "app/cache.h"
 #include "app/commands.h"
+#include "base/text.h"
 
-enum bench_id {
-    ID_QUICK = 256,
-    ID_RUNS,
-    ID_JSON,
-    ID_SCENES,
-    ID_PLOT,
-    ID_AGAINST,
-    ID_KEEP,
-    ID_DEVICE,
-    ID_NO_CACHE,
-};
-
-static const struct cli_option options[] = {
-    {ID_QUICK, "quick", NULL, "tiny pictures and few runs: shows that it works, no more", NULL},
-    {ID_RUNS, "runs", "N", "of each case, 1 to 99 (7; quick: 2)", NULL},
-    {ID_JSON, "json", "FILE", "also write all figures as JSON", NULL},
-    {ID_SCENES, "scenes", "FOLDER", "where whit's scenes are (./scenes, or beside the program)",
-     NULL},
-    {CLI_GONE, "naive-limit", NULL, "is gone with the builder sweep-naive", NULL},
-    {ID_PLOT, "plot", "FILE.svg",
-     "rays, frame, start: also draw how far each row is from what it must", NULL},
-    {ID_AGAINST, "against", "PROGRAM", "frame, start: another whit, timed in turns", NULL},
-    {ID_KEEP, "keep", "FOLDER", "rays: leave rays, triangles and hits there", NULL},
-    {ID_DEVICE, "device", "auto|N|NAME", "Vulkan device; see `whit devices` (auto)", NULL},
-    {ID_NO_CACHE, "no-cache", NULL, JOB_NO_CACHE_HELP, NULL},
-    {'q', "quiet", NULL, "no progress", NULL},
+static const struct setting options[] = {
+    {"quick", 0, NULL, "tiny pictures and few runs: shows that it works, no more",
+     SETTING_AT_FLAG(struct bench, quick)},
+    {"runs", 0, "N", "of each case, 1 to 99 (7; quick: 2)", SETTING_AT_COUNT(struct bench, runs),
+     .min = 1, .max = BENCH_RUNS_MOST},
+    {"json", 0, "FILE", "also write all figures as JSON", SETTING_AT_NAME(struct bench, json)},
+    {"scenes", 0, "FOLDER", "where whit's scenes are (./scenes, or beside the program)",
+     SETTING_AT_NAME(struct bench, scenes)},
+    {"naive-limit", 0, NULL, "is gone with the builder sweep-naive", .kind = SETTING_GONE},
+    {"plot", 0, "FILE.svg", "rays, frame, start: also draw how far each row is from what it must",
+     SETTING_AT_NAME(struct bench, plot)},
+    {"against", 0, "PROGRAM", "frame, start: another whit, timed in turns",
+     SETTING_AT_NAME(struct bench, against)},
+    {"keep", 0, "FOLDER", "rays: leave rays, triangles and hits there",
+     SETTING_AT_NAME(struct bench, keep)},
     {0},
 };
 
@@ -58,44 +48,6 @@ static const struct bench_kind {
 };
 enum { BENCH_COUNT = sizeof benches / sizeof benches[0] };
 
-static void read_option(struct cli_reader *reader, int id, struct bench *bench)
-{
-    switch (id) {
-    case ID_QUICK:
-        bench->quick = true;
-        break;
-    case ID_RUNS:
-        cli_unsigned(reader, 1, BENCH_RUNS_MOST, &bench->runs);
-        break;
-    case ID_JSON:
-        bench->json = reader->value;
-        break;
-    case ID_SCENES:
-        bench->scenes = reader->value;
-        break;
-    case ID_PLOT:
-        bench->plot = reader->value;
-        break;
-    case ID_AGAINST:
-        bench->against = reader->value;
-        break;
-    case ID_KEEP:
-        bench->keep = reader->value;
-        break;
-    case ID_DEVICE:
-        bench->device_name = reader->value;
-        break;
-    case ID_NO_CACHE:
-        bench->no_cache = true;
-        break;
-    case 'q':
-        bench->quiet = true;
-        break;
-    default:
-        break;
-    }
-}
-
 static void complete(struct bench *bench, const struct bench_kind *kind)
 {
     bench->width = bench->quick ? kind->width / 10 : kind->width;
@@ -120,7 +72,7 @@ static uint32_t find_bench(struct cli_reader *reader)
         if (strcmp(benches[i].name, reader->positional) == 0)
             return i;
     }
-    const char *nearest = cli_nearest(reader->positional, names, BENCH_COUNT);
+    const char *nearest = text_nearest(reader->positional, names, BENCH_COUNT);
     if (nearest)
         cli_misuse(reader, "there is no bench `%s`; did you mean `%s`?", reader->positional,
                    nearest);
@@ -161,7 +113,8 @@ static whit_result write_json(struct bench *bench, uint32_t index)
 
 static int work(struct bench *bench, uint32_t index)
 {
-    const whit_device_params params = {.selector = bench->device_name};
+    const whit_device_params params = {
+        .selector = bench->settings.device[0] ? bench->settings.device : NULL};
     whit_result result = whit_device_create(&params, &cli_log, &bench->device);
     bench->sections = document_array();
     if (result == WHIT_OK) {
@@ -201,11 +154,9 @@ static bool check_request(struct cli_reader *reader, struct bench *bench, uint32
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct bench bench = {0};
+    struct bench bench = {.settings = settings_usual()};
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &bench);
-    if (reader.status >= 0)
+    if (!cli_read(&reader, &bench, &bench.settings))
         return reader.status;
     if (!reader.positional)
         return list_benches();
@@ -213,7 +164,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (index == BENCH_COUNT || !check_request(&reader, &bench, index))
         return reader.status;
     complete(&bench, &benches[index]);
-    cache_prepare(bench.no_cache);
+    cache_prepare(bench.settings.no_cache);
     return work(&bench, index);
 }
 
@@ -224,5 +175,6 @@ const struct cli_command command_bench = {
     .summary = "Measures what choices cost on this machine, and prints the tables.",
     .details = "Without BENCH it lists the benches. Tables are Markdown, on standard output.\n",
     .options = options,
+    .settings = IN_BENCH,
     .run = run,
 };

@@ -67,7 +67,7 @@ void bench_unload(struct bench_scene *scene)
 
 void bench_begin(struct bench *bench, uint32_t steps)
 {
-    cli_progress_init(&bench->progress, bench->quiet);
+    cli_progress_init(&bench->progress, bench->settings.quiet);
     bench->step = 0;
     bench->step_count = steps;
 }

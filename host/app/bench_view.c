@@ -50,9 +50,9 @@ static whit_result run_viewer(const struct bench *bench, const struct bench_view
         arguments[count++] = "--depth";
         arguments[count++] = c->depth;
     }
-    if (bench->device_name) {
+    if (bench->settings.device[0]) {
         arguments[count++] = "--device";
-        arguments[count++] = bench->device_name;
+        arguments[count++] = bench->settings.device;
     }
     const struct bench_child child = {.arguments = arguments, .out = out};
     return bench_child_run(&child, NULL);

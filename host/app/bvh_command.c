@@ -6,58 +6,9 @@
 #include "app/commands.h"
 #include "app/study.h"
 
-enum bvh_id {
-    ID_BUILD = JOB_ID_END,
-    ID_THREADS,
-    ID_RUNS,
-    ID_RAYS,
-    ID_VALIDATE,
-    ID_JSON,
-    ID_NO_TRACE,
-};
-
 enum { RUNS_DEFAULT = 3, RAYS_DEFAULT = 100000, RAYS_MOST = 100000000, LIST_MAX = 1024 };
 
 static const char builders_default[] = "median,binned,sweep,spatial,binned+opt";
-
-static const struct cli_option options[] = {
-    {ID_BUILD, "build", "LIST",
-     "builders, such as median,binned:7,sweep+opt,spatial:1e-6\n"
-     "(median,binned,sweep,spatial,binned+opt)",
-     values_build},
-    {ID_THREADS, "threads", "LIST", "threads to build with, such as 1,2,4 (1 and one a core)",
-     NULL},
-    {ID_RUNS, "runs", "N", "builds and batches of rays that a median is of (3)", NULL},
-    {ID_RAYS, "rays", "N", "rays of each kind: primary, shadow, diffuse (100000)", NULL},
-    {ID_NO_TRACE, "no-trace", NULL, "trees only, no rays on a device", NULL},
-    {ID_VALIDATE, "validate", NULL, "check every tree; exit code 1 when one is wrong", NULL},
-    {CLI_GONE, "save", NULL, "is gone: trees are built for each run", NULL},
-    {CLI_GONE, "load", NULL, "is gone: trees are built for each run", NULL},
-    {ID_JSON, "json", NULL, "everything as JSON", NULL},
-    JOB_OPTION_BUILDING,
-    JOB_OPTION_WALKING,
-    JOB_OPTION_TIME,
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_LOADING,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
-    {0},
-};
-
-/* What the options say before they become rows. */
-struct request {
-    const char *builders; /* NULL: not given */
-    bool has_threads;
-};
-
-static bool add_row(struct study *study, struct cli_reader *reader, struct study_row row)
-{
-    if (study->row_count == STUDY_ROWS_MAX)
-        return cli_misuse(reader, "more than %d builders", STUDY_ROWS_MAX);
-    study->rows[study->row_count++] = row;
-    return true;
-}
 
 /* The end of the first item of a list: a comma before a number belongs to spatial:ALPHA,BUDGET. */
 static size_t item_length(const char *list)
@@ -69,17 +20,30 @@ static size_t item_length(const char *list)
     return length;
 }
 
-static bool read_builders(struct study *study, struct cli_reader *reader, const char *list)
+static bool add_row(struct study *study, const char *text, char *why)
 {
+    struct study_row row = {0};
+    if (!builder_read(text, &row.trees, why))
+        return false;
+    if (row.trees.build == WHIT_BUILD_NONE)
+        return setting_refuse(why, " `%s`: without trees there is nothing to compare", text);
+    if (study->row_count == STUDY_ROWS_MAX)
+        return setting_refuse(why, ": more than %d builders", STUDY_ROWS_MAX);
+    builder_write(&row.trees, row.name, sizeof row.name);
+    study->rows[study->row_count++] = row;
+    return true;
+}
+
+static bool read_builders(const struct setting *setting, const char *list, void *record, char *why)
+{
+    struct study *study = record;
+    (void)setting;
+    study->row_count = 0;
     for (const char *item = list;;) {
         char text[LIST_MAX];
-        struct study_row row = {0};
         size_t length = item_length(item);
         snprintf(text, sizeof text, "%.*s", (int)(length < LIST_MAX ? length : LIST_MAX - 1), item);
-        if (!job_read_build(reader, text, &row.build))
-            return false;
-        job_build_name(&row.build, row.name);
-        if (!add_row(study, reader, row))
+        if (!add_row(study, text, why))
             return false;
         if (!item[length])
             return true;
@@ -93,22 +57,21 @@ static uint32_t core_count(void)
     return cores < 1 ? 1 : cores > 64 ? 64 : (uint32_t)cores;
 }
 
-static bool read_threads(struct study *study, struct cli_reader *reader)
+static bool read_threads(const struct setting *setting, const char *list, void *record, char *why)
 {
-    const char *whole = reader->value;
+    static const struct setting one = {.kind = SETTING_COUNT, .max = 64};
+    struct study *study = record;
+    (void)setting;
     study->thread_count = 0;
-    for (const char *item = whole;;) {
+    for (const char *item = list;;) {
         char text[16];
         size_t length = strcspn(item, ",");
         uint32_t threads;
         snprintf(text, sizeof text, "%.*s", (int)(length < 15 ? length : 15), item);
-        reader->value = text;
-        bool good = cli_unsigned(reader, 0, 64, &threads);
-        reader->value = whole;
-        if (!good)
+        if (!setting_read(&one, text, &threads, why))
             return false;
         if (study->thread_count == STUDY_THREADS_MAX)
-            return cli_misuse(reader, "--threads: more than %d numbers", STUDY_THREADS_MAX);
+            return setting_refuse(why, ": more than %d numbers", STUDY_THREADS_MAX);
         study->threads[study->thread_count++] = threads ? threads : core_count();
         if (!item[length])
             return true;
@@ -116,39 +79,26 @@ static bool read_threads(struct study *study, struct cli_reader *reader)
     }
 }
 
-static void read_option(struct cli_reader *reader, int id, struct study *study,
-                        struct request *request)
-{
-    if (job_option(&study->job, reader, id))
-        return;
-    switch (id) {
-    case ID_BUILD:
-        request->builders = reader->value;
-        study->row_count = 0;
-        read_builders(study, reader, reader->value);
-        break;
-    case ID_THREADS:
-        request->has_threads = read_threads(study, reader);
-        break;
-    case ID_RUNS:
-        cli_unsigned(reader, 1, STUDY_RUNS_MAX, &study->run_count);
-        break;
-    case ID_RAYS:
-        cli_unsigned(reader, 1, RAYS_MOST, &study->ray_count);
-        break;
-    case ID_VALIDATE:
-        study->validate = true;
-        break;
-    case ID_JSON:
-        study->json = true;
-        break;
-    case ID_NO_TRACE:
-        study->no_trace = true;
-        break;
-    default:
-        break;
-    }
-}
+static const struct setting options[] = {
+    {"build", 0, "LIST",
+     "builders, such as median,binned:7,sweep+opt,spatial:1e-6\n"
+     "(median,binned,sweep,spatial,binned+opt)",
+     .kind = SETTING_OWN, .read = read_builders, .values = values_build},
+    {"threads", 0, "LIST", "threads to build with, such as 1,2,4 (1 and one a core)",
+     .kind = SETTING_OWN, .read = read_threads},
+    {"runs", 0, "N", "builds and batches of rays that a median is of (3)",
+     SETTING_AT_COUNT(struct study, run_count), .min = 1, .max = STUDY_RUNS_MAX},
+    {"rays", 0, "N", "rays of each kind: primary, shadow, diffuse (100000)",
+     SETTING_AT_COUNT(struct study, ray_count), .min = 1, .max = RAYS_MOST},
+    {"no-trace", 0, NULL, "trees only, no rays on a device",
+     SETTING_AT_FLAG(struct study, no_trace)},
+    {"validate", 0, NULL, "check every tree; exit code 1 when one is wrong",
+     SETTING_AT_FLAG(struct study, validate)},
+    {"save", 0, NULL, "is gone: trees are built for each run", .kind = SETTING_GONE},
+    {"load", 0, NULL, "is gone: trees are built for each run", .kind = SETTING_GONE},
+    {"json", 0, NULL, "everything as JSON", SETTING_AT_FLAG(struct study, json)},
+    {0},
+};
 
 static void default_threads(struct study *study)
 {
@@ -176,9 +126,9 @@ static whit_result open_device(struct study *study)
 {
     if (study->no_trace)
         return WHIT_OK;
-    if (!study->job.device_name && !any_device()) {
+    if (!study->job.settings.device[0] && !any_device()) {
         study->no_trace = true;
-        if (!study->job.quiet)
+        if (!study->job.settings.quiet)
             cli_note("there is no usable Vulkan device: no rays are traced");
         return WHIT_OK;
     }
@@ -199,7 +149,7 @@ static int work(struct study *study)
         job_print_notes(&study->job, false);
         result = open_device(study);
     }
-    cli_progress_init(&study->progress, study->job.quiet);
+    cli_progress_init(&study->progress, study->job.settings.quiet);
     study->steps = count_steps(study);
     if (result == WHIT_OK)
         result = study_build(study);
@@ -219,18 +169,17 @@ static int work(struct study *study)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct request request = {0};
     struct study study = {.run_count = RUNS_DEFAULT, .ray_count = RAYS_DEFAULT};
-    job_init(&study.job);
+    char why[SETTING_WHY_BYTES];
+    job_init(&study.job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &study, &request);
-    if (!job_options_done(&study.job, &reader))
+    if (!job_read(&study.job, &reader, &study, false))
         return reader.status;
-    if (!request.builders && !read_builders(&study, &reader, builders_default))
-        return reader.status;
-    if (!request.has_threads)
+    if (!study.row_count)
+        read_builders(NULL, builders_default, &study, why);
+    if (!study.thread_count)
         default_threads(&study);
+    job_start(&study.job);
     int status = work(&study);
     study_finish(&study);
     return status;
@@ -250,5 +199,6 @@ const struct cli_command command_bvh = {
         "rays of the first camera, from what they hit to the lights, and off it at random.\n"
         "Exit code 1: hits differ between builders, or a tree is not valid.\n",
     .options = options,
+    .settings = IN_BVH,
     .run = run,
 };

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "api/whit.h"
+#include "settings/settings.h"
 
 enum cli_exit {
     EXIT_FINE = 0,
@@ -20,29 +20,19 @@ enum cli_exit {
 
 /* ---- Options ---- */
 
-/* Ids from here on are of options for those who work on whit, which --help-all alone lists. */
-enum { CLI_DEVELOPER = 1000 };
-/* The id of an option that is gone; `help` says what stands in its place. */
-enum { CLI_GONE = CLI_DEVELOPER - 2 };
-
-/* One long option. `value` names its argument; NULL: it is one of the words of `values`, or there
-   is none. `help` may have several lines. */
-struct cli_option {
-    int id; /* > 0; also the short option when it is a character */
-    const char *name, *value, *help;
-    const struct setting_value *values; /* what the argument may be, or begin with; or NULL */
-};
-
-/* A subcommand. Its options end with a zeroed one; --help is added to them, and --help-all where
-   some are for developers. */
+/* A subcommand. Its own options end with a zeroed one. Behind them come those rows of the table of
+   settings that it takes and has no own option for, --help, and --help-all where some are for
+   developers. */
 struct cli_command {
     const char *name;
-    const char *arguments; /* "SCENE -o OUT" */
-    const char *summary;   /* one line, for the list of commands */
-    const char *details;   /* paragraphs below the options; may be NULL */
-    const struct cli_option *options;
-    bool takes_two;  /* arguments that are no options; else one */
-    bool takes_many; /* after the first one: CLI_OTHERS_MOST */
+    const char *arguments;                    /* "SCENE -o OUT" */
+    const char *summary;                      /* one line, for the list of commands */
+    const char *details;                      /* paragraphs below the options; may be NULL */
+    const struct setting *options;            /* of the command's own record */
+    uint32_t settings;                        /* a bit of enum settings_command; 0: it takes none */
+    void (*usual)(struct settings *settings); /* sets defaults of its own; NULL: none */
+    bool takes_two;                           /* arguments that are no options; else one */
+    bool takes_many;                          /* after the first one: CLI_OTHERS_MOST */
     int (*run)(const struct cli_command *command, int argc, char **argv);
     /* Word `index` of what an option takes beside its values; NULL: no more. May be NULL. */
     const char *(*word)(const char *option, uint32_t index);
@@ -55,8 +45,7 @@ struct cli_reader {
     const struct cli_command *command;
     int argc;
     char **argv;
-    const struct cli_option *option; /* the current one */
-    const char *value;
+    const char *value;                   /* of the option at hand */
     const char *positional;              /* the first argument that is not an option, or NULL */
     const char *second;                  /* the second one, where the command takes two */
     const char *others[CLI_OTHERS_MOST]; /* from the second one on, where it takes many */
@@ -70,33 +59,25 @@ struct cli_reader {
 
 void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
                      char **argv);
-/* The id of the next option; 0 at the end. */
-int cli_next(struct cli_reader *reader);
+/* Reads all arguments: own options into `own`, settings into `settings`, either of which is NULL
+   where the command has none. False: exit with `status`. Of a file of settings (`where`) only
+   settings. */
+bool cli_read(struct cli_reader *reader, void *own, struct settings *settings);
 /* Says what is wrong with the usage and how to get help; false, so that parsers can return it.
    Sets `status`. */
 bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(2, 3);
-
-/* Values of the current option; on nonsense they misuse() and return false. */
-bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint32_t *out);
-/* Bytes, more than 0: a whole number, or one with K, M or G behind it. */
-bool cli_bytes(struct cli_reader *reader, uint64_t *out);
-bool cli_number(struct cli_reader *reader, double least, double most, double *out);
-bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height);
-/* One of the option's `values`. */
-bool cli_choice(struct cli_reader *reader, int *out);
-bool cli_choice_unsigned(struct cli_reader *reader, uint32_t *out);
 
 /* Misuse when `path` is `-`, which other programs take for a pipe; `hint` says what to write. */
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);
 
 /* Option `i` of a command, those of help and those that are gone too; NULL: there are no more. */
-const struct cli_option *cli_option_at(const struct cli_command *command, uint32_t i);
+const struct setting *cli_option_at(const struct cli_command *command, uint32_t i);
 /* How its argument is named; "" where there is none. `text` may hold it. */
-const char *cli_argument_name(const struct cli_option *option, char *text, size_t text_bytes);
+const char *cli_argument_name(const struct setting *option, char *text, size_t text_bytes);
+/* Its help, with the default in brackets; in `text`. */
+const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
+                     size_t text_bytes);
 void cli_print_help(const struct cli_command *command, bool all, FILE *to);
-/* The name nearest to `word`, or NULL when none is near. */
-const char *cli_nearest(const char *word, const char *const *names, uint32_t count);
-
 /* ---- Messages ---- */
 
 void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);

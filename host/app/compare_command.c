@@ -2,8 +2,6 @@
 #include "app/document.h"
 #include <math.h>
 
-enum compare_id { ID_TOLERANCE = JOB_ID_END, ID_METRIC, ID_DIFF, ID_FLIP, ID_JSON, ID_PPD };
-
 enum metric {
     METRIC_RMSE,
     METRIC_RELMSE,
@@ -20,36 +18,37 @@ static const struct setting_value values_metric[] = {
     {"over", METRIC_OVER, NULL},       {"differing", METRIC_DIFFERING, NULL},
     {"flip", METRIC_FLIP, NULL},       {0}};
 
-static const struct cli_option options[] = {
-    {ID_TOLERANCE, "tolerance", "X", "exit code 1 when the metric is over X", NULL},
-    {ID_METRIC, "metric", "NAME",
-     "which one --tolerance is for, and the only one that is printed:\n"
-     "rmse relmse largest mean over differing flip (flip; of hit\n"
-     "identities differing)",
-     values_metric},
-    {ID_DIFF, "diff", "FILE",
-     "B - A: .png as colours, blue where B is darker, brown where it is\n"
-     "brighter; .exr .pfm as linear numbers",
-     NULL},
-    {ID_FLIP, "flip", "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers", NULL},
-    {ID_JSON, "json", "FILE", "all metrics as JSON", NULL},
-    {ID_PPD, "ppd", "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)", NULL},
-    JOB_OPTION_DECODING,
-    {'q', "quiet", NULL, "print nothing but errors", NULL},
-    {0},
-};
-
 struct compare {
     const char *paths[2];
     const char *diff, *flip, *json; /* or NULL */
-    bool has_tolerance, has_metric;
-    double tolerance;
-    uint32_t metric;
+    double tolerance;               /* < 0: none */
+    uint32_t metric;                /* METRIC_COUNT: not given */
+    bool has_metric;
     whit_compare_params params;
     struct job job; /* how its pictures are read */
     whit_image *images[2], *flip_map;
     whit_image_info info;
     whit_difference found;
+};
+
+static const struct setting options[] = {
+    {"tolerance", 0, "X", "exit code 1 when the metric is over X",
+     SETTING_AT_NUMBER(struct compare, tolerance), .max = 1e30},
+    {"metric", 0, "NAME",
+     "which one --tolerance is for, and the only one that is printed:\n"
+     "rmse relmse largest mean over differing flip (flip; of hit\n"
+     "identities differing)",
+     SETTING_AT_CHOICE(struct compare, metric), .values = values_metric},
+    {"diff", 0, "FILE",
+     "B - A: .png as colours, blue where B is darker, brown where it is\n"
+     "brighter; .exr .pfm as linear numbers",
+     SETTING_AT_NAME(struct compare, diff)},
+    {"flip", 0, "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers",
+     SETTING_AT_NAME(struct compare, flip)},
+    {"json", 0, "FILE", "all metrics as JSON", SETTING_AT_NAME(struct compare, json)},
+    {"ppd", 0, "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)",
+     SETTING_AT_NUMBER(struct compare, params.pixels_per_degree), .min = 1.0, .max = 1000.0},
+    {0},
 };
 
 /* ---- Figures ---- */
@@ -117,7 +116,7 @@ static void print_head(const struct compare *compare)
 static int print_text(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
-    if (compare->job.quiet)
+    if (compare->job.settings.quiet)
         return EXIT_FINE;
     if (compare->has_metric) {
         print_metric(compare, compare->metric);
@@ -171,9 +170,10 @@ static whit_result save_json(const struct compare *compare)
     }
     document_put(root, "flip", flip);
     document_text(root, "metric", value_word(values_metric, (int)compare->metric));
-    document_number(root, "tolerance", compare->has_tolerance ? compare->tolerance : (double)NAN);
+    document_number(root, "tolerance",
+                    compare->tolerance >= 0.0 ? compare->tolerance : (double)NAN);
     document_put(root, "within",
-                 compare->has_tolerance ? json_boolean(is_within(compare)) : json_null());
+                 compare->tolerance >= 0.0 ? json_boolean(is_within(compare)) : json_null());
     return document_save(root, compare->json);
 }
 
@@ -192,7 +192,7 @@ static bool is_within(const struct compare *compare)
 static int judge(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
-    if (!compare->has_tolerance || is_within(compare))
+    if (compare->tolerance < 0.0 || is_within(compare))
         return EXIT_FINE;
     double value = value_of(compare, compare->metric);
     if (fabs(value) <= compare->tolerance)
@@ -282,8 +282,10 @@ static whit_result check_pair(struct compare *compare)
 
 static whit_result find_out(struct compare *compare)
 {
-    const whit_load_params load = job_load_params(&compare->job);
+    const char *folders[SETTING_FOLDERS_MOST];
+    whit_load_params load = settings_load(&compare->job.settings, folders);
     whit_result result = WHIT_OK;
+    load.cancel = &cli_cancel;
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
         result = whit_image_load(compare->paths[i], &load, &cli_log, &compare->images[i]);
         if (result == WHIT_OK)
@@ -328,8 +330,6 @@ static bool check_picture(struct cli_reader *reader, const char *option, const c
 static bool check_request(struct cli_reader *reader, struct compare *compare)
 {
     const char *const outputs[] = {compare->diff, compare->flip, compare->json};
-    if (reader->status >= 0)
-        return false;
     compare->paths[0] = reader->positional;
     compare->paths[1] = reader->second;
     if (!compare->paths[1])
@@ -347,33 +347,18 @@ static bool check_request(struct cli_reader *reader, struct compare *compare)
     return true;
 }
 
-static void read_option(struct cli_reader *reader, int id, struct compare *compare)
-{
-    if (job_option(&compare->job, reader, id))
-        return;
-    if (id == ID_TOLERANCE)
-        compare->has_tolerance = cli_number(reader, 0.0, 1e30, &compare->tolerance);
-    else if (id == ID_METRIC)
-        compare->has_metric = cli_choice_unsigned(reader, &compare->metric);
-    else if (id == ID_DIFF)
-        compare->diff = reader->value;
-    else if (id == ID_FLIP)
-        compare->flip = reader->value;
-    else if (id == ID_JSON)
-        compare->json = reader->value;
-    else
-        cli_number(reader, 1.0, 1000.0, &compare->params.pixels_per_degree);
-}
-
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct compare compare = {.metric = METRIC_FLIP};
-    job_init(&compare.job);
+    struct compare compare = {.tolerance = -1.0, .metric = METRIC_COUNT};
+    job_init(&compare.job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &compare);
-    return check_request(&reader, &compare) ? work(&compare) : reader.status;
+    if (!cli_read(&reader, &compare, &compare.job.settings) || !check_request(&reader, &compare))
+        return reader.status;
+    compare.has_metric = compare.metric != METRIC_COUNT;
+    if (!compare.has_metric)
+        compare.metric = METRIC_FLIP;
+    return work(&compare);
 }
 
 const struct cli_command command_compare = {
@@ -386,6 +371,7 @@ const struct cli_command command_compare = {
         "displayed. Pixels that are not finite are left out of all but `over`, `differing` and\n"
         "`flip`; with them no other metric passes a tolerance.\n",
     .options = options,
+    .settings = IN_COMPARE,
     .takes_two = true,
     .run = run,
 };

@@ -7,14 +7,16 @@
 #include "app/page.h"
 #include "cost/cost.h"
 
+enum { COST_RAYS_UNSAID = WHIT_NONE };
+
 struct cost {
     struct job job;
-    struct picture picture;
     struct cost_request request;
     const char *html, *json, *csv, *markdown; /* files, or NULL */
     bool quick, compares;
     double under, within_ms; /* 0: not asked for */
     uint32_t metric;
+    uint32_t rays; /* COST_RAYS_UNSAID: as it suits */
     char *command; /* that made it; owned */
     struct cli_progress progress;
     struct cost_report *report;

@@ -12,44 +12,31 @@ enum { KEPT_VERSION = 3, KEPT_NAME = 32, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
 static const double TRIAL_MS_LEAST = 20.0;
 
 /* Of the figures. */
-static void kept_name(const struct job *job, const struct render_request *request,
-                      char name[KEPT_NAME])
+static void kept_name(const struct job *job, char name[KEPT_NAME])
 {
-    char key[1024];
-    const struct picture *picture = &request->picture;
+    char key[1024 + SETTING_TEXT_BYTES];
+    const whit_renderer_params *picture = &job->settings.picture;
     whit_device_info device;
     whit_scene_info scene;
     whit_device_get_info(job->device, &device);
     whit_scene_get_info(job->scene, &scene);
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
-             WHIT_VERSION, scene.hash, picture->width, picture->height, job->time_s,
-             picture->camera ? picture->camera : "", device.name, device.driver);
+             WHIT_VERSION, scene.hash, picture->width, picture->height, picture->time_s,
+             job->settings.camera, device.name, device.driver);
     snprintf(name, KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
 }
 
-/* All that changes a picture: orders and builders are the user's. */
-static uint64_t shading_knobs(void)
-{
-    uint32_t count;
-    uint64_t bits = 0;
-    const struct knob *table = knob_table(&count);
-    for (uint32_t k = 0; k < count; ++k)
-        if (table[k].change == KNOB_SHADING)
-            bits |= UINT64_C(1) << k;
-    return bits;
-}
-
-static whit_result measure(struct job *job, const struct render_request *request,
-                           struct cost_report **report)
+static whit_result measure(struct job *job, struct cost_report **report)
 {
     struct cli_progress progress;
     const struct cost_request wanted = {
         .device = job->device,
         .scene = job->scene,
         .accel = job->accel,
-        .accel_params = job_accel_params(job),
-        .picture = picture_request_params(request, job),
-        .knobs = shading_knobs(),
+        .settings = &job->settings,
+        .cancel = &cli_cancel,
+        .time_limit_s = cli_time_left_s(),
+        .knobs = knobs_of_light(),
         .seconds = COST_SECONDS_QUICK,
         .samples_most = SAMPLES,
         .progress = cost_on_progress,
@@ -57,24 +44,23 @@ static whit_result measure(struct job *job, const struct render_request *request
         .hush = cli_hush,
         .log = &cli_log,
     };
-    if (!job->quiet)
+    if (!job->settings.quiet)
         cli_note("measuring what settings cost in this scene, once");
-    cli_progress_init(&progress, job->quiet);
+    cli_progress_init(&progress, job->settings.quiet);
     whit_result result = cost_measure(&wanted, report);
     cli_progress_finish(&progress);
     return result;
 }
 
 /* As they are kept, or measured and then kept. The same figures give the same picture. */
-static whit_result find_figures(struct job *job, const struct render_request *request,
-                                struct cost_report *out)
+static whit_result find_figures(struct job *job, struct cost_report *out)
 {
     char name[KEPT_NAME];
     struct cost_report *measured = NULL;
-    kept_name(job, request, name);
+    kept_name(job, name);
     if (cost_load_kept(name, out))
         return WHIT_OK;
-    whit_result result = measure(job, request, &measured);
+    whit_result result = measure(job, &measured);
     if (result == WHIT_OK) {
         *out = *measured;
         cost_keep(measured, name);
@@ -83,40 +69,24 @@ static whit_result find_figures(struct job *job, const struct render_request *re
     return result;
 }
 
-static void take(const struct cost_choice *choice, const struct job *job,
-                 struct render_request *request)
-{
-    struct knob_target target = {.picture = picture_request_params(request, job)};
-    cost_choice_apply(choice, &target);
-    request->picture.samples = target.picture.samples;
-    request->picture.adaptive = target.picture.adaptive;
-    request->picture.depth = target.picture.depth;
-    request->bailout = target.picture.bailout;
-    request->light_samples = target.picture.light_samples;
-    request->schlick = target.picture.schlick;
-    request->shadows = target.picture.shadows;
-    if (target.picture.effects) {
-        snprintf(request->chosen_effects, sizeof request->chosen_effects, "%s", target.effects);
-        request->effects = request->chosen_effects;
-    }
-}
-
 /* `slower`: than the figures say, at this moment. */
 static struct cost_choice choose(const struct cost_report *report, const struct job *job,
-                                 const struct render_request *request, double slower)
+                                 double slower)
 {
-    bool within = request->budget_ms > 0.0;
+    const struct settings *settings = &job->settings;
+    bool within = settings->budget_ms > 0.0;
     const struct cost_goal goal = {
         .kind = within ? COST_WITHIN : COST_UNDER,
         .metric = COST_RMSE,
-        .limit = within ? COST_ROOM * request->budget_ms / slower : COST_ROOM * request->max_error,
+        .limit =
+            within ? COST_ROOM * settings->budget_ms / slower : COST_ROOM * settings->max_error,
     };
     struct cost_choice choice = cost_choose(report, &goal);
     if (!choice.found && within)
-        cli_error("no setting takes at most %.6g ms here", request->budget_ms);
+        cli_error("no setting takes at most %.6g ms here", settings->budget_ms);
     else if (!choice.found)
-        cli_error("no setting has an error of at most %.6g here", request->max_error);
-    if (within && choice.found && slower > 1.5 && !job->quiet)
+        cli_error("no setting has an error of at most %.6g here", settings->max_error);
+    if (within && choice.found && slower > 1.5 && !job->settings.quiet)
         cli_note("at this moment the device takes %.1f times as long as when it was measured",
                  slower);
     return choice;
@@ -134,10 +104,9 @@ static void say_choice(const struct cost_choice *choice, double ms)
    the most of TRIALS. From a small picture to the full one it is as far as for the usual settings.
  */
 static whit_result try_now(const struct cost_report *report, const struct job *job,
-                           const struct render_request *request, double expected_ms,
-                           whit_renderer *renderer, double *full_ms)
+                           double expected_ms, whit_renderer *renderer, double *full_ms)
 {
-    const whit_renderer_params full = picture_request_params(request, job);
+    const whit_renderer_params full = job_picture(job);
     whit_renderer_params tried = full;
     struct cost_times times;
     double larger = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
@@ -155,38 +124,38 @@ static whit_result try_now(const struct cost_report *report, const struct job *j
 
 /* Chooses until the choice keeps the time when it is tried, and does not leave much of it. */
 static whit_result choose_within(const struct cost_report *report, struct job *job,
-                                 struct render_request *request, struct frames_progress *progress,
-                                 whit_renderer **renderer)
+                                 const struct render_request *request,
+                                 struct frames_progress *progress, whit_renderer **renderer)
 {
-    const struct render_request before = *request;
+    const struct settings before = job->settings;
     double slower = 1.0, ms = 0.0;
     whit_result result = WHIT_OK;
     for (int i = 0; i < TRIES; ++i) {
-        const struct cost_choice choice = choose(report, job, &before, slower);
+        const struct cost_choice choice = choose(report, job, slower);
         if (!choice.found)
             return WHIT_ERROR_FAILED;
-        *request = before;
-        take(&choice, job, request);
+        job->settings = before;
+        cost_choice_apply(&choice, &job->settings);
         whit_renderer_destroy(*renderer);
         *renderer = NULL;
         result = render_create(job, request, progress, renderer);
         if (result == WHIT_OK)
-            result = try_now(report, job, request, choice.ms, *renderer, &ms);
+            result = try_now(report, job, choice.ms, *renderer, &ms);
         if (result != WHIT_OK)
             return result;
-        bool fits = ms <= COST_ROOM * request->budget_ms;
+        bool fits = ms <= COST_ROOM * before.budget_ms;
         slower = ms / choice.ms;
         if ((fits && (i > 0 || ms >= COST_TOO_LITTLE * choice.ms)) || i == TRIES - 1) {
             say_choice(&choice, ms);
             break;
         }
     }
-    if (ms > request->budget_ms)
-        cli_note("it is likely to take more than %.6g ms", request->budget_ms);
+    if (ms > before.budget_ms)
+        cli_note("it is likely to take more than %.6g ms", before.budget_ms);
     return result;
 }
 
-whit_result render_choose(struct job *job, struct render_request *request,
+whit_result render_choose(struct job *job, const struct render_request *request,
                           struct frames_progress *progress, whit_renderer **renderer)
 {
     struct cost_report *report = calloc(1, sizeof *report);
@@ -194,15 +163,15 @@ whit_result render_choose(struct job *job, struct render_request *request,
         cli_error("out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = find_figures(job, request, report);
-    if (result == WHIT_OK && request->budget_ms > 0.0) {
+    whit_result result = find_figures(job, report);
+    if (result == WHIT_OK && job->settings.budget_ms > 0.0) {
         result = choose_within(report, job, request, progress, renderer);
     } else if (result == WHIT_OK) {
-        const struct cost_choice choice = choose(report, job, request, 1.0);
+        const struct cost_choice choice = choose(report, job, 1.0);
         result = choice.found ? WHIT_OK : WHIT_ERROR_FAILED;
         if (choice.found) {
             say_choice(&choice, choice.ms);
-            take(&choice, job, request);
+            cost_choice_apply(&choice, &job->settings);
             result = render_create(job, request, progress, renderer);
         }
     }

@@ -3,24 +3,10 @@
 #include <string.h>
 
 #include "app/cost.h"
+#include "base/text.h"
+#include "settings/quote.h"
 
-enum cost_id {
-    ID_HTML = PICTURE_ID_END,
-    ID_JSON,
-    ID_CSV,
-    ID_MARKDOWN,
-    ID_UNDER,
-    ID_WITHIN,
-    ID_METRIC,
-    ID_QUICK,
-    ID_SPEND,
-    ID_SAMPLES,
-    ID_RAYS,
-    ID_KNOBS,
-    ID_COMPARE,
-};
-
-enum { RAYS_QUICK = 2000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16 };
+enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16 };
 /* Drivers cannot be stopped while they compile a kernel, and some take that long. */
 enum { GRACE_MS = 20000 };
 
@@ -29,111 +15,59 @@ static const struct setting_value values_metric[] = {
 static const struct setting_value values_reference_samples[] = {
     {"4", 4, NULL}, {"16", 16, NULL}, {"64", 64, NULL}, {0}};
 
-static const struct cli_option options[] = {
-    PICTURE_OPTION_PLACE,
-    JOB_OPTION_TIME,
-    {ID_HTML, "html", "FILE", "the report as one page, with plots and pictures", NULL},
-    {ID_JSON, "json", "FILE", "all figures as JSON", NULL},
-    {ID_CSV, "csv", "FILE", "a row for each setting", NULL},
-    {ID_MARKDOWN, "markdown", "FILE", "the tables as Markdown", NULL},
-    {ID_UNDER, "under", "E", "find the cheapest settings with an error of at most E", NULL},
-    {ID_WITHIN, "within", "T", "find the best picture that takes at most T ms", NULL},
-    {ID_METRIC, "metric", NULL, "what E is (rmse)", values_metric},
-    {ID_QUICK, "quick", NULL, "20 s, 16 samples, 2000 rays", NULL},
-    {ID_SPEND, "spend", "S", "seconds that it may take, more or less (150)", NULL},
-    {ID_SAMPLES, "samples", NULL,
-     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",
-     values_reference_samples},
-    {ID_RAYS, "rays", "N", "of each of the two sets; 0: none (20000)", NULL},
-    {ID_KNOBS, "knobs", "NAME,...", "only these (all that the scene calls for)", NULL},
-    {ID_COMPARE, "compare", NULL, "two files of --json in place of the scene: what differs", NULL},
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_FOREIGN,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
-    {0},
-};
-
 /* ---- Options ---- */
 
-static void read_knobs(struct cli_reader *reader, uint64_t *knobs)
+static bool read_knobs(const struct setting *setting, const char *list, void *record, char *why)
 {
     const char *names[64];
     uint32_t count;
     const struct knob *table = knob_table(&count);
+    (void)setting;
     for (uint32_t i = 0; i < count; ++i)
         names[i] = table[i].name;
-    for (const char *at = reader->value; at;) {
+    for (const char *at = list; at;) {
         char name[32];
         size_t length = strcspn(at, ",");
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
         uint32_t found = knob_find(name);
         if (found == WHIT_NONE) {
-            const char *nearest = cli_nearest(name, names, count);
-            cli_misuse(reader, "--knobs: there is no knob `%s`%s%s%s", name,
-                       nearest ? "; did you mean `" : "", nearest ? nearest : "",
-                       nearest ? "`?" : "");
-            return;
+            const char *nearest = text_nearest(name, names, count);
+            return setting_refuse(why, ": there is no knob `%s`%s%s%s", name,
+                                  nearest ? "; did you mean `" : "", nearest ? nearest : "",
+                                  nearest ? "`?" : "");
         }
-        *knobs |= UINT64_C(1) << found;
+        ((struct cost *)record)->request.knobs |= UINT64_C(1) << found;
         at = at[length] ? at + length + 1 : NULL;
     }
+    return true;
 }
 
-/* False when it is none of the files. */
-static bool read_file(struct cli_reader *reader, int id, struct cost *cost)
-{
-    const char **file = id == ID_HTML       ? &cost->html
-                        : id == ID_JSON     ? &cost->json
-                        : id == ID_CSV      ? &cost->csv
-                        : id == ID_MARKDOWN ? &cost->markdown
-                                            : NULL;
-    if (file)
-        *file = reader->value;
-    return file != NULL;
-}
-
-static void read_option(struct cli_reader *reader, int id, struct cost *cost)
-{
-    struct render_request request = {.picture = cost->picture};
-    if (read_file(reader, id, cost) || job_option(&cost->job, reader, id))
-        return;
-    switch (id) {
-    case ID_UNDER:
-        cli_number(reader, 1e-12, 1e6, &cost->under);
-        break;
-    case ID_WITHIN:
-        cli_number(reader, 1e-3, 1e9, &cost->within_ms);
-        break;
-    case ID_METRIC:
-        cli_choice_unsigned(reader, &cost->metric);
-        break;
-    case ID_QUICK:
-        cost->quick = true;
-        break;
-    case ID_SPEND:
-        cli_number(reader, 0.1, 1e6, &cost->request.seconds);
-        break;
-    case ID_SAMPLES:
-        cli_choice_unsigned(reader, &cost->request.samples_most);
-        break;
-    case ID_RAYS:
-        if (cli_unsigned(reader, 0, RAYS_MOST, &cost->request.rays) && cost->request.rays == 0)
-            cost->request.rays = WHIT_NONE;
-        break;
-    case ID_KNOBS:
-        read_knobs(reader, &cost->request.knobs);
-        break;
-    case ID_COMPARE:
-        cost->compares = true;
-        break;
-    default:
-        picture_option(reader, id, &request);
-        cost->picture = request.picture;
-        break;
-    }
-}
+static const struct setting options[] = {
+    {"html", 0, "FILE", "the report as one page, with plots and pictures",
+     SETTING_AT_NAME(struct cost, html)},
+    {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json)},
+    {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv)},
+    {"markdown", 0, "FILE", "the tables as Markdown", SETTING_AT_NAME(struct cost, markdown)},
+    {"under", 0, "E", "find the cheapest settings with an error of at most E",
+     SETTING_AT_NUMBER(struct cost, under), .min = 1e-12, .max = 1e6},
+    {"within", 0, "T", "find the best picture that takes at most T ms",
+     SETTING_AT_NUMBER(struct cost, within_ms), .min = 1e-3, .max = 1e9},
+    {"metric", 0, NULL, "what E is (rmse)", SETTING_AT_CHOICE(struct cost, metric),
+     .values = values_metric},
+    {"quick", 0, NULL, "20 s, 16 samples, 2000 rays", SETTING_AT_FLAG(struct cost, quick)},
+    {"spend", 0, "S", "seconds that it may take, more or less (150)",
+     SETTING_AT_NUMBER(struct cost, request.seconds), .min = 0.1, .max = 1e6},
+    {"samples", 0, NULL,
+     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",
+     SETTING_AT_CHOICE(struct cost, request.samples_most), .values = values_reference_samples},
+    {"rays", 0, "N", "of each of the two sets; 0: none (20000)",
+     SETTING_AT_COUNT(struct cost, rays), .max = RAYS_MOST},
+    {"knobs", 0, "NAME,...", "only these (all that the scene calls for)", .kind = SETTING_OWN,
+     .read = read_knobs},
+    {"compare", 0, NULL, "two files of --json in place of the scene: what differs",
+     SETTING_AT_FLAG(struct cost, compares)},
+    {0},
+};
 
 static bool check_files(struct cli_reader *reader, const struct cost *cost)
 {
@@ -154,27 +88,16 @@ static bool check_files(struct cli_reader *reader, const struct cost *cost)
     return true;
 }
 
-static bool check_request(struct cli_reader *reader, struct cost *cost)
+static void complete(struct cost *cost)
 {
-    if (reader->status >= 0)
-        return false;
-    if (cost->compares && !reader->second)
-        return cli_misuse(reader, "--compare needs two files that --json wrote");
-    if (!cost->compares && reader->second)
-        return cli_misuse(reader, "too many arguments: `%s`", reader->second);
-    if (cost->compares)
-        return true;
-    if (!job_options_done(&cost->job, reader) || !check_files(reader, cost))
-        return false;
     struct cost_request *request = &cost->request;
     if (request->seconds == 0.0)
         request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
     if (request->samples_most == 0 && cost->quick)
         request->samples_most = SAMPLES_QUICK;
-    if (request->rays == 0)
-        request->rays = cost->quick ? RAYS_QUICK : 20000;
-    if (request->rays == WHIT_NONE)
-        request->rays = 0;
+    request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
+                    : cost->quick                  ? RAYS_QUICK
+                                                   : RAYS_USUAL;
     if (cost->under > 0.0)
         request->goals[request->goal_count++] = (struct cost_goal){
             .kind = COST_UNDER, .metric = (enum cost_metric)cost->metric, .limit = cost->under};
@@ -183,7 +106,17 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
             (struct cost_goal){.kind = COST_WITHIN,
                                .metric = (enum cost_metric)cost->metric,
                                .limit = cost->within_ms};
-    return true;
+}
+
+static bool check_request(struct cli_reader *reader, struct cost *cost)
+{
+    if (cost->compares && !reader->second)
+        return cli_misuse(reader, "--compare needs two files that --json wrote");
+    if (!cost->compares && !reader->positional)
+        return cli_misuse(reader, "a scene is missing");
+    if (!cost->compares && reader->second)
+        return cli_misuse(reader, "too many arguments: `%s`", reader->second);
+    return cost->compares || check_files(reader, cost);
 }
 
 /* ---- Work ---- */
@@ -207,12 +140,13 @@ static whit_result find_out(struct cost *cost)
         result = job_open_device(job);
     if (result != WHIT_OK)
         return result;
-    cli_progress_init(&cost->progress, job->quiet);
+    cli_progress_init(&cost->progress, job->settings.quiet);
     request->device = job->device;
     request->scene = job->scene;
     request->accel = job->accel;
-    request->accel_params = job_accel_params(job);
-    request->picture = picture_params(&cost->picture, job);
+    request->settings = &job->settings;
+    request->cancel = &cli_cancel;
+    request->time_limit_s = cli_time_left_s();
     request->keep_pictures = cost->html != NULL;
     request->progress = cost_on_progress;
     request->progress_user = &cost->progress;
@@ -228,7 +162,7 @@ static whit_result save_all(const struct cost *cost)
 {
     whit_result result = WHIT_OK;
     if (cost->json)
-        result = cost_save_json(cost->report, cost->job.scene_path, cost->command, cost->json);
+        result = cost_save_json(cost->report, cost->job.settings.scene, cost->command, cost->json);
     if (result == WHIT_OK && cost->csv)
         result = cost_save_csv(cost);
     if (result == WHIT_OK && cost->markdown)
@@ -289,6 +223,11 @@ static int work(struct cost *cost)
     return status == EXIT_FINE ? job_check_validation(&cost->job) : status;
 }
 
+static void put_part(void *user, const char *part)
+{
+    fputs(part, user);
+}
+
 /* As a shell takes it; NULL: no memory. */
 static char *command_line(int argc, char **argv)
 {
@@ -298,8 +237,10 @@ static char *command_line(int argc, char **argv)
     if (!to)
         return NULL;
     fputs("whit", to);
-    for (int i = 0; i < argc; ++i)
-        recipe_put_word(to, argv[i]);
+    for (int i = 0; i < argc; ++i) {
+        fputc(' ', to);
+        quote_word(argv[i], put_part, to);
+    }
     if (fclose(to) == 0)
         return line;
     free(line);
@@ -309,15 +250,15 @@ static char *command_line(int argc, char **argv)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct cost cost = {.picture = picture_request_default().picture};
-    job_init(&cost.job);
+    struct cost cost = {.rays = COST_RAYS_UNSAID};
+    job_init(&cost.job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &cost);
-    if (!check_request(&reader, &cost))
+    if (!job_read(&cost.job, &reader, &cost, true) || !check_request(&reader, &cost))
         return reader.status;
     if (cost.compares)
         return cost_compare_files(reader.positional, reader.second);
+    complete(&cost);
+    job_start(&cost.job);
     cost.command = command_line(argc, argv);
     int status = cost.command ? work(&cost) : cli_exit_of(WHIT_ERROR_MEMORY);
     cost_report_destroy(cost.report);
@@ -346,6 +287,7 @@ const struct cli_command command_cost = {
         "that may change nothing changes a picture, or when --under or --within cannot be met.\n"
         "`whit cost --compare A B`: two files of --json. Ctrl+C keeps what is measured.\n",
     .options = options,
+    .settings = IN_COST,
     .takes_two = true,
     .run = run,
     .word = knob_word,

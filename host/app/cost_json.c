@@ -276,11 +276,11 @@ static void find_setting(struct cost_row *row)
     uint32_t count, index = knob_find(row->knob);
     const struct knob *table = knob_table(&count);
     row->knob_index = row->setting_index = WHIT_NONE;
-    for (uint32_t s = 0; index != WHIT_NONE && s < knob_setting_count(&table[index]); ++s) {
+    for (uint32_t s = 0; index != WHIT_NONE && s < table[index].count; ++s) {
         if (strcmp(knob_setting_name(&table[index], s), row->setting) == 0) {
             row->knob_index = index;
             row->setting_index = s;
-            row->change = table[index].change;
+            row->change = knob_change(&table[index]);
         }
     }
 }

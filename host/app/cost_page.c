@@ -45,7 +45,7 @@ static uint32_t group_of(const struct cost_row *row)
         return 2;
     if (strcmp(row->knob, "usual") == 0 || strcmp(row->knob, "chosen") == 0)
         return 0;
-    return row->change == KNOB_SHADING ? 3 : row->change == KNOB_HITS ? 4 : 5;
+    return row->change == SETTING_LIGHT ? 3 : row->change == SETTING_HITS ? 4 : 5;
 }
 
 static void put_pareto(struct page *page, const struct cost_report *report, enum cost_metric metric)
@@ -105,15 +105,14 @@ static void put_convergence(struct page *page, const struct cost_report *report,
         bool is_usual = i == 0;
         if (!row->measured || (!is_usual && row->knob_index != index))
             continue;
-        const struct knob_setting *setting =
-            &table->settings[is_usual ? table->usual : row->setting_index];
-        if (table->values || strspn(setting->name, "0123456789") != strlen(setting->name))
+        const char *name = knob_setting_name(table, is_usual ? table->usual : row->setting_index);
+        double value = strtod(name, NULL);
+        if (name[strspn(name, "0123456789")])
             continue;
         /* The same samples as the reference's say nothing of how error falls. */
-        if (!alone && setting->value >= report->reference_samples)
+        if (!alone && value >= report->reference_samples)
             continue;
-        add_point(points, report, row, setting->value, alone ? row->alone.rmse : row->error.rmse,
-                  false);
+        add_point(points, report, row, value, alone ? row->alone.rmse : row->error.rmse, false);
     }
     qsort(points->list, points->count, sizeof points->list[0], compare_points);
     const struct plot_series series = {
@@ -201,7 +200,7 @@ static void say_paragraph(void *user, const char *sentence)
 static void put_title(struct page *page, const struct cost *cost)
 {
     char title[512];
-    snprintf(title, sizeof title, "What accuracy costs in %.400s", cost->job.scene_path);
+    snprintf(title, sizeof title, "What accuracy costs in %.400s", cost->job.settings.scene);
     page_begin(page, title);
 }
 

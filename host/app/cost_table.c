@@ -53,7 +53,7 @@ static void put_remark(const struct cost_report *report, const struct cost_row *
             row->best && row->price.verdict == 0 ? ", " : "",
             row->price.verdict == 0 ? "not distinguishable" : "");
     size_t used = strlen(cell);
-    if (row->change == KNOB_HITS && row->ids_changed && !row->note[0])
+    if (row->change == SETTING_HITS && row->ids_changed && !row->note[0])
         snprintf(cell + used, COST_CELL - used, "%s%llu ids are other", used ? ", " : "",
                  (unsigned long long)row->ids_changed);
 }
@@ -345,7 +345,7 @@ static void say_item(void *user, const char *sentence)
 int cost_print_text(const struct cost *cost)
 {
     const struct cost_report *report = cost->report;
-    printf("scene      %s\n", cli_shown(cost->job.scene_path));
+    printf("scene      %s\n", cli_shown(cost->job.settings.scene));
     printf("device     %s (%s)\n\n", cli_shown(report->device), cli_shown(report->driver));
     put_tables(report, stdout, put_text_row);
     cost_say_method(report, say_plain, stdout);
@@ -438,7 +438,7 @@ static void put_csv_row(const struct cost *cost, const struct cost_row *row, FIL
     const struct cost_report *report = cost->report;
     const struct sample_median *ratio = &row->price.ratio[report->clock];
     const whit_difference *error = &row->error;
-    const char *const texts[] = {cost->job.scene_path,
+    const char *const texts[] = {cost->job.settings.scene,
                                  report->device,
                                  report->driver,
                                  row->knob,

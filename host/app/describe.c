@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "app/describe.h"
-#include "settings/values.h"
 
 /* ---- Completion ---- */
 
@@ -15,11 +14,11 @@ static void print_word(const char *word, const char *about)
 
 static void print_options(const struct cli_command *command)
 {
-    const struct cli_option *option;
+    const struct setting *option;
     char word[80];
     for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
         snprintf(word, sizeof word, "--%s", option->name);
-        if (option->id != CLI_GONE)
+        if (option->kind != SETTING_GONE)
             print_word(word, option->help);
     }
 }
@@ -27,11 +26,11 @@ static void print_options(const struct cli_command *command)
 /* Nothing for values that are no words, such as files. */
 static void print_values(const struct cli_command *command, const char *name)
 {
-    const struct cli_option *option;
+    const struct setting *option;
     const char *word;
     name += strspn(name, "-");
     for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
-        if (strcmp(option->name, name) != 0 || option->id == CLI_GONE)
+        if (strcmp(option->name, name) != 0 || option->kind == SETTING_GONE)
             continue;
         for (uint32_t k = 0; option->values && option->values[k].word; ++k)
             print_word(option->values[k].word, "");
@@ -50,6 +49,70 @@ int describe_complete(const struct cli_command *const *commands, uint32_t count,
             print_options(commands[i]);
         else if (strcmp(commands[i]->name, words[0]) == 0)
             print_values(commands[i], words[1]);
+    }
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+/* ---- The table of docs/cli.md ---- */
+
+enum { HELP_MOST = 1024 };
+
+static void put_cell(const char *text)
+{
+    for (; *text; ++text) {
+        if (*text == '|')
+            putchar('\\');
+        putchar(*text == '\n' ? ' ' : *text);
+    }
+}
+
+static bool takes_as_is(const struct cli_command *command, const struct setting *option)
+{
+    const struct setting *own;
+    for (uint32_t i = 0; (own = cli_option_at(command, i)); ++i) {
+        if (own == option)
+            return true;
+    }
+    return false;
+}
+
+/* One row, with all commands that take the option with this very help. */
+static void print_row(const struct cli_command *const *commands, uint32_t count, uint32_t first,
+                      const struct setting *option)
+{
+    char list[80], help[HELP_MOST], other[HELP_MOST];
+    const char *argument = cli_argument_name(option, list, sizeof list);
+    cli_help(commands[first], option, help, sizeof help);
+    for (uint32_t i = 0; i < first; ++i) {
+        if (takes_as_is(commands[i], option) &&
+            strcmp(cli_help(commands[i], option, other, sizeof other), help) == 0)
+            return;
+    }
+    fputs("| ", stdout);
+    if (option->letter)
+        printf("`-%c`, ", option->letter);
+    printf("`--%s%s", option->name, argument[0] ? " " : "");
+    put_cell(argument);
+    fputs("` |", stdout);
+    for (uint32_t i = first; i < count; ++i) {
+        if (takes_as_is(commands[i], option) &&
+            strcmp(cli_help(commands[i], option, other, sizeof other), help) == 0)
+            printf(" %s", commands[i]->name);
+    }
+    fputs(option->developer ? ", `--help-all` | " : " | ", stdout);
+    put_cell(help);
+    puts(" |");
+}
+
+int describe_table(const struct cli_command *const *commands, uint32_t count)
+{
+    const struct setting *option;
+    puts("| option | commands | meaning |\n|---|---|---|");
+    for (uint32_t c = 0; c < count; ++c) {
+        for (uint32_t i = 0; (option = cli_option_at(commands[c], i)); ++i) {
+            if (option->kind != SETTING_GONE && option->kind != SETTING_HELP)
+                print_row(commands, count, c, option);
+        }
     }
     return cli_finish_stdout(EXIT_FINE);
 }
@@ -81,24 +144,24 @@ static void put_head(FILE *to, const char *name, const char *summary)
     fputs("\n.SH SYNOPSIS\n", to);
 }
 
-static void put_option(FILE *to, const struct cli_option *option)
+static void put_option(FILE *to, const struct cli_command *command, const struct setting *option)
 {
-    char list[80], text[200], letter[8] = "";
+    char list[80], text[200], help[HELP_MOST], letter[8] = "";
     const char *argument = cli_argument_name(option, list, sizeof list);
-    if (option->id < 128 && isalpha(option->id))
-        snprintf(letter, sizeof letter, "-%c, ", option->id);
+    if (option->letter)
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
     fputs(".TP\n.B ", to);
     snprintf(text, sizeof text, "%s--%s%s%s", letter, option->name, argument[0] ? " " : "",
              argument);
     put_text(to, text);
     fputc('\n', to);
-    put_text(to, option->help);
+    put_text(to, cli_help(command, option, help, sizeof help));
     fputc('\n', to);
 }
 
 static void put_command(FILE *to, const struct cli_command *command)
 {
-    const struct cli_option *option;
+    const struct setting *option;
     char name[64];
     snprintf(name, sizeof name, "whit-%s", command->name);
     put_head(to, name, command->summary);
@@ -106,8 +169,8 @@ static void put_command(FILE *to, const struct cli_command *command)
     put_text(to, command->arguments);
     fputs("\n.SH OPTIONS\n", to);
     for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
-        if (option->id != CLI_GONE)
-            put_option(to, option);
+        if (option->kind != SETTING_GONE)
+            put_option(to, command, option);
     }
     if (command->details) {
         fputs(".SH DESCRIPTION\n.nf\n", to);

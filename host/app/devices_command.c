@@ -5,10 +5,12 @@
 #include "app/device_hints.h"
 #include "app/document.h"
 
-enum { ID_JSON = JOB_ID_END };
+struct devices {
+    bool json;
+};
 
-static const struct cli_option options[] = {
-    {ID_JSON, "json", NULL, "everything as JSON", NULL},
+static const struct setting options[] = {
+    {"json", 0, NULL, "everything as JSON", SETTING_AT_FLAG(struct devices, json)},
     {0},
 };
 
@@ -112,18 +114,16 @@ static int list(bool json)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    bool json = false;
+    struct devices devices = {0};
     cli_reader_init(&reader, command, argc, argv);
-    while (cli_next(&reader) != 0)
-        json = true;
-    if (reader.status >= 0)
+    if (!cli_read(&reader, &devices, NULL))
         return reader.status;
     if (reader.positional) {
         cli_misuse(&reader, "`%s` is one argument too many", reader.positional);
         return reader.status;
     }
     cache_prepare(false);
-    return list(json);
+    return list(devices.json);
 }
 
 const struct cli_command command_devices = {

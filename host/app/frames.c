@@ -25,19 +25,20 @@ static const char *read_number(const char *text, uint32_t *out)
     return text;
 }
 
-bool frames_read(struct cli_reader *reader, struct frames *frames)
+bool frames_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES])
 {
-    const char *text = read_number(reader->value, &frames->first);
+    struct frames *frames = &((struct render_request *)request)->frames;
+    const char *text = read_number(value, &frames->first);
+    (void)setting;
     if (text && *text == '-')
         text = read_number(text + 1, &frames->last);
     else
         text = NULL;
     if (!text || *text)
-        return cli_misuse(reader, "--frames `%s`: A-B is needed, whole numbers such as 0-99",
-                          reader->value);
+        return setting_refuse(why, " `%s`: A-B is needed, whole numbers such as 0-99", value);
     if (frames->last < frames->first)
-        return cli_misuse(reader, "--frames `%s`: the last frame is before the first",
-                          reader->value);
+        return setting_refuse(why, " `%s`: the last frame is before the first", value);
     frames->given = true;
     return true;
 }
@@ -79,9 +80,10 @@ bool frames_check(struct cli_reader *reader, const struct job *job,
 {
     if (!request->frames.given)
         return true;
-    if (job->has_time || job->has_frame)
+    bool time = settings_given(&job->settings, "time");
+    if (time || settings_given(&job->settings, "frame"))
         return cli_misuse(reader, "--frames and --%s: either all of these frames or one",
-                          job->has_time ? "time" : "frame");
+                          time ? "time" : "frame");
     if (request->output && !has_marks(request->output))
         return cli_misuse(reader,
                           "-o %s: with --frames its name needs # for the number of the frame, "
@@ -262,8 +264,8 @@ static whit_result render_frame(struct job *job, const struct render_request *re
                                 whit_renderer *renderer, uint32_t frame, struct sequence *sequence)
 {
     whit_stats stats;
-    job->time_s = (double)frame / job->fps;
-    whit_result result = whit_renderer_set_time(renderer, job->time_s);
+    job->settings.picture.time_s = (double)frame / job->settings.fps;
+    whit_result result = whit_renderer_set_time(renderer, job->settings.picture.time_s);
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
     if (result != WHIT_OK)
@@ -277,12 +279,12 @@ static whit_result render_frame(struct job *job, const struct render_request *re
     ++sequence->written;
     sequence->save_ms += save_ms;
     add_stats(&stats, &sequence->stats);
-    if (job->stats == JOB_STATS_NONE)
+    if (job->settings.stats == STATS_NONE)
         return WHIT_OK;
     whit_accel_info tree;
     whit_accel_get_info(job->accel, &tree);
     return keep_times(sequence, &(struct frame_times){.frame = frame,
-                                                      .time_s = job->time_s,
+                                                      .time_s = job->settings.picture.time_s,
                                                       .instances_ms = tree.instance_build_ms,
                                                       .upload_ms = stats.upload_ms,
                                                       .render_ms = stats.render_ms,

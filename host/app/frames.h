@@ -30,8 +30,9 @@ struct sequence {
     whit_stats stats; /* summed up; upload and compile: before the first frame */
 };
 
-/* The value of --frames; on nonsense it is refused. */
-bool frames_read(struct cli_reader *reader, struct frames *frames);
+/* setting.read of --frames, into a render_request. */
+bool frames_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES]);
 /* Whether the other options go with --frames. */
 bool frames_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);

@@ -1,35 +1,29 @@
-#include "app/cache.h"
 #include "app/commands.h"
 #include "app/hard.h"
-
-enum hard_id { ID_JSON = JOB_ID_END, ID_QUICK, ID_RAYS, ID_CASE, ID_VIEW, ID_SIZE, ID_CAMERA };
 
 enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
 
 static const struct setting_value values_hard_view[] = {{"leaks", 1, NULL}, {0}};
 
-static const struct cli_option options[] = {
-    {JOB_NUMERICS, "numerics", NULL, "this level alone (all three)", values_numerics},
-    {ID_RAYS, "rays", "N", "rays of each row of the table, at least 512 (20000)", NULL},
-    {ID_CASE, "case", "TEXT", "of the built-in cases those with TEXT in their name", NULL},
-    {ID_QUICK, "quick", NULL, "512 rays a row", NULL},
-    {ID_JSON, "json", "FILE", "the table as JSON", NULL},
-    {ID_VIEW, "view", NULL,
+static const struct setting options[] = {
+    {"numerics", 0, NULL, "this level alone (all three)", SETTING_AT_CHOICE(struct hard, level),
+     .values = values_numerics},
+    {"rays", 0, "N", "rays of each row of the table, at least 512 (20000)",
+     SETTING_AT_COUNT(struct hard, params.rays), .min = RAYS_LEAST, .max = RAYS_MOST},
+    {"case", 0, "TEXT", "of the built-in cases those with TEXT in their name",
+     SETTING_AT_NAME(struct hard, params.filter)},
+    {"quick", 0, NULL, "512 rays a row", SETTING_AT_FLAG(struct hard, quick)},
+    {"json", 0, "FILE", "the table as JSON", SETTING_AT_NAME(struct hard, json_path)},
+    {"view", 0, NULL,
      "instead of the table a picture of what camera rays hit:\n"
      "red where that is wrong, yellow where another triangle is\n"
      "within the error of floats; by itself of watertight",
-     values_hard_view},
-    {'o', "output", "FILE", "of the picture: .png .exr .pfm", NULL},
-    {ID_SIZE, "size", "WxH", "of the picture (640x480)", NULL},
-    {ID_CAMERA, "camera", "NAME|N|numbers", "as for `whit render`", NULL},
-    JOB_OPTION_TIME,
-    JOB_OPTION_INSTANCES,
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_FOREIGN,
-    {JOB_THREADS, "threads", "N", "threads on the CPU (0: one a core)", NULL},
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
+     SETTING_AT_CHOICE(struct hard, drawn), .values = values_hard_view},
+    {"output", 'o', "FILE", "of the picture: .png .exr .pfm", SETTING_AT_NAME(struct hard, output)},
+    {"size", 0, "WxH", "of the picture (640x480)",
+     SETTING_AT_SIZE(struct hard, view.width, view.height)},
+    {"camera", 0, "NAME|N|numbers", "as for `whit render`",
+     SETTING_AT_NAME(struct hard, view.camera)},
     {0},
 };
 
@@ -37,9 +31,9 @@ static whit_result prepare(struct job *job)
 {
     whit_result result = WHIT_OK;
     job_begin_device(job);
-    if (job->scene_path)
+    if (job->settings.scene[0])
         result = job_load(job);
-    if (result == WHIT_OK && job->scene_path)
+    if (result == WHIT_OK && job->settings.scene[0])
         job_print_notes(job, false);
     return result == WHIT_OK ? job_open_device(job) : result;
 }
@@ -48,9 +42,9 @@ static whit_result find_out(struct hard *hard)
 {
     struct job *job = &hard->job;
     whit_result result = prepare(job);
-    cli_progress_init(&hard->progress, job->quiet);
-    hard->params.threads = job->threads;
-    hard->params.instances = job->instances;
+    cli_progress_init(&hard->progress, job->settings.quiet);
+    hard->params.threads = job->settings.trees.threads;
+    hard->params.instances = job->settings.trees.instances;
     hard->params.cancel = &cli_cancel;
     hard->params.time_limit_s = cli_time_left_s();
     hard->params.progress = cli_progress_update;
@@ -66,10 +60,11 @@ static whit_result draw(struct hard *hard, uint64_t *wrong, uint64_t *other)
 {
     struct job *job = &hard->job;
     whit_image *image = NULL;
-    hard->view.time_s = job->time_s;
-    hard->view.numerics = job->numerics;
-    hard->view.threads = job->threads;
-    hard->view.instances = job->instances;
+    hard->view.time_s = job->settings.picture.time_s;
+    hard->view.numerics =
+        hard->level == HARD_ALL ? WHIT_NUMERICS_WATERTIGHT : (whit_numerics)hard->level;
+    hard->view.threads = job->settings.trees.threads;
+    hard->view.instances = job->settings.trees.instances;
     whit_result result = prepare(job);
     if (result == WHIT_OK)
         result = whit_hard_view(job->device, job->scene, &hard->view, &cli_log_errors, wrong, other,
@@ -93,10 +88,10 @@ static int work_view(struct hard *hard)
     printf(
         "%s: %s: %llu pixel%s wrong (red), %llu with another triangle within the error of floats "
         "(yellow)\n",
-        hard->output, value_word(values_numerics, (int)hard->job.numerics),
+        hard->output, value_word(values_numerics, (int)hard->view.numerics),
         (unsigned long long)wrong, wrong == 1 ? "" : "s", (unsigned long long)other);
     int status = cli_finish_stdout(EXIT_FINE);
-    if (status == EXIT_FINE && wrong && hard->job.numerics != WHIT_NUMERICS_FAST)
+    if (status == EXIT_FINE && wrong && hard->view.numerics != WHIT_NUMERICS_FAST)
         status = EXIT_DIFFERS;
     return status == EXIT_FINE ? job_check_validation(&hard->job) : status;
 }
@@ -123,36 +118,14 @@ static int work(struct hard *hard)
     return status == EXIT_FINE ? job_check_validation(&hard->job) : status;
 }
 
-static void read_option(struct cli_reader *reader, int id, struct hard *hard)
-{
-    int choice;
-    if (id == ID_JSON)
-        hard->json_path = reader->value;
-    else if (id == ID_CASE)
-        hard->params.filter = reader->value;
-    else if (id == ID_VIEW)
-        hard->drawn = cli_choice(reader, &choice);
-    else if (id == 'o')
-        hard->output = reader->value;
-    else if (id == ID_SIZE)
-        cli_size(reader, &hard->view.width, &hard->view.height);
-    else if (id == ID_CAMERA)
-        hard->view.camera = reader->value;
-    else if (id == ID_QUICK)
-        hard->params.rays = RAYS_QUICK;
-    else if (id == ID_RAYS)
-        cli_unsigned(reader, RAYS_LEAST, RAYS_MOST, &hard->params.rays);
-    else if (job_option(&hard->job, reader, id) && id == JOB_NUMERICS)
-        hard->params.levels = 1u << hard->job.numerics;
-}
-
 static bool check_view(struct cli_reader *reader, const struct hard *hard)
 {
-    if (hard->drawn != (hard->output != NULL))
+    if ((hard->drawn != 0) != (hard->output != NULL))
         return cli_misuse(reader, "--view leaks and -o FILE go together");
-    if (!hard->drawn && (hard->view.width || hard->view.camera || hard->job.has_time))
+    if (!hard->drawn &&
+        (hard->view.width || hard->view.camera || settings_given(&hard->job.settings, "time")))
         return cli_misuse(reader, "--size, --camera and --time are of --view leaks");
-    if (hard->drawn && (hard->json_path || hard->params.rays || hard->params.filter))
+    if (hard->drawn && (hard->json_path || hard->params.rays || hard->quick || hard->params.filter))
         return cli_misuse(reader, "--view leaks makes a picture, and no table");
     if (!hard->drawn)
         return true;
@@ -164,10 +137,8 @@ static bool check_view(struct cli_reader *reader, const struct hard *hard)
     return false;
 }
 
-static bool check_request(struct cli_reader *reader, struct hard *hard)
+static bool check_request(struct cli_reader *reader, const struct hard *hard)
 {
-    if (reader->status >= 0)
-        return false;
     if (!cli_no_dash(reader, "--json", hard->json_path, "for a pipe give /dev/stdout"))
         return false;
     if (hard->json_path && !cli_can_write(hard->json_path)) {
@@ -178,23 +149,22 @@ static bool check_request(struct cli_reader *reader, struct hard *hard)
         return false;
     if (reader->positional && hard->params.filter)
         return cli_misuse(reader, "--case is of the built-in cases, not of a scene");
-    if (reader->positional)
-        return job_options_done(&hard->job, reader);
-    cache_prepare(hard->job.no_cache);
-    cli_limit_time(hard->job.time_limit_s);
     return true;
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct hard hard = {.report = NULL};
-    job_init(&hard.job);
+    struct hard hard = {.level = HARD_ALL};
+    job_init(&hard.job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &hard);
-    if (!check_request(&reader, &hard))
+    if (!job_read(&hard.job, &reader, &hard, true) || !check_request(&reader, &hard))
         return reader.status;
+    if (hard.quick)
+        hard.params.rays = RAYS_QUICK;
+    if (hard.level != HARD_ALL)
+        hard.params.levels = 1u << hard.level;
+    job_start(&hard.job);
     int status = hard.drawn ? work_view(&hard) : work(&hard);
     whit_hard_report_destroy(hard.report);
     job_finish(&hard.job);
@@ -218,5 +188,6 @@ const struct cli_command command_hard = {
         "promise of a level is broken: no leaks and no sure errors (watertight), every hit exact\n"
         "(exact), equal bits (both); fast promises nothing.\n",
     .options = options,
+    .settings = IN_HARD,
     .run = run,
 };

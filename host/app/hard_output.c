@@ -38,8 +38,8 @@ static void print_heading(const struct hard *hard, struct widths widths)
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
     printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
-    printf("scene      %s\n\n",
-           hard->job.scene_path ? cli_shown(hard->job.scene_path) : "the built-in cases");
+    printf("scene      %s\n\n", hard->job.settings.scene[0] ? cli_shown(hard->job.settings.scene)
+                                                            : "the built-in cases");
     printf("%-*s%-*s%-12s%9s%8s%7s%8s%8s%7s%8s%6s%10s%11s%10s%8s  %s\n", widths.name, "case",
            widths.place, "at", "numerics", "rays", "misses", "leaks", "false", "other", "wrong",
            "double", "self", "ulp", "device ms", "twin ms", "differ", "kept");
@@ -118,7 +118,7 @@ int hard_print(const struct hard *hard)
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i)
         print_sum(report, levels[i], widths);
     putchar('\n');
-    if (hard->job.scene_path)
+    if (hard->job.settings.scene[0])
         print_surface(report);
     if (report->hash)
         printf("hash       %016llx of the exact identities of 512 rays a case%s\n",
@@ -177,14 +177,14 @@ whit_result hard_save_json(const struct hard *hard)
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
     document_text(out, "whit", WHIT_VERSION);
-    document_text(out, "scene", hard->job.scene_path);
+    document_text(out, "scene", hard->job.settings.scene);
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);
     if (report->hash)
         document_hash(out, "hash", report->hash);
     if (report->hash_met)
         document_hash(out, "hash_met", report->hash_met);
-    if (hard->job.scene_path)
+    if (hard->job.settings.scene[0])
         document_put(out, "surface", surface_document(report));
     document_count(out, "broken", report->broken);
     for (uint32_t i = 0; i < report->row_count; ++i)

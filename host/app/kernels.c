@@ -24,7 +24,7 @@ static int print_text(const struct job *job, const whit_device_info *device,
                       const whit_kernel *kernels, uint32_t count)
 {
     uint32_t told = 0;
-    printf("%s\n  device    %s (%s)\n\n", cli_shown(job->scene_path), cli_shown(device->name),
+    printf("%s\n  device    %s (%s)\n\n", cli_shown(job->settings.scene), cli_shown(device->name),
            cli_shown(stats_driver(device)));
     for (uint32_t i = 0; i < count; ++i) {
         print_kernel(&kernels[i]);
@@ -49,20 +49,19 @@ static json_t *kernel_document(const whit_kernel *kernel)
     return object;
 }
 
-static int print_json(const struct job *job, const struct picture *picture,
-                      const whit_device_info *info, const whit_kernel *kernels, uint32_t count)
+static int print_json(const struct job *job, const whit_device_info *info,
+                      const whit_kernel *kernels, uint32_t count)
 {
     json_t *root = document_object(), *device = document_object(), *list = document_array();
     json_t *of = document_object();
     document_text(root, "whit", WHIT_VERSION);
-    document_text(root, "file", job->scene_path);
+    document_text(root, "file", job->settings.scene);
     document_text(device, "name", info->name);
     document_text(device, "driver", info->driver);
     document_text(device, "kind", info->kind);
     document_count(device, "subgroup_size", info->subgroup_size);
     document_put(root, "device", device);
-    picture_describe(picture, job, of);
-    document_text(of, "numerics", value_word(values_numerics, (int)job->numerics));
+    settings_describe(&job->settings, IN_SCENE, of);
     document_put(root, "picture", of);
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, kernel_document(&kernels[i]));
@@ -70,7 +69,7 @@ static int print_json(const struct job *job, const struct picture *picture,
     return cli_print_json(root);
 }
 
-int kernels_run(struct job *job, const struct picture *picture, bool json)
+int kernels_run(struct job *job, bool json)
 {
     static whit_kernel kernels[WHIT_KERNELS_MOST];
     whit_device_info device;
@@ -79,13 +78,13 @@ int kernels_run(struct job *job, const struct picture *picture, bool json)
     if (result == WHIT_OK)
         result = job_open_device(job);
     if (result == WHIT_OK) {
-        whit_renderer_params params = picture_params(picture, job);
+        whit_renderer_params params = job_picture(job);
         result = whit_kernels_list(job->device, job->accel, &params, kernels, &count);
     }
     if (result != WHIT_OK)
         return cli_exit_of(result);
     whit_device_get_info(job->device, &device);
-    int status = json ? print_json(job, picture, &device, kernels, count)
-                      : print_text(job, &device, kernels, count);
+    int status =
+        json ? print_json(job, &device, kernels, count) : print_text(job, &device, kernels, count);
     return status == EXIT_FINE ? job_check_validation(job) : status;
 }

@@ -146,7 +146,7 @@ static void print_count(const char *before, uint32_t count, const char *one, con
 
 static void print_summary(const struct job *job, const whit_scene_info *info)
 {
-    printf("%s\n", cli_shown(job->scene_path));
+    printf("%s\n", cli_shown(job->settings.scene));
     printf("  triangles    %llu (%llu in the meshes)\n", (unsigned long long)info->triangle_count,
            (unsigned long long)info->mesh_triangle_count);
     if (info->sphere_count)

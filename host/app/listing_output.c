@@ -131,7 +131,7 @@ int listing_print_json(const struct job *job, const whit_scene_info *info)
 {
     json_t *root = document_object();
     document_text(root, "whit", WHIT_VERSION);
-    document_text(root, "file", job->scene_path);
+    document_text(root, "file", job->settings.scene);
     document_hash(root, "hash", info->hash);
     document_count(root, "file_bytes", info->file_bytes);
     document_count(root, "triangles", info->triangle_count);

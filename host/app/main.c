@@ -3,6 +3,7 @@
 
 #include "app/commands.h"
 #include "app/describe.h"
+#include "base/text.h"
 
 static const struct cli_command *const commands[] = {
     &command_render, &command_scene, &command_trace,   &command_probe, &command_bvh,
@@ -40,7 +41,7 @@ static int refuse(const char *word)
     for (uint32_t i = 0; i < COMMAND_COUNT; ++i)
         names[i] = commands[i]->name;
     const char *kind = word[0] == '-' ? "option" : "command";
-    const char *nearest = cli_nearest(word, names, COMMAND_COUNT);
+    const char *nearest = text_nearest(word, names, COMMAND_COUNT);
     if (nearest)
         cli_error("there is no %s `%s`; did you mean `whit %s`? (see `whit --help`)", kind, word,
                   nearest);
@@ -66,6 +67,8 @@ int main(int argc, char **argv)
     }
     if (strcmp(word, "--complete") == 0)
         return describe_complete(commands, COMMAND_COUNT, (const char *const *)argv + 2);
+    if (strcmp(word, "--options") == 0)
+        return describe_table(commands, COMMAND_COUNT);
     if (strcmp(word, "--manual") == 0 && argc == 3)
         return describe_manual(commands, COMMAND_COUNT, argv[2]);
     const struct cli_command *command = find_command(word);

@@ -1,7 +1,7 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
-  app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/describe.c app/job.c app/builder.c app/document.c app/recipe.c app/stats.c
-  app/costs.c app/view_image.c app/frames.c app/effect_list.c app/picture.c
+  app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/describe.c app/job.c app/document.c app/recipe.c app/stats.c
+  app/costs.c app/view_image.c app/frames.c app/settings_json.c
   app/receipt.c app/receipt_output.c app/kernels.c app/listing.c app/listing_output.c app/triangles.c
   app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
   app/bench_section.c app/bench_table.c app/bench_child.c app/hard_command.c app/hard_output.c app/compare_command.c

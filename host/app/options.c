@@ -3,65 +3,78 @@
 #include "app/cli.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <getopt.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "settings/values.h"
+#include "base/text.h"
 
-enum { OPTIONS_MAX = 96, ID_HELP = 'h', ID_HELP_ALL = CLI_DEVELOPER - 1, HELP_COLUMN = 27 };
+enum { OPTIONS_MAX = 96, ID_FIRST = 256, HELP_COLUMN = 27 };
 
 /* Behind those of a command. */
-static const struct cli_option help_options[] = {
-    {ID_HELP, "help", NULL, "print this help", NULL},
-    {ID_HELP_ALL, "help-all", NULL, "and the options for those who work on whit", NULL},
+static const struct setting help_options[] = {
+    {"help", 'h', NULL, "print this help", .kind = SETTING_HELP},
+    {"help-all", 0, NULL, "and the options for those who work on whit", .kind = SETTING_HELP},
 };
 
-static bool takes_value(const struct cli_option *option)
+const char *cli_argument_name(const struct setting *option, char *text, size_t text_bytes)
 {
-    return option->value || option->values;
+    if (!setting_has_argument(option))
+        return "";
+    return option->argument ? option->argument : value_list(option->values, "|", text, text_bytes);
 }
 
-const char *cli_argument_name(const struct cli_option *option, char *text, size_t text_bytes)
+static bool is_own(const struct cli_command *command, const struct setting *option)
 {
-    if (!option->value && option->values)
-        return value_list(option->values, "|", text, text_bytes);
-    return option->value ? option->value : "";
+    const struct setting *own = command->options;
+    while (own->name && own != option)
+        ++own;
+    return own == option && own->name;
 }
 
-static uint32_t count_options(const struct cli_command *command)
+/* Whether a command that has an option of that name itself, or takes none of them, leaves it out.
+ */
+static bool is_taken(const struct cli_command *command, const struct setting *row)
 {
-    uint32_t count = 0;
-    while (command->options[count].name)
-        ++count;
-    return count;
+    for (const struct setting *own = command->options; own->name; ++own) {
+        if (strcmp(own->name, row->name) == 0)
+            return false;
+    }
+    return row->commands & command->settings;
 }
 
 static bool has_developers(const struct cli_command *command)
 {
-    uint32_t count = count_options(command);
-    return count && command->options[count - 1].id >= CLI_DEVELOPER;
-}
-
-const struct cli_option *cli_option_at(const struct cli_command *command, uint32_t i)
-{
-    uint32_t count = count_options(command);
-    if (i < count)
-        return &command->options[i];
-    return i - count < (has_developers(command) ? 2 : 1) ? &help_options[i - count] : NULL;
-}
-
-static const struct cli_option *find_option(const struct cli_command *command, int id)
-{
-    const struct cli_option *option;
-    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
-        if (option->id == id)
-            return option;
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (row->developer && is_taken(command, row))
+            return true;
     }
-    return NULL;
+    return false;
+}
+
+const struct setting *cli_option_at(const struct cli_command *command, uint32_t i)
+{
+    uint32_t before = 0;
+    for (const struct setting *own = command->options; own->name; ++own) {
+        if (before++ == i)
+            return own;
+    }
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (is_taken(command, row) && before++ == i)
+            return row;
+    }
+    return i - before < (has_developers(command) ? 2 : 1) ? &help_options[i - before] : NULL;
+}
+
+static const struct setting *find_option(const struct cli_command *command, int id)
+{
+    const struct setting *option = NULL;
+    if (id >= ID_FIRST)
+        return cli_option_at(command, (uint32_t)(id - ID_FIRST));
+    for (uint32_t i = 0; (option = cli_option_at(command, i)) && option->letter != id; ++i)
+        ;
+    return option;
 }
 
 void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
@@ -107,21 +120,21 @@ bool cli_misuse(struct cli_reader *reader, const char *format, ...)
 static struct option *long_options(const struct cli_command *command,
                                    struct option table[OPTIONS_MAX], char *shorts)
 {
-    const struct cli_option *option;
+    const struct setting *option;
     *shorts++ = '-'; /* arguments that are no options come in their place, as id 1 */
     *shorts++ = ':';
     for (uint32_t i = 0; (option = cli_option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
         table[i] = (struct option){
             .name = option->name,
-            .has_arg = option->id == CLI_GONE ? optional_argument
-                       : takes_value(option)  ? required_argument
-                                              : no_argument,
-            .val = option->id,
+            .has_arg = option->kind == SETTING_GONE   ? optional_argument
+                       : setting_has_argument(option) ? required_argument
+                                                      : no_argument,
+            .val = ID_FIRST + (int)i,
         };
         table[i + 1] = (struct option){0};
-        if (option->id < 128 && isalpha(option->id)) {
-            *shorts++ = (char)option->id;
-            if (takes_value(option))
+        if (option->letter) {
+            *shorts++ = option->letter;
+            if (setting_has_argument(option))
                 *shorts++ = ':';
         }
     }
@@ -138,8 +151,8 @@ static void unknown_option(struct cli_reader *reader)
     }
     const char *word = reader->argv[optind - 1];
     if (optopt) { /* --quiet=3 */
-        const struct cli_option *option = find_option(reader->command, optopt);
-        cli_misuse(reader, "option `--%s` takes no value", option ? option->name : word);
+        const struct setting *unasked = find_option(reader->command, optopt);
+        cli_misuse(reader, "option `--%s` takes no value", unasked ? unasked->name : word);
         return;
     }
     char name[64] = "";
@@ -147,11 +160,12 @@ static void unknown_option(struct cli_reader *reader)
         snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     const char *names[OPTIONS_MAX];
     uint32_t count = 0;
-    for (const struct cli_option *option = reader->command->options; option->name; ++option) {
-        if (option->id != CLI_GONE && count < OPTIONS_MAX)
+    const struct setting *option;
+    for (uint32_t i = 0; (option = cli_option_at(reader->command, i)) && count < OPTIONS_MAX; ++i) {
+        if (option->kind != SETTING_GONE && option->kind != SETTING_HELP)
             names[count++] = option->name;
     }
-    const char *nearest = cli_nearest(name, names, count);
+    const char *nearest = text_nearest(name, names, count);
     if (nearest)
         cli_misuse(reader, "there is no option `--%s`; did you mean `--%s`?", name, nearest);
     else
@@ -173,15 +187,17 @@ static int take_positional(struct cli_reader *reader, const char *word)
     return 1;
 }
 
-int cli_next(struct cli_reader *reader)
+/* The next option, with reader->value; NULL at the end. */
+static const struct setting *next(struct cli_reader *reader)
 {
     struct option table[OPTIONS_MAX];
     char shorts[2 * OPTIONS_MAX + 3];
     long_options(reader->command, table, shorts);
     while (!reader->done) {
         optopt = 0;
-        int place = 0;
-        int id = getopt_long(reader->argc, reader->argv, shorts, table, &place);
+        int id = getopt_long(reader->argc, reader->argv, shorts, table, NULL);
+        const struct setting *option =
+            id > 1 && id != ':' && id != '?' ? find_option(reader->command, id) : NULL;
         if (id == 1) {
             take_positional(reader, optarg);
         } else if (id == -1) {
@@ -189,113 +205,67 @@ int cli_next(struct cli_reader *reader)
                 ++optind;
             reader->done = true;
         } else if (id == ':') {
-            const struct cli_option *option = find_option(reader->command, optopt);
             char argument[80] = "?";
+            option = find_option(reader->command, optopt);
             cli_misuse(reader, "option `--%s` needs a value: %s", option ? option->name : "?",
                        option ? cli_argument_name(option, argument, sizeof argument) : argument);
-        } else if (id == CLI_GONE) {
-            const struct cli_option *gone = cli_option_at(reader->command, (uint32_t)place);
-            cli_misuse(reader, "option `--%s` %s", gone->name, gone->help);
-        } else if (id == '?') {
+        } else if (!option) {
             unknown_option(reader);
-        } else if ((id == ID_HELP || id == ID_HELP_ALL) && reader->where) {
+        } else if (option->kind == SETTING_GONE) {
+            cli_misuse(reader, "option `--%s` %s", option->name, option->help);
+        } else if (option->kind == SETTING_HELP && reader->where) {
             cli_misuse(reader, "--help is for the command line alone");
-        } else if (id == ID_HELP || id == ID_HELP_ALL) {
-            cli_print_help(reader->command, id == ID_HELP_ALL, stdout);
+        } else if (option->kind == SETTING_HELP) {
+            cli_print_help(reader->command, option == &help_options[1], stdout);
             reader->done = true;
             reader->status = cli_finish_stdout(EXIT_FINE);
         } else {
-            reader->option = find_option(reader->command, id);
             reader->value = optarg;
-            return id;
+            return option;
         }
     }
-    return 0;
+    return NULL;
 }
 
-bool cli_unsigned(struct cli_reader *reader, uint32_t least, uint32_t most, uint32_t *out)
+/* What a file said is quoted up to 40 characters, where `why` quotes it. */
+static void shorten(const char *value, char why[SETTING_WHY_BYTES])
 {
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(reader->value, &end, 10);
-    if (!isdigit((unsigned char)reader->value[0]) || *end || errno || value < least || value > most)
-        return cli_misuse(reader, "--%s `%s`: a whole number from %u to %u is needed",
-                          reader->option->name, reader->value, least, most);
-    *out = (uint32_t)value;
-    return true;
+    const struct text_token token = text_token(value);
+    char *at = strstr(why, value), text[SETTING_WHY_BYTES];
+    if (!value[0] || !at || strlen(token.text) >= strlen(value))
+        return;
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - why), why, token.text, at + strlen(value));
+    memcpy(why, text, sizeof text);
 }
 
-bool cli_bytes(struct cli_reader *reader, uint64_t *out)
+static void take(struct cli_reader *reader, const struct setting *option, void *own,
+                 struct settings *settings)
 {
-    static const char units[] = "KMG";
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(reader->value, &end, 10);
-    const char *unit = *end ? strchr(units, *end) : NULL;
-    int shift = unit ? 10 * (int)(unit - units + 1) : 0;
-    if (!isdigit((unsigned char)reader->value[0]) || end[unit != NULL] || errno || value == 0 ||
-        value > UINT64_MAX >> shift)
-        return cli_misuse(reader, "--%s `%s`: a number of bytes is needed, or one with K, M or G",
-                          reader->option->name, reader->value);
-    *out = (uint64_t)value << shift;
-    return true;
-}
-
-bool cli_number(struct cli_reader *reader, double least, double most, double *out)
-{
-    char *end;
-    double value = strtod(reader->value, &end);
-    if (end == reader->value || *end || !(value >= least && value <= most))
-        return cli_misuse(reader, "--%s `%s`: a number from %g to %g is needed",
-                          reader->option->name, reader->value, least, most);
-    *out = value;
-    return true;
-}
-
-enum { SIDE_MAX = 32768 };
-static const uint64_t PIXELS_MAX = UINT64_C(1) << 28;
-
-bool cli_size(struct cli_reader *reader, uint32_t *width, uint32_t *height)
-{
-    unsigned long w = 0, h = 0;
-    const char *text = reader->value;
-    char *end = NULL;
-    bool good = isdigit((unsigned char)text[0]);
-    if (good) {
-        w = strtoul(text, &end, 10);
-        good = (*end == 'x' || *end == 'X') && isdigit((unsigned char)end[1]);
+    char why[SETTING_WHY_BYTES];
+    bool is_setting = !is_own(reader->command, option);
+    if (reader->where && (!is_setting || option->trusted)) {
+        /* What files may reach is not for a file to say. */
+        cli_misuse(reader, "--%s is nothing to be saved", option->name);
+        return;
     }
-    if (good) {
-        h = strtoul(end + 1, &end, 10);
-        good = !*end;
+    if (reader->where && reader->value && strlen(reader->value) > SETTING_PATH_BYTES) {
+        cli_misuse(reader, "--%s: %zu bytes are too long", option->name, strlen(reader->value));
+        return;
     }
-    if (!good || w < 1 || h < 1 || w > SIDE_MAX || h > SIDE_MAX || (uint64_t)w * h > PIXELS_MAX)
-        return cli_misuse(reader, "--%s `%s`: WxH is needed, each from 1 to %d, such as 1280x720",
-                          reader->option->name, text, SIDE_MAX);
-    *width = (uint32_t)w;
-    *height = (uint32_t)h;
-    return true;
+    if (is_setting ? settings_read(option, reader->value, settings, why)
+                   : setting_read(option, reader->value, own, why))
+        return;
+    if (reader->where && reader->value)
+        shorten(reader->value, why);
+    cli_misuse(reader, "--%s%s", option->name, why);
 }
 
-bool cli_choice(struct cli_reader *reader, int *out)
+bool cli_read(struct cli_reader *reader, void *own, struct settings *settings)
 {
-    const struct setting_value *values = reader->option->values;
-    char list[256];
-    uint32_t found = value_find(values, reader->value);
-    if (found == WHIT_NONE)
-        return cli_misuse(reader, "--%s `%s`: one of %s is needed", reader->option->name,
-                          reader->value, value_list(values, ", ", list, sizeof list));
-    *out = values[found].value;
-    return true;
-}
-
-bool cli_choice_unsigned(struct cli_reader *reader, uint32_t *out)
-{
-    int value;
-    bool good = cli_choice(reader, &value);
-    if (good)
-        *out = (uint32_t)value;
-    return good;
+    const struct setting *option;
+    while ((option = next(reader)) != NULL)
+        take(reader, option, own, settings);
+    return reader->status < 0;
 }
 
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
@@ -303,19 +273,38 @@ bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path
     return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
 }
 
-static void print_option(const struct cli_option *option, FILE *to)
+/* ---- Help ---- */
+
+const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
+                     size_t text_bytes)
 {
-    char left[120], argument[80];
+    struct settings settings = settings_usual();
+    char value[SETTING_VALUE_BYTES];
+    const char *usual = option->usual;
+    if (command->usual)
+        command->usual(&settings);
+    bool has_one = option->kind != SETTING_FLAG && option->kind != SETTING_GONE &&
+                   !is_own(command, option) && setting_write(option, &settings, 0, value);
+    if (!usual && has_one)
+        usual = value;
+    snprintf(text, text_bytes, usual && usual[0] ? "%s (%s)" : "%s", option->help, usual);
+    return text;
+}
+
+static void print_option(const struct cli_command *command, const struct setting *option, FILE *to)
+{
+    char left[120], argument[80], help[1024];
     char letter[8] = "    ";
-    if (option->id < 128 && isalpha(option->id))
-        snprintf(letter, sizeof letter, "-%c, ", option->id);
+    if (option->letter)
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
     snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name,
-             takes_value(option) ? " " : "", cli_argument_name(option, argument, sizeof argument));
+             setting_has_argument(option) ? " " : "",
+             cli_argument_name(option, argument, sizeof argument));
     if (strlen(left) + 2 > HELP_COLUMN)
         fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
     else
         fprintf(to, "%-*s", HELP_COLUMN, left);
-    for (const char *line = option->help; *line;) {
+    for (const char *line = cli_help(command, option, help, sizeof help); *line;) {
         size_t length = strcspn(line, "\n");
         fprintf(to, "%.*s\n", (int)length, line);
         line += length + (line[length] != 0);
@@ -326,62 +315,13 @@ static void print_option(const struct cli_option *option, FILE *to)
 
 void cli_print_help(const struct cli_command *command, bool all, FILE *to)
 {
-    const struct cli_option *option;
+    const struct setting *option;
     fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
             command->summary);
     for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
-        if (option->id != CLI_GONE && (all || option->id < CLI_DEVELOPER))
-            print_option(option, to);
+        if (option->kind != SETTING_GONE && (all || !option->developer))
+            print_option(command, option, to);
     }
     if (command->details)
         fprintf(to, "\n%s", command->details);
-}
-
-enum { WORD_MAX = 63 };
-
-/* Levenshtein's distance, with swapped neighbours as one step. */
-static uint32_t distance(const char *a, const char *b)
-{
-    uint32_t rows[3][WORD_MAX + 1];
-    uint32_t length_b = (uint32_t)strlen(b);
-    for (uint32_t j = 0; j <= length_b; ++j)
-        rows[0][j] = j;
-    for (uint32_t i = 1; a[i - 1]; ++i) {
-        uint32_t *row = rows[i % 3], *above = rows[(i - 1) % 3], *higher = rows[(i + 1) % 3];
-        row[0] = i;
-        for (uint32_t j = 1; j <= length_b; ++j) {
-            char x = (char)tolower((unsigned char)a[i - 1]);
-            char y = (char)tolower((unsigned char)b[j - 1]);
-            uint32_t best = above[j - 1] + (x != y);
-            if (above[j] + 1 < best)
-                best = above[j] + 1;
-            if (row[j - 1] + 1 < best)
-                best = row[j - 1] + 1;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
-                higher[j - 2] + 1 < best)
-                best = higher[j - 2] + 1;
-            row[j] = best;
-        }
-    }
-    return rows[strlen(a) % 3][length_b];
-}
-
-const char *cli_nearest(const char *word, const char *const *names, uint32_t count)
-{
-    const char *nearest = NULL;
-    size_t length = strlen(word);
-    uint32_t least = length <= 3 ? 1 : length <= 6 ? 2 : 3;
-    if (length == 0 || length > WORD_MAX)
-        return NULL;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (strlen(names[i]) > WORD_MAX || !names[i][0])
-            continue;
-        uint32_t steps = distance(word, names[i]);
-        bool prefix = strncmp(word, names[i], length) == 0;
-        if (steps <= least || (prefix && !nearest)) {
-            nearest = names[i];
-            least = steps < least ? steps : least;
-        }
-    }
-    return nearest;
 }

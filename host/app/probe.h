@@ -6,8 +6,7 @@
 
 struct probe {
     struct job job;
-    struct render_request request; /* its picture; nothing of it is written */
-    uint32_t x, y, most_rays;      /* 0: all that there is room for */
+    uint32_t x, y, most_rays; /* 0: all that there is room for */
     bool has_pixel;
     const char *json_path; /* NULL: none */
     whit_probe_report *report;

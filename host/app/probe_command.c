@@ -5,25 +5,7 @@
 
 #include "app/cache.h"
 
-enum probe_id { ID_PIXEL = PICTURE_ID_END, ID_JSON, ID_RAYS };
-
 enum { RAYS_MOST = 16383 };
-
-static const struct cli_option options[] = {
-    {ID_PIXEL, "pixel", "X,Y", "which one, from 0,0 at the upper left", NULL},
-    {ID_JSON, "json", "FILE", "also write all of it as JSON", NULL},
-    {ID_RAYS, "rays", "N", "most rays that are recorded, 1 to 16383 (16383)", NULL},
-    PICTURE_OPTION_PLACE,
-    JOB_OPTION_TIME,
-    PICTURE_OPTION_SHADING,
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_TREES,
-    JOB_OPTION_LOADING,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
-    {0},
-};
 
 static bool read_coordinate(const char **text, char end, uint32_t *out)
 {
@@ -36,31 +18,29 @@ static bool read_coordinate(const char **text, char end, uint32_t *out)
     return *after == end;
 }
 
-static void read_pixel(struct cli_reader *reader, struct probe *probe)
+static bool read_pixel(const struct setting *setting, const char *value, void *record, char *why)
 {
-    const char *text = reader->value;
+    struct probe *probe = record;
+    const char *text = value;
+    (void)setting;
     probe->has_pixel =
         read_coordinate(&text, ',', &probe->x) && read_coordinate(&text, '\0', &probe->y);
-    if (!probe->has_pixel)
-        cli_misuse(reader, "--pixel `%s`: two numbers X,Y are needed, such as 320,240",
-                   reader->value);
+    return probe->has_pixel ||
+           setting_refuse(why, " `%s`: two numbers X,Y are needed, such as 320,240", value);
 }
 
-static void read_option(struct cli_reader *reader, int id, struct probe *probe)
-{
-    if (id == ID_PIXEL)
-        read_pixel(reader, probe);
-    else if (id == ID_JSON)
-        probe->json_path = reader->value;
-    else if (id == ID_RAYS)
-        cli_unsigned(reader, 1, RAYS_MOST, &probe->most_rays);
-    else if (!picture_option(reader, id, &probe->request))
-        job_option(&probe->job, reader, id);
-}
+static const struct setting options[] = {
+    {"pixel", 0, "X,Y", "which one, from 0,0 at the upper left", .kind = SETTING_OWN,
+     .read = read_pixel},
+    {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path)},
+    {"rays", 0, "N", "most rays that are recorded, 1 to 16383 (16383)",
+     SETTING_AT_COUNT(struct probe, most_rays), .min = 1, .max = RAYS_MOST},
+    {0},
+};
 
 static bool check_request(struct cli_reader *reader, const struct probe *probe)
 {
-    const struct picture *picture = &probe->request.picture;
+    const whit_renderer_params *picture = &probe->job.settings.picture;
     if (!probe->has_pixel)
         return cli_misuse(reader, "--pixel X,Y is missing: which pixel?");
     if (probe->x >= picture->width || probe->y >= picture->height)
@@ -82,10 +62,11 @@ static bool check_request(struct cli_reader *reader, const struct probe *probe)
 
 static whit_result find_out(struct probe *probe)
 {
+    const struct render_request request = {0};
     struct frames_progress progress = {.count = 1};
     whit_renderer *renderer = NULL;
     cli_progress_init(&progress.bar, true);
-    whit_result result = render_prepare(&probe->job, &probe->request, &progress, &renderer);
+    whit_result result = render_prepare(&probe->job, &request, &progress, &renderer);
     if (result == WHIT_OK)
         result = whit_probe(renderer, probe->x, probe->y, probe->most_rays, &probe->report);
     whit_renderer_destroy(renderer);
@@ -104,7 +85,8 @@ static int work(struct probe *probe)
     if (report->dropped)
         cli_warning("%u of %u rays had no room and are not shown: --rays", report->dropped,
                     report->ray_count + report->dropped);
-    if (status == EXIT_FINE && report->differing && probe->job.numerics != WHIT_NUMERICS_FAST) {
+    if (status == EXIT_FINE && report->differing &&
+        probe->job.settings.picture.numerics != WHIT_NUMERICS_FAST) {
         cli_error("the device and its twin differ in %u of %u rays", report->differing,
                   report->ray_count);
         status = EXIT_DIFFERS;
@@ -115,14 +97,13 @@ static int work(struct probe *probe)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct probe probe = {.request = picture_request_default()};
-    job_init(&probe.job);
+    struct probe probe = {.report = NULL};
+    job_init(&probe.job, command);
     cache_plain_code(); /* kernels for the rays of one pixel */
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &probe);
-    if (!job_options_done(&probe.job, &reader) || !check_request(&reader, &probe))
+    if (!job_read(&probe.job, &reader, &probe, false) || !check_request(&reader, &probe))
         return reader.status;
+    job_start(&probe.job);
     int status = work(&probe);
     whit_probe_report_destroy(probe.report);
     job_finish(&probe.job);
@@ -144,5 +125,6 @@ const struct cli_command command_probe = {
         "A cut-out that let a ray pass is taken from the device.\n"
         "Exit code 1 when device and twin differ, but at --numerics fast.\n",
     .options = options,
+    .settings = IN_PROBE,
     .run = run,
 };

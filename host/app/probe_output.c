@@ -88,11 +88,11 @@ static void print_first(const struct probe *probe)
 static void print_head(const struct probe *probe)
 {
     const whit_probe_report *report = probe->report;
-    const struct picture *picture = &probe->request.picture;
+    const whit_renderer_params *picture = &probe->job.settings.picture;
     const float *c = report->color;
     printf("pixel      %u,%u of %u x %u, %u sample%s, %s\n", report->x, report->y, picture->width,
            picture->height, report->samples, report->samples == 1 ? "" : "s",
-           value_word(values_numerics, (int)probe->job.numerics));
+           value_word(values_numerics, (int)probe->job.settings.picture.numerics));
     printf("colour     %.9g %.9g %.9g linear, #%02x%02x%02x as shown\n", (double)c[0], (double)c[1],
            (double)c[2], displayed(c[0]), displayed(c[1]), displayed(c[2]));
     print_first(probe);
@@ -307,11 +307,10 @@ whit_result probe_save_json(const struct probe *probe)
     whit_device_info device;
     whit_device_get_info(probe->job.device, &device);
     document_text(out, "whit", WHIT_VERSION);
-    document_text(out, "scene", probe->job.scene_path);
+    document_text(out, "scene", probe->job.settings.scene);
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);
-    picture_describe(&probe->request.picture, &probe->job, picture);
-    document_text(picture, "numerics", value_word(values_numerics, (int)probe->job.numerics));
+    settings_describe(&probe->job.settings, IN_PROBE, picture);
     document_put(out, "picture", picture);
     document_put(out, "pixel", pixel_document(probe));
     document_count(out, "differing", report->differing);

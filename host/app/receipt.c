@@ -16,7 +16,7 @@ static whit_result make_renderer(const struct receipt *receipt, const char *effe
                                  whit_renderer **out)
 {
     const struct job *job = receipt->job;
-    whit_renderer_params params = picture_params(receipt->picture, job);
+    whit_renderer_params params = job_picture(job);
     params.effects = effects;
     return whit_renderer_create(job->device, job->accel, &params, out);
 }
@@ -134,7 +134,7 @@ static whit_result measure(struct receipt *receipt)
     whit_result result = make_renderer(receipt, NULL, &base);
     if (result == WHIT_OK)
         result = whit_renderer_get_kernel(base, &receipt->kernel);
-    cli_progress_init(&progress, receipt->job->quiet);
+    cli_progress_init(&progress, receipt->job->settings.quiet);
     if (result == WHIT_OK)
         result = time_base(receipt, base);
     uint32_t switched = result == WHIT_OK ? list_effects(receipt, base) : 0, done = 0;
@@ -165,7 +165,7 @@ static int check_promises(const struct receipt *receipt)
     return status;
 }
 
-int receipt_run(struct job *job, const struct picture *picture, bool json)
+int receipt_run(struct job *job, bool json)
 {
     struct receipt *receipt = calloc(1, sizeof *receipt);
     if (!receipt) {
@@ -173,7 +173,6 @@ int receipt_run(struct job *job, const struct picture *picture, bool json)
         return cli_exit_of(WHIT_ERROR_MEMORY);
     }
     receipt->job = job;
-    receipt->picture = picture;
     whit_result result = job_build(job);
     if (result == WHIT_OK)
         result = job_open_device(job);

@@ -3,7 +3,7 @@
 #define APP_RECEIPT_H
 
 #include "app/bench.h"
-#include "app/picture.h"
+#include "app/commands.h"
 
 /* Of one effect. */
 struct receipt_row {
@@ -20,7 +20,6 @@ struct receipt_row {
 enum { RECEIPT_ROWS_MOST = 64 };
 struct receipt {
     const struct job *job;
-    const struct picture *picture;
     whit_kernel_info kernel;
     struct bench_times frame;
     uint32_t row_count;
@@ -29,7 +28,7 @@ struct receipt {
 
 /* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that
    the scene does not call for has to be the same. */
-int receipt_run(struct job *job, const struct picture *picture, bool json);
+int receipt_run(struct job *job, bool json);
 
 /* receipt_output.c */
 int receipt_print_text(const struct receipt *receipt);

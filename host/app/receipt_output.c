@@ -1,12 +1,11 @@
-#include "app/commands.h"
 #include "app/receipt.h"
 
 static void print_head(const struct receipt *receipt)
 {
-    const struct picture *picture = receipt->picture;
+    const whit_renderer_params *picture = &receipt->job->settings.picture;
     whit_device_info device;
     whit_device_get_info(receipt->job->device, &device);
-    printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->scene_path), picture->width,
+    printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->settings.scene), picture->width,
            picture->height);
     if (picture->adaptive > 0.0)
         printf("adaptive samples, ");
@@ -91,14 +90,14 @@ int receipt_print_json(const struct receipt *receipt)
     json_t *root = document_object(), *device = document_object(), *kernel = document_object();
     json_t *effects = document_array();
     document_text(root, "whit", WHIT_VERSION);
-    document_text(root, "file", receipt->job->scene_path);
+    document_text(root, "file", receipt->job->settings.scene);
     document_hash(root, "hash", scene.hash);
     document_text(device, "name", info.name);
     document_text(device, "driver", info.driver);
     document_text(device, "kind", info.kind);
     document_put(root, "device", device);
     json_t *picture = document_object();
-    picture_describe(receipt->picture, receipt->job, picture);
+    settings_describe(&receipt->job->settings, IN_SCENE, picture);
     document_put(root, "picture", picture);
     document_count(kernel, "instructions", receipt->kernel.instructions);
     document_count(kernel, "general_instructions", receipt->kernel.general_instructions);

@@ -4,94 +4,23 @@
 #include <string.h>
 
 #include "app/commands.h"
-
-enum render_id {
-    ID_IDS = PICTURE_ID_END,
-    ID_FRAMES,
-    ID_COUNTERS,
-    ID_TILE = CLI_DEVELOPER,
-    ID_PACKETS,
-    ID_CLASSES,
-    ID_SEGMENTS,
-};
+#include "base/text.h"
 
 enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
 
-static const struct setting_value values_segments[] = {
-    {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
-
-static const struct cli_option options[] = {
-    {'o', "output", "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)", NULL},
-    {ID_IDS, "ids", "FILE.exr", "also write what each pixel hits: instance, primitive", NULL},
-    PICTURE_OPTION_PLACE,
-    JOB_OPTION_TIME,
-    {ID_FRAMES, "frames", "A-B",
+static const struct setting options[] = {
+    {"output", 'o', "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)",
+     SETTING_AT_NAME(struct render_request, output)},
+    {"ids", 0, "FILE.exr", "also write what each pixel hits: instance, primitive",
+     SETTING_AT_NAME(struct render_request, ids)},
+    {"frames", 0, "A-B",
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png",
-     NULL},
-    PICTURE_OPTION_SHADING,
-    PICTURE_OPTION_CHOICE,
-    PICTURE_OPTION_VIEW,
-    {ID_COUNTERS, "counters", NULL, "--stats (text) with what traversals cost", NULL},
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_TREES,
-    JOB_OPTION_LOADING,
-    JOB_OPTION_RUN,
-    {CLI_GONE, "tile", NULL, "is `--tile-size` now", NULL},
-    {ID_TILE, "tile-size", "N", "pixels on a tile's side, 16 to 512 (by measured time)", NULL},
-    {ID_PACKETS, "packets", NULL,
-     "whether camera rays and the shadow rays of what they meet\n"
-     "walk together; auto: where that is quicker (auto)",
-     values_packets},
-    {ID_CLASSES, "classes", NULL,
-     "one: a kernel for all materials, and for camera rays and\n"
-     "later ones; many: for each its own; auto: many where the\n"
-     "picture has enough rays to pay for them (auto)",
-     values_classes},
-    {ID_SEGMENTS, "segments", NULL,
-     "how many segments lists have; 2: one for each thread of\n"
-     "lavapipe (auto)",
-     values_segments},
+     .kind = SETTING_OWN, .read = frames_read},
+    {"counters", 0, NULL, "--stats (text) with what traversals cost",
+     SETTING_AT_FLAG(struct render_request, counters)},
     {0},
 };
-
-static void read_option(struct cli_reader *reader, int id, struct job *job,
-                        struct render_request *request)
-{
-    if (job_option(job, reader, id) || picture_option(reader, id, request))
-        return;
-    int choice;
-    switch (id) {
-    case 'o':
-        request->output = reader->value;
-        break;
-    case ID_IDS:
-        request->ids = reader->value;
-        break;
-    case ID_TILE:
-        cli_unsigned(reader, 16, 512, &request->tile_size);
-        break;
-    case ID_PACKETS:
-        if (cli_choice(reader, &choice))
-            request->packets = (whit_packets)choice;
-        break;
-    case ID_CLASSES:
-        if (cli_choice(reader, &choice))
-            request->classes = (whit_classes)choice;
-        break;
-    case ID_SEGMENTS:
-        cli_choice_unsigned(reader, &request->segments);
-        break;
-    case ID_FRAMES:
-        frames_read(reader, &request->frames);
-        break;
-    case ID_COUNTERS:
-        request->counters = true;
-        break;
-    default:
-        break;
-    }
-}
 
 static bool can_write(const struct render_request *request, const char *name)
 {
@@ -169,14 +98,14 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
         else if (i == 8)
             snprintf(list + used, sizeof list - used, ", ...");
     }
-    const char *nearest = cli_nearest(wanted, names, most);
+    const char *nearest = text_nearest(wanted, names, most);
     if (nearest)
-        cli_error("%s: there is no camera `%s`; did you mean `%s`?", job->scene_path, wanted,
+        cli_error("%s: there is no camera `%s`; did you mean `%s`?", job->settings.scene, wanted,
                   nearest);
     else
         cli_error("%s: there is no camera `%s`, only %s; or give ten numbers "
                   "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov",
-                  job->scene_path, wanted, list);
+                  job->settings.scene, wanted, list);
     return WHIT_ERROR_USAGE;
 }
 
@@ -186,7 +115,7 @@ static whit_result check_camera(const struct job *job, const char *wanted)
     double numbers[CAMERA_NUMBERS];
     whit_scene_info scene;
     whit_scene_get_info(job->scene, &scene);
-    if (!wanted || is_index(wanted, scene.camera_count))
+    if (!wanted[0] || is_index(wanted, scene.camera_count))
         return WHIT_OK;
     for (uint32_t i = 0; i < scene.camera_count; ++i) {
         whit_camera_info camera;
@@ -202,15 +131,11 @@ static whit_result check_camera(const struct job *job, const char *wanted)
 whit_result render_create(const struct job *job, const struct render_request *request,
                           struct frames_progress *progress, whit_renderer **renderer)
 {
-    whit_renderer_params params = picture_request_params(request, job);
-    params.tile_size = request->tile_size;
-    params.packets = request->packets;
-    params.classes = request->classes;
-    params.segments = request->segments;
+    whit_renderer_params params = job_picture(job);
     params.many_pictures = request->frames.given;
     params.progress = frames_progress_update;
     params.progress_user = progress;
-    params.count = request->view.given || request->counters;
+    params.count |= request->counters;
     whit_result result = whit_renderer_create(job->device, job->accel, &params, renderer);
     /* The renderer counts its time from its creation on. */
     return result == WHIT_OK ? job_still_wanted() : result;
@@ -230,18 +155,18 @@ static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
     return result;
 }
 
-static whit_result save_view(whit_renderer *renderer, const struct render_request *request,
-                             struct recipe *recipe)
+static whit_result save_view(whit_renderer *renderer, const struct settings *settings,
+                             const char *output, struct recipe *recipe)
 {
     whit_image *image;
     struct view_figures figures;
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
-    whit_result result = view_image(renderer, &request->view, request->output, &figures, &image);
+    whit_result result = view_image(renderer, settings, output, &figures, &image);
     if (result != WHIT_OK)
         return result;
-    result = recipe_add_view(recipe, &request->view, &figures)
-                 ? whit_image_save(image, request->output, recipe->texts, recipe->count, &cli_log)
+    result = recipe_add_view(recipe, settings, &figures)
+                 ? whit_image_save(image, output, recipe->texts, recipe->count, &cli_log)
                  : WHIT_ERROR_MEMORY;
     whit_image_destroy(image);
     return result;
@@ -250,33 +175,37 @@ static whit_result save_view(whit_renderer *renderer, const struct render_reques
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats)
 {
+    const struct settings *settings = &job->settings;
     struct recipe recipe;
-    if (!recipe_init(&recipe, job, request, NULL, stats))
+    whit_device_info device;
+    whit_device_get_info(job->device, &device);
+    if (!recipe_init(&recipe, settings, job->scene, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     if (request->ids)
         result = save(renderer, WHIT_AOV_IDS, request->ids, &recipe);
     if (result == WHIT_OK)
-        result = request->view.given ? save_view(renderer, request, &recipe)
-                                     : save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
+        result = settings->paint != PAINT_COLOR
+                     ? save_view(renderer, settings, request->output, &recipe)
+                     : save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
     recipe_finish(&recipe);
     return result;
 }
 
-whit_result render_prepare(struct job *job, struct render_request *request,
+whit_result render_prepare(struct job *job, const struct render_request *request,
                            struct frames_progress *progress, whit_renderer **renderer)
 {
     job_begin_device(job);
     whit_result result = job_load(job);
     if (result == WHIT_OK)
-        result = check_camera(job, request->picture.camera);
+        result = check_camera(job, job->settings.camera);
     if (result == WHIT_OK) {
         job_print_notes(job, true);
         result = job_build(job);
     }
     if (result == WHIT_OK)
         result = job_open_device(job);
-    bool chooses = request->budget_ms > 0.0 || request->max_error > 0.0;
+    bool chooses = job->settings.budget_ms > 0.0 || job->settings.max_error > 0.0;
     if (result == WHIT_OK)
         result = chooses ? render_choose(job, request, progress, renderer)
                          : render_create(job, request, progress, renderer);
@@ -294,13 +223,15 @@ static void say_done(const struct job *job, const struct render_request *request
     whit_device_get_info(job->device, &device);
     if (frames->given)
         snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
-    if (!job->quiet && job->stats == JOB_STATS_NONE)
+    if (!job->settings.quiet && job->settings.stats == STATS_NONE)
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
-                cli_shown(request->output), about, request->picture.width, request->picture.height,
-                stats->render_ms * 1e-3, stats->mrays_per_s, cli_shown(device.name));
-    if (request->budget_ms > 0.0)
-        cli_note("it took %.1f of %.6g ms%s", stats->render_ms, request->budget_ms,
-                 stats->render_ms > request->budget_ms ? ": more than predicted" : "");
+                cli_shown(request->output), about, job->settings.picture.width,
+                job->settings.picture.height, stats->render_ms * 1e-3, stats->mrays_per_s,
+                cli_shown(device.name));
+    double budget_ms = job->settings.budget_ms;
+    if (budget_ms > 0.0)
+        cli_note("it took %.1f of %.6g ms%s", stats->render_ms, budget_ms,
+                 stats->render_ms > budget_ms ? ": more than predicted" : "");
 }
 
 static whit_result render_one(struct job *job, const struct render_request *request,
@@ -324,21 +255,21 @@ static whit_result render_one(struct job *job, const struct render_request *requ
 static void say_written(const struct job *job, const struct frames_progress *progress,
                         const struct sequence *sequence)
 {
-    if (!cli_cancel && !job->quiet)
+    if (!cli_cancel && !job->settings.quiet)
         cli_note("%u of %u frames were written", sequence->written, progress->count);
 }
 
-static int work(struct job *job, struct render_request *request)
+static int work(struct job *job, const struct render_request *request)
 {
     const struct frames *frames = &request->frames;
     struct frames_progress progress = {.count = frames->last - frames->first + 1};
     whit_renderer *renderer = NULL;
     struct sequence sequence = {0};
     int status = EXIT_FINE;
-    cli_progress_init(&progress.bar, job->quiet);
+    cli_progress_init(&progress.bar, job->settings.quiet);
     whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
-    progress.budget_ms = request->budget_ms;
+    progress.budget_ms = job->settings.budget_ms;
     if (result == WHIT_OK)
         result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)
                                : render_one(job, request, renderer, &progress, &sequence);
@@ -359,23 +290,30 @@ static int work(struct job *job, struct render_request *request)
     return status;
 }
 
+static bool check_choice(struct cli_reader *reader, const struct settings *settings,
+                         const struct render_request *request)
+{
+    if (request->frames.given && (settings->budget_ms > 0.0 || settings->max_error > 0.0))
+        return cli_misuse(reader, "%s is for one picture of colours",
+                          settings->budget_ms > 0.0 ? "--budget-ms" : "--max-error");
+    return true;
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct job job;
-    struct render_request request = picture_request_default();
-    job_init(&job);
+    struct render_request request = {0};
+    job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &job, &request);
-    if (!job_options_done(&job, &reader) || !frames_check(&reader, &job, &request) ||
-        !view_check(&reader, &request.view) || !picture_check_choice(&reader, &request) ||
-        !check_outputs(&reader, &request))
+    if (!job_read(&job, &reader, &request, false) || !frames_check(&reader, &job, &request) ||
+        !check_choice(&reader, &job.settings, &request) || !check_outputs(&reader, &request))
         return reader.status;
-    if (request.counters && job.stats == JOB_STATS_NONE)
-        job.stats = JOB_STATS_TEXT;
+    if (request.counters && job.settings.stats == STATS_NONE)
+        job.settings.stats = STATS_TEXT;
     if (request.frames.given)
-        job.time_s = (double)request.frames.first / job.fps;
+        job.settings.picture.time_s = (double)request.frames.first / job.settings.fps;
+    job_start(&job);
     int status = work(&job, &request);
     job_finish(&job);
     return status;
@@ -390,5 +328,6 @@ const struct cli_command command_render = {
         "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device,\n"
         "5 time limit, 130 interrupted.\n",
     .options = options,
+    .settings = IN_RENDER,
     .run = run,
 };

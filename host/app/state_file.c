@@ -41,7 +41,7 @@ static char *read_bytes(char **from, char *to)
 }
 
 /* The next word of a line, in its place; what stands in single quotes is taken as it is, and a
-   backslash keeps the next letter, as a shell does it; in $'' only what words_quote writes. NULL at
+   backslash keeps the next letter, as a shell does it; in $'' only what quote_word writes. NULL at
    the end; *whole: false where a quote has no end. */
 static char *next_word(char **at, bool *whole)
 {
@@ -86,32 +86,38 @@ static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MOST +
     return whole || cli_misuse(reader, "a quote has no end");
 }
 
-bool state_file_read(struct state_file *file, const struct cli_command *command,
-                     void (*read)(void *user, struct cli_reader *reader, int id), void *user,
-                     struct cli_reader *reader, char *said, size_t said_bytes)
+static bool read_line(struct cli_reader *reader, char *line, struct settings *settings)
 {
     static char name[] = "whit";
-    static char where[WHERE_BYTES];
+    char *argv[WORDS_MOST + 1] = {name};
+    reader->argv = argv;
+    if (line[strspn(line, " \t\r")] == '#')
+        return true;
+    if (!split(reader, line, argv) || !cli_read(reader, NULL, settings))
+        return false;
+    return !reader->positional || cli_misuse(reader, "`%s` is no option", reader->positional);
+}
+
+bool state_file_read(struct state_file *file, const struct cli_command *command,
+                     struct settings *settings, char *said, size_t said_bytes)
+{
+    char where[WHERE_BYTES], why[SETTING_WHY_BYTES];
     uint32_t number = 0;
     for (char *line = file->text, *end; line; line = end) {
-        char *argv[WORDS_MOST + 1] = {name};
+        struct cli_reader reader;
         end = strchr(line, '\n');
         if (end)
             *end++ = '\0';
         snprintf(where, sizeof where, "%.500s:%u", file->path, ++number);
-        cli_reader_init(reader, command, 1, argv);
-        reader->where = where;
-        reader->said = said;
-        reader->said_bytes = said_bytes;
-        bool comment = line[strspn(line, " \t\r")] == '#';
-        if (!comment && split(reader, line, argv)) {
-            for (int id; (id = cli_next(reader)) != 0;)
-                read(user, reader, id);
-        }
-        if (reader->status < 0 && reader->positional)
-            cli_misuse(reader, "`%s` is no option", reader->positional);
-        if (reader->status >= 0)
+        cli_reader_init(&reader, command, 1, NULL);
+        reader.where = where;
+        reader.said = said;
+        reader.said_bytes = said_bytes;
+        if (!read_line(&reader, line, settings))
             return false;
     }
-    return reader->status < 0;
+    if (settings_check(settings, why))
+        return true;
+    snprintf(said, said_bytes, "%.500s:%u: %s", file->path, number, why);
+    return false;
 }

@@ -50,7 +50,7 @@ static json_t *times_document(const struct job *job, const struct figures *figur
 static json_t *scene_document(const struct job *job, const struct figures *figures)
 {
     json_t *scene = document_object();
-    document_text(scene, "file", job->scene_path);
+    document_text(scene, "file", job->settings.scene);
     document_hash(scene, "hash", figures->scene.hash);
     document_count(scene, "file_bytes", figures->scene.file_bytes);
     document_count(scene, "instances", figures->scene.instance_count);
@@ -63,16 +63,7 @@ static json_t *picture_document(const struct job *job, const struct render_reque
     json_t *picture = document_object();
     document_text(picture, "file", request->output);
     document_text(picture, "ids", request->ids);
-    document_count(picture, "width", request->picture.width);
-    document_count(picture, "height", request->picture.height);
-    if (request->picture.adaptive > 0.0)
-        document_number(picture, "adaptive", request->picture.adaptive);
-    else
-        document_count(picture, "samples", request->picture.samples);
-    document_text(picture, "effects", request->effects ? request->effects : "auto");
-    document_count(picture, "depth", request->picture.depth);
-    document_number(picture, "bailout", request->bailout);
-    document_number(picture, "time_s", job->time_s);
+    settings_describe(&job->settings, IN_RENDER, picture);
     return picture;
 }
 
@@ -197,7 +188,7 @@ static json_t *frames_document(const struct job *job, const struct sequence *seq
 {
     json_t *frames = document_object(), *median = document_object(), *each = document_array();
     document_count(frames, "count", sequence->count);
-    document_number(frames, "fps", job->fps);
+    document_number(frames, "fps", job->settings.fps);
     put_frame_times(median, &sequence->median);
     document_put(frames, "median", median);
     for (uint32_t i = 0; i < sequence->count; ++i) {
@@ -227,9 +218,9 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "rays", rays_document(figures));
     document_put(root, "stages", stages_document(job, figures));
     document_put(root, "kernel", kernel_document(figures));
-    if (request->picture.adaptive > 0.0)
+    if (job->settings.picture.adaptive > 0.0)
         document_put(root, "pixels_by_samples", pixels_document(figures));
-    if (request->view.given || request->counters)
+    if (job->settings.paint != PAINT_COLOR || request->counters)
         document_put(root, "costs", costs_document(figures->render));
     document_put(root, "tree", tree_document(&figures->tree));
     if (figures->sequence)
@@ -374,23 +365,24 @@ static int print_text(const struct job *job, const struct render_request *reques
                       const struct figures *figures)
 {
     const whit_accel_info *tree = &figures->tree;
-    printf("scene      %s: %llu triangles in %u instance%s\n", cli_shown(job->scene_path),
+    printf("scene      %s: %llu triangles in %u instance%s\n", cli_shown(job->settings.scene),
            (unsigned long long)figures->scene.triangle_count, figures->scene.instance_count,
            figures->scene.instance_count == 1 ? "" : "s");
+    const whit_renderer_params *picture = &job->settings.picture;
     char samples[32] = "adaptive";
-    if (!(request->picture.adaptive > 0.0))
-        snprintf(samples, sizeof samples, "%u", request->picture.samples);
+    if (!(picture->adaptive > 0.0))
+        snprintf(samples, sizeof samples, "%u", picture->samples);
     printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", cli_shown(request->output),
-           request->picture.width, request->picture.height, samples, request->picture.depth);
+           picture->width, picture->height, samples, picture->depth);
     printf("device     %s (%s)\n", cli_shown(figures->device.name),
            cli_shown(stats_driver(&figures->device)));
     print_times(job, figures);
     print_rays(figures);
     print_stages(job, figures);
-    if (request->picture.adaptive > 0.0)
+    if (picture->adaptive > 0.0)
         print_samples(figures);
     print_kernel(figures);
-    if (request->view.given || request->counters)
+    if (job->settings.paint != PAINT_COLOR || request->counters)
         costs_print(figures->render);
     printf("trees\n  %s%u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
            tree->one_tree ? "one in world space: " : "", tree->node_count, tree->leaf_count,
@@ -413,12 +405,12 @@ int stats_print(const struct job *job, const struct render_request *request,
                 const struct sequence *sequence)
 {
     struct figures figures;
-    if (job->stats == JOB_STATS_NONE)
+    if (job->settings.stats == STATS_NONE)
         return EXIT_FINE;
     collect(job, renderer, stats, save_ms, sequence, &figures);
-    if (job->stats == JOB_STATS_JSON)
+    if (job->settings.stats == STATS_JSON)
         return print_json(job, request, &figures);
-    if (job->stats == JOB_STATS_TEXT)
+    if (job->settings.stats == STATS_TEXT)
         return print_text(job, request, &figures);
     return EXIT_FINE;
 }

@@ -43,13 +43,13 @@ static whit_result check_same(const struct study_row *row, const whit_accel_info
 static whit_result build_once(struct study *study, struct study_row *row, uint32_t threads,
                               double *build_ms)
 {
-    whit_accel_params params = job_accel_params(&study->job);
+    whit_accel_params params = study->job.settings.trees;
     whit_accel *accel = NULL;
-    params.build = row->build.build;
-    params.optimize = row->build.optimize;
-    params.bins = row->build.bins;
-    params.spatial_alpha = row->build.alpha;
-    params.spatial_budget = row->build.budget;
+    params.build = row->trees.build;
+    params.optimize = row->trees.optimize;
+    params.bins = row->trees.bins;
+    params.spatial_alpha = row->trees.spatial_alpha;
+    params.spatial_budget = row->trees.spatial_budget;
     params.threads = threads;
     whit_result result = whit_accel_create(study->job.scene, &params, &accel);
     if (result != WHIT_OK)

@@ -14,8 +14,8 @@ struct study_spread {
 };
 
 struct study_row {
-    struct job_build build;
-    char name[JOB_BUILD_NAME];
+    whit_accel_params trees; /* of which only what --build names is read */
+    char name[96];
     whit_accel *accel;
     whit_renderer *renderer; /* NULL: not traced */
     whit_accel_info info;

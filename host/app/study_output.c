@@ -18,7 +18,7 @@ static void print_heading(const struct study *study)
 {
     whit_scene_info scene;
     whit_scene_get_info(study->job.scene, &scene);
-    printf("scene      %s: ", cli_shown(study->job.scene_path));
+    printf("scene      %s: ", cli_shown(study->job.settings.scene));
     print_primitives(scene.triangle_count, scene.sphere_count);
     printf(" in %u instance%s of %u mesh%s\n", scene.instance_count,
            scene.instance_count == 1 ? "" : "s", scene.mesh_count,
@@ -241,7 +241,7 @@ static json_t *scene_document(const struct study *study)
     whit_scene_info info;
     whit_scene_get_info(study->job.scene, &info);
     json_t *scene = document_object();
-    document_text(scene, "file", study->job.scene_path);
+    document_text(scene, "file", study->job.settings.scene);
     document_hash(scene, "hash", info.hash);
     document_count(scene, "instances", info.instance_count);
     document_count(scene, "meshes", info.mesh_count);

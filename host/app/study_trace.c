@@ -22,11 +22,11 @@ static whit_result create_renderers(struct study *study)
     const whit_renderer_params params = {
         .width = 16,
         .height = 16,
-        .time_s = study->job.time_s,
+        .time_s = study->job.settings.picture.time_s,
         .cancel = &cli_cancel,
-        .load_path = study->job.load_path,
-        .traversal = study->job.traversal,
-        .numerics = study->job.numerics,
+        .load_path = study->job.settings.picture.load_path,
+        .traversal = study->job.settings.picture.traversal,
+        .numerics = study->job.settings.picture.numerics,
     };
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < study->row_count; ++i) {

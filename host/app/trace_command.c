@@ -3,8 +3,6 @@
 #include "app/commands.h"
 #include "app/ray_file.h"
 
-enum trace_id { ID_RAYS = JOB_ID_END, ID_ANY, ID_ON };
-
 /* Rays in memory at a time. */
 enum { CHUNK = 1 << 20 };
 
@@ -12,27 +10,6 @@ static const struct setting_value values_on[] = {{"device", WHIT_TRACE_DEVICE, N
                                                  {"cpu", WHIT_TRACE_CPU_FLOAT, NULL},
                                                  {"brute", WHIT_TRACE_CPU_BRUTE, NULL},
                                                  {0}};
-
-static const struct cli_option options[] = {
-    {ID_RAYS, "rays", "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax", NULL},
-    {'o', "output", "FILE",
-     "little-endian records: float t (inf: miss), u, v;\n"
-     "uint32 primitive (0xffffffff: miss), instance; float ng[3]",
-     NULL},
-    {ID_ANY, "any", NULL, "any hit will do: only `primitive` says something", NULL},
-    {ID_ON, "on", NULL,
-     "where: Vulkan, its twin on the CPU, the twin without\n"
-     "trees (device)",
-     values_on},
-    JOB_OPTION_TIME,
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_TREES,
-    JOB_OPTION_FOREIGN,
-    {JOB_TIME_LIMIT, "time-limit", "S", "give up after S seconds, with exit code 5", NULL},
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, no progress, only errors", NULL},
-    {0},
-};
 
 struct trace {
     const char *rays_path, *output;
@@ -44,6 +21,22 @@ struct trace {
     whit_ray *rays;
     whit_hit *hits;
     whit_file *file;
+};
+
+static const struct setting options[] = {
+    {"rays", 0, "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax",
+     SETTING_AT_NAME(struct trace, rays_path)},
+    {"output", 'o', "FILE",
+     "little-endian records: float t (inf: miss), u, v;\n"
+     "uint32 primitive (0xffffffff: miss), instance; float ng[3]",
+     SETTING_AT_NAME(struct trace, output)},
+    {"any", 0, NULL, "any hit will do: only `primitive` says something",
+     SETTING_AT_FLAG(struct trace, any)},
+    {"on", 0, NULL,
+     "where: Vulkan, its twin on the CPU, the twin without\n"
+     "trees (device)",
+     SETTING_AT_CHOICE(struct trace, on), .values = values_on},
+    {0},
 };
 
 static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
@@ -87,15 +80,8 @@ static whit_result allocate(struct trace *trace)
 
 static whit_result prepare(struct job *job, struct trace *trace, whit_renderer **renderer)
 {
-    const whit_renderer_params params = {
-        .width = 16,
-        .height = 16,
-        .time_s = job->time_s,
-        .cancel = &cli_cancel,
-        .load_path = job->load_path,
-        .traversal = job->traversal,
-        .numerics = job->numerics,
-    };
+    whit_renderer_params params = settings_picture(&job->settings);
+    params.cancel = &cli_cancel;
     whit_result result = ray_file_open(trace->rays_path, &trace->input);
     if (result == WHIT_OK)
         result = allocate(trace);
@@ -116,7 +102,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
 
 static void say_done(const struct job *job, const struct trace *trace)
 {
-    if (job->quiet)
+    if (job->settings.quiet)
         return;
     fprintf(stderr, "whit: %s: %llu rays in %.3f s (%.2f Mray/s)\n", cli_shown(trace->output),
             (unsigned long long)trace->done_count, trace->trace_ms * 1e-3,
@@ -129,7 +115,7 @@ static int work(struct job *job, struct trace *trace)
     whit_renderer *renderer = NULL;
     int status = EXIT_FINE;
     whit_result result = prepare(job, trace, &renderer);
-    cli_progress_init(&progress, job->quiet);
+    cli_progress_init(&progress, job->settings.quiet);
     if (result == WHIT_OK)
         result = whit_file_begin(trace->output, &cli_log, &trace->file);
     if (result == WHIT_OK) {
@@ -169,18 +155,10 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
     return false;
 }
 
-static void read_option(struct cli_reader *reader, int id, struct job *job, struct trace *trace)
+/* A renderer that draws nothing. */
+static void set_usual(struct settings *settings)
 {
-    if (id == ID_RAYS)
-        trace->rays_path = reader->value;
-    else if (id == 'o')
-        trace->output = reader->value;
-    else if (id == ID_ANY)
-        trace->any = true;
-    else if (id == ID_ON)
-        cli_choice_unsigned(reader, &trace->on);
-    else
-        job_option(job, reader, id);
+    settings->picture.width = settings->picture.height = 16;
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
@@ -188,12 +166,11 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct cli_reader reader;
     struct job job;
     struct trace trace = {.on = WHIT_TRACE_DEVICE};
-    job_init(&job);
+    job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    for (int id; (id = cli_next(&reader)) != 0;)
-        read_option(&reader, id, &job, &trace);
-    if (!job_options_done(&job, &reader) || !check_request(&reader, &trace))
+    if (!job_read(&job, &reader, &trace, false) || !check_request(&reader, &trace))
         return reader.status;
+    job_start(&job);
     int status = work(&job, &trace);
     job_finish(&job);
     free(trace.rays);
@@ -210,5 +187,7 @@ const struct cli_command command_trace = {
         "Hits are those with tmin <= t <= tmax; directions need not be unit. `instance` and\n"
         "`primitive` are those of `whit scene --triangles`.\n",
     .options = options,
+    .settings = IN_TRACE,
+    .usual = set_usual,
     .run = run,
 };

@@ -8,282 +8,95 @@
 #include "app/state_file.h"
 #include "view/view.h"
 
-enum view_id {
-    ID_FULLSCREEN = PICTURE_ID_END,
-    ID_NO_VSYNC,
-    ID_BLIT,
-    ID_FPS_GOAL,
-    ID_FRAMES_SHOWN,
-    ID_RECORD,
-    ID_REPLAY,
-    ID_REMEMBER,
-    ID_STATE,
-    ID_UI_SCALE,
-    ID_SPEND,
-};
-
 static const struct setting_value values_remember[] = {{"yes", 1, NULL}, {"no", 0, NULL}, {0}};
-
-static const struct cli_option options[] = {
-    PICTURE_OPTION_PLACE,
-    {ID_FULLSCREEN, "fullscreen", NULL, "the whole screen", NULL},
-    {ID_NO_VSYNC, "no-vsync", NULL, "show pictures as they come, not as the screen does", NULL},
-    {ID_BLIT, "blit", NULL, "copy pictures to the window, in place of writing them there", NULL},
-    {ID_FPS_GOAL, "fps-goal", "F",
-     "pictures a second to hold while something moves, by\n"
-     "smaller ones (30)",
-     NULL},
-    {ID_FRAMES_SHOWN, "frames", "N", "end after N pictures were shown", NULL},
-    {ID_RECORD, "record", "FILE", "write down what the user does", NULL},
-    {ID_REPLAY, "replay", "FILE", "do what FILE says, and end", NULL},
-    {ID_REMEMBER, "remember", NULL,
-     "cameras of scenes, from one run to the next (yes; no with\n"
-     "--record and --replay)",
-     values_remember},
-    {ID_STATE, "state", "FILE",
-     "options that Ctrl+S saved, one a line; those beside it\n"
-     "here come after them",
-     NULL},
-    {ID_UI_SCALE, "ui-scale", "X", "of text and panels (the monitor's)", NULL},
-    {ID_SPEND, "spend", "S",
-     "seconds that measuring costs may take, more or less: for\n"
-     "--budget-ms and --max-error (20), for the list of P (12)",
-     NULL},
-    JOB_OPTION_TIME,
-    PICTURE_OPTION_SHADING,
-    PICTURE_OPTION_CHOICE,
-    PICTURE_OPTION_VIEW,
-    JOB_OPTION_DEVICE,
-    JOB_OPTION_BUILD,
-    JOB_OPTION_BUILDING,
-    JOB_OPTION_WALKING,
-    JOB_OPTION_LOADING,
-    {JOB_VALIDATION, "validation", NULL, "run with the Vulkan validation layers", NULL},
-    {'q', "quiet", NULL, "no notes, only errors", NULL},
-    {0},
-};
 
 static const char *const start_hint = "Drag turns the camera, the wheel comes nearer, H lists all "
                                       "keys. Drop a scene here to open it.";
 
+enum { REMEMBER_UNSAID = 2 };
+
 /* What the options say; its strings are borrowed. */
 struct view_request {
     struct job job;
-    struct render_request picture;
     struct view_params view;
     const char *state;
     double ui_scale;
     uint32_t remember; /* REMEMBER_UNSAID: as it suits */
 };
-enum { REMEMBER_UNSAID = 2 };
-_Static_assert(JOB_ALLOWED_MOST <= (int)VIEW_ALLOWED, "what options name fits into settings");
+
+static const struct setting options[] = {
+    {"fullscreen", 0, NULL, "the whole screen",
+     SETTING_AT_FLAG(struct view_request, view.fullscreen)},
+    {"no-vsync", 0, NULL, "show pictures as they come, not as the screen does",
+     SETTING_AT_FLAG(struct view_request, view.no_vsync)},
+    {"blit", 0, NULL, "copy pictures to the window, in place of writing them there",
+     SETTING_AT_FLAG(struct view_request, view.blit)},
+    {"frames", 0, "N", "end after N pictures were shown",
+     SETTING_AT_COUNT(struct view_request, view.frames), .min = 1, .max = 1e9},
+    {"record", 0, "FILE", "write down what the user does",
+     SETTING_AT_NAME(struct view_request, view.record)},
+    {"replay", 0, "FILE", "do what FILE says, and end",
+     SETTING_AT_NAME(struct view_request, view.replay)},
+    {"remember", 0, NULL,
+     "cameras of scenes, from one run to the next (yes; no with\n"
+     "--record and --replay)",
+     SETTING_AT_CHOICE(struct view_request, remember), .values = values_remember},
+    {"state", 0, "FILE",
+     "options that Ctrl+S saved, one a line; those beside it\n"
+     "here come after them",
+     SETTING_AT_NAME(struct view_request, state)},
+    {"ui-scale", 0, "X", "of text and panels (the monitor's)",
+     SETTING_AT_NUMBER(struct view_request, ui_scale), .min = 0.25, .max = 8.0},
+    {"spend", 0, "S",
+     "seconds that measuring costs may take, more or less: for\n"
+     "--budget-ms and --max-error (20), for the list of P (12)",
+     SETTING_AT_NUMBER(struct view_request, view.spend_s), .min = 0.1, .max = 1e6},
+    {0},
+};
+
 /* After a signal: the window looks for it four times a second, and keeps the camera. */
 enum { GRACE_MS = 1000 };
 
-static void request_init(struct view_request *request)
+/* ---- Files of settings ---- */
+
+static bool read_state(struct settings *settings, const char *path, char *said, size_t said_bytes)
 {
-    *request =
-        (struct view_request){.picture = picture_request_default(), .remember = REMEMBER_UNSAID};
-    job_init(&request->job);
+    struct state_file file;
+    bool read = state_file_open(&file, path, said, said_bytes) &&
+                state_file_read(&file, &command_view, settings, said, said_bytes);
+    free(file.text);
+    return read;
 }
 
-/* What a file of settings may say; false where the option is another one. */
-static bool read_setting(struct view_request *request, struct cli_reader *reader, int id)
+/* view_params.load_state. What files may reach stays as the command line says. */
+static whit_result load_state(void *user, const char *path, struct settings *settings,
+                              char *message, size_t message_bytes)
 {
-    if (job_option(&request->job, reader, id) || picture_option(reader, id, &request->picture))
-        return true;
-    if (id == ID_FPS_GOAL)
-        cli_number(reader, 0.1, 1000.0, &request->view.budget_fps);
-    return id == ID_FPS_GOAL;
-}
-
-static void read_state_option(void *user, struct cli_reader *reader, int id)
-{
-    /* What files may reach is not for a file to say. */
-    if (id == JOB_ALLOW_PATH || id == JOB_IMPORT_LIMIT || id == JOB_REQUIRE_SANDBOX ||
-        id == JOB_MEMORY_LIMIT || !read_setting(user, reader, id))
-        cli_misuse(reader, "--%s is nothing to be saved", reader->option->name);
-}
-
-static void read_option(struct view_request *request, struct cli_reader *reader, int id)
-{
-    struct view_params *view = &request->view;
-    if (read_setting(request, reader, id))
-        return;
-    switch (id) {
-    case ID_REMEMBER:
-        cli_choice_unsigned(reader, &request->remember);
-        break;
-    case ID_FULLSCREEN:
-        view->fullscreen = true;
-        break;
-    case ID_NO_VSYNC:
-        view->no_vsync = true;
-        break;
-    case ID_BLIT:
-        view->blit = true;
-        break;
-    case ID_FRAMES_SHOWN:
-        cli_unsigned(reader, 1, 1000000000, &view->frames);
-        break;
-    case ID_RECORD:
-        view->record = reader->value;
-        break;
-    case ID_REPLAY:
-        view->replay = reader->value;
-        break;
-    case ID_STATE:
-        request->state = reader->value;
-        break;
-    case ID_SPEND:
-        cli_number(reader, 0.1, 1e6, &view->spend_s);
-        break;
-    case ID_UI_SCALE:
-        if (cli_number(reader, 0.25, 8.0, &request->ui_scale))
-            view->ui_scale = (float)request->ui_scale;
-        break;
-    default:
-        break;
+    struct settings loaded = settings_usual();
+    (void)user;
+    if (!read_state(&loaded, path, message, message_bytes))
+        return WHIT_ERROR_INPUT;
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (row->trusted)
+            setting_copy(row, settings, &loaded);
     }
-}
-
-static void read_options(struct view_request *request, struct cli_reader *reader, int argc,
-                         char **argv)
-{
-    cli_reader_init(reader, &command_view, argc, argv);
-    for (int id; (id = cli_next(reader)) != 0;)
-        read_option(request, reader, id);
-    if (!reader->positional && reader->status < 0)
-        reader->positional = ""; /* the start scene */
-}
-
-/* The settings of a file, whose text is to outlive the request. */
-static bool read_state(struct view_request *request, const char *path, struct state_file *file,
-                       char *said, size_t said_bytes)
-{
-    struct cli_reader reader;
-    if (!state_file_open(file, path, said, said_bytes) ||
-        !state_file_read(file, &command_view, read_state_option, request, &reader, said,
-                         said_bytes))
-        return false;
-    reader.positional = "";
-    return job_options_done(&request->job, &reader) &&
-           view_check(&reader, &request->picture.view) &&
-           picture_check_choice(&reader, &request->picture);
-}
-
-/* ---- Settings ---- */
-
-static void copy_text(char *to, size_t bytes, const char *text)
-{
-    snprintf(to, bytes, "%s", text ? text : "");
-}
-
-/* What options say, in the viewer's words. */
-static void fill_settings(const struct job *job, const struct render_request *request,
-                          struct view_settings *settings)
-{
-    char build[JOB_BUILD_NAME];
-    job_build_name(&job->build, build);
-    *settings = (struct view_settings){
-        .memory_limit = job->memory_limit,
-        .texture_limit = job->texture_limit,
-        .validation = job->validation,
-        .import_limit_s = job->import_limit_s,
-        .require_sandbox = job->require_sandbox,
-        .trees = job_accel_params(job),
-        .picture = picture_request_params(request, job),
-        .paint = request->view.given ? VIEW_PAINT_DEPTH + request->view.view : VIEW_PAINT_COLOR,
-        .paint_rays = request->view.rays,
-        .paint_scale = request->view.scale,
-    };
-    copy_text(settings->scene, sizeof settings->scene, job->scene_path);
-    for (uint32_t i = 0; i < job->allowed_count; ++i)
-        copy_text(settings->allowed[i], sizeof settings->allowed[i], job->allowed[i]);
-    copy_text(settings->device, sizeof settings->device, job->device_name);
-    copy_text(settings->camera, sizeof settings->camera, request->picture.camera);
-    copy_text(settings->effects, sizeof settings->effects, request->effects);
-    if (job->has_build)
-        copy_text(settings->build, sizeof settings->build, build);
-    char *opt = strstr(settings->build, "+opt"); /* stands beside */
-    if (opt)
-        *opt = '\0';
-    whit_renderer_params *p = &settings->picture;
-    p->camera = NULL;
-    p->effects = NULL;
-    p->load_path = NULL;
-    p->cancel = NULL;
-    p->time_limit_s = 0.0;
-}
-
-/* And back, for the recipe of a picture. */
-static void fill_request(const struct view_settings *settings, struct job *job,
-                         struct render_request *request, const char *path)
-{
-    const whit_renderer_params *p = &settings->picture;
-    job->scene_path = settings->scene;
-    job->time_s = p->time_s;
-    job->texture_limit = settings->texture_limit;
-    for (uint32_t i = 0; i < VIEW_ALLOWED && settings->allowed[i][0]; ++i)
-        job->allowed[job->allowed_count++] = settings->allowed[i];
-    job->instances = settings->trees.instances;
-    job->numerics = p->numerics;
-    request->output = path;
-    request->picture = (struct picture){
-        .width = p->width,
-        .height = p->height,
-        .camera = settings->camera[0] ? settings->camera : NULL,
-        .samples = p->samples,
-        .adaptive = p->adaptive,
-        .depth = p->depth,
-    };
-    request->bailout = p->bailout;
-    request->shadows = p->shadows;
-    request->light_samples = p->light_samples;
-    request->schlick = p->schlick;
-    request->effects = settings->effects[0] ? settings->effects : NULL;
+    memcpy(loaded.scene, settings->scene, sizeof loaded.scene);
+    loaded.reload = settings->reload;
+    loaded.validation = settings->validation;
+    *settings = loaded;
+    return WHIT_OK;
 }
 
 /* view_params.save: the file that `whit render` would have written. */
 static whit_result save_shot(void *user, const struct view_shot *shot, const char *path)
 {
-    struct job job;
-    struct render_request request = picture_request_default();
     struct recipe recipe;
     (void)user;
-    job_init(&job);
-    fill_request(shot->settings, &job, &request, path);
-    job.scene = (whit_scene *)(uintptr_t)shot->scene; /* only read */
-    if (!recipe_init(&recipe, &job, &request, shot->device, shot->stats))
+    if (!recipe_init(&recipe, shot->settings, shot->scene, shot->device, shot->stats, path))
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
     recipe_finish(&recipe);
     return result;
-}
-
-/* view_params.load_state */
-static whit_result load_state(void *user, const char *path, struct view_state *state, char *message,
-                              size_t message_bytes)
-{
-    struct view_request request;
-    struct state_file file = {0};
-    struct view_settings now = state->settings;
-    (void)user;
-    request_init(&request);
-    bool read = read_state(&request, path, &file, message, message_bytes);
-    if (read) {
-        request.job.scene_path = now.scene;
-        fill_settings(&request.job, &request.picture, &state->settings);
-        state->settings.reload = now.reload;
-        state->settings.validation = now.validation;
-        state->settings.memory_limit = now.memory_limit;
-        memcpy(state->settings.allowed, now.allowed, sizeof now.allowed);
-        state->settings.import_limit_s = now.import_limit_s;
-        state->settings.require_sandbox = now.require_sandbox;
-        state->fps_goal = request.view.budget_fps;
-    }
-    free(file.text);
-    return read ? WHIT_OK : WHIT_ERROR_INPUT;
 }
 
 /* ---- Scenes ---- */
@@ -333,7 +146,7 @@ static void list_folder(struct scene_list *list, const char *folder)
 static void list_beside(struct scene_list *list, const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char folder[VIEW_PATH];
+    char folder[SETTING_PATH_BYTES];
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
     list_folder(list, folder);
 }
@@ -347,7 +160,7 @@ static void list_finish(struct scene_list *list)
 /* whit's own scene to begin with: beside the installed program, or where it was built. */
 static const char *find_start(char *path, size_t bytes)
 {
-    char own[VIEW_PATH];
+    char own[SETTING_PATH_BYTES];
     ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
     char *slash = NULL;
     if (length > 0) {
@@ -366,29 +179,22 @@ static const char *find_start(char *path, size_t bytes)
 
 /* ---- The command ---- */
 
-static int work(struct job *job, const struct render_request *request, struct view_params *view)
+static int work(struct job *job, struct view_params *view)
 {
-    char start[VIEW_PATH];
+    char *scene = job->settings.scene;
     struct scene_list scenes = {0};
     uint32_t validation = 0;
-    if (!job->scene_path) {
-        job->scene_path = find_start(start, sizeof start);
+    if (!scene[0]) {
+        if (!find_start(scene, sizeof job->settings.scene)) {
+            cli_error("name a scene: whit view SCENE");
+            return EXIT_USAGE;
+        }
         view->hint = start_hint;
     }
-    if (!job->scene_path) {
-        cli_error("name a scene: whit view SCENE");
-        return EXIT_USAGE;
-    }
-    if (strlen(job->scene_path) >= VIEW_PATH) {
-        cli_error("%s: the path is too long", job->scene_path);
-        return EXIT_USAGE;
-    }
-    fill_settings(job, request, &view->settings);
-    view->wish = (struct view_wish){request->budget_ms, request->max_error};
-    list_beside(&scenes, job->scene_path);
+    view->settings = job->settings;
+    list_beside(&scenes, scene);
     view->scenes = (const char *const *)scenes.paths;
     view->scene_count = scenes.count;
-    view->fps = job->fps;
     view->cancel = &cli_cancel;
     view->save = save_shot;
     view->load_state = load_state;
@@ -405,43 +211,43 @@ static int work(struct job *job, const struct render_request *request, struct vi
     return validation > 0 ? EXIT_DIFFERS : EXIT_FINE;
 }
 
-static int run_with(struct view_request *request, struct cli_reader *reader)
+/* The file of --state comes first, so that the command line has the last word. */
+static bool read_all(struct view_request *request, struct cli_reader *reader, int argc, char **argv)
 {
-    struct job *job = &request->job;
-    if (!job_options_done(job, reader) || !view_check(reader, &request->picture.view) ||
-        !picture_check_choice(reader, &request->picture))
-        return reader->status;
-    if (job->scene_path && !job->scene_path[0])
-        job->scene_path = NULL;
-    struct view_params *view = &request->view;
-    bool as_it_suits = request->remember == REMEMBER_UNSAID;
-    view->remember = as_it_suits ? !view->record && !view->replay : request->remember == 1;
-    int status = work(job, &request->picture, &request->view);
-    job_finish(job);
-    return status;
+    char said[1024];
+    *request = (struct view_request){.remember = REMEMBER_UNSAID};
+    job_init(&request->job, &command_view);
+    cli_reader_init(reader, &command_view, argc, argv);
+    if (!job_read(&request->job, reader, request, true))
+        return false;
+    const char *state = request->state;
+    if (!state)
+        return true;
+    job_init(&request->job, &command_view);
+    if (!read_state(&request->job.settings, state, said, sizeof said)) {
+        cli_error("%s", said);
+        reader->status = EXIT_USAGE;
+        return false;
+    }
+    request->job.settings.given = 0; /* what it says and the command line says too is no quarrel */
+    cli_reader_init(reader, &command_view, argc, argv);
+    return job_read(&request->job, reader, request, true);
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
 {
-    struct cli_reader reader;
     struct view_request request;
-    struct state_file file = {0};
-    char said[600];
+    struct cli_reader reader;
     (void)command;
-    request_init(&request);
-    read_options(&request, &reader, argc, argv);
-    const char *state = reader.status < 0 ? request.state : NULL;
-    if (state) { /* comes first, so that the command line has the last word */
-        request_init(&request);
-        if (!read_state(&request, state, &file, said, sizeof said)) {
-            cli_error("%s", said);
-            free(file.text);
-            return EXIT_USAGE;
-        }
-        read_options(&request, &reader, argc, argv);
-    }
-    int status = run_with(&request, &reader);
-    free(file.text);
+    if (!read_all(&request, &reader, argc, argv))
+        return reader.status;
+    struct view_params *view = &request.view;
+    bool as_it_suits = request.remember == REMEMBER_UNSAID;
+    view->remember = as_it_suits ? !view->record && !view->replay : request.remember == 1;
+    view->ui_scale = (float)request.ui_scale;
+    job_start(&request.job);
+    int status = work(&request.job, view);
+    job_finish(&request.job);
     return status;
 }
 
@@ -456,5 +262,6 @@ const struct cli_command command_view = {
         "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device or display,\n"
         "130 interrupted.\n",
     .options = options,
+    .settings = IN_VIEW,
     .run = run,
 };

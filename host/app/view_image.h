@@ -6,24 +6,6 @@
 
 struct json_t;
 
-struct cost_view {
-    bool given;
-    uint32_t view; /* whit_view */
-    uint32_t rays; /* whit_ray_kind; WHIT_RAY_KINDS: all */
-    double scale;  /* of the heat map; 0: automatic */
-    bool has_rays, has_scale;
-};
-
-/* Values of --view, --view-rays and --view-scale; on nonsense they are refused. */
-void view_read(struct cli_reader *reader, struct cost_view *view);
-void view_read_rays(struct cli_reader *reader, struct cost_view *view);
-void view_read_scale(struct cli_reader *reader, struct cost_view *view);
-/* Whether the three go together. */
-bool view_check(struct cli_reader *reader, const struct cost_view *view);
-
-const char *view_name(const struct cost_view *view);
-const char *view_rays_name(const struct cost_view *view);
-
 /* What a picture says about its numbers. */
 struct view_figures {
     double mean, most, scale; /* over pixels; scale: of the heat map, used or not */
@@ -34,7 +16,7 @@ bool view_is_png(const char *path);
 
 /* The numbers of the picture just rendered: as a heat map with legend for a .png, as they are for
    other files. */
-WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct cost_view *view,
+WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings *settings,
                                   const char *output, struct view_figures *figures,
                                   whit_image **out);
 

@@ -1,5 +1,6 @@
 #include "base/text.h"
 
+#include <ctype.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -103,4 +104,55 @@ struct text_token text_token(const char *text)
     memcpy(token.text, text ? text : "", used);
     strcpy(token.text + used, text && text[used] ? "..." : "");
     return token;
+}
+
+/* ---- Words that are near ---- */
+
+enum { WORD_MAX = 63 };
+
+/* Levenshtein's distance, with swapped neighbours as one step. */
+static uint32_t distance(const char *a, const char *b)
+{
+    uint32_t rows[3][WORD_MAX + 1];
+    uint32_t length_b = (uint32_t)strlen(b);
+    for (uint32_t j = 0; j <= length_b; ++j)
+        rows[0][j] = j;
+    for (uint32_t i = 1; a[i - 1]; ++i) {
+        uint32_t *row = rows[i % 3], *above = rows[(i - 1) % 3], *higher = rows[(i + 1) % 3];
+        row[0] = i;
+        for (uint32_t j = 1; j <= length_b; ++j) {
+            char x = (char)tolower((unsigned char)a[i - 1]);
+            char y = (char)tolower((unsigned char)b[j - 1]);
+            uint32_t best = above[j - 1] + (x != y);
+            if (above[j] + 1 < best)
+                best = above[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                higher[j - 2] + 1 < best)
+                best = higher[j - 2] + 1;
+            row[j] = best;
+        }
+    }
+    return rows[strlen(a) % 3][length_b];
+}
+
+const char *text_nearest(const char *word, const char *const *names, uint32_t count)
+{
+    const char *nearest = NULL;
+    size_t length = strlen(word);
+    uint32_t least = length <= 3 ? 1 : length <= 6 ? 2 : 3;
+    if (length == 0 || length > WORD_MAX)
+        return NULL;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strlen(names[i]) > WORD_MAX || !names[i][0])
+            continue;
+        uint32_t steps = distance(word, names[i]);
+        bool prefix = strncmp(word, names[i], length) == 0;
+        if (steps <= least || (prefix && !nearest)) {
+            nearest = names[i];
+            least = steps < least ? steps : least;
+        }
+    }
+    return nearest;
 }

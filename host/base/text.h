@@ -16,4 +16,7 @@ struct text_token {
    is as "". Made to be used where it is called: "%s", text_token(name).text */
 struct text_token text_token(const char *text);
 
+/* The name nearest to `word`, by changes of a letter; NULL when none is near. */
+const char *text_nearest(const char *word, const char *const *names, uint32_t count);
+
 #endif

@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cost/cost.h"
@@ -79,7 +80,7 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
     double after = own_error(row, COST_RMSE);
     bool more_right = after < before * (1.0 - AS_RIGHT);
     bool less_right = after > before * (1.0 + AS_RIGHT);
-    if (row->change == KNOB_HITS && row->hits[COST_AIMED].traced) {
+    if (row->change == SETTING_HITS && row->hits[COST_AIMED].traced) {
         more_right = more_right || inexact_hits(row) < inexact_hits(usual);
         less_right = less_right || inexact_hits(row) > inexact_hits(usual);
     }
@@ -119,7 +120,7 @@ static double from_sum(double sum, enum cost_metric metric)
 
 static double samples_of(const struct search *search, const struct cost_row *row)
 {
-    double value = search->table[search->aa].settings[row->setting_index].value;
+    double value = strtod(row->setting, NULL); /* of adaptive ones 0 */
     return value < 1.0 ? search->report->reference_samples
                        : value; /* adaptive ones: up to as many */
 }
@@ -182,7 +183,7 @@ static void take_free(struct search *search)
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         uint32_t k = row->knob_index;
-        if (k == WHIT_NONE || !is_ranked(row) || row->change != KNOB_NOTHING)
+        if (k == WHIT_NONE || !is_ranked(row) || row->change != SETTING_COST)
             continue;
         double ratio = row->price.ratio[report->clock].median;
         double saved_ms = report->rows[0].ms[COST_WALL] * (1.0 - ratio);
@@ -196,7 +197,7 @@ static void take_free(struct search *search)
 
 static bool is_searched(const struct search *search, uint32_t knob)
 {
-    return search->table[knob].change == KNOB_SHADING;
+    return knob_change(&search->table[knob]) == SETTING_LIGHT;
 }
 
 static bool is_better(const struct search *search, double ms, double error)
@@ -229,7 +230,7 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
         walk(search, knob + 1, ratio * effect->ratio, sum);
         return;
     }
-    for (uint32_t s = 0; s < knob_setting_count(&search->table[knob]); ++s) {
+    for (uint32_t s = 0; s < search->table[knob].count; ++s) {
         const struct effect *effect = &search->effects[knob][s];
         search->settings[knob] = (uint8_t)s;
         if (effect->known)
@@ -252,44 +253,19 @@ struct cost_choice cost_choose(const struct cost_report *report, const struct co
     return search.best;
 }
 
-void cost_choice_apply(const struct cost_choice *choice, struct knob_target *target)
+void cost_choice_apply(const struct cost_choice *choice, struct settings *settings)
 {
     uint32_t count;
     const struct knob *table = knob_table(&count);
     for (uint32_t k = 0; k < count; ++k) {
         if (choice->settings[k] != table[k].usual)
-            knob_apply(&table[k], choice->settings[k], target);
+            knob_apply(&table[k], choice->settings[k], settings);
     }
-}
-
-static void add_word(char *text, size_t text_bytes, const char *word)
-{
-    size_t used = strlen(text);
-    snprintf(text + used, text_bytes - used, "%s%s", used ? " " : "", word);
 }
 
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes)
 {
-    static const struct knob_target none;
-    struct knob_target target = none;
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
-    text[0] = 0;
-    for (uint32_t k = 0; k < count; ++k) {
-        char option[COST_NAME];
-        target.effects[0] = 0;
-        target.picture.effects = NULL;
-        knob_apply(&table[k], choice->settings[k], &target);
-        knob_option(&table[k], choice->settings[k], option, sizeof option);
-        if (option[0] && !target.picture.effects)
-            add_word(text, text_bytes, option);
-    }
-    /* Effects left out share one option. */
-    target.effects[0] = 0;
-    target.picture.effects = NULL;
-    cost_choice_apply(choice, &target);
-    if (target.picture.effects) {
-        add_word(text, text_bytes, "--effects");
-        add_word(text, text_bytes, target.effects);
-    }
+    struct settings settings = settings_usual();
+    cost_choice_apply(choice, &settings);
+    settings_write(&settings, SETTINGS_LINE, " ", text, text_bytes);
 }

@@ -59,7 +59,7 @@ enum { COST_NAME = 96, COST_NOTE = 160 };
 struct cost_row {
     char knob[32], setting[32], option[COST_NAME];
     uint32_t knob_index, setting_index; /* WHIT_NONE: the usual picture, or a combination */
-    enum knob_change change;
+    enum setting_change change;
     bool measured;        /* price and errors are there */
     char note[COST_NOTE]; /* why not, or what is wrong with it; "" */
     struct cost_price price;
@@ -71,7 +71,7 @@ struct cost_row {
                                              are what differs */
     uint64_t pixels_changed, ids_changed; /* from the usual picture, at the judged size */
     uint64_t non_finite;
-    bool broken; /* KNOB_NOTHING, and yet something changed */
+    bool broken; /* SETTING_COST, and yet something changed */
     struct cost_hits hits[COST_SETS];
     bool best;           /* in the Pareto set: nothing measured is cheaper and as right */
     whit_image *picture; /* at the judged size, or NULL */
@@ -124,14 +124,14 @@ struct cost_report {
 struct cost_request {
     whit_device *device;
     const whit_scene *scene;
-    whit_accel *accel; /* with the usual settings; goes to the picture's time */
-    whit_accel_params accel_params;
-    whit_renderer_params picture; /* what knobs do not set: size, camera, time, cancel;
-                                     its time limit is that of all measurements */
-    uint64_t knobs;               /* bits of knob_table; 0: all */
-    double seconds;               /* that it may take, roughly */
-    uint32_t samples_most;        /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
-    uint32_t rays;                /* of each set; 0: none */
+    whit_accel *accel;               /* with the usual settings; goes to the picture's time */
+    const struct settings *settings; /* what knobs do not set is taken from it */
+    const volatile bool *cancel;
+    double time_limit_s;   /* of all measurements; 0: none */
+    uint64_t knobs;        /* bits of knob_table; 0: all */
+    double seconds;        /* that it may take, roughly */
+    uint32_t samples_most; /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
+    uint32_t rays;         /* of each set; 0: none */
     uint32_t goal_count;
     struct cost_goal goals[COST_GOALS_MOST]; /* each gets a row that measures the choice */
     bool keep_pictures;
@@ -141,7 +141,7 @@ struct cost_request {
     const whit_log *log;
 };
 
-/* Stopped by picture.cancel: WHIT_ERROR_CANCELLED, and *out has what is done. *out is NULL where
+/* Stopped by `cancel`: WHIT_ERROR_CANCELLED, and *out has what is done. *out is NULL where
    there is nothing. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
@@ -172,7 +172,7 @@ struct cost_choice {
     bool found;
 };
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
-void cost_choice_apply(const struct cost_choice *choice, struct knob_target *target);
+void cost_choice_apply(const struct cost_choice *choice, struct settings *settings);
 /* As options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);
 

@@ -3,247 +3,82 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *knob_change_name(enum knob_change change)
-{
-    static const char *const names[] = {"nothing", "shading", "hits"};
-    return names[change];
-}
-
-/* ---- How settings are put into parameters ---- */
-
-static void apply_aa(const struct knob_setting *setting, struct knob_target *target)
-{
-    /* Below 1: the contrast of adaptive samples. */
-    target->picture.adaptive = setting->value < 1.0 ? setting->value : 0.0;
-    target->picture.samples = setting->value < 1.0 ? 1 : (uint32_t)setting->value;
-}
-
-static void apply_depth(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.depth = (uint32_t)setting->value;
-}
-
-static void apply_bailout(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.bailout = setting->value;
-}
-
-static void apply_light_samples(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.light_samples = (uint32_t)setting->value;
-}
-
-static void apply_fresnel(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.schlick = setting->value == 1.0;
-}
-
-static void apply_opaque_shadows(const struct knob_setting *setting, struct knob_target *target)
-{
-    if (target->picture.shadows != WHIT_SHADOWS_NONE)
-        target->picture.shadows = setting->value == 1.0 ? WHIT_SHADOWS_OPAQUE : WHIT_SHADOWS_TINTED;
-}
-
-static void apply_shadows(const struct knob_setting *setting, struct knob_target *target)
-{
-    if (setting->value == 1.0)
-        target->picture.shadows = WHIT_SHADOWS_NONE;
-    else if (target->picture.shadows == WHIT_SHADOWS_NONE)
-        target->picture.shadows = WHIT_SHADOWS_TINTED;
-}
-
-/* Leaves the setting's effect out. */
-static void apply_effect(const struct knob_setting *setting, struct knob_target *target)
-{
-    size_t used = strlen(target->effects);
-    if (setting->value != 1.0)
-        return;
-    snprintf(target->effects + used, sizeof target->effects - used, "%s-%s", used ? "," : "",
-             setting->effect);
-    target->picture.effects = target->effects;
-}
-
-static void apply_numerics(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.numerics = (whit_numerics)setting->value;
-}
-
-static void apply_traversal(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.traversal = (whit_traversal)setting->value;
-}
-
-/* The builder, and a half more for reinsertion. */
-static void apply_build(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->accel.build = (whit_build)setting->value;
-    target->accel.optimize = setting->value > (double)target->accel.build;
-}
-
-static void apply_instances(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->accel.instances = (whit_instances)setting->value;
-}
-
-static void apply_load_path(const struct knob_setting *setting, struct knob_target *target)
-{
-    target->picture.load_path = value_word(values_load_path, (int)setting->value);
-}
-
-/* The reference takes the usual settings as they are. */
-static void apply_arithmetic(const struct knob_setting *setting, struct knob_target *target)
-{
-    (void)setting;
-    (void)target;
-}
-
 /* ---- The table ---- */
+
+/* clang-format off */
+#define VALUES(...) .count = sizeof((struct knob_setting[]){__VA_ARGS__}) / sizeof(struct knob_setting), \
+                    .settings = {__VA_ARGS__}
+/* clang-format on */
+#define EFFECT(name_, about_)                                                                      \
+    {                                                                                              \
+        .name = name_, .setting = "effects", .about = about_,                                      \
+        VALUES({.text = "auto", .name = "on"},                                                     \
+               {.text = "-" name_, .effect = name_, .name = "off"})                                \
+    }
 
 static const struct knob table[] = {
     {.name = "aa",
-     .option = "--aa %s",
+     .setting = "aa",
      .about = "samples of a pixel",
-     .change = KNOB_SHADING,
-     .level = KNOB_VIEW,
-     .settings = {{"1", 1, NULL},
-                  {"4", 4, NULL},
-                  {"16", 16, NULL},
-                  {"64", 64, NULL},
-                  {"adaptive:0.05", 0.05, NULL}},
-     .apply = apply_aa},
+     VALUES({.text = "1"}, {.text = "4"}, {.text = "16"}, {.text = "64"},
+            {.text = "adaptive:0.05"})},
     {.name = "depth",
-     .option = "--depth %s",
+     .setting = "depth",
      .about = "most bounces of a ray",
-     .change = KNOB_SHADING,
-     .level = KNOB_VIEW,
      .usual = 4,
-     .settings = {{"0", 0, "reflection"},
-                  {"1", 1, "reflection"},
-                  {"2", 2, "reflection"},
-                  {"4", 4, "reflection"},
-                  {"8", 8, NULL},
-                  {"16", 16, "reflection"}},
-     .apply = apply_depth},
+     VALUES({"0", .effect = "reflection"}, {"1", .effect = "reflection"},
+            {"2", .effect = "reflection"}, {"4", .effect = "reflection"}, {.text = "8"},
+            {"16", .effect = "reflection"})},
     {.name = "bailout",
-     .option = "--bailout %s",
+     .setting = "bailout",
      .about = "rays that can add less are not traced",
-     .change = KNOB_SHADING,
-     .level = KNOB_VIEW,
-     .settings = {{"0.0009765625", 0x1p-10, NULL},
-                  {"0", 0, "reflection"},
-                  {"0.015625", 0x1p-6, "reflection"},
-                  {"0.125", 0x1p-3, "reflection"}},
-     .apply = apply_bailout},
+     VALUES({.text = "0.0009765625"}, {"0", .effect = "reflection"},
+            {"0.015625", .effect = "reflection"}, {"0.125", .effect = "reflection"})},
     {.name = "light-samples",
-     .option = "--light-samples %s",
+     .setting = "light-samples",
      .about = "points of an area light that are tested",
-     .change = KNOB_SHADING,
-     .level = KNOB_VIEW,
-     .settings = {{"16", 16, NULL},
-                  {"1", 1, "area-lights"},
-                  {"4", 4, "area-lights"},
-                  {"64", 64, "area-lights"}},
-     .apply = apply_light_samples},
+     VALUES({.text = "16"}, {"1", .effect = "area-lights"}, {"4", .effect = "area-lights"},
+            {"64", .effect = "area-lights"})},
     {.name = "fresnel",
-     .values = values_fresnel,
-     .option = "--fresnel %s",
+     .setting = "fresnel",
      .about = "exact, or Schlick's approximation",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"", 0, NULL}, {"", 1, "fresnel"}},
-     .apply = apply_fresnel},
-    {.name = "tinted-shadows",
-     .option = "--opaque-shadows",
-     .about = "glass and blended surfaces let light through",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"on", 0, NULL}, {"off", 1, "tinted-shadows"}},
-     .apply = apply_opaque_shadows},
+     VALUES({.value = 0}, {.value = 1, .effect = "fresnel"})},
     {.name = "shadows",
-     .option = "--no-shadows",
-     .about = "rays towards the lights",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"on", 0, NULL}, {"off", 1, "shadows"}},
-     .apply = apply_shadows},
-    {.name = "textures",
-     .option = "--effects -textures",
-     .about = "all maps of materials",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"on", 0, NULL}, {"off", 1, "textures"}},
-     .apply = apply_effect},
-    {.name = "normal-maps",
-     .option = "--effects -normal-maps",
-     .about = "normal and bump maps",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"on", 0, NULL}, {"off", 1, "normal-maps"}},
-     .apply = apply_effect},
-    {.name = "terminator",
-     .option = "--effects -terminator",
-     .about = "shadows start on the smooth surface",
-     .change = KNOB_SHADING,
-     .level = KNOB_KERNEL,
-     .settings = {{"on", 0, NULL}, {"off", 1, "terminator"}},
-     .apply = apply_effect},
+     .setting = "shadows",
+     .about = "rays towards the lights, and what glass and blended surfaces let through",
+     VALUES({.value = WHIT_SHADOWS_TINTED},
+            {.value = WHIT_SHADOWS_OPAQUE, .effect = "tinted-shadows"},
+            {.value = WHIT_SHADOWS_NONE, .effect = "shadows"})},
+    EFFECT("textures", "all maps of materials"),
+    EFFECT("normal-maps", "normal and bump maps"),
+    EFFECT("terminator", "shadows start on the smooth surface"),
     {.name = "numerics",
-     .values = values_numerics,
-     .option = "--numerics %s",
+     .setting = "numerics",
      .about = "what decides hits",
-     .change = KNOB_HITS,
-     .level = KNOB_KERNEL,
-     .settings = {{"", WHIT_NUMERICS_WATERTIGHT, NULL},
-                  {"", WHIT_NUMERICS_FAST, NULL},
-                  {"", WHIT_NUMERICS_EXACT, NULL}},
-     .apply = apply_numerics},
+     VALUES({.value = WHIT_NUMERICS_WATERTIGHT}, {.value = WHIT_NUMERICS_FAST},
+            {.value = WHIT_NUMERICS_EXACT})},
     {.name = "arithmetic",
-     .option = "",
      .about = "floats of the device, or double on the CPU",
-     .change = KNOB_HITS,
-     .level = KNOB_DOUBLE,
-     .settings = {{"float", 0, NULL}, {"double", 1, NULL}},
-     .apply = apply_arithmetic},
+     VALUES({.text = "float"}, {.text = "double"})},
     {.name = "instances",
-     .values = values_instances,
-     .option = "--instances %s",
+     .setting = "instances",
      .about = "off: one tree over all triangles, placed and rounded",
-     .change = KNOB_HITS,
-     .level = KNOB_TREE,
-     .settings = {{"", WHIT_INSTANCES_AUTO, NULL},
-                  {"", WHIT_INSTANCES_ON, "instances"},
-                  {"", WHIT_INSTANCES_OFF, "instances"}},
-     .apply = apply_instances},
+     VALUES({.value = WHIT_INSTANCES_AUTO}, {.value = WHIT_INSTANCES_ON, .effect = "instances"},
+            {.value = WHIT_INSTANCES_OFF, .effect = "instances"})},
     {.name = "traversal",
-     .values = values_traversal,
-     .option = "--traversal %s",
+     .setting = "traversal",
      .about = "which of two nodes comes first",
-     .change = KNOB_NOTHING,
-     .level = KNOB_KERNEL,
-     .settings = {{"", WHIT_TRAVERSAL_DISTANCE, NULL},
-                  {"", WHIT_TRAVERSAL_SIGN, NULL},
-                  {"", WHIT_TRAVERSAL_BASIC, NULL}},
-     .apply = apply_traversal},
+     VALUES({.value = WHIT_TRAVERSAL_DISTANCE}, {.value = WHIT_TRAVERSAL_SIGN},
+            {.value = WHIT_TRAVERSAL_BASIC})},
     {.name = "build",
-     .values = values_build,
-     .option = "--build %s",
+     .setting = "build",
      .about = "how trees are built",
-     .change = KNOB_NOTHING,
-     .level = KNOB_TREE,
-     .settings = {{"", WHIT_BUILD_BINNED, NULL},
-                  {"", WHIT_BUILD_MEDIAN, NULL},
-                  {"", WHIT_BUILD_SWEEP, NULL},
-                  {"", WHIT_BUILD_SPATIAL, NULL},
-                  {"binned+opt", WHIT_BUILD_BINNED + 0.5, NULL}},
-     .apply = apply_build},
+     VALUES({.value = WHIT_BUILD_BINNED}, {.value = WHIT_BUILD_MEDIAN}, {.value = WHIT_BUILD_SWEEP},
+            {.value = WHIT_BUILD_SPATIAL}, {.text = "binned+opt"})},
     {.name = "load-path",
-     .values = values_load_path,
-     .option = "--load-path %s",
+     .setting = "load-path",
      .about = "how kernels read trees",
-     .change = KNOB_NOTHING,
-     .level = KNOB_KERNEL,
-     .settings = {{"", 0, NULL}, {"", 1, NULL}, {"", 2, NULL}},
-     .apply = apply_load_path},
+     VALUES({.value = WHIT_LOAD_AUTO}, {.value = WHIT_LOAD_STORAGE}, {.value = WHIT_LOAD_TEXEL})},
 };
 
 const struct knob *knob_table(uint32_t *count)
@@ -261,18 +96,39 @@ uint32_t knob_find(const char *name)
     return WHIT_NONE;
 }
 
-uint32_t knob_setting_count(const struct knob *knob)
+static const char *text_of(const struct knob *knob, uint32_t setting)
 {
-    uint32_t count = 0;
-    while (count < KNOB_SETTINGS_MOST && knob->settings[count].name)
-        ++count;
-    return count;
+    const struct knob_setting *s = &knob->settings[setting];
+    return s->text ? s->text : value_word(settings_row(knob->setting)->values, s->value);
 }
 
 const char *knob_setting_name(const struct knob *knob, uint32_t setting)
 {
-    const struct knob_setting *s = &knob->settings[setting];
-    return s->name[0] ? s->name : value_word(knob->values, (int)s->value);
+    const char *name = knob->settings[setting].name;
+    return name ? name : text_of(knob, setting);
+}
+
+const char *knob_change_name(enum setting_change change)
+{
+    return change == SETTING_HITS ? "hits" : change == SETTING_LIGHT ? "shading" : "nothing";
+}
+
+enum setting_change knob_change(const struct knob *knob)
+{
+    return knob->setting ? settings_row(knob->setting)->change : SETTING_HITS;
+}
+
+enum knob_level knob_level(const struct knob *knob)
+{
+    return knob->setting ? (enum knob_level)settings_row(knob->setting)->need : KNOB_DOUBLE;
+}
+
+uint64_t knobs_of_light(void)
+{
+    uint64_t bits = 0;
+    for (uint32_t i = 0; i < sizeof table / sizeof table[0]; ++i)
+        bits |= (uint64_t)(knob_change(&table[i]) == SETTING_LIGHT) << i;
+    return bits;
 }
 
 /* ---- What a scene calls for ---- */
@@ -300,14 +156,14 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
         if (strcmp(wanted->effect, "reflection") != 0 || !calls_for(scene, "refraction"))
             return "the scene does not call for it";
     }
-    if (knob->apply == apply_instances &&
-        info.one_tree == (wanted->value == (double)WHIT_INSTANCES_OFF))
+    if (strcmp(knob->name, "instances") == 0 &&
+        info.one_tree == (wanted->value == WHIT_INSTANCES_OFF))
         return "it is what the scene takes by itself";
-    if (knob->apply == apply_instances && !info.one_tree && info.sphere_count > 0)
+    if (strcmp(knob->name, "instances") == 0 && !info.one_tree && info.sphere_count > 0)
         return "the scene has spheres";
-    if (knob->level == KNOB_TREE && info.triangle_count == 0)
+    if (knob_level(knob) == KNOB_TREE && info.triangle_count == 0)
         return "the scene has no triangles";
-    if (knob->apply == apply_load_path && usual_path &&
+    if (strcmp(knob->name, "load-path") == 0 && usual_path &&
         strcmp(knob_setting_name(knob, setting), usual_path) == 0)
         return "it is what the device takes by itself";
     return NULL;
@@ -315,27 +171,21 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
 
 /* ---- Settings ---- */
 
-void knob_target_copy(struct knob_target *to, const struct knob_target *from)
+void knob_apply(const struct knob *knob, uint32_t setting, struct settings *settings)
 {
-    *to = *from;
-    if (from->picture.effects == from->effects)
-        to->picture.effects = to->effects;
-}
-
-void knob_apply(const struct knob *knob, uint32_t setting, struct knob_target *target)
-{
-    knob->apply(&knob->settings[setting], target);
+    char text[2 * SETTING_TEXT_BYTES], why[SETTING_WHY_BYTES];
+    bool more = knob->settings[setting].text && knob->settings[setting].text[0] == '-' &&
+                settings->effects[0];
+    snprintf(text, sizeof text, "%s%s%s", more ? settings->effects : "", more ? "," : "",
+             text_of(knob, setting));
+    if (knob->setting)
+        setting_read(settings_row(knob->setting), text, settings, why);
 }
 
 void knob_option(const struct knob *knob, uint32_t setting, char *text, size_t text_bytes)
 {
-    text[0] = 0;
-    if (setting == knob->usual)
-        return;
-    const char *hole = strstr(knob->option, "%s");
-    if (!hole)
-        snprintf(text, text_bytes, "%s", knob->option);
-    else
-        snprintf(text, text_bytes, "%.*s%s", (int)(hole - knob->option), knob->option,
-                 knob_setting_name(knob, setting));
+    struct settings settings = settings_usual();
+    if (setting != knob->usual)
+        knob_apply(knob, setting, &settings);
+    settings_write(&settings, SETTINGS_LINE, " ", text, text_bytes);
 }

@@ -11,13 +11,13 @@ static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
 
 whit_result measure_still_wanted(const struct measure *measure)
 {
-    const volatile bool *cancel = measure->request->picture.cancel;
+    const volatile bool *cancel = measure->request->cancel;
     return cancel && *cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
 double measure_left_s(const struct measure *measure)
 {
-    double limit_s = measure->request->picture.time_limit_s;
+    double limit_s = measure->request->time_limit_s;
     double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
     return limit_s > 0.0 ? fmax(limit_s - spent_s, 1e-6) : 0.0;
 }
@@ -48,8 +48,8 @@ static void describe(const struct cost_request *request, struct cost_report *rep
     whit_scene_info scene;
     whit_device_get_info(request->device, &device);
     whit_scene_get_info(request->scene, &scene);
-    report->width = request->picture.width ? request->picture.width : 640;
-    report->height = request->picture.height ? request->picture.height : 480;
+    report->width = request->settings->picture.width;
+    report->height = request->settings->picture.height;
     report->scene_hash = scene.hash;
     snprintf(report->device, sizeof report->device, "%s", device.name);
     snprintf(report->driver, sizeof report->driver, "%s", device.driver);
@@ -95,10 +95,10 @@ whit_result measure_open(struct measure *measure, const struct cost_request *req
                          struct cost_report *report)
 {
     *measure = (struct measure){.request = request, .report = report, .start_ms = whit_clock_ms()};
-    measure->usual.accel = request->accel_params;
-    measure->usual.picture = request->picture;
+    measure->usual = *request->settings;
     measure->usual.picture.samples = 1;
     measure->usual.picture.adaptive = 0.0;
+    measure->usual.paint = PAINT_COLOR;
     whit_result result = open_renderer(measure);
     if (result == WHIT_OK)
         result = measure_references(measure, REFERENCE_SHARE * request->seconds);
@@ -140,7 +140,7 @@ static void add_row(struct cost_report *report, const struct knob *knob, uint32_
     struct cost_row *row = &report->rows[report->row_count++];
     *row = (struct cost_row){.knob_index = index,
                              .setting_index = setting,
-                             .change = knob->change,
+                             .change = knob_change(knob),
                              .build_ms = -1.0,
                              .ms = {-1.0, -1.0, -1.0}};
     snprintf(row->knob, sizeof row->knob, "%s", knob->name);
@@ -156,7 +156,7 @@ static bool is_wanted(const struct cost_request *request, const struct cost_repo
     if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> knob & 1))
         return false;
     /* The reference says nothing of more samples than it has; adaptive ones are up to 64. */
-    double samples = table[knob].settings[setting].value;
+    double samples = strtod(knob_setting_name(&table[knob], setting), NULL); /* adaptive: 0 */
     return strcmp(table[knob].name, "aa") != 0 ||
            (samples < 1.0 ? 64.0 : samples) <= report->reference_samples;
 }
@@ -168,11 +168,11 @@ static void list_rows(const struct cost_request *request, struct cost_report *re
     report->rows[0] = (struct cost_row){.knob = "usual",
                                         .knob_index = WHIT_NONE,
                                         .setting_index = WHIT_NONE,
-                                        .change = KNOB_NOTHING,
+                                        .change = SETTING_COST,
                                         .ms = {-1.0, -1.0, -1.0}};
     report->row_count = 1;
     for (uint32_t k = 0; k < count; ++k) {
-        for (uint32_t s = 0; s < knob_setting_count(&table[k]); ++s) {
+        for (uint32_t s = 0; s < table[k].count; ++s) {
             const char *why = knob_absence(&table[k], s, request->scene, report->load_path);
             if (s == table[k].usual || !is_wanted(request, report, k, s))
                 continue;
@@ -188,19 +188,18 @@ static whit_result measure_setting(struct measure *measure, uint32_t index)
 {
     struct cost_report *report = measure->report;
     struct cost_row *row = &report->rows[index];
-    struct knob_target target;
+    struct settings target = measure->usual;
     uint32_t count;
     const struct knob *knob = &knob_table(&count)[row->knob_index];
     char what[COST_NAME];
     snprintf(what, sizeof what, "%s %s", row->knob, row->setting);
     measure->row = index;
     measure_say(measure, what);
-    knob_target_copy(&target, &measure->usual);
     knob_apply(knob, row->setting_index, &target);
     double begun_ms = whit_clock_ms();
     double left_s = measure->request->seconds - (begun_ms - measure->start_ms) * 1e-3;
     double share_s = fmax(left_s, 0.0) / (report->row_count - index);
-    whit_result result = measure_row(measure, &target, knob->level, share_s, row);
+    whit_result result = measure_row(measure, &target, knob_level(knob), share_s, row);
     /* Rows of many samples say nothing of those after them. */
     double row_s = (whit_clock_ms() - begun_ms) * 1e-3;
     measure->row_s = strcmp(row->knob, "aa") == 0 ? 0.0
@@ -245,8 +244,8 @@ static enum knob_level level_of(const struct cost_choice *choice)
     const struct knob *table = knob_table(&count);
     enum knob_level level = KNOB_VIEW;
     for (uint32_t k = 0; k < count; ++k)
-        if (choice->settings[k] != table[k].usual && table[k].level > level)
-            level = table[k].level;
+        if (choice->settings[k] != table[k].usual && knob_level(&table[k]) > level)
+            level = knob_level(&table[k]);
     return level;
 }
 
@@ -254,11 +253,11 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
                                   struct cost_answer *answer)
 {
     struct cost_report *report = measure->report;
-    struct knob_target target;
+    struct settings target = measure->usual;
     struct cost_row *row = &report->rows[report->row_count];
     *row = (struct cost_row){.knob_index = WHIT_NONE,
                              .setting_index = WHIT_NONE,
-                             .change = KNOB_SHADING,
+                             .change = SETTING_LIGHT,
                              .ms = {-1.0, -1.0, -1.0}};
     snprintf(row->knob, sizeof row->knob, "chosen");
     snprintf(row->setting, sizeof row->setting, "%s %.4g%s",
@@ -266,7 +265,6 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
              answer->goal.kind == COST_WITHIN ? " ms" : "");
     cost_choice_text(choice, row->option, sizeof row->option);
     measure_say(measure, row->setting);
-    knob_target_copy(&target, &measure->usual);
     cost_choice_apply(choice, &target);
     answer->row = report->row_count++;
     whit_result result =

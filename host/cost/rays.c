@@ -22,10 +22,10 @@ static whit_result make_judges(struct measure *measure, whit_instances instances
         const whit_judge_params params = {
             .aimed = set == COST_AIMED,
             .count = request->rays,
-            .camera = request->picture.camera,
+            .camera = measure->usual.camera[0] ? measure->usual.camera : NULL,
             .width = measure->report->width,
             .height = measure->report->height,
-            .time_s = request->picture.time_s,
+            .time_s = measure->usual.picture.time_s,
             .instances = instances,
         };
         uint64_t count = 0;
@@ -44,7 +44,7 @@ whit_result measure_judges(struct measure *measure)
 {
     uint64_t most;
     whit_result result =
-        make_judges(measure, measure->usual.accel.instances, measure->judges, &most);
+        make_judges(measure, measure->usual.trees.instances, measure->judges, &most);
     measure->hits = result == WHIT_OK && most ? calloc((size_t)most, sizeof *measure->hits) : NULL;
     return result == WHIT_OK && most && !measure->hits ? WHIT_ERROR_MEMORY : result;
 }
@@ -94,13 +94,13 @@ static whit_result judge_hits(struct measure *measure, whit_renderer *renderer,
 }
 
 whit_result measure_hits(struct measure *measure, whit_renderer *renderer,
-                         const struct knob_target *target, struct cost_row *row)
+                         const struct settings *target, struct cost_row *row)
 {
     whit_judge *own[COST_SETS] = {NULL};
-    bool as_usual = target->accel.instances == measure->usual.accel.instances;
+    bool as_usual = target->trees.instances == measure->usual.trees.instances;
     uint64_t most;
     whit_result result =
-        as_usual ? WHIT_OK : make_judges(measure, target->accel.instances, own, &most);
+        as_usual ? WHIT_OK : make_judges(measure, target->trees.instances, own, &most);
     if (result == WHIT_OK)
         result = judge_hits(measure, renderer, as_usual ? measure->judges : own,
                             target->picture.numerics, row);

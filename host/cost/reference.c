@@ -19,10 +19,11 @@ static bool calls_for_area_lights(const whit_scene *scene)
 static whit_renderer_params reference_params(const struct measure *measure, uint32_t shrink,
                                              uint32_t samples)
 {
-    whit_renderer_params params = measure->request->picture;
+    whit_renderer_params params = settings_picture(&measure->usual);
     params.width = measure->report->width / shrink ? measure->report->width / shrink : 1;
     params.height = measure->report->height / shrink ? measure->report->height / shrink : 1;
     params.samples = samples;
+    params.cancel = measure->request->cancel;
     params.time_limit_s = measure_left_s(measure);
     params.adaptive = 0.0;
     params.depth = MEASURE_DEPTH;

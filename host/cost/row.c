@@ -10,15 +10,16 @@ enum { SHRINK_MOST = 16, BUILDS = 3, WARM_SIDE = 16, FULL_LEAST = 6 };
 /* Below it what a dispatch costs by itself would count. */
 static const double FRAME_MS_LEAST = 10.0;
 
-whit_renderer_params measure_sized(const struct measure *measure, const struct knob_target *target,
+whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
                                    uint32_t width, uint32_t height)
 {
-    whit_renderer_params params = target->picture;
+    whit_renderer_params params = settings_picture(target);
     params.width = measure->report->width;
     params.height = measure->report->height;
     params.classes = whit_classes_of(&params); /* as of the whole picture */
     params.width = width;
     params.height = height;
+    params.cancel = measure->request->cancel;
     params.time_limit_s = measure_left_s(measure);
     return params;
 }
@@ -44,7 +45,7 @@ static whit_result compare_with_usual(const struct measure *measure, const whit_
     row->pixels_changed = found.differing_pixels;
     result = compare(measure, measure->usual_ids, ids, false, &found, NULL);
     row->ids_changed = found.differing_pixels;
-    row->broken = row->change == KNOB_NOTHING && (row->pixels_changed || row->ids_changed) &&
+    row->broken = row->change == SETTING_COST && (row->pixels_changed || row->ids_changed) &&
                   result == WHIT_OK;
     return result;
 }
@@ -137,7 +138,7 @@ static void scale_times(const struct cost_report *report, struct cost_row *row)
     row->ms_high = usual->ms[report->clock] * row->price.ratio[report->clock].high;
 }
 
-static whit_result price(struct measure *measure, const struct knob_target *target,
+static whit_result price(struct measure *measure, const struct settings *target,
                          whit_renderer *renderer, double seconds, double ratio, bool scale,
                          struct cost_row *row)
 {
@@ -154,15 +155,15 @@ static whit_result price(struct measure *measure, const struct knob_target *targ
 
 /* ---- A setting ---- */
 
-static whit_result build(struct measure *measure, const struct knob_target *target,
-                         whit_accel **out, double *build_ms)
+static whit_result build(struct measure *measure, const struct settings *target, whit_accel **out,
+                         double *build_ms)
 {
     double times[BUILDS];
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < BUILDS; ++i) {
         whit_accel_info info;
         whit_accel *accel = NULL;
-        result = whit_accel_create(measure->request->scene, &target->accel, &accel);
+        result = whit_accel_create(measure->request->scene, &target->trees, &accel);
         if (result != WHIT_OK)
             break;
         whit_accel_get_info(accel, &info);
@@ -228,7 +229,7 @@ static void give_renderer(struct measure *measure, enum knob_level level, whit_r
         whit_renderer_destroy(renderer);
 }
 
-static whit_result find_out(struct measure *measure, const struct knob_target *target,
+static whit_result find_out(struct measure *measure, const struct settings *target,
                             enum knob_level level, whit_accel *accel, double end_ms,
                             struct cost_row *row)
 {
@@ -243,7 +244,7 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
         result = draw_judged(measure, renderer, &params, ran, &ms);
     if (result == WHIT_OK)
         result = judge(measure, renderer, row);
-    if (result == WHIT_OK && row->change != KNOB_SHADING)
+    if (result == WHIT_OK && row->change != SETTING_LIGHT)
         result = measure_hits(measure, renderer, target, row);
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
     if (result == WHIT_OK)
@@ -256,7 +257,7 @@ static whit_result find_out(struct measure *measure, const struct knob_target *t
 /* ---- In double ---- */
 
 /* Its price, at the size that fits. */
-static whit_result price_double(struct measure *measure, const struct knob_target *target,
+static whit_result price_double(struct measure *measure, const struct settings *target,
                                 double seconds, double ratio, struct cost_row *row)
 {
     uint32_t width, height, rounds;
@@ -274,7 +275,7 @@ static whit_result price_double(struct measure *measure, const struct knob_targe
 }
 
 /* The usual settings, drawn by the reference: what differs from the usual row is what floats do. */
-static whit_result find_out_double(struct measure *measure, const struct knob_target *target,
+static whit_result find_out_double(struct measure *measure, const struct settings *target,
                                    double end_ms, struct cost_row *row)
 {
     const whit_renderer_params params = measure_sized(
@@ -301,7 +302,7 @@ static whit_result find_out_double(struct measure *measure, const struct knob_ta
     return result;
 }
 
-whit_result measure_row(struct measure *measure, const struct knob_target *target,
+whit_result measure_row(struct measure *measure, const struct settings *target,
                         enum knob_level level, double seconds, struct cost_row *row)
 {
     double end_ms = whit_clock_ms() + seconds * 1e3;

@@ -175,38 +175,12 @@ bool reader_no_memory(struct reader *reader)
     return false;
 }
 
-/* Levenshtein's distance, words cut at 31 letters. */
-static size_t word_distance(const char *a, const char *b)
-{
-    enum { MOST = 31 };
-    size_t row[MOST + 1], a_length = strnlen(a, MOST), b_length = strnlen(b, MOST);
-    for (size_t j = 0; j <= b_length; ++j)
-        row[j] = j;
-    for (size_t i = 1; i <= a_length; ++i) {
-        size_t corner = row[0];
-        row[0] = i;
-        for (size_t j = 1; j <= b_length; ++j) {
-            size_t replace = corner + (a[i - 1] != b[j - 1]);
-            size_t insert = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            corner = row[j];
-            row[j] = replace < insert ? replace : insert;
-        }
-    }
-    return row[b_length];
-}
-
 const char *reader_nearest(const char *word, const char *const *known)
 {
-    const char *nearest = NULL;
-    size_t least = strlen(word) / 3 + 1;
-    for (; *known; ++known) {
-        size_t distance = word_distance(word, *known);
-        if (distance <= least) {
-            least = distance - (distance > 0);
-            nearest = *known;
-        }
-    }
-    return nearest;
+    uint32_t count = 0;
+    while (known[count])
+        ++count;
+    return text_nearest(word, known, count);
 }
 
 static bool listed(const char *key, const char *const *known)

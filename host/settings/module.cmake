@@ -1,4 +1,5 @@
-# What settings are called, over libwhit's public face: for options, JSON, keys, panels and prices.
+# All settings, what their options are called, take and change: for options, JSON, recipes, keys,
+# panels and prices. Over libwhit's public face.
 whit_module(settings
-  SOURCES values.c
-  LINK whit_api)
+  SOURCES values.c setting.c table.c builder.c effects.c settings.c quote.c
+  LINK whit_api whit_base)

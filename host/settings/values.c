@@ -3,11 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-const struct setting_value values_build[] = {{"binned", WHIT_BUILD_BINNED, NULL},
-                                             {"sweep", WHIT_BUILD_SWEEP, NULL},
-                                             {"spatial", WHIT_BUILD_SPATIAL, NULL},
-                                             {"median", WHIT_BUILD_MEDIAN, NULL},
-                                             {0}};
+const struct setting_value values_build[] = {
+    {"binned", WHIT_BUILD_BINNED, NULL},   {"sweep", WHIT_BUILD_SWEEP, NULL},
+    {"spatial", WHIT_BUILD_SPATIAL, NULL}, {"median", WHIT_BUILD_MEDIAN, NULL},
+    {"none", WHIT_BUILD_NONE, NULL},       {0}};
 const struct setting_value values_instances[] = {{"auto", WHIT_INSTANCES_AUTO, NULL},
                                                  {"on", WHIT_INSTANCES_ON, NULL},
                                                  {"off", WHIT_INSTANCES_OFF, NULL},
@@ -24,8 +23,10 @@ const struct setting_value values_numerics[] = {{"fast", WHIT_NUMERICS_FAST, NUL
                                                 {"watertight", WHIT_NUMERICS_WATERTIGHT, NULL},
                                                 {"exact", WHIT_NUMERICS_EXACT, NULL},
                                                 {0}};
-const struct setting_value values_load_path[] = {
-    {"auto", 0, NULL}, {"storage", 1, NULL}, {"texel", 2, NULL}, {0}};
+const struct setting_value values_load_path[] = {{"auto", WHIT_LOAD_AUTO, NULL},
+                                                 {"storage", WHIT_LOAD_STORAGE, NULL},
+                                                 {"texel", WHIT_LOAD_TEXEL, NULL},
+                                                 {0}};
 const struct setting_value values_packets[] = {{"auto", WHIT_PACKETS_AUTO, NULL},
                                                {"on", WHIT_PACKETS_ON, NULL},
                                                {"off", WHIT_PACKETS_OFF, NULL},
@@ -33,6 +34,10 @@ const struct setting_value values_packets[] = {{"auto", WHIT_PACKETS_AUTO, NULL}
 const struct setting_value values_classes[] = {{"auto", WHIT_CLASSES_AUTO, NULL},
                                                {"one", WHIT_CLASSES_ONE, NULL},
                                                {"many", WHIT_CLASSES_MANY, NULL},
+                                               {0}};
+const struct setting_value values_shadows[] = {{"tinted", WHIT_SHADOWS_TINTED, NULL},
+                                               {"opaque", WHIT_SHADOWS_OPAQUE, NULL},
+                                               {"none", WHIT_SHADOWS_NONE, NULL},
                                                {0}};
 const struct setting_value values_fresnel[] = {{"exact", 0, NULL}, {"schlick", 1, NULL}, {0}};
 const struct setting_value values_effects[] = {{"auto", 0, NULL}, {"all", 1, NULL}, {0}};

@@ -12,15 +12,16 @@ struct setting_value {
     const char *title; /* in messages and panels; NULL: the word */
 };
 
-extern const struct setting_value values_build[];           /* whit_build, without _NONE */
+extern const struct setting_value values_build[];           /* whit_build */
 extern const struct setting_value values_instances[];       /* whit_instances */
 extern const struct setting_value values_instance_build[];  /* whit_build */
 extern const struct setting_value values_instance_update[]; /* whit_accel_params.instance_refit */
 extern const struct setting_value values_traversal[];       /* whit_traversal */
 extern const struct setting_value values_numerics[];        /* whit_numerics */
-extern const struct setting_value values_load_path[];       /* 0: by the device, 1, 2 */
+extern const struct setting_value values_load_path[];       /* whit_load_path */
 extern const struct setting_value values_packets[];         /* whit_packets */
 extern const struct setting_value values_classes[];         /* whit_classes */
+extern const struct setting_value values_shadows[];         /* whit_shadows */
 extern const struct setting_value values_fresnel[];         /* whit_renderer_params.schlick */
 extern const struct setting_value values_effects[];         /* what the text begins with */
 extern const struct setting_value values_samples[];         /* of a pixel: powers of 4 */

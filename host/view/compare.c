@@ -17,8 +17,8 @@ static const struct engine_frame *frame_of(const struct view *view, int side)
 
 static bool same_kind(const struct view *view)
 {
-    bool costs = view->frame.settings.paint != VIEW_PAINT_COLOR;
-    return costs == (view->compare.frozen.paint != VIEW_PAINT_COLOR);
+    bool costs = view->frame.settings.paint != PAINT_COLOR;
+    return costs == (view->compare.frozen.paint != PAINT_COLOR);
 }
 
 /* False where the two cannot be subtracted: there is one, they show another view or other things,
@@ -319,7 +319,7 @@ static void take_other(struct view *view)
     struct engine_frame next = {.number = compare->other.number};
     if (compare->mode == COMPARE_OFF || !engine_take(view->engine, true, &next))
         return;
-    struct view_settings settings = next.settings;
+    struct settings settings = next.settings;
     settings_set_camera(&settings, &compare->frozen);
     if (settings_same(&settings, &compare->frozen))
         replace_other(compare, &next);

@@ -54,7 +54,7 @@ struct compare_job {
 
 struct compare {
     enum compare_mode mode;
-    struct view_settings frozen;
+    struct settings frozen;
     struct engine_frame other; /* B's newest picture */
     double divider;            /* part of the window's width that is A's */
     bool dragging;

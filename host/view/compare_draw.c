@@ -13,7 +13,7 @@ static void draw_name(const struct view *view, int side)
 {
     struct choice_change changes[CHOICE_CHANGES_MOST];
     const struct engine_frame *b = &view->compare.other;
-    const struct view_settings *other = b->rgba ? &b->settings : &view->compare.frozen;
+    const struct settings *other = b->rgba ? &b->settings : &view->compare.frozen;
     uint32_t count = choice_changes(&view->frame.settings, other, changes);
     if (ui_panel_begin(side ? "name B" : "name A", (float)side, 1.0f, UI_PANEL_PLAIN)) {
         ui_text_color(COLORS[side], side ? "B" : "A");
@@ -66,8 +66,7 @@ static void draw_figures(const struct view *view)
 {
     const struct compare *compare = &view->compare;
     const struct engine_frame *a = &view->frame, *b = &compare->other;
-    bool costs[2] = {a->settings.paint != VIEW_PAINT_COLOR,
-                     compare->frozen.paint != VIEW_PAINT_COLOR};
+    bool costs[2] = {a->settings.paint != PAINT_COLOR, compare->frozen.paint != PAINT_COLOR};
     bool fresh = compare->figures.pair.numbers[0] == a->number &&
                  compare->figures.pair.numbers[1] == b->number;
     if (ui_panel_begin("A and B", 1.0f, 0.0f, UI_PANEL_PLAIN)) {

@@ -24,10 +24,10 @@ static void leave_out(const char *text, const char *name, char *out, size_t byte
 }
 
 bool effect_switch_text(const char *effects, uint32_t index, bool called, bool on,
-                        char out[VIEW_TEXT])
+                        char out[SETTING_TEXT_BYTES])
 {
     const char *name = whit_effect_name(index);
-    char text[VIEW_TEXT], next[VIEW_TEXT + 64];
+    char text[SETTING_TEXT_BYTES], next[SETTING_TEXT_BYTES + 64];
     leave_out(effects, name, text, sizeof text);
     bool all = strncmp(text, "all", 3) == 0, base = all || called;
     bool more = base != on; /* only what is other than the base, auto or all, gives, is said */
@@ -35,7 +35,7 @@ bool effect_switch_text(const char *effects, uint32_t index, bool called, bool o
              more ? (on ? "+" : "-") : "", more ? name : "");
     if (strcmp(next, "auto") == 0)
         next[0] = '\0';
-    if (strlen(next) >= VIEW_TEXT)
+    if (strlen(next) >= SETTING_TEXT_BYTES)
         return false;
     memcpy(out, next, strlen(next) + 1);
     return true;
@@ -63,7 +63,7 @@ static whit_result price_effect(const struct effect_work *work, whit_renderer *u
                                 uint32_t index, struct effect_price *price)
 {
     whit_effect_info info;
-    char effects[VIEW_TEXT];
+    char effects[SETTING_TEXT_BYTES];
     struct cost_price cost;
     whit_difference difference;
     whit_renderer *other = NULL;

@@ -4,7 +4,7 @@
 #define VIEW_EFFECT_PRICES_H
 
 #include "cost/cost.h"
-#include "view/settings.h"
+#include "settings/settings.h"
 
 enum { EFFECTS_MOST = 64 };
 
@@ -17,7 +17,7 @@ struct effect_price {
 };
 
 struct effect_work {
-    const struct view_settings *settings;
+    const struct settings *settings;
     const whit_scene *scene;
     whit_device *device;
     whit_accel *accel;
@@ -33,6 +33,6 @@ WHIT_CHECK whit_result effect_prices_measure(const struct effect_work *work);
 /* `effects` (as --effects takes it) with one switched on or off, where the scene calls for it or
    not; false where that is too long. "": auto. */
 bool effect_switch_text(const char *effects, uint32_t index, bool called, bool on,
-                        char out[VIEW_TEXT]);
+                        char out[SETTING_TEXT_BYTES]);
 
 #endif

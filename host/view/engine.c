@@ -91,8 +91,7 @@ static void job_destroy(struct engine_job *job)
 }
 
 /* A scene that some session has loaded already, held; NULL: none. */
-static struct scene_ref *find_scene(const struct engine *engine,
-                                    const struct view_settings *settings)
+static struct scene_ref *find_scene(const struct engine *engine, const struct settings *settings)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
         const struct session *session = engine->sessions[i];
@@ -102,7 +101,7 @@ static struct scene_ref *find_scene(const struct engine *engine,
     return NULL;
 }
 
-static bool start_job(struct engine *engine, const struct view_settings *settings)
+static bool start_job(struct engine *engine, const struct settings *settings)
 {
     struct engine_job *job = calloc(1, sizeof *job);
     struct session *session = calloc(1, sizeof *session);
@@ -183,8 +182,7 @@ static void make_room(struct engine *engine, const struct session *newest)
     }
 }
 
-static struct session *find_session(const struct engine *engine,
-                                    const struct view_settings *settings)
+static struct session *find_session(const struct engine *engine, const struct settings *settings)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
         struct session *session = engine->sessions[i];
@@ -337,7 +335,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         settings_same_place(&lane->last, &task->settings))
         return false;
     task->session = lane->session;
-    struct view_settings place = task->settings;
+    struct settings place = task->settings;
     task->settings = lane->session->settings;
     settings_set_camera(&task->settings, &place);
     engine_plan(engine, lane, task);
@@ -592,8 +590,8 @@ uint32_t engine_destroy(struct engine *engine)
     return validation;
 }
 
-static void ask(struct engine *engine, struct engine_lane *lane,
-                const struct view_settings *settings, bool moving)
+static void ask(struct engine *engine, struct engine_lane *lane, const struct settings *settings,
+                bool moving)
 {
     bool same = lane->wanted && settings_same(&lane->settings, settings);
     if (same && lane->moving == moving)
@@ -612,20 +610,20 @@ static void ask(struct engine *engine, struct engine_lane *lane,
     pthread_cond_signal(&engine->work);
 }
 
-void engine_ask(struct engine *engine, const struct view_settings *settings, bool moving)
+void engine_ask(struct engine *engine, const struct settings *settings, bool moving)
 {
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];
     ask(engine, &engine->lanes[0], settings, moving);
     if (other->wanted) {
-        struct view_settings there = other->settings;
+        struct settings there = other->settings;
         settings_set_camera(&there, settings);
         ask(engine, other, &there, moving);
     }
     pthread_mutex_unlock(&engine->lock);
 }
 
-void engine_ask_other(struct engine *engine, const struct view_settings *settings)
+void engine_ask_other(struct engine *engine, const struct settings *settings)
 {
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];

@@ -24,23 +24,23 @@ void engine_set_budget(struct engine *engine, double budget_ms);
 
 /* What to draw from now on. `moving`: more will follow soon, so be quick: a smaller picture of one
    sample within the budget; else as the settings say, a quick one first. */
-void engine_ask(struct engine *engine, const struct view_settings *settings, bool moving);
+void engine_ask(struct engine *engine, const struct settings *settings, bool moving);
 
 /* What B of the split view shows: `settings` are drawn too, at the place of the last picture of
    what engine_ask says. NULL: no more. */
-void engine_ask_other(struct engine *engine, const struct view_settings *settings);
+void engine_ask_other(struct engine *engine, const struct settings *settings);
 
 enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MOST = 8192 };
 
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {
-    uint64_t number;               /* counts up; 0: none yet */
-    uint64_t first;                /* number of the first picture of what was asked for */
-    struct view_settings settings; /* drawn */
-    struct scene_ref *scene;       /* held */
-    whit_image *color; /* floats: linear RGBA, or of one channel where costs are painted */
-    whit_image *ids;   /* hit identities; NULL but for whole pictures */
-    uint8_t *rgba;     /* width * height * 4: as the window shows it */
+    uint64_t number;          /* counts up; 0: none yet */
+    uint64_t first;           /* number of the first picture of what was asked for */
+    struct settings settings; /* drawn */
+    struct scene_ref *scene;  /* held */
+    whit_image *color;        /* floats: linear RGBA, or of one channel where costs are painted */
+    whit_image *ids;          /* hit identities; NULL but for whole pictures */
+    uint8_t *rgba;            /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
     bool whole;                      /* full size and all samples: what `whit render` makes */
@@ -75,15 +75,15 @@ struct engine_change {
 };
 
 struct engine_status {
-    enum session_stage stage;   /* of the session in the making; SESSION_DONE: none is */
-    double stage_ms;            /* since it was asked for */
-    bool drawing;               /* a better picture than the last one is on its way */
-    double drawing_ms;          /* that the drawing thread is at one; 0: it is at none */
-    float part;                 /* of it, 0..1 */
-    char error[ENGINE_MESSAGE]; /* the last failure, until something succeeds; "": none */
-    char refused[VIEW_PATH];    /* as session.refused, of the scene that was loaded last */
-    bool failed;                /* what was asked for last cannot be drawn: `error` says why */
-    whit_result result;         /* of `error`; once there is none any more, of the last one */
+    enum session_stage stage;         /* of the session in the making; SESSION_DONE: none is */
+    double stage_ms;                  /* since it was asked for */
+    bool drawing;                     /* a better picture than the last one is on its way */
+    double drawing_ms;                /* that the drawing thread is at one; 0: it is at none */
+    float part;                       /* of it, 0..1 */
+    char error[ENGINE_MESSAGE];       /* the last failure, until something succeeds; "": none */
+    char refused[SETTING_PATH_BYTES]; /* as session.refused, of the scene that was loaded last */
+    bool failed;        /* what was asked for last cannot be drawn: `error` says why */
+    whit_result result; /* of `error`; once there is none any more, of the last one */
     bool device_lost;
     struct engine_change change; /* the last one */
 };
@@ -95,10 +95,10 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame);
 
 /* The ray tree of a pixel of the window's whole picture. */
 struct engine_probe {
-    uint64_t number;               /* counts up; 0: none yet */
-    struct view_settings settings; /* of the picture */
-    struct scene_ref *scene;       /* held */
-    whit_probe_report *report;     /* NULL where it failed: see engine_status.error */
+    uint64_t number;           /* counts up; 0: none yet */
+    struct settings settings;  /* of the picture */
+    struct scene_ref *scene;   /* held */
+    whit_probe_report *report; /* NULL where it failed: see engine_status.error */
     double ms;
 };
 void engine_probe_finish(struct engine_probe *probe);

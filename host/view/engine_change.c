@@ -25,16 +25,14 @@ static void add(struct text *text, const char *format, ...)
     text->bytes -= used;
 }
 
-static void describe(const struct view_settings *a, const struct view_settings *b, char *out,
-                     size_t bytes)
+static void describe(const struct settings *a, const struct settings *b, char *out, size_t bytes)
 {
     struct choice_change changes[CHOICE_CHANGES_MOST];
     uint32_t count = choice_changes(a, b, changes);
     struct text text = {out, bytes};
     out[0] = '\0';
     for (uint32_t i = 0; i < count; ++i) {
-        bool painted = changes[i].id >= CHOICE_VIEW && changes[i].id < CHOICE_COUNT;
-        if (!painted)
+        if (!changes[i].painted)
             add(&text, "%s%s %s -> %s", out[0] ? ", " : "", changes[i].name, changes[i].a,
                 changes[i].b);
     }
@@ -56,7 +54,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
     describe(&before->settings, &after->settings, what, sizeof what);
     if (!what[0])
         return;
-    bool colors = before->color && after->settings.paint == VIEW_PAINT_COLOR;
+    bool colors = before->color && after->settings.paint == PAINT_COLOR;
     const struct difference_side a = {colors ? before->color : NULL, before->ids};
     const struct difference_side b = {colors ? whit_image_floats(after->color) : NULL,
                                       whit_image_words(after->ids)};
@@ -78,7 +76,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
 void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
 {
     size_t pixels = (size_t)frame->width * frame->height;
-    bool colors = frame->settings.paint == VIEW_PAINT_COLOR;
+    bool colors = frame->settings.paint == PAINT_COLOR;
     engine_kept_finish(kept);
     *kept = (struct engine_kept){.settings = frame->settings,
                                  .stats = frame->stats,

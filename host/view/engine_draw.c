@@ -8,10 +8,10 @@ static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
 enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
 static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0, LARGER_MARGIN = 0.8;
 
-static uint32_t samples_of(const struct view_settings *settings)
+static uint32_t samples_of(const struct settings *settings)
 {
     const whit_renderer_params *p = &settings->picture;
-    if (settings->paint != VIEW_PAINT_COLOR)
+    if (settings->paint != PAINT_COLOR)
         return 1;
     return p->adaptive > 0.0 ? 8 : p->samples ? p->samples : 1; /* adaptive: 4 and some */
 }
@@ -75,9 +75,9 @@ static whit_result cut_out(const whit_image *heat, uint32_t width, uint32_t heig
 
 static whit_result paint_costs(const struct engine_task *task, struct engine_frame *frame)
 {
-    const struct view_settings *settings = &task->settings;
+    const struct settings *settings = &task->settings;
     whit_image *heat = NULL;
-    whit_view view = (whit_view)(settings->paint - VIEW_PAINT_DEPTH);
+    whit_view view = (whit_view)(settings->paint - PAINT_DEPTH);
     whit_result result = whit_renderer_cost_image(
         task->session->renderer, view, (whit_ray_kind)settings->paint_rays, &frame->color);
     if (result != WHIT_OK)
@@ -99,7 +99,7 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
     frame->rgba = malloc((size_t)frame->width * frame->height * 4);
     if (!frame->rgba)
         return WHIT_ERROR_MEMORY;
-    if (task->settings.paint != VIEW_PAINT_COLOR) {
+    if (task->settings.paint != PAINT_COLOR) {
         result = paint_costs(task, frame);
     } else {
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &frame->color);
@@ -113,12 +113,12 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
 
 static whit_result read_boxes(const struct engine_task *task, struct engine_frame *frame)
 {
-    const struct view_settings *s = &task->settings;
+    const struct settings *s = &task->settings;
     uint64_t count = 0;
-    if (s->boxes == VIEW_BOXES_OFF)
+    if (s->boxes == BOXES_OFF)
         return WHIT_OK;
     whit_result result =
-        whit_accel_boxes(task->session->accel, s->picture.time_s, s->boxes == VIEW_BOXES_INSTANCES,
+        whit_accel_boxes(task->session->accel, s->picture.time_s, s->boxes == BOXES_INSTANCES,
                          s->boxes_level, ENGINE_BOXES_MOST, &frame->boxes, &count);
     frame->boxes_total = count;
     return result;
@@ -152,7 +152,7 @@ static whit_renderer_params task_params(const struct engine_task *task)
     whit_renderer_params params = settings_picture(&session->settings);
     params.width = (params.width + task->divisor - 1) / task->divisor;
     params.height = (params.height + task->divisor - 1) / task->divisor;
-    bool counts = task->settings.paint != VIEW_PAINT_COLOR;
+    bool counts = task->settings.paint != PAINT_COLOR;
     if (task->quality != ENGINE_WHOLE || counts) {
         params.samples = 1;
         params.adaptive = 0.0;

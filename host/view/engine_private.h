@@ -12,7 +12,7 @@ enum { ENGINE_SESSIONS_MOST = 8, ENGINE_LANES = 2 };
 /* A session in the making. */
 struct engine_job {
     struct session *session;
-    struct view_settings settings;
+    struct settings settings;
     struct scene_ref *scene;
     struct session_progress progress;
     struct thread *thread;
@@ -33,14 +33,14 @@ enum engine_quality {
 /* What is asked for and what came of it; [0] is the window's, [1] the other side of a split. */
 struct engine_lane {
     bool wanted;
-    struct view_settings settings;
+    struct settings settings;
     bool moving;
     double asked_ms;             /* when `settings` came */
     uint64_t asked;              /* counts what is asked for */
     uint64_t drawn;              /* `asked` of the last picture */
     enum engine_quality quality; /* of it */
     bool failed;                 /* it could not be drawn; until asked again */
-    struct view_settings last;   /* drawn */
+    struct settings last;        /* drawn */
     bool stale;                  /* drawn by an older session: a better one is in the making */
     struct session *session;     /* that drew last; NULL: none, or gone */
     struct engine_frame frame;   /* the newest picture; number 0: taken */
@@ -53,7 +53,7 @@ struct engine_lane {
 
 /* A whole picture, for comparing. */
 struct engine_kept {
-    struct view_settings settings;
+    struct settings settings;
     whit_stats stats;
     whit_accel_info accel;
     uint32_t width, height;
@@ -68,7 +68,7 @@ struct engine {
     struct thread *thread;
     bool quit;
     struct engine_lane lanes[ENGINE_LANES];
-    struct view_settings place; /* of the window's last picture: that of the other one */
+    struct settings place; /* of the window's last picture: that of the other one */
     uint32_t place_divisor;
     uint64_t places;                                /* how often that was set */
     struct engine_job *job;                         /* NULL: none */
@@ -82,8 +82,8 @@ struct engine {
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
-    char refused[VIEW_PATH]; /* as session.refused, of the last job that loaded a scene */
-    whit_result result;      /* that failed last */
+    char refused[SETTING_PATH_BYTES]; /* as session.refused, of the last job that loaded a scene */
+    whit_result result;               /* that failed last */
     bool device_lost;
     struct engine_change change;
     bool probe_wanted;
@@ -96,7 +96,7 @@ struct engine {
 /* What engine_draw is to draw. */
 struct engine_task {
     struct session *session;
-    struct view_settings settings;
+    struct settings settings;
     enum engine_quality quality;
     uint32_t divisor;
     bool moving, brief; /* brief: within the budget, so let it be finished */

@@ -52,7 +52,7 @@ static void draw_figures(const struct view *view)
 static void draw_names(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
-    const struct view_settings *s = &frame->settings;
+    const struct settings *s = &frame->settings;
     bool trees = s->trees.build != WHIT_BUILD_NONE;
     ui_text("%s, %s, %s", trees ? frame->accel.builder : "no trees",
             value_word(values_traversal, (int)s->picture.traversal),
@@ -152,7 +152,7 @@ static bool holds_panel(const struct view *view)
 
 static void draw_hud(const struct view *view)
 {
-    bool costs = view->frame.settings.paint != VIEW_PAINT_COLOR;
+    bool costs = view->frame.settings.paint != PAINT_COLOR;
     bool busy = costs || view->compare.mode != COMPARE_OFF;
     if (view->hud == HUD_OFF || view->frame.number == 0 || (is_low(view) && holds_panel(view)))
         return;
@@ -200,9 +200,9 @@ static int lay_out_sheet(int widths[2 * SHEET_CELLS])
 
 static void draw_key(const struct view *view, const struct key_binding *key)
 {
-    char state[VIEW_TEXT] = "";
-    if (key && key->state)
-        key->state(view, state, sizeof state);
+    char state[SETTING_TEXT_BYTES] = "";
+    if (key)
+        key_state(view, key, state, sizeof state);
     ui_cell(COLOR_GOOD, key ? key->keys : "");
     ui_cell(COLOR_TEXT, !key ? "" : key->title ? key->title : key->name);
     ui_cell(0xFFA0A0A0u, state);
@@ -320,8 +320,8 @@ static void draw_boxes(const struct view *view)
 {
     static const char *const trees[] = {"", "mesh trees", "instance tree"};
     const struct engine_frame *frame = &view->frame;
-    const struct view_settings *s = &frame->settings;
-    if (s->boxes == VIEW_BOXES_OFF)
+    const struct settings *s = &frame->settings;
+    if (s->boxes == BOXES_OFF)
         return;
     overlay_boxes(view);
     if (ui_panel_begin("boxes", 1.0f, 0.0f, UI_PANEL_PLAIN)) {
@@ -344,10 +344,10 @@ static void draw_legends(const struct view *view)
     for (int side = 0; side < (compare->mode == COMPARE_SPLIT ? 2 : 1); ++side) {
         const struct engine_frame *frame = side ? &compare->other : &view->frame;
         char rays[64], title[160];
-        if (view->hud == HUD_OFF || !frame->rgba || frame->settings.paint == VIEW_PAINT_COLOR ||
+        if (view->hud == HUD_OFF || !frame->rgba || frame->settings.paint == PAINT_COLOR ||
             compare->mode == COMPARE_DIFFERENCE)
             continue;
-        choice_say(&frame->settings, CHOICE_VIEW_RAYS, rays, sizeof rays);
+        snprintf(rays, sizeof rays, "%s", value_word(values_rays, (int)frame->settings.paint_rays));
         snprintf(title, sizeof title, "%s%s of %s rays%s",
                  compare->mode != COMPARE_SPLIT ? ""
                  : side                         ? "B: "

@@ -13,54 +13,57 @@ enum { BOXES_LEVEL_MOST = 127 };
 
 /* ---- Choices ---- */
 
-#define TURNS(name, id, by)                                                                        \
-    static void name(struct view *view)                                                            \
-    {                                                                                              \
-        choice_turn(&view->settings, id, by);                                                      \
-    }
-#define SAYS(name, id)                                                                             \
-    static void name(const struct view *view, char *text, size_t bytes)                            \
-    {                                                                                              \
-        choice_say(&view->settings, id, text, bytes);                                              \
-    }
-TURNS(next_traversal, CHOICE_TRAVERSAL, 1)
-TURNS(last_traversal, CHOICE_TRAVERSAL, -1)
-SAYS(say_traversal, CHOICE_TRAVERSAL)
-TURNS(next_numerics, CHOICE_NUMERICS, 1)
-SAYS(say_numerics, CHOICE_NUMERICS)
-TURNS(next_builder, CHOICE_BUILDER, 1)
-SAYS(say_builder, CHOICE_BUILDER)
-TURNS(switch_trees, CHOICE_TREES, 1)
-SAYS(say_trees, CHOICE_TREES)
-TURNS(switch_instances, CHOICE_INSTANCES, 1)
-SAYS(say_instances, CHOICE_INSTANCES)
-TURNS(less_depth, CHOICE_DEPTH, -1)
-TURNS(more_depth, CHOICE_DEPTH, 1)
-SAYS(say_depth, CHOICE_DEPTH)
-TURNS(next_samples, CHOICE_SAMPLES, 1)
-SAYS(say_samples, CHOICE_SAMPLES)
-TURNS(next_view, CHOICE_VIEW, 1)
-SAYS(say_paint, CHOICE_VIEW)
+/* Through the builders alone: the panel has their numbers too. */
+static void next_builder(struct view *view)
+{
+    uint32_t at = value_place(values_build, (int)view->settings.trees.build);
+    uint32_t next = at == WHIT_NONE ? 0 : (at + 1) % value_count(values_build);
+    if (values_build[next].value == WHIT_BUILD_NONE)
+        next = 0;
+    choice_set(&view->settings, settings_row("build"), next);
+}
+
+static void say_builder(const struct view *view, char *text, size_t bytes)
+{
+    choice_say(&view->settings, settings_row("build"), text, bytes);
+}
+
+static void switch_trees(struct view *view)
+{
+    bool none = view->settings.trees.build == WHIT_BUILD_NONE;
+    view->settings.trees = (whit_accel_params){
+        .build = none ? WHIT_BUILD_BINNED : WHIT_BUILD_NONE,
+        .leaf_limit = view->settings.trees.leaf_limit,
+        .instances = view->settings.trees.instances,
+        .instance_build = view->settings.trees.instance_build,
+        .instance_refit = view->settings.trees.instance_refit,
+    };
+}
+
+static void say_trees(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, view->settings.trees.build == WHIT_BUILD_NONE ? "off" : "on");
+}
 
 /* ---- What is painted ---- */
 
 static void switch_depth_view(struct view *view)
 {
-    bool color = view->settings.paint == VIEW_PAINT_COLOR;
-    view->settings.paint = color ? VIEW_PAINT_DEPTH : VIEW_PAINT_COLOR;
+    bool color = view->settings.paint == PAINT_COLOR;
+    view->settings.paint = color ? PAINT_DEPTH : PAINT_COLOR;
 }
 
 static void next_cost_view(struct view *view)
 {
     uint32_t next = view->settings.paint + 1;
-    view->settings.paint = next < VIEW_PAINT_COUNT ? next : VIEW_PAINT_DEPTH;
+    view->settings.paint = next < PAINT_COUNT ? next : PAINT_DEPTH;
 }
 
 /* Of the difference, where that is shown; else of costs. */
 static void scale_by(struct view *view, double factor)
 {
     struct compare *compare = &view->compare;
-    bool costs = view->settings.paint != VIEW_PAINT_COLOR;
+    bool costs = view->settings.paint != PAINT_COLOR;
     double *scale = &view->settings.paint_scale, shown = costs ? view->frame.scale : 0.0;
     if (compare->mode == COMPARE_DIFFERENCE) {
         scale = &compare->scale;
@@ -103,24 +106,24 @@ static void say_scale(const struct view *view, char *text, size_t bytes)
 
 static void next_boxes(struct view *view)
 {
-    view->settings.boxes = (view->settings.boxes + 1) % VIEW_BOXES_COUNT;
+    view->settings.boxes = (view->settings.boxes + 1) % BOXES_COUNT;
 }
 
 static void say_boxes(const struct view *view, char *text, size_t bytes)
 {
-    static const char *const names[VIEW_BOXES_COUNT] = {"off", "of meshes", "of instances"};
+    static const char *const names[BOXES_COUNT] = {"off", "of meshes", "of instances"};
     snprintf(text, bytes, "%s", names[view->settings.boxes]);
 }
 
 static void deeper_boxes(struct view *view)
 {
-    if (view->settings.boxes != VIEW_BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MOST)
+    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MOST)
         ++view->settings.boxes_level;
 }
 
 static void higher_boxes(struct view *view)
 {
-    if (view->settings.boxes != VIEW_BOXES_OFF && view->settings.boxes_level > 0)
+    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level > 0)
         --view->settings.boxes_level;
 }
 
@@ -276,7 +279,7 @@ static void step_time(struct view *view, int by)
 {
     if (!moves(view))
         return;
-    double fps = view->params->fps > 0.0 ? view->params->fps : 24.0;
+    double fps = view->settings.fps;
     double last = floor(view->scene->info.time_end_s * fps + 1e-9);
     double frame = floor(view->settings.picture.time_s * fps + 0.5) + by;
     frame = frame < 0.0 ? last : frame > last ? 0.0 : frame;
@@ -352,7 +355,7 @@ static void save_picture(struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
     char path[VIEW_FREE_NAME];
-    if (!frame->whole || frame->settings.paint != VIEW_PAINT_COLOR) {
+    if (!frame->whole || frame->settings.paint != PAINT_COLOR) {
         view_say(view, frame->whole ? "costs are saved by `whit render --view`: see Ctrl+C"
                                     : "the picture is not whole yet");
         return;
@@ -372,7 +375,7 @@ static void save_picture(struct view *view)
 static void copy_line(struct view *view)
 {
     char line[2048];
-    settings_render_line(scenes_shown(view), line, sizeof line);
+    settings_write_render(scenes_shown(view), SETTINGS_LINE, "picture.png", line, sizeof line);
     window_copy(view->window, line);
     view_say(view, "copied: %s", line);
 }
@@ -438,71 +441,109 @@ static void say_prices(const struct view *view, char *text, size_t bytes)
 }
 
 static const struct key_binding bindings[] = {
-    {'T', 0, "T Shift+T", NULL, "traversal order", next_traversal, say_traversal},
-    {'T', EVENT_SHIFT, NULL, NULL, "traversal order, back", last_traversal, NULL},
-    {'K', 0, "K", NULL, "tree builder", next_builder, say_builder},
-    {'M', 0, "M", NULL, "numerics", next_numerics, say_numerics},
-    {'G', 0, "G", NULL, "trees", switch_trees, say_trees},
-    {'O', 0, "O", NULL, "instance tree", switch_instances, say_instances},
-    {'-', 0, "- =", "bounces", "fewer bounces", less_depth, say_depth},
-    {'=', 0, NULL, NULL, "more bounces", more_depth, say_depth},
-    {'A', 0, "A", NULL, "anti-aliasing", next_samples, say_samples},
-    {'B', 0, "B Shift+B", "depth, next cost", "depth view", switch_depth_view, NULL},
-    {'B', EVENT_SHIFT, NULL, NULL, "next cost view", next_cost_view, NULL},
-    {'V', 0, "V", NULL, "next view", next_view, say_paint},
-    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, say_scale},
-    {']', 0, NULL, NULL, "twice the scale", more_scale, say_scale},
-    {'\\', 0, NULL, NULL, "scale by the picture", own_scale, NULL},
-    {'F', 0, "F", "look under mouse", "look at what is under the mouse", pick_focus, NULL},
-    {'N', 0, "N", NULL, "boxes of trees", next_boxes, say_boxes},
-    {'J', 0, "J Shift+J", "deeper, higher", "a level deeper", deeper_boxes, say_level},
-    {'J', EVENT_SHIFT, NULL, NULL, "a level higher", higher_boxes, say_level},
-    {'C', 0, "C", "A beside B", "A beside B, frozen now", switch_split, say_split},
-    {'D', 0, "D", NULL, "A minus B", switch_difference, say_difference},
-    {'P', 0, "P", "what knobs cost", "prices of this view", price_switch, say_prices},
-    {'X', 0, "X", "effects, prices", "effects and prices", switch_effects, say_effects},
-    {KEY_TAB, 0, "Tab", "settings", "settings by mouse", switch_settings, say_settings},
-    {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", panels_save, NULL},
-    {KEY_HOME, 0, "Home", NULL, "all of the scene", fit_scene, NULL},
-    {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera, say_camera},
-    {'1', 0, "1 2 3", "front right above", "from the front", look_front, NULL},
-    {'2', 0, NULL, NULL, "from the right", look_right, NULL},
-    {'3', 0, NULL, NULL, "from above", look_top, NULL},
-    {'4', 0, "4 5 6", "back left below", "from behind", look_back, NULL},
-    {'5', 0, NULL, NULL, "from the left", look_left, NULL},
-    {'6', 0, NULL, NULL, "from below", look_bottom, NULL},
-    {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, say_playing},
-    {',', 0, ", .", "a frame back, on", "a frame back", step_back, NULL},
-    {'.', 0, NULL, NULL, "a frame on", step_forward, NULL},
-    {'L', 0, "L", NULL, "animation runs", switch_loop, say_loop},
-    {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, say_speed},
-    {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, say_speed},
-    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, say_scene},
-    {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, say_scene},
-    {'R', 0, "R", "read it again", "read the scene again", scenes_read_again, NULL},
-    {KEY_F12, 0, "F12", NULL, "save the picture", save_picture, NULL},
-    {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", copy_line, NULL},
-    {'H', 0, "H F1", NULL, "this list", switch_help, NULL},
-    {KEY_F1, 0, NULL, NULL, "this list", switch_help, NULL},
-    {KEY_F1 + 1, 0, "F2", NULL, "figures", next_hud, say_hud},
-    {KEY_F1 + 10, 0, "F11", NULL, "full screen", switch_fullscreen, say_fullscreen},
-    {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", escape, NULL},
+    {'K', 0, "K", NULL, "tree builder", next_builder, .state = say_builder},
+    {'G', 0, "G", NULL, "trees", switch_trees, .state = say_trees},
+    {'B', 0, "B Shift+B", "depth, next cost", "depth view", .act = switch_depth_view},
+    {'B', EVENT_SHIFT, NULL, NULL, "next cost view", .act = next_cost_view},
+    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, .state = say_scale},
+    {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale},
+    {'\\', 0, NULL, NULL, "scale by the picture", .act = own_scale},
+    {'F', 0, "F", "look under mouse", "look at what is under the mouse", .act = pick_focus},
+    {'N', 0, "N", NULL, "boxes of trees", next_boxes, .state = say_boxes},
+    {'J', 0, "J Shift+J", "deeper, higher", "a level deeper", deeper_boxes, .state = say_level},
+    {'J', EVENT_SHIFT, NULL, NULL, "a level higher", higher_boxes, .state = say_level},
+    {'C', 0, "C", "A beside B", "A beside B, frozen now", switch_split, .state = say_split},
+    {'D', 0, "D", NULL, "A minus B", switch_difference, .state = say_difference},
+    {'P', 0, "P", "what knobs cost", "prices of this view", price_switch, .state = say_prices},
+    {'X', 0, "X", "effects, prices", "effects and prices", switch_effects, .state = say_effects},
+    {KEY_TAB, 0, "Tab", "settings", "settings by mouse", switch_settings, .state = say_settings},
+    {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", .act = panels_save},
+    {KEY_HOME, 0, "Home", NULL, "all of the scene", .act = fit_scene},
+    {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera,
+     .state = say_camera},
+    {'1', 0, "1 2 3", "front right above", "from the front", .act = look_front},
+    {'2', 0, NULL, NULL, "from the right", .act = look_right},
+    {'3', 0, NULL, NULL, "from above", .act = look_top},
+    {'4', 0, "4 5 6", "back left below", "from behind", .act = look_back},
+    {'5', 0, NULL, NULL, "from the left", .act = look_left},
+    {'6', 0, NULL, NULL, "from below", .act = look_bottom},
+    {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, .state = say_playing},
+    {',', 0, ", .", "a frame back, on", "a frame back", .act = step_back},
+    {'.', 0, NULL, NULL, "a frame on", .act = step_forward},
+    {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop},
+    {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, .state = say_speed},
+    {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, .state = say_speed},
+    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, .state = say_scene},
+    {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, .state = say_scene},
+    {'R', 0, "R", "read it again", "read the scene again", .act = scenes_read_again},
+    {KEY_F12, 0, "F12", NULL, "save the picture", .act = save_picture},
+    {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", .act = copy_line},
+    {'H', 0, "H F1", NULL, "this list", .act = switch_help},
+    {KEY_F1, 0, NULL, NULL, "this list", .act = switch_help},
+    {KEY_F1 + 1, 0, "F2", NULL, "figures", next_hud, .state = say_hud},
+    {KEY_F1 + 10, 0, "F11", NULL, "full screen", switch_fullscreen, .state = say_fullscreen},
+    {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", .act = escape},
 };
+
+enum { SETTING_KEYS_MOST = 32, KEY_NAME = 8 };
+
+/* Of the settings that have keys, and then the others. */
+static struct key_binding all[SETTING_KEYS_MOST + sizeof bindings / sizeof *bindings];
+static uint32_t all_count;
+
+static void add_setting(const struct setting *row)
+{
+    static char names[SETTING_KEYS_MOST][KEY_NAME];
+    char *name = names[all_count];
+    if (row->key_back)
+        snprintf(name, KEY_NAME, "%c %c", row->key_back, row->key);
+    else
+        snprintf(name, KEY_NAME, "%c", row->key);
+    all[all_count++] = (struct key_binding){
+        .key = row->key, .keys = name, .name = row->title, .setting = row, .by = 1};
+    all[all_count++] = (struct key_binding){.key = row->key_back ? row->key_back : row->key,
+                                            .mods = row->key_back ? 0 : EVENT_SHIFT,
+                                            .name = row->title,
+                                            .setting = row,
+                                            .by = -1};
+}
 
 const struct key_binding *key_bindings(uint32_t *count)
 {
-    *count = sizeof bindings / sizeof *bindings;
-    return bindings;
+    if (all_count == 0) {
+        for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
+            if (row->key && all_count + 2 <= SETTING_KEYS_MOST)
+                add_setting(row);
+        }
+        memcpy(all + all_count, bindings, sizeof bindings);
+        all_count += sizeof bindings / sizeof *bindings;
+    }
+    *count = all_count;
+    return all;
+}
+
+bool key_state(const struct view *view, const struct key_binding *key, char *text, size_t bytes)
+{
+    if (key->setting)
+        choice_say(&view->settings, key->setting, text, bytes);
+    else if (key->state)
+        key->state(view, text, bytes);
+    return key->setting || key->state;
 }
 
 bool key_act(struct view *view, int key, unsigned mods)
 {
-    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; ++i) {
-        if (bindings[i].key == key && bindings[i].mods == mods) {
-            bindings[i].act(view);
-            view->dirty = true;
-            return true;
-        }
+    uint32_t count;
+    const struct key_binding *keys = key_bindings(&count);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (keys[i].key != key || keys[i].mods != mods)
+            continue;
+        if (keys[i].setting)
+            choice_turn(&view->settings, keys[i].setting, keys[i].by);
+        else
+            keys[i].act(view);
+        view->dirty = true;
+        return true;
     }
     return false;
 }

@@ -10,7 +10,7 @@
 #include "view/view_private.h"
 
 enum { NAMES_LAST = 9999, WORDS_BYTES = 8192 };
-static const double FPS_LEAST = 1.0, FPS_MOST = 240.0, FPS_GOAL = 30.0;
+static const double FPS_LEAST = 1.0, FPS_MOST = 240.0;
 
 /* ---- Files of settings ---- */
 
@@ -45,7 +45,7 @@ static whit_result write_state(const struct view *view, const char *path)
 {
     char words[WORDS_BYTES];
     struct file_write file;
-    size_t length = settings_words(&view->settings, "\n", words, sizeof words);
+    size_t length = settings_write(&view->settings, SETTINGS_STATE, "\n", words, sizeof words);
     if (length >= sizeof words)
         return WHIT_ERROR_MEMORY;
     whit_result result = file_write_begin(&view->log, path, &file);
@@ -55,8 +55,6 @@ static whit_result write_state(const struct view *view, const char *path)
     fprintf(file.stream, "# whit view %s --state %s\n%s\n",
             whit_text_show(view->settings.scene, scene, sizeof scene),
             whit_text_show(path, own, sizeof own), words);
-    if (view->panels.fps_goal > 0.0)
-        fprintf(file.stream, "--fps-goal %.9g\n", view->panels.fps_goal);
     return file_write_commit(&view->log, &file);
 }
 
@@ -71,55 +69,59 @@ void panels_save(struct view *view)
     view->panels.states_known = false;
 }
 
-static double fps_goal(const struct view *view)
-{
-    return view->panels.fps_goal > 0.0 ? view->panels.fps_goal : FPS_GOAL;
-}
-
 static void set_fps_goal(struct view *view, double fps)
 {
-    view->panels.fps_goal = fps == FPS_GOAL ? 0.0 : fps;
+    view->settings.fps_goal = fps;
     engine_set_budget(view->engine, 1e3 / fps);
 }
 
 void panels_load(struct view *view, const char *path)
 {
-    struct view_state state = {.settings = view->settings};
+    struct settings loaded = view->settings;
     const struct view_params *params = view->params;
     char message[TOAST_BYTES] = "files of settings cannot be read here";
     if (!params->load_state ||
-        params->load_state(params->load_user, path, &state, message, sizeof message) != WHIT_OK) {
+        params->load_state(params->load_user, path, &loaded, message, sizeof message) != WHIT_OK) {
         view_say(view, "%s", message);
         return;
     }
-    const whit_renderer_params *now = &view->settings.picture, *next = &state.settings.picture;
+    const whit_renderer_params *now = &view->settings.picture, *next = &loaded.picture;
     if (next->width != now->width || next->height != now->height)
         window_set_pixels(view->window, next->width, next->height);
-    view->settings = state.settings;
+    view->settings = loaded;
     view->resized = true;       /* the window may have kept its size */
     view->camera_known = false; /* read again from the text */
     view_learn_camera(view);
-    set_fps_goal(view, state.fps_goal > 0.0 ? state.fps_goal : FPS_GOAL);
+    set_fps_goal(view, loaded.fps_goal);
     view_say(view, "%s: these settings", path);
 }
 
 /* ---- Settings ---- */
 
-static void draw_choice(struct view *view, enum choice_id id)
+static void draw_number(struct view *view, const struct setting *row)
+{
+    double number = choice_number(&view->settings, row);
+    uint32_t count = (uint32_t)number;
+    bool is_count = row->kind == SETTING_COUNT;
+    if (is_count ? ui_slider_count(row->title, &count, (uint32_t)row->shown_min,
+                                   (uint32_t)row->shown_max)
+                 : ui_slider(row->title, &number, row->shown_min, row->shown_max, false))
+        choice_set_number(&view->settings, row, is_count ? count : number);
+}
+
+static void draw_choice(struct view *view, const struct setting *row)
 {
     char shown[CHOICE_WORDS];
     const char *words[CHOICE_WORDS_MOST];
-    uint32_t count = choice_words(id, words);
-    int value = choice_get(&view->settings, id);
+    uint32_t count = choice_words(row, words);
+    int value = choice_get(&view->settings, row);
     if (count == 0) {
-        uint32_t number = (uint32_t)value;
-        if (ui_slider_count(choice_name(id), &number, 0, 32))
-            choice_set(&view->settings, id, number);
+        draw_number(view, row);
         return;
     }
-    choice_say(&view->settings, id, shown, sizeof shown);
-    if (ui_choice(choice_name(id), shown, words, (int)count, &value))
-        choice_set(&view->settings, id, (uint32_t)value);
+    choice_say(&view->settings, row, shown, sizeof shown);
+    if (ui_choice(row->title, shown, words, (int)count, &value))
+        choice_set(&view->settings, row, (uint32_t)value);
 }
 
 static void draw_hud_choice(struct view *view)
@@ -149,12 +151,12 @@ static void draw_files(struct view *view)
 
 static void draw_settings(struct view *view)
 {
-    double fps = fps_goal(view);
+    double fps = view->settings.fps_goal;
     if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
-        for (enum choice_id id = 0; id < CHOICE_COUNT; ++id) {
-            if (id == CHOICE_VIEW_RAYS && view->settings.paint == VIEW_PAINT_COLOR)
-                continue;
-            draw_choice(view, id);
+        for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
+            bool rays = strcmp(row->name, "view-rays") == 0;
+            if (!rays || view->settings.paint != PAINT_COLOR)
+                draw_choice(view, row);
         }
         if (ui_slider("fps goal", &fps, FPS_LEAST, FPS_MOST, true))
             set_fps_goal(view, fps);
@@ -186,7 +188,7 @@ void panels_switch_effects(struct view *view)
 
 static void switch_effect(struct view *view, uint32_t index, bool called, bool on)
 {
-    struct view_settings *settings = &view->settings;
+    struct settings *settings = &view->settings;
     if (!effect_switch_text(settings->effects, index, called, on, settings->effects)) {
         view_say(view, "too many effects are switched");
         return;

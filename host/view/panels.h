@@ -11,7 +11,6 @@ enum { VIEW_FREE_NAME = 32, STATES_MOST = 32 };
 
 struct panels {
     bool settings, effects;
-    double fps_goal;   /* pictures a second while something moves */
     uint64_t change;   /* the last one that was looked at */
     int pending;       /* 1 + the effect that was switched; 0: none, -1: several */
     const void *scene; /* that the prices are of */

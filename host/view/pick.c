@@ -21,7 +21,7 @@ static void ask(struct view *view, double x, double y)
 
 void pick_at(struct view *view, double x, double y)
 {
-    if (view->settings.paint != VIEW_PAINT_COLOR) {
+    if (view->settings.paint != PAINT_COLOR) {
         view_say(view, "pixels are explained in colours: press B");
         return;
     }
@@ -31,7 +31,7 @@ void pick_at(struct view *view, double x, double y)
 
 void pick_focus(struct view *view)
 {
-    if (!view->camera_known || view->settings.paint != VIEW_PAINT_COLOR)
+    if (!view->camera_known || view->settings.paint != PAINT_COLOR)
         return;
     view->focus = true;
     ask(view, view->input.x, view->input.y);

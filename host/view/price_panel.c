@@ -54,29 +54,12 @@ void price_switch(struct view *view)
     }
 }
 
-void settings_to_knobs(const struct view_settings *settings, struct knob_target *target)
-{
-    *target = (struct knob_target){.accel = settings->trees, .picture = settings->picture};
-    snprintf(target->effects, sizeof target->effects, "%s", settings->effects);
-    target->picture.effects = settings->effects[0] ? target->effects : NULL;
-}
-
-void settings_from_knobs(const struct knob_target *target, struct view_settings *settings)
-{
-    settings->picture = target->picture;
-    settings->picture.camera = settings->picture.effects = settings->picture.load_path = NULL;
-    snprintf(settings->effects, sizeof settings->effects, "%s", target->effects);
-}
-
 /* What the setting says, on top of what the window has. Trees have keys of their own. */
 static void use(struct view *view, const struct cost_row *row)
 {
     uint32_t count;
     const struct knob *knob = &knob_table(&count)[row->knob_index];
-    struct knob_target target;
-    settings_to_knobs(&view->settings, &target);
-    knob_apply(knob, row->setting_index, &target);
-    settings_from_knobs(&target, &view->settings);
+    knob_apply(knob, row->setting_index, &view->settings);
     view_changed(view);
 }
 
@@ -87,7 +70,7 @@ static void draw_row(struct view *view, const struct cost_report *report,
     const struct knob *knobs = knob_table(&count);
     const whit_difference *error = &row->error;
     char label[COST_NAME + 16];
-    bool usable = row->knob_index < count && knobs[row->knob_index].level < KNOB_TREE;
+    bool usable = row->knob_index < count && knob_level(&knobs[row->knob_index]) < KNOB_TREE;
     ui_table_next();
     ui_text_dim("%s", row->knob);
     ui_table_next();

@@ -13,7 +13,7 @@ enum { REFERENCE_SAMPLES = 16 };
 struct prices {
     pthread_mutex_t lock;
     struct thread *thread;
-    struct view_settings settings;
+    struct settings settings;
     struct scene_ref *scene;
     double seconds;
     uint64_t knobs;
@@ -54,12 +54,12 @@ static void on_message(void *user, whit_log_level level, const char *message)
 static whit_result measure(struct prices *prices, const whit_log *log, whit_device *device,
                            whit_accel *accel, struct cost_report **report)
 {
-    struct cost_request request = {
+    const struct cost_request request = {
         .device = device,
         .scene = prices->scene->scene,
         .accel = accel,
-        .accel_params = prices->settings.trees,
-        .picture = settings_picture(&prices->settings),
+        .settings = &prices->settings,
+        .cancel = &prices->cancel,
         .knobs = prices->knobs,
         .seconds = prices->seconds,
         .samples_most = REFERENCE_SAMPLES,
@@ -67,8 +67,6 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
         .progress_user = prices,
         .log = log,
     };
-    request.picture.cancel = &prices->cancel;
-    request.picture.count = false;
     return cost_measure(&request, report);
 }
 
@@ -105,7 +103,7 @@ static whit_result measure_effects(struct prices *prices, const whit_log *log, w
 static void run(void *context)
 {
     struct prices *prices = context;
-    const struct view_settings *settings = &prices->settings;
+    const struct settings *settings = &prices->settings;
     const whit_log log = {on_message, prices, WHIT_LOG_ERROR};
     const whit_device_params params = {.selector = settings->device[0] ? settings->device : NULL,
                                        .validation = settings->validation};
@@ -137,7 +135,7 @@ struct prices *prices_start(const struct prices_params *params)
     if (!prices)
         return NULL;
     prices->settings = *params->settings;
-    prices->settings.paint = VIEW_PAINT_COLOR; /* costs are not what pictures cost */
+    prices->settings.paint = PAINT_COLOR; /* costs are not what pictures cost */
     prices->scene = scene_ref_take(params->scene);
     prices->seconds = params->seconds;
     prices->knobs = params->knobs;

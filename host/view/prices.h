@@ -10,7 +10,7 @@
 struct prices;
 
 struct prices_params {
-    const struct view_settings *settings;
+    const struct settings *settings;
     struct scene_ref *scene;
     double seconds;           /* that it may take, roughly */
     uint64_t knobs;           /* bits of knob_table; 0: all */
@@ -31,7 +31,7 @@ struct prices_state {
     double done, seconds_left;        /* 0..1 */
     char what[PRICES_TEXT];           /* that is measured; where it failed: why */
     const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
-    struct view_settings settings;    /* that it is of */
+    struct settings settings;         /* that it is of */
 };
 /* Whether there is more to see than at the last call. */
 bool prices_have_news(struct prices *prices);

@@ -81,7 +81,7 @@ static void remember_camera(const struct view *view)
 static void recall_camera(struct view *view)
 {
     struct view_camera camera;
-    char text[VIEW_TEXT];
+    char text[SETTING_TEXT_BYTES];
     if (view->params->remember && !view->settings.camera[0] &&
         memory_find(view->settings.scene, text, sizeof text) && camera_from_text(text, &camera))
         memcpy(view->settings.camera, text, sizeof text);
@@ -107,7 +107,7 @@ static void set_asked(struct view *view, const char *path)
 
 static void open_scene(struct view *view, const char *path)
 {
-    struct view_settings *settings = &view->settings;
+    struct settings *settings = &view->settings;
     remember_camera(view);
     if (settings_same_scene(settings, &view->fallback))
         view->played = view->clock.playing;
@@ -141,7 +141,7 @@ void view_open(struct view *view, const char *path)
 /* Whatever is known of this file. */
 static void read_again(struct view *view, bool asked)
 {
-    char path[VIEW_PATH];
+    char path[SETTING_PATH_BYTES];
     memcpy(path, asked ? view->asked : view->settings.scene, sizeof path);
     set_asked(view, path);
     if (strcmp(view->settings.scene, path) != 0)
@@ -158,8 +158,8 @@ void scenes_read_again(struct view *view)
 
 bool scenes_refuse(struct view *view)
 {
-    struct view_settings *settings = &view->settings;
-    const struct view_settings *back = &view->fallback;
+    struct settings *settings = &view->settings;
+    const struct settings *back = &view->fallback;
     if (settings_same_scene(settings, back))
         return false;
     if (strcmp(view->refused, view->status.error) != 0) {
@@ -196,17 +196,17 @@ void scenes_answer(struct view *view, bool allow)
     uint32_t count = 0;
     memcpy(view->answered, view->status.refused, sizeof view->answered);
     view->dirty = true;
-    while (count < VIEW_ALLOWED && view->settings.allowed[count][0])
+    while (count < SETTING_FOLDERS_MOST && view->settings.allowed[count][0])
         ++count;
-    if (allow && count == VIEW_ALLOWED)
-        view_say(view, "%d folders are the most that can be allowed", VIEW_ALLOWED);
-    if (!allow || count == VIEW_ALLOWED)
+    if (allow && count == SETTING_FOLDERS_MOST)
+        view_say(view, "%d folders are the most that can be allowed", SETTING_FOLDERS_MOST);
+    if (!allow || count == SETTING_FOLDERS_MOST)
         return;
     memcpy(view->settings.allowed[count], view->answered, sizeof view->answered);
     scenes_read_again(view);
 }
 
-const struct view_settings *scenes_shown(const struct view *view)
+const struct settings *scenes_shown(const struct view *view)
 {
     return settings_same_scene(&view->settings, &view->fallback) ? &view->settings
                                                                  : &view->fallback;
@@ -241,7 +241,7 @@ void scenes_watch(struct view *view)
 
 void scenes_show(struct view *view)
 {
-    const struct view_settings *shown = &view->frame.settings;
+    const struct settings *shown = &view->frame.settings;
     char title[300];
     snprintf(title, sizeof title, "%s - whit", path_name(shown->scene));
     window_set_title(view->window, title);

@@ -36,20 +36,12 @@ static void tell(struct session_progress *progress, enum session_stage stage)
 
 static whit_result load(struct session *session, const whit_log *log)
 {
-    const struct view_settings *settings = &session->settings;
-    const char *allowed[VIEW_ALLOWED];
+    const struct settings *settings = &session->settings;
+    const char *allowed[SETTING_FOLDERS_MOST];
     whit_refused refused = {0};
-    whit_load_params params = {.memory_limit_bytes = settings->memory_limit,
-                               .texture_limit = settings->texture_limit,
-                               .cancel = &session->cancel,
-                               .import_limit_s = settings->import_limit_s,
-                               .require_sandbox = settings->require_sandbox,
-                               .allowed_folders = allowed,
-                               .refused = &refused};
-    while (params.allowed_count < VIEW_ALLOWED && settings->allowed[params.allowed_count][0]) {
-        allowed[params.allowed_count] = settings->allowed[params.allowed_count];
-        ++params.allowed_count;
-    }
+    whit_load_params params = settings_load(settings, allowed);
+    params.cancel = &session->cancel;
+    params.refused = &refused;
     struct scene_ref *ref = calloc(1, sizeof *ref);
     if (!ref)
         return WHIT_ERROR_MEMORY;
@@ -106,7 +98,7 @@ static whit_result warm_up(struct session *session)
     return result;
 }
 
-whit_result session_open(struct session *session, const struct view_settings *settings,
+whit_result session_open(struct session *session, const struct settings *settings,
                          struct scene_ref *scene, const whit_log *log, const whit_log *scene_log,
                          struct session_progress *progress)
 {

@@ -5,14 +5,14 @@
 
 #include <stdatomic.h>
 
-#include "view/settings.h"
+#include "settings/settings.h"
 
 /* A loaded scene that several sessions, and whoever shows its names, hold. */
 struct scene_ref {
     atomic_uint refs;
     whit_scene *scene;
     whit_scene_info info;
-    struct view_settings settings; /* that it was loaded for */
+    struct settings settings; /* that it was loaded for */
     double load_ms;
 };
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
@@ -28,7 +28,7 @@ enum session_stage {
 const char *session_stage_name(enum session_stage stage);
 
 struct session {
-    struct view_settings settings; /* of scene, trees and kernel; of the picture: last drawn */
+    struct settings settings; /* of scene, trees and kernel; of the picture: last drawn */
     struct scene_ref *scene;
     whit_accel *accel;
     whit_device *device;
@@ -37,7 +37,8 @@ struct session {
     whit_log log;         /* of all that the session is made of */
     void *owner;          /* of who made it, as is `error` */
     char error[512];
-    char refused[VIEW_PATH]; /* folder of a file that the scene names and may not read; "": none */
+    char refused[SETTING_PATH_BYTES]; /* folder of a file that the scene names and may not read; "":
+                                         none */
     bool ready;
     whit_accel_info accel_info;
     whit_device_info device_info;
@@ -55,7 +56,7 @@ struct session_progress {
    else NULL. Reasons are logged: those of the scene and its trees by `scene_log`, which lives as
    long as the scene. `session` is zeroed but for `cancel` and what is its owner's; session_close
    ends it, also after a failure. */
-WHIT_CHECK whit_result session_open(struct session *session, const struct view_settings *settings,
+WHIT_CHECK whit_result session_open(struct session *session, const struct settings *settings,
                                     struct scene_ref *scene, const whit_log *log,
                                     const whit_log *scene_log, struct session_progress *progress);
 /* How many messages the validation layers had of its device. */

@@ -46,7 +46,7 @@ static json_t *frame_json(const struct engine_frame *frame)
 {
     char words[4096];
     json_t *object = json_object();
-    settings_words(&frame->settings, " ", words, sizeof words);
+    settings_write(&frame->settings, SETTINGS_STATE, " ", words, sizeof words);
     size_t pixels = (size_t)frame->width * frame->height;
     put_count(object, "number", frame->number);
     put_count(object, "first", frame->first);
@@ -165,11 +165,9 @@ static json_t *keys_json(const struct view *view)
     const struct key_binding *keys = key_bindings(&count);
     json_t *object = json_object();
     for (uint32_t i = 0; i < count; ++i) {
-        char state[VIEW_TEXT] = "";
-        if (!keys[i].state)
-            continue;
-        keys[i].state(view, state, sizeof state);
-        put_text(object, keys[i].name, state);
+        char state[SETTING_TEXT_BYTES] = "";
+        if (key_state(view, &keys[i], state, sizeof state))
+            put_text(object, keys[i].name, state);
     }
     return object;
 }
@@ -271,8 +269,8 @@ static json_t *state_json(struct view *view, const char *name)
     struct swapchain_info chain;
     json_t *root = json_object();
     put_text(root, "at", name);
-    settings_words(&view->settings, " ", words, sizeof words);
-    settings_render_line(scenes_shown(view), line, sizeof line);
+    settings_write(&view->settings, SETTINGS_STATE, " ", words, sizeof words);
+    settings_write_render(scenes_shown(view), SETTINGS_LINE, "picture.png", line, sizeof line);
     swapchain_get_info(view->swapchain, &chain);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);
@@ -297,7 +295,7 @@ static json_t *state_json(struct view *view, const char *name)
     json_object_set_new(root, "frame", frame_json(&view->frame));
     put_bool(root, "picked", view->picked);
     json_object_set_new(root, "probe", probe_json(&view->probe));
-    put_number(root, "fps_goal", view->panels.fps_goal);
+    put_number(root, "fps_goal", view->settings.fps_goal);
     json_object_set_new(root, "compare", compare_json(view));
     json_object_set_new(root, "items", items_json());
     json_object_set_new(root, "panels", panels_json(true));

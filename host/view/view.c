@@ -103,7 +103,7 @@ static void take_frame(struct view *view)
 
 bool view_go_back(struct view *view)
 {
-    struct view_settings back = view->fallback;
+    struct settings back = view->fallback;
     if (!settings_same_scene(&view->settings, &view->fallback))
         return false;
     settings_set_camera(&back, &view->settings);
@@ -358,7 +358,7 @@ static whit_result open_all(struct view *view)
                                          .height = picture->height,
                                          .fullscreen = params->fullscreen};
     const struct engine_params engine = {
-        .budget_ms = params->budget_fps > 0.0 ? 1e3 / params->budget_fps : 0.0,
+        .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
         .log = {view->log.fn, view->log.user, view->log.level},
     };
@@ -407,7 +407,6 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     view->params = params;
     view->settings = params->settings;
     view->hud = HUD_SMALL;
-    view->panels.fps_goal = params->budget_fps;
     view->hint = params->hint != NULL;
     view->clock.speed = 1.0;
     view->moved_ms = view->escape_ms = -1e9;

@@ -6,32 +6,17 @@
 
 /* A picture to be saved with its recipe. */
 struct view_shot {
-    const struct view_settings *settings;
+    const struct settings *settings;
     const whit_image *color; /* linear, as `whit render` makes it */
     const whit_scene *scene;
     const whit_device_info *device;
     const whit_stats *stats;
 };
 
-/* What a file of settings says. */
-struct view_state {
-    struct view_settings settings;
-    double fps_goal; /* 0: 30 */
-};
-
-/* What settings are to be chosen for; all 0: nothing, they stay as they are. */
-struct view_wish {
-    double budget_ms; /* the best ones that take at most this, by the clock */
-    double max_error; /* the cheapest ones with at most this RMSE */
-};
-
 struct view_params {
-    struct view_settings settings; /* to begin with; settings.picture's size is the window's */
+    struct settings settings; /* to begin with; settings.picture's size is the window's */
     bool fullscreen, no_vsync, blit;
-    struct view_wish wish;
     double spend_s;     /* on measuring costs, more or less; 0: as it suits */
-    double budget_fps;  /* while something moves; 0: 30 */
-    double fps;         /* frames of the animation in a second, for single steps */
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
     const char *record; /* where events go, or NULL */
     const char *replay; /* where they come from, or NULL */
@@ -44,10 +29,10 @@ struct view_params {
     /* Saves a picture; the reason of a failure goes to the log. */
     whit_result (*save)(void *user, const struct view_shot *shot, const char *path);
     void *save_user;
-    /* Reads a file of settings, over what *state has of scene and device; `message` gets the reason
-       of a failure, with file and line. May be NULL. */
-    whit_result (*load_state)(void *user, const char *path, struct view_state *state, char *message,
-                              size_t message_bytes);
+    /* Reads a file of settings, over what *settings has of scene and files; `message` gets the
+       reason of a failure, with file and line. May be NULL. */
+    whit_result (*load_state)(void *user, const char *path, struct settings *settings,
+                              char *message, size_t message_bytes);
     void *load_user;
     float ui_scale; /* of text and panels; 0: the monitor's */
 };

@@ -78,9 +78,9 @@ struct view {
     struct ui *ui;
     struct engine *engine;
 
-    struct view_settings settings; /* wanted */
+    struct settings settings; /* wanted */
     /* Of the last picture, or what it began with: where a switch fails, it goes back. */
-    struct view_settings fallback;
+    struct settings fallback;
     struct view_camera camera; /* of settings.camera, as numbers */
     bool camera_known;         /* else the scene's first camera, not read as yet */
     int file_camera;           /* of the scene's, or -1 */
@@ -121,13 +121,14 @@ struct view {
     uint32_t shown; /* pictures */
     bool picture_set;
 
-    struct watch *watch;          /* on the shown scene's files; NULL: not possible */
-    struct watch *watch_asked;    /* on `asked`, until that is shown; likewise */
-    char asked[VIEW_PATH];        /* what was opened, or read again, last */
-    char refused[ENGINE_MESSAGE]; /* why that is not shown; "": it is, or may be yet */
-    char answered[VIEW_PATH]; /* the last folder of status.refused that the user was asked about */
-    uint32_t reloads;         /* that there were, of any scene */
-    bool played;              /* the shown scene, before another one was asked for */
+    struct watch *watch;               /* on the shown scene's files; NULL: not possible */
+    struct watch *watch_asked;         /* on `asked`, until that is shown; likewise */
+    char asked[SETTING_PATH_BYTES];    /* what was opened, or read again, last */
+    char refused[ENGINE_MESSAGE];      /* why that is not shown; "": it is, or may be yet */
+    char answered[SETTING_PATH_BYTES]; /* the last folder of status.refused that the user was asked
+                                          about */
+    uint32_t reloads;                  /* that there were, of any scene */
+    bool played;                       /* the shown scene, before another one was asked for */
     struct replay *replay;
     FILE *record;
     double record_ms;
@@ -173,7 +174,7 @@ void scenes_watch(struct view *view);
 /* Reads what was refused, else what is shown, again. */
 void scenes_read_again(struct view *view);
 /* The settings, unless they are of a scene that is not shown yet: then the last picture's. */
-const struct view_settings *scenes_shown(const struct view *view);
+const struct settings *scenes_shown(const struct view *view);
 /* What went wrong; "": nothing. */
 const char *view_error(const struct view *view);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */
@@ -199,9 +200,6 @@ void price_draw(struct view *view);
 /* Stops it; it goes once it is at its end, which nobody waits for. NULL is fine. */
 void prices_leave(struct view *view, struct prices *prices);
 void prices_part(struct view *view); /* from those that are */
-/* Between what the window shows and what knobs are put into. */
-void settings_to_knobs(const struct view_settings *settings, struct knob_target *target);
-void settings_from_knobs(const struct knob_target *target, struct view_settings *settings);
 
 /* overlay.c: lines in the scene, between ui_begin and ui_end. Cameras that are not perspective have
    none. */
@@ -224,8 +222,12 @@ struct key_binding {
     const char *name;  /* of the state */
     void (*act)(struct view *view);
     void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: none */
+    const struct setting *setting; /* that it turns, in place of `act` and `state`; NULL: none */
+    int by;
 };
 const struct key_binding *key_bindings(uint32_t *count);
+/* False where there is nothing to say. */
+bool key_state(const struct view *view, const struct key_binding *key, char *text, size_t bytes);
 /* False where the key does nothing. */
 bool key_act(struct view *view, int key, unsigned mods);
 

@@ -18,58 +18,29 @@ const char *wish_stage_name(enum wish_stage stage)
 
 /* ---- Settings ---- */
 
-/* All that may be chosen: what changes colours, as `whit render` chooses. */
-static uint64_t shading_knobs(void)
+/* In place of what was chosen before. */
+static void set_usual(struct settings *settings)
 {
-    uint32_t count;
-    uint64_t bits = 0;
-    const struct knob *table = knob_table(&count);
-    for (uint32_t i = 0; i < count; ++i)
-        bits |= (uint64_t)(table[i].change == KNOB_SHADING) << i;
-    return bits;
+    const struct settings usual = settings_usual();
+    settings_set_light(settings, &usual);
 }
 
-/* The usual ones in place of what was chosen before. */
-static void set_usual(struct view_settings *settings)
+static void set_choice(const struct cost_choice *choice, struct settings *settings)
 {
-    const whit_renderer_params usual = whit_renderer_defaults();
-    whit_renderer_params *p = &settings->picture;
-    p->samples = usual.samples;
-    p->depth = usual.depth;
-    p->bailout = usual.bailout;
-    p->light_samples = usual.light_samples;
-    p->adaptive = usual.adaptive;
-    p->shadows = usual.shadows;
-    p->schlick = usual.schlick;
-    settings->effects[0] = '\0';
-}
-
-static void set_choice(const struct cost_choice *choice, struct view_settings *settings)
-{
-    struct knob_target target;
     set_usual(settings);
-    settings_to_knobs(settings, &target);
-    cost_choice_apply(choice, &target);
-    settings_from_knobs(&target, settings);
+    cost_choice_apply(choice, settings);
 }
 
 bool wish_is_left(const struct view *view)
 {
-    struct view_settings same = view->settings;
-    const struct view_settings *chosen = &view->wish.settings;
-    same.picture = chosen->picture;
-    settings_set_camera(&same, &view->settings);
-    same.picture.traversal = view->settings.picture.traversal;
-    same.picture.numerics = view->settings.picture.numerics;
-    memcpy(same.effects, chosen->effects, sizeof same.effects);
-    return !settings_same(&same, &view->settings);
+    return !settings_same_light(&view->wish.settings, &view->settings);
 }
 
 /* ---- Choosing ---- */
 
 static struct cost_goal goal_of(const struct view *view)
 {
-    const struct view_wish *asked = &view->params->wish;
+    const struct settings *asked = &view->params->settings;
     bool within = asked->budget_ms > 0.0;
     double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
     return (struct cost_goal){
@@ -104,14 +75,14 @@ static void choose(struct view *view, const struct cost_report *report)
 static void measure(struct view *view)
 {
     struct wish *wish = &view->wish;
-    struct view_settings usual = view->frame.settings;
+    struct settings usual = view->frame.settings;
     double spend_s = view->params->spend_s;
     set_usual(&usual);
     wish->prices =
         prices_start(&(struct prices_params){.settings = &usual,
                                              .scene = view->scene,
                                              .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
-                                             .knobs = shading_knobs(),
+                                             .knobs = knobs_of_light(),
                                              .wake = window_wake,
                                              .wake_user = view->window});
     wish->stage = wish->prices ? WISH_MEASURES : WISH_FAILED;
@@ -144,7 +115,7 @@ static void try_choice(struct view *view)
 {
     struct wish *wish = &view->wish;
     const struct engine_frame *frame = &view->frame;
-    double budget_ms = view->params->wish.budget_ms, took_ms = frame->stats.render_ms;
+    double budget_ms = view->params->settings.budget_ms, took_ms = frame->stats.render_ms;
     struct prices_state state;
     if (!frame->whole || !settings_same(&frame->settings, &view->settings))
         return;
@@ -173,7 +144,7 @@ void wish_again(struct view *view)
 
 void wish_begin(struct view *view)
 {
-    const struct view_wish *asked = &view->params->wish;
+    const struct settings *asked = &view->params->settings;
     bool any = asked->budget_ms > 0.0 || asked->max_error > 0.0;
     view->wish.stage = any ? WISH_WAITS : WISH_NONE;
 }
@@ -212,7 +183,7 @@ void wish_finish(struct view *view)
 static void draw_chosen(const struct view *view)
 {
     const struct wish *wish = &view->wish;
-    double budget_ms = view->params->wish.budget_ms;
+    double budget_ms = view->params->settings.budget_ms;
     ui_text_color(COLOR_GOOD, "%s", wish->text);
     ui_text("predicted %.4g ms, RMSE %.3g", wish->predicted_ms, wish->predicted_error);
     if (wish->took_ms > 0.0)
@@ -227,7 +198,7 @@ static void draw_chosen(const struct view *view)
 void wish_draw(const struct view *view)
 {
     const struct wish *wish = &view->wish;
-    const struct view_wish *asked = &view->params->wish;
+    const struct settings *asked = &view->params->settings;
     struct prices_state state;
     if (wish->stage == WISH_NONE)
         return;

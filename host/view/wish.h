@@ -20,10 +20,10 @@ const char *wish_stage_name(enum wish_stage stage); /* "measures" */
 enum { WISH_TEXT = 256 };
 struct wish {
     enum wish_stage stage;
-    struct scene_ref *scene;       /* that it is of; only its address counts */
-    struct prices *prices;         /* NULL unless it was measured */
-    struct view_settings settings; /* chosen; of the view that was measured */
-    char text[WISH_TEXT];          /* the options chosen, or why there are none */
+    struct scene_ref *scene;  /* that it is of; only its address counts */
+    struct prices *prices;    /* NULL unless it was measured */
+    struct settings settings; /* chosen; of the view that was measured */
+    char text[WISH_TEXT];     /* the options chosen, or why there are none */
     double predicted_ms, predicted_error;
     double took_ms; /* of the first picture with them; 0: not drawn yet */
     double slower;  /* than measured, at this moment */

@@ -17,15 +17,16 @@ for command in $("$WHIT" --complete | cut -f 1); do
     missing=
     for option in $(cut -f 1 "$OUT/options"); do
         grep -qE "^\.B (-., )?$option( |\$)" "$OUT/page" || missing="$missing page:$option"
-        case $option in
-        --help | --help-all | --quiet) ;;
-        *) # A row, or the sentence of `whit COMMAND`.
-            sed 's/\\|//g' "$DOCS" | grep -qE "^\|[^|]*$option[^a-z-][^|]*\| [^|]*\b$command\b" ||
-                missing="$missing docs:$option" ;;
-        esac
     done
-    check "$command: its page and docs/cli.md have all options$missing" test -z "$missing"
+    check "$command: its page has all options$missing" test -z "$missing"
 done
+if "$WHIT" view --help >/dev/null 2>&1; then
+    "$WHIT" --options >"$OUT/table"
+    sed -n '/^| option | commands | meaning |$/,/^$/p' "$DOCS" | sed '$d' >"$OUT/docs"
+    check "the table of docs/cli.md is what whit --options prints" cmp "$OUT/table" "$OUT/docs"
+else
+    echo "SKIPPED part: the table of docs/cli.md has the viewer's options"
+fi
 if command -v groff >/dev/null; then
     for page in "$OUT"/man/*.1; do
         groff -man -Tutf8 -ww "$page" >/dev/null 2>>"$OUT/troff"

@@ -27,7 +27,7 @@ cat >"$OUT/mirrors.json" <<END
     { "shape": "box", "size": [0.1, 9, 9], "translation": [-2, 0, 0], "material": "m" } ] }
 END
 where="radiance is not finite: in [1-9][0-9]* pixels\{0,1\} so far, the first at [0-9]*,[0-9]*$"
-for options in "" "--aa 4" "--aa adaptive:0.1" "--no-bvh" "--effects all"; do
+for options in "" "--aa 4" "--aa adaptive:0.1" "--build none" "--effects all"; do
     # shellcheck disable=SC2086
     distrust "infinite radiance $options" "$where" "$OUT/mirrors.json" --size 16x16 $options
 done
@@ -60,7 +60,7 @@ awk 'BEGIN {
         printf "%s{ \"kind\": \"rectangle\", \"position\": [0, 2, 0], \"u\": [1, 0, 0], \"v\": [0, 0, 1] }", i ? "," : ""
     printf "], \"objects\": [{ \"shape\": \"plane\", \"size\": 4 }] }" }' >"$OUT/lights.json"
 expect 0 "many points of lights" \
-    render "$OUT/lights.json" -o p.exr --size 8x8 --no-shadows --light-samples 64 --quiet
+    render "$OUT/lights.json" -o p.exr --size 8x8 --shadows none --light-samples 64 --quiet
 rm p.exr
 
 # More nodes on the way of a ray than that. From the other end it meets the nearest first.
@@ -73,9 +73,9 @@ awk 'BEGIN {
 camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001"
 # shellcheck disable=SC2086
 distrust "too many nodes" "a traversal was cut short" \
-    "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --no-shadows $camera
+    "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --shadows none $camera
 # shellcheck disable=SC2086
-expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --no-shadows $camera --quiet
+expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet
 rm p.exr
 
 # The same by `trace`: a ray from z = 65536 the way -z. The twin on the CPU has no such limit.

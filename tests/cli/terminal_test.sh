@@ -125,7 +125,7 @@ if "$WHIT" view --help >/dev/null 2>&1; then
     printf '%s\n' "--build 'a'\$'\\x1b\\x5b'\\0" >x.view
     says 2 "settings" 'x.view:1: --build `a\u001b[0`' view "$CUBE" --state x.view
     printf '%s\n' "--build $LONG" >x.view
-    says 2 "a long word of settings" "x.view:1: --build \`${SHORT%...}\`" view "$CUBE" --state x.view
+    says 2 "a long word of settings" "x.view:1: --build \`$SHORT\`" view "$CUBE" --state x.view
     printf '%s\n' "$LONG" >x.replay
     says 2 "a long line of a replay" "x.replay:1: \`$SHORT\`" view "$CUBE" --replay x.replay
     for end in '' '\x0' "\\x00'" '\x1'; do

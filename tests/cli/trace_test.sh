@@ -25,7 +25,7 @@ for on in device cpu brute; do
 done
 check "the device equals its twin" cmp "$OUT/files/device" "$OUT/files/cpu"
 check "the twin equals brute force" cmp "$OUT/files/cpu" "$OUT/files/brute"
-expect 0 "trace --no-bvh" trace "$CUBE" --rays "$R" -o "$OUT/files/no-bvh" --no-bvh --quiet
+expect 0 "trace --build none" trace "$CUBE" --rays "$R" -o "$OUT/files/no-bvh" --build none --quiet
 check "so does the device without trees" cmp "$OUT/files/no-bvh" "$OUT/files/brute"
 
 # More than a ray may test one by one on a device; what needs no trees has no such bound.
@@ -34,8 +34,8 @@ expect 0 "54,450 triangles without trees" \
     trace "$MANY" --rays "$R" -o "$OUT/files/many" --on brute --quiet
 for command in "trace --rays $R -o $OUT/files/none" "render -o $OUT/files/none.png" "probe --pixel 0,0"; do
     # shellcheck disable=SC2086
-    refuse 2 "${command%% *} --no-bvh" "54k.json: without trees .* 54450 over all instances are too many" \
-        ${command%% *} "$MANY" ${command#* } --no-bvh
+    refuse 2 "${command%% *} --build none" "54k.json: without trees .* 54450 over all instances are too many" \
+        ${command%% *} "$MANY" ${command#* } --build none
 done
 expect 0 "any hit" trace "$CUBE" --rays "$R" -o "$OUT/files/any" --any --quiet
 any=$(od -An -v -tu4 -w32 "$OUT/files/any" | awk '{ printf "%s ", ($4 == 4294967295) }')

@@ -48,11 +48,13 @@ refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
 refuse 2 "--build best" "binned, sweep" render "$CUBE" -o "$P" --build best
 refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
 for build in binned: binned:257 binned:7x median:3 sweep-naive sweep:2 spatial: spatial:2 spatial:1e-5, \
-    spatial:1e-5,-1 spatial:1e-5,1,1 none +opt binned+opt+opt binned+opt:7 ""; do
-    refuse 2 "--build '$build'" "need\|take numbers" render "$CUBE" -o "$P" --build "$build"
+    spatial:1e-5,-1 spatial:1e-5,1,1 none+opt +opt binned+opt+opt binned+opt:7 ""; do
+    refuse 2 "--build '$build'" "need\|take numbers\|nothing to improve" render "$CUBE" -o "$P" --build "$build"
 done
-refuse 2 "--no-bvh with --build" "either there are trees" render "$CUBE" -o "$P" --no-bvh --build median
-refuse 2 "--no-bvh with --leaf" "no leaves" render "$CUBE" -o "$P" --no-bvh --leaf 2
+refuse 2 "an option that is gone" "is .--build none. now" render "$CUBE" -o "$P" --no-bvh
+refuse 2 "another one" "is .--shadows none. now" render "$CUBE" -o "$P" --no-shadows
+refuse 2 "and one more" "is .--shadows opaque. now" view "$CUBE" --opaque-shadows
+refuse 2 "--build none with --leaf" "no leaves" render "$CUBE" -o "$P" --build none --leaf 2
 refuse 2 "--leaf 16" "from 1 to 15" render "$CUBE" -o "$P" --leaf 16
 refuse 2 "--leaf 0" "from 1 to 15" render "$CUBE" -o "$P" --leaf 0
 refuse 2 "--traversal near" "distance, sign, basic" render "$CUBE" -o "$P" --traversal near

@@ -167,7 +167,7 @@ END
 check "another order, other visits" more "$(value costs compare.other_colors)" 0
 is costs compare.has_flip false
 is costs compare.other_ids 0
-is mixed keys.next\ view stack
+is mixed keys.view stack
 press_v=$(value mixed compare.known)
 check "both are costs: they are subtracted ($press_v)" test "$press_v" = true
 
@@ -213,7 +213,7 @@ still
 state mouse
 END
 same words key mouse
-same "keys.traversal order" key mouse
+same "keys.traversal" key mouse
 is mouse words "--size 320x240 --traversal sign"
 
 # ---- Files of settings ----
@@ -308,7 +308,7 @@ refused "a value" 'refused.view:2: --depth `-1`: a whole number' "--traversal si
 refused "a word" 'refused.view:1: `cube.json` is no option' "cube.json"
 refused "a quote" 'refused.view:1: a quote has no end' "--camera 'here"
 refused "another file" 'refused.view:1: --state is nothing to be saved' "--state refused.view"
-refused "two that exclude each other" 'refused.view:.*--no-bvh and --build' "--no-bvh" "--build sweep"
+refused "two that exclude each other" 'refused.view:.*--time and --frame' "--time 1" "--frame 2"
 expect 2 "no such file" view "$CUBE" --state nowhere.view --frames 1
 check "no such file: says so" grep -q "nowhere.view: cannot be read: No such file" "$OUT/stderr"
 

@@ -302,12 +302,12 @@ check "and it says how" test "$(value costs toast | grep -c 'whit render --view'
 # The words of a start are those of the state: whit view says as whit render does.
 # shellcheck disable=SC2086
 play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
-    --bailout 0.01 --fresnel schlick --opaque-shadows --instances off --numerics fast <<END
+    --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
 still
 state start
 END
 renders start -o words.pfm --ids words.exr
-is start words "--size 96x64 --traversal basic --numerics fast --build median --instances off --aa 4 --depth 3 --bailout 0.01 --fresnel schlick --opaque-shadows"
+is start words "--size 96x64 --aa 4 --depth 3 --bailout 0.01 --shadows opaque --fresnel schlick --build median --instances off --traversal basic --numerics fast"
 # shellcheck disable=SC2086
 play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
 press F2

@@ -41,7 +41,7 @@ rest
 is start window_width 96
 is minimised window_width 0
 is minimised window_height 0
-is hidden "keys.traversal order" sign
+is hidden "keys.traversal" sign
 same frame.number minimised hidden
 is hidden measure.drawn 0
 is back window_width 96
@@ -144,7 +144,7 @@ for turn in 1 2; do
     play "replay $turn" "$CUBE" --size 96x64 <"$OUT/again"
     value end words >"$OUT/words.$turn"
     value end frame.ids >"$OUT/ids.$turn"
-    is end "keys.traversal order" sign
+    is end "keys.traversal" sign
     is end "keys.tree builder" sweep
     is end "keys.next camera of the file" "by hand"
 done

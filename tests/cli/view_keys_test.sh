@@ -55,18 +55,14 @@ press M
 still
 state watertight
 END
-for at in "sign traversal|order|sign" "basic traversal|order|basic" "round traversal|order|distance" \
-    "back traversal|order|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
+for at in "sign traversal|sign" "basic traversal|basic" "round traversal|distance" \
+    "back traversal|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
     "median tree|builder|median" "binned tree|builder|binned" "instances instance|tree|on" \
     "flat instance|tree|off" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
     "watertight numerics|watertight"; do
     state=${at%% *}
     key=${at#* }
-    case $key in
-    numerics*) name=numerics ;;
-    *) name=$(echo "$key" | cut -d '|' -f 1,2 | tr '|' ' ') ;;
-    esac
-    is "$state" "keys.$name" "$(echo "${key#"$(echo "$name" | tr ' ' '|')|"}" | tr '|' ' ')"
+    is "$state" "keys.$(echo "${key%|*}" | tr '|' ' ')" "${key##*|}"
     is "$state" frame.whole true
 done
 for state in sign basic round back sweep spatial median binned instances again exact watertight; do
@@ -209,19 +205,19 @@ press A
 still
 state single
 END
-is start "keys.more bounces" 8
-is seven "keys.more bounces" 7
-is one "keys.more bounces" 1
-is zero "keys.more bounces" 0
-is lowest "keys.more bounces" 0
-is up "keys.more bounces" 1
-is zero change.what "depth 1 -> 0"
+is start "keys.bounces" 8
+is seven "keys.bounces" 7
+is one "keys.bounces" 1
+is zero "keys.bounces" 0
+is lowest "keys.bounces" 0
+is up "keys.bounces" 1
+is zero change.what "bounces 1 -> 0"
 same frame.ids start zero
 differs frame.pixels start zero
 same frame.pixels one up
 is four frame.samples 4
 is sixtyfour frame.samples 64
-is adaptive "keys.anti-aliasing" adaptive:0.05
+is adaptive "keys.anti-aliasing" adaptive
 is adaptive words "--size 48x32 --aa adaptive:0.05 --depth 1"
 is single frame.samples 1
 same frame.pixels up single

@@ -59,7 +59,7 @@ check "nothing is refracted" test "$(numbers "$P/none.pfm" | sort -u | wc -l)" =
 # Heat maps.
 expect 0 "a heat map" render "$SCENE" -o "$P/heat.png" --size $SIZE --view visits --quiet
 check "says what it shows" grep -aq '"view":"visits","rays":"primary","scale":' "$P/heat.png"
-check "and how to make it" grep -aq -- '--view visits --view-rays primary --build binned' "$P/heat.png"
+check "and how to make it" grep -aq -- '--view visits -o whit.png' "$P/heat.png"
 expect 0 "once more" render "$SCENE" -o "$P/again.png" --size $SIZE --view visits --quiet --tile-size 16
 check "the same bytes" cmp "$P/heat.png" "$P/again.png"
 expect 0 "another scale" render "$SCENE" -o "$P/scale.png" --size $SIZE --view visits \

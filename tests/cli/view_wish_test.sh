@@ -34,7 +34,7 @@ END
     is first wish.predicted_ms 0
     is chosen scene "$measured"
     is chosen wish.stage "$text"
-    is chosen "keys.traversal order" sign
+    is chosen "keys.traversal" sign
     is chosen frame.whole true
     is chosen frame.drawn_words "$(value chosen words)"
     is elsewhere wish.stage "$text"

@@ -1,5 +1,5 @@
-/* Files of settings, by options that take each kind of value; and words that are quoted as the
-   program quotes them, which are read as they were. */
+/* Files of settings, by the table of settings; and words that are quoted as the program quotes
+   them, which are read as they were. */
 #include "fuzz.h"
 
 #include <math.h>
@@ -7,54 +7,34 @@
 #include <string.h>
 
 #include "app/state_file.h"
-#include "cost/words.h"
-#include "settings/values.h"
+#include "settings/quote.h"
 
-enum { ID_FLAG = 'q', ID_TEXT = 256, ID_COUNT, ID_BYTES, ID_NUMBER, ID_SIZE, ID_CHOICE };
-
-static const struct setting_value choices[] = {{"a", 1, NULL}, {"b", 2, NULL}, {0}};
-static const struct cli_option options[] = {
-    {ID_FLAG, "quiet", NULL, "a flag", NULL},         {ID_TEXT, "text", "T", "a text", NULL},
-    {ID_COUNT, "count", "N", "a count", NULL},        {ID_BYTES, "bytes", "B", "bytes", NULL},
-    {ID_NUMBER, "number", "X", "a number", NULL},     {ID_SIZE, "size", "WxH", "two counts", NULL},
-    {ID_CHOICE, "choice", NULL, "a choice", choices}, {0},
-};
+static const struct setting none[] = {{0}};
 static const struct cli_command command = {
-    .name = "fuzz", .arguments = "", .summary = "", .options = options};
+    .name = "fuzz", .arguments = "", .summary = "", .options = none, .settings = IN_VIEW};
 
-static char *text; /* the last one that --text gave */
-
-static void read_option(void *user, struct cli_reader *reader, int id)
+/* What was read is what is written, and reads back as itself. */
+static void check_values(const struct settings *settings)
 {
-    uint32_t a = 7, b = 7;
-    uint64_t bytes = 7;
-    double number = 7.0;
-    (void)user;
-    if (id == ID_TEXT) {
-        free(text);
-        text = strdup(reader->value);
-        fuzz_check(text, "out of memory");
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+        struct settings again = settings_usual();
+        if (!(row->commands & IN_VIEW) || row->kind == SETTING_FLAG ||
+            setting_same(row, settings, &again) || !setting_write(row, settings, 0, text))
+            continue;
+        fuzz_check(setting_read(row, text, &again, why), "--%s%s", row->name, why);
+        fuzz_check(setting_same(row, settings, &again), "--%s %s", row->name, text);
     }
-    if (id == ID_COUNT && cli_unsigned(reader, 2, 9, &a))
-        fuzz_check(a >= 2 && a <= 9, "`%s` is %u", reader->value, a);
-    if (id == ID_BYTES && cli_bytes(reader, &bytes))
-        fuzz_check(bytes > 0, "`%s` is nothing", reader->value);
-    if (id == ID_NUMBER && cli_number(reader, -2.0, 9.0, &number))
-        fuzz_check(number >= -2.0 && number <= 9.0, "`%s` is %g", reader->value, number);
-    if (id == ID_SIZE && cli_size(reader, &a, &b))
-        fuzz_check(a > 0 && b > 0, "`%s` is %ux%u", reader->value, a, b);
-    if (id == ID_CHOICE && cli_choice_unsigned(reader, &a))
-        fuzz_check(a == 1 || a == 2, "`%s` is choice %u", reader->value, a);
 }
 
-static bool read_file(const char *path, char *said, size_t said_bytes)
+static bool read_file(const char *path, struct settings *settings, char *said, size_t said_bytes)
 {
     struct state_file file;
-    struct cli_reader reader;
+    *settings = settings_usual();
     said[0] = 0;
     if (!state_file_open(&file, path, said, said_bytes))
         return false;
-    bool good = state_file_read(&file, &command, read_option, NULL, &reader, said, said_bytes);
+    bool good = state_file_read(&file, &command, settings, said, said_bytes);
     free(file.text);
     return good;
 }
@@ -77,26 +57,32 @@ static void put_part(void *user, const char *part)
 
 static void check_word(const uint8_t *data, size_t size_bytes)
 {
-    enum { WORD_MOST = 512, A_BYTE = 16, HEAD = 16 };
+    enum { WORD_MOST = SETTING_TEXT_BYTES - 1, A_BYTE = 16, HEAD = 16 };
+    struct settings settings;
     char word[WORD_MOST + 1], buffer[HEAD + A_BYTE * WORD_MOST], said[256];
     struct line line = {.text = buffer, .room = sizeof buffer};
     size_t length = size_bytes < WORD_MOST ? size_bytes : WORD_MOST;
     memcpy(word, data, length);
     word[length] = 0;
-    put_part(&line, "--text=");
-    words_quote(word, put_part, &line);
+    put_part(&line, "--camera=");
+    quote_word(word, put_part, &line);
     const char *path = fuzz_file("words", line.text, line.used);
-    fuzz_check(read_file(path, said, sizeof said), "%s", said);
-    fuzz_check(text && strcmp(text, word) == 0, "`%s` is read as `%s`", word, text ? text : "");
+    if (!word[0])
+        return;
+    fuzz_check(read_file(path, &settings, said, sizeof said), "%s", said);
+    fuzz_check(strcmp(settings.camera, word) == 0, "`%s` is read as `%s`", word, settings.camera);
 }
 
 static void run(const uint8_t *data, size_t size_bytes)
 {
     char said[256];
     const char *path = fuzz_file("settings", data, size_bytes);
-    bool good = read_file(path, said, sizeof said);
+    struct settings settings;
+    bool good = read_file(path, &settings, said, sizeof said);
     fuzz_check(good == !said[0], "%s: `%s`", good ? "read" : "refused", said);
     fuzz_check(good || strncmp(said, path, strlen(path)) == 0, "`%s` does not name the file", said);
+    if (good)
+        check_values(&settings);
     check_word(data, size_bytes);
 }
 

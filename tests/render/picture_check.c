@@ -262,8 +262,8 @@ static void check_all_effects(const struct subject *subject, const struct drawn 
 static void check_storage(const struct subject *subject, const struct drawn *first, bool full)
 {
     const char *effects = full ? "auto" : "auto,-shadows,-reflection,-refraction";
-    const whit_renderer_params texel = {.load_path = "texel", .effects = effects},
-                               storage = {.load_path = "storage", .effects = effects};
+    const whit_renderer_params texel = {.load_path = WHIT_LOAD_TEXEL, .effects = effects},
+                               storage = {.load_path = WHIT_LOAD_STORAGE, .effects = effects};
     struct drawn small;
     if (full)
         check_same(subject, first, &storage, "--load-path storage");
@@ -291,7 +291,7 @@ static void check_median(const struct subject *subject, const struct drawn *firs
 static void check_ways(const struct subject *subject, const struct drawn *first)
 {
     const whit_renderer_params tile = {.tile_size = 512, .packets = WHIT_PACKETS_ON},
-                               texel = {.load_path = "texel"};
+                               texel = {.load_path = WHIT_LOAD_TEXEL};
     check_same(subject, first, &tile, "--tile-size 512 --packets on");
     check_same(subject, first, &texel, "--load-path texel");
     check_median(subject, first);
@@ -321,7 +321,7 @@ static void check_usual(const struct subject *subject, const char *what)
     struct drawn first;
     if (draw(subject, &usual, &first)) {
         check_picture(subject->path, first.color, WIDTH, HEIGHT);
-        const whit_renderer_params storage = {.load_path = "storage"};
+        const whit_renderer_params storage = {.load_path = WHIT_LOAD_STORAGE};
         bool stored = strcmp(what, "stored") == 0;
         if (stored || strcmp(what, "validated") == 0) {
             setenv("WHIT_VALIDATION", "1", 1);

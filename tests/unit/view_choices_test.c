@@ -13,7 +13,7 @@ static void the_same_differ_in_nothing(void **state)
 {
     (void)state;
     struct choice_change changes[CHOICE_CHANGES_MOST];
-    const struct view_settings a = {.scene = "a.json"}, b = a;
+    const struct settings a = {.scene = "a.json"}, b = a;
     assert_int_equal(choice_changes(&a, &b, changes), 0);
 }
 
@@ -21,41 +21,50 @@ static void each_choice_is_told_by_its_name(void **state)
 {
     (void)state;
     struct choice_change changes[CHOICE_CHANGES_MOST];
-    const struct view_settings a = {.scene = "a.json"};
+    const struct settings a = settings_usual();
     uint32_t told = 0;
-    for (enum choice_id id = 0; id < CHOICE_COUNT; ++id) {
-        struct view_settings b = a;
-        choice_turn(&b, id, 1);
-        uint32_t count = choice_changes(&a, &b, changes);
-        assert_in_range(count, 0, 1);
-        told += count;
-        if (count == 0)
-            continue;
-        bool of_builder = id == CHOICE_BINS || id == CHOICE_TREES; /* which names them too */
-        enum choice_id by = of_builder ? CHOICE_BUILDER : id;
+    for (const struct setting *row = choice_next(NULL); row; row = choice_next(row), ++told) {
         char text[CHOICE_WORDS];
-        choice_say(&b, by, text, sizeof text);
-        assert_int_equal(changes[0].id, by);
-        assert_string_equal(changes[0].name, choice_name(by));
+        struct settings b = a;
+        choice_turn(&b, row, 1);
+        assert_int_equal(choice_changes(&a, &b, changes), 1);
+        choice_say(&b, row, text, sizeof text);
+        assert_string_equal(changes[0].name, row->title);
         assert_string_equal(changes[0].b, text);
         assert_string_not_equal(changes[0].a, changes[0].b);
+        choice_turn(&b, row, -1);
+        assert_int_equal(choice_changes(&a, &b, changes), 0);
     }
-    assert_in_range(told, CHOICE_VIEW, CHOICE_COUNT);
+    assert_in_range(told, 10, CHOICE_CHANGES_MOST);
+}
+
+static void numbers_end_where_their_options_do(void **state)
+{
+    (void)state;
+    const struct setting *depth = settings_row("depth");
+    struct settings settings = settings_usual();
+    choice_set_number(&settings, depth, -1.0);
+    assert_int_equal(settings.picture.depth, 0);
+    choice_turn(&settings, depth, -1);
+    assert_int_equal(settings.picture.depth, 0);
+    choice_set_number(&settings, depth, 1e9);
+    choice_turn(&settings, depth, 1);
+    assert_int_equal(settings.picture.depth, (uint32_t)depth->max);
 }
 
 static void scenes_are_told_by_their_files(void **state)
 {
     (void)state;
     struct choice_change changes[CHOICE_CHANGES_MOST];
-    const struct view_settings a = {.scene = "some/where/a.json"};
-    struct view_settings b = {.scene = "b.obj", .effects = "no-shadows"};
+    const struct settings a = {.scene = "some/where/a.json"};
+    struct settings b = {.scene = "b.obj", .effects = "-textures"};
     assert_int_equal(choice_changes(&a, &b, changes), 2);
     assert_string_equal(changes[0].name, "scene");
     assert_string_equal(changes[0].a, "a.json");
     assert_string_equal(changes[0].b, "b.obj");
     assert_string_equal(changes[1].name, "effects");
     assert_string_equal(changes[1].a, "auto");
-    assert_string_equal(changes[1].b, "no-shadows");
+    assert_string_equal(changes[1].b, "-textures");
     b = a;
     b.reload = 1;
     assert_int_equal(choice_changes(&a, &b, changes), 1);
@@ -68,6 +77,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_differ_in_nothing),
         cmocka_unit_test(each_choice_is_told_by_its_name),
+        cmocka_unit_test(numbers_end_where_their_options_do),
         cmocka_unit_test(scenes_are_told_by_their_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,9 +10,9 @@
 enum { WIDTH = 96, HEIGHT = 64 };
 static const double PATIENCE_MS = 60e3;
 
-static struct view_settings settings_of(const char *scene)
+static struct settings settings_of(const char *scene)
 {
-    struct view_settings settings = {.picture = {.width = WIDTH, .height = HEIGHT}};
+    struct settings settings = {.picture = {.width = WIDTH, .height = HEIGHT}};
     snprintf(settings.scene, sizeof settings.scene, "%s/%s", WHIT_SCENES_DIR, scene);
     return settings;
 }
@@ -47,7 +47,7 @@ static bool lose_at(unsigned n, bool once, bool *gave_up)
     snprintf(fault, sizeof fault, "vkQueueSubmit:%u", n);
     setenv("WHIT_FAULT", fault, 1);
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-    struct view_settings settings = settings_of("cube.json");
+    struct settings settings = settings_of("cube.json");
     engine_ask(engine, &settings, false);
     if (once) {
         do {
@@ -100,7 +100,7 @@ static void large_trees_are_drawn_in_packets(void **state)
     struct engine *engine;
     struct engine_frame frame = {0};
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-    struct view_settings settings = settings_of("8k.json");
+    struct settings settings = settings_of("8k.json");
     engine_ask(engine, &settings, false);
     take_all(engine, &frame);
     assert_true(frame.whole);
@@ -125,8 +125,7 @@ void *__wrap_malloc(size_t bytes)
     return __real_malloc(bytes);
 }
 
-static void draw(struct engine *engine, const struct view_settings *settings,
-                 struct engine_frame *frame)
+static void draw(struct engine *engine, const struct settings *settings, struct engine_frame *frame)
 {
     engine_frame_finish(frame);
     engine_ask(engine, settings, false);
@@ -135,12 +134,12 @@ static void draw(struct engine *engine, const struct view_settings *settings,
 
 /* Without its n-th block a picture is as it should be, or the window says why it is not. Whether
    there was an n-th block. */
-static bool draws_without(unsigned n, struct engine *engine, const struct view_settings *settings,
+static bool draws_without(unsigned n, struct engine *engine, const struct settings *settings,
                           const struct engine_frame *right, bool *said)
 {
     struct engine_frame frame = {0};
     struct engine_status status;
-    struct view_settings other = *settings; /* another one each time: the last one is kept */
+    struct settings other = *settings; /* another one each time: the last one is kept */
     snprintf(other.camera, sizeof other.camera, "%g,2,6,0,1,0,0,1,0,40", 0.001 * (double)n);
     draw(engine, &other, &frame);
     assert_true(frame.whole);
@@ -165,12 +164,12 @@ static bool draws_without(unsigned n, struct engine *engine, const struct view_s
 static void memory_that_runs_out_is_said(void **state)
 {
     (void)state;
-    static const enum view_paint paints[] = {VIEW_PAINT_COLOR, VIEW_PAINT_VISITS};
+    static const enum settings_paint paints[] = {PAINT_COLOR, PAINT_VISITS};
     window_thread = pthread_self();
     for (int i = 0; i < 2; ++i) {
         struct engine *engine;
         struct engine_frame right = {0};
-        struct view_settings settings = settings_of("cube.json");
+        struct settings settings = settings_of("cube.json");
         uint32_t said_count = 0, blocks = 0;
         bool said = false;
         settings.paint = paints[i];
@@ -197,7 +196,7 @@ static void no_look_is_cut_short(void **state)
     struct engine_frame frame = {0};
     uint32_t shown = 0, asked = 0;
     assert_int_equal(engine_create(&(struct engine_params){.budget_ms = 1e4}, &engine), WHIT_OK);
-    struct view_settings settings = settings_of("default.json");
+    struct settings settings = settings_of("default.json");
     settings.picture.width = 160;
     settings.picture.height = 108;
     engine_ask(engine, &settings, false);
@@ -230,11 +229,10 @@ static void a_switch_keeps_the_picture(void **state)
     struct engine *engine;
     struct engine_frame frame = {0};
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-    struct view_settings settings = settings_of("8k.json");
+    struct settings settings = settings_of("8k.json");
     engine_ask(engine, &settings, false);
     take_all(engine, &frame);
     settings.trees.build = WHIT_BUILD_MEDIAN;
-    snprintf(settings.build, sizeof settings.build, "median");
     engine_ask(engine, &settings, false);
     double start_ms = clock_ms();
     while (!engine_is_still(engine)) {
@@ -260,7 +258,7 @@ static void an_error_outlives_the_other_side(void **state)
     struct engine_frame frame = {0}, other = {0};
     struct engine_status status;
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-    struct view_settings settings = settings_of("cube.json");
+    struct settings settings = settings_of("cube.json");
     engine_ask(engine, &settings, false);
     take_all(engine, &frame);
     engine_ask_other(engine, &settings);
@@ -270,7 +268,7 @@ static void an_error_outlives_the_other_side(void **state)
     take_both(engine, &frame, &other);
     uint64_t number = other.number;
     snprintf(settings.camera, sizeof settings.camera, "0,2,6,0,1,0,0,1,0,40");
-    struct view_settings beside = settings_of("cube.json");
+    struct settings beside = settings_of("cube.json");
     settings_set_camera(&beside, &settings);
     engine_ask_other(engine, &beside);
     take_both(engine, &frame, &other);

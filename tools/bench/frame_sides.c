@@ -77,11 +77,11 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
         arguments[count++] = "--classes";
         arguments[count++] = "many";
     }
-    if (bench->device_name) {
+    if (bench->settings.device[0]) {
         arguments[count++] = "--device";
-        arguments[count++] = bench->device_name;
+        arguments[count++] = bench->settings.device;
     }
-    if (bench->no_cache)
+    if (bench->settings.no_cache)
         arguments[count++] = "--no-cache";
     const struct bench_child child = {.program = side == FRAME_AGAINST ? bench->against : NULL,
                                       .arguments = arguments,

@@ -66,9 +66,9 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
         arguments[count++] = bench->quick ? "32x24" : start->size;
     }
     arguments[count++] = "--quiet";
-    if (bench->device_name && !start->second) {
+    if (bench->settings.device[0] && !start->second) {
         arguments[count++] = "--device";
-        arguments[count++] = bench->device_name;
+        arguments[count++] = bench->settings.device;
     }
     const struct bench_child child = {.program = "env",
                                       .arguments = arguments,

@@ -1,4 +1,4 @@
-#include "cost/words.h"
+#include "settings/quote.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -26,7 +26,7 @@ static void put_bytes(const char *bytes, size_t count, void (*put)(void *user, c
     put(user, "''");
 }
 
-void words_quote(const char *word, void (*put)(void *user, const char *part), void *user)
+void quote_word(const char *word, void (*put)(void *user, const char *part), void *user)
 {
     if (is_plain(word)) {
         put(user, word);

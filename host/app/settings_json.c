@@ -1,0 +1,60 @@
+/* Settings as JSON, by the rows of their table. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+
+/* Of a picture of costs, which a picture of colours does not have. */
+static bool is_of_costs(const struct setting *row)
+{
+    return strncmp(row->name, "view", 4) == 0;
+}
+
+static bool is_described(const struct setting *row, const struct settings *settings,
+                         enum settings_command command)
+{
+    return row->commands & (uint32_t)command && row->change >= SETTING_LIGHT &&
+           row->kind != SETTING_FOLDERS && (settings->paint != PAINT_COLOR || !is_of_costs(row));
+}
+
+/* A number where the text is one. */
+static void put_text(json_t *object, const char *key, const char *text)
+{
+    char *end;
+    double number = strtod(text, &end);
+    if (text[0] && !text[strspn(text, "0123456789")])
+        document_count(object, key, strtoull(text, NULL, 10));
+    else if (text[0] && !*end)
+        document_number(object, key, number);
+    else
+        document_text(object, key, text[0] ? text : NULL);
+}
+
+static void put(json_t *object, const struct setting *row, const struct settings *settings)
+{
+    char key[32], text[SETTING_VALUE_BYTES];
+    snprintf(key, sizeof key, "%s", row->json ? row->json : row->name);
+    for (char *at = key; *at; ++at)
+        *at = *at == '-' ? '_' : *at;
+    setting_write(row, settings, 0, text);
+    if (row->kind == SETTING_SIZE) {
+        document_count(object, "width", settings->picture.width);
+        document_count(object, "height", settings->picture.height);
+    } else if (row->kind == SETTING_TEXT) { /* a camera of the name 1 is no number */
+        document_text(object, key, text[0] ? text : NULL);
+    } else {
+        put_text(object, key, text);
+    }
+}
+
+void settings_describe(const struct settings *settings, enum settings_command command,
+                       json_t *object)
+{
+    struct settings told = *settings;
+    if (!strchr(told.effects, '-')) /* what is compiled and not called for changes nothing */
+        told.effects[0] = '\0';
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (is_described(row, &told, command))
+            put(object, row, &told);
+    }
+}

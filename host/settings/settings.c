@@ -1,0 +1,304 @@
+#include "settings/settings.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings/quote.h"
+
+/* ---- The table ---- */
+
+const struct setting *settings_row(const char *name)
+{
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (strcmp(row->name, name) == 0)
+            return row;
+    }
+    abort();
+}
+
+static uint64_t bit_of(const struct setting *row)
+{
+    return UINT64_C(1) << (row - settings_table);
+}
+
+bool settings_given(const struct settings *settings, const char *name)
+{
+    return settings->given & bit_of(settings_row(name));
+}
+
+struct settings settings_usual(void)
+{
+    return (struct settings){.load = {.texture_limit = 4096},
+                             .trees = {.leaf_limit = 4},
+                             .picture = whit_renderer_defaults(),
+                             .fps = 24.0,
+                             .fps_goal = 30.0};
+}
+
+bool settings_read(const struct setting *row, const char *text, struct settings *settings,
+                   char why[SETTING_WHY_BYTES])
+{
+    bool read = setting_read(row, text, settings, why);
+    if (read)
+        settings->given |= bit_of(row);
+    return read;
+}
+
+/* ---- Options that do not go together ---- */
+
+/* Colours by --aa and the like, which --budget-ms and --max-error choose by themselves. */
+static bool light_is_given(const struct settings *settings)
+{
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (row->change == SETTING_LIGHT && row->need < SETTING_NEEDS_TREES &&
+            settings->given & bit_of(row))
+            return true;
+    }
+    return false;
+}
+
+static bool check_choice(const struct settings *settings, char *why)
+{
+    bool budget = settings->budget_ms > 0.0, error = settings->max_error > 0.0;
+    const char *name = budget ? "--budget-ms" : "--max-error";
+    if (budget && error)
+        return setting_refuse(why, "--budget-ms and --max-error: one of them");
+    if ((budget || error) && light_is_given(settings))
+        return setting_refuse(why, "%s chooses --aa, --depth and the like by itself", name);
+    if ((budget || error) && settings->paint != PAINT_COLOR)
+        return setting_refuse(why, "%s is for one picture of colours", name);
+    return true;
+}
+
+bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES])
+{
+    bool rays = settings_given(settings, "view-rays"),
+         scale = settings_given(settings, "view-scale");
+    if (settings_given(settings, "time") && settings_given(settings, "frame"))
+        return setting_refuse(why, "--time and --frame are two ways to say the same");
+    if (settings->trees.build == WHIT_BUILD_NONE && settings_given(settings, "leaf"))
+        return setting_refuse(why, "--build none and --leaf: without trees there are no leaves");
+    if (settings->paint == PAINT_COLOR && (rays || scale))
+        return setting_refuse(why,
+                              "--view-%s: there is nothing to count without --view depth, visits, "
+                              "boxes, tris or stack",
+                              rays ? "rays" : "scale");
+    if (settings_given(settings, "frame"))
+        settings->picture.time_s = (double)settings->frame / settings->fps;
+    return check_choice(settings, why);
+}
+
+/* ---- For libwhit ---- */
+
+whit_renderer_params settings_picture(const struct settings *settings)
+{
+    whit_renderer_params params = settings->picture;
+    params.camera = settings->camera[0] ? settings->camera : NULL;
+    params.effects = settings->effects[0] ? settings->effects : NULL;
+    params.count = params.count || settings->paint != PAINT_COLOR;
+    if (settings->paint != PAINT_COLOR) /* costs are those of a fixed pattern */
+        params.adaptive = 0.0;
+    return params;
+}
+
+whit_load_params settings_load(const struct settings *settings,
+                               const char *folders[SETTING_FOLDERS_MOST])
+{
+    whit_load_params params = settings->load;
+    params.allowed_folders = folders;
+    while (params.allowed_count < SETTING_FOLDERS_MOST &&
+           settings->allowed[params.allowed_count][0]) {
+        folders[params.allowed_count] = settings->allowed[params.allowed_count];
+        ++params.allowed_count;
+    }
+    return params;
+}
+
+/* ---- Comparing ---- */
+
+typedef bool row_filter(const struct setting *row);
+
+static bool same_rows(const struct settings *a, const struct settings *b, row_filter *wanted)
+{
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (wanted(row) && !setting_same(row, a, b))
+            return false;
+    }
+    return true;
+}
+
+static void copy_rows(struct settings *to, const struct settings *from, row_filter *wanted)
+{
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (wanted(row))
+            setting_copy(row, from, to);
+    }
+}
+
+static bool is_of_scene(const struct setting *row)
+{
+    return row->need == SETTING_NEEDS_SCENE;
+}
+
+static bool is_of_kernel(const struct setting *row)
+{
+    return row->need == SETTING_NEEDS_KERNEL || row->need == SETTING_NEEDS_TREES;
+}
+
+static bool is_of_camera(const struct setting *row)
+{
+    return strcmp(row->name, "camera") == 0 || strcmp(row->name, "time") == 0 ||
+           strcmp(row->name, "size") == 0;
+}
+
+static bool is_light(const struct setting *row)
+{
+    return row->change == SETTING_LIGHT && row->need < SETTING_NEEDS_TREES;
+}
+
+static bool is_of_picture(const struct setting *row)
+{
+    return row->change != SETTING_RUN && row->commands & IN_RENDER;
+}
+
+bool settings_same_scene(const struct settings *a, const struct settings *b)
+{
+    return strcmp(a->scene, b->scene) == 0 && a->reload == b->reload &&
+           same_rows(a, b, is_of_scene);
+}
+
+/* Kernels know whether rays are counted, whether there are bounces, and whether pixels are picked
+   for more samples. */
+bool settings_same_kernel(const struct settings *a, const struct settings *b)
+{
+    const whit_renderer_params p = settings_picture(a), q = settings_picture(b);
+    return settings_same_scene(a, b) && same_rows(a, b, is_of_kernel) && p.count == q.count &&
+           (p.depth == 0) == (q.depth == 0) && (p.adaptive > 0.0) == (q.adaptive > 0.0);
+}
+
+bool settings_same_camera(const struct settings *a, const struct settings *b)
+{
+    return same_rows(a, b, is_of_camera);
+}
+
+bool settings_same_place(const struct settings *a, const struct settings *b)
+{
+    return settings_same_scene(a, b) && settings_same_camera(a, b);
+}
+
+void settings_set_camera(struct settings *settings, const struct settings *from)
+{
+    copy_rows(settings, from, is_of_camera);
+}
+
+bool settings_same_light(const struct settings *a, const struct settings *b)
+{
+    return same_rows(a, b, is_light);
+}
+
+void settings_set_light(struct settings *settings, const struct settings *from)
+{
+    copy_rows(settings, from, is_light);
+}
+
+bool settings_same(const struct settings *a, const struct settings *b)
+{
+    return settings_same_scene(a, b) && same_rows(a, b, is_of_picture) && a->boxes == b->boxes &&
+           a->boxes_level == b->boxes_level;
+}
+
+/* ---- Writing ---- */
+
+/* Of a picture of costs trees and traversals decide the pixels too. */
+static bool is_written(const struct setting *row, const struct settings *settings,
+                       enum settings_words which)
+{
+    bool costs = settings->paint != PAINT_COLOR;
+    if (row->change == SETTING_RUN || (row->trusted && which == SETTINGS_STATE))
+        return false;
+    if (which == SETTINGS_RECIPE && row->change == SETTING_COST)
+        return costs && row->need != SETTING_NEEDS_VIEW && strcmp(row->name, "device") != 0;
+    /* Costs are those of a fixed pattern; effects that are added change nothing. */
+    if (costs && row->kind == SETTING_OWN && strcmp(row->name, "aa") == 0)
+        return settings->picture.adaptive <= 0.0;
+    if (which == SETTINGS_RECIPE && strcmp(row->name, "effects") == 0)
+        return strchr(settings->effects, '-') != NULL;
+    return true;
+}
+
+bool settings_word(const struct setting *row, const struct settings *settings,
+                   enum settings_words which, uint32_t index, char text[SETTING_VALUE_BYTES])
+{
+    const struct settings usual = settings_usual();
+    bool always = which == SETTINGS_RECIPE && row->always;
+    return is_written(row, settings, which) && (always || !setting_same(row, settings, &usual)) &&
+           setting_write(row, settings, index, text);
+}
+
+struct words {
+    char *text;
+    size_t bytes, used;
+};
+
+static void put(void *user, const char *part)
+{
+    struct words *words = user;
+    for (size_t i = 0; part[i]; ++i, ++words->used) {
+        if (words->used + 1 < words->bytes)
+            words->text[words->used] = part[i];
+    }
+}
+
+static void put_option(struct words *words, const struct setting *row, const char *text)
+{
+    put(words, "--");
+    put(words, row->name);
+    if (setting_has_argument(row)) {
+        put(words, " ");
+        quote_word(text, put, words);
+    }
+}
+
+/* Rows of `commands` alone. */
+static void put_all(struct words *words, const struct settings *settings, enum settings_words which,
+                    const char *separator, uint32_t commands)
+{
+    char text[SETTING_VALUE_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        bool wanted = row->commands & commands;
+        for (uint32_t i = 0; wanted && settings_word(row, settings, which, i, text); ++i) {
+            if (words->used > 0)
+                put(words, separator);
+            put_option(words, row, text);
+            if (row->kind != SETTING_FOLDERS)
+                break;
+        }
+    }
+}
+
+static size_t finish(struct words *words)
+{
+    words->text[words->used < words->bytes ? words->used : words->bytes - 1] = '\0';
+    return words->used;
+}
+
+size_t settings_write(const struct settings *settings, enum settings_words which,
+                      const char *separator, char *text, size_t text_bytes)
+{
+    struct words words = {.text = text, .bytes = text_bytes};
+    put_all(&words, settings, which, separator, UINT32_MAX);
+    return finish(&words);
+}
+
+size_t settings_write_render(const struct settings *settings, enum settings_words which,
+                             const char *output, char *text, size_t text_bytes)
+{
+    struct words words = {.text = text, .bytes = text_bytes};
+    put(&words, "whit render ");
+    quote_word(settings->scene, put, &words);
+    put_all(&words, settings, which, " ", IN_RENDER);
+    put(&words, " -o ");
+    quote_word(output, put, &words);
+    return finish(&words);
+}

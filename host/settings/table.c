@@ -1,0 +1,318 @@
+/* The table of settings: a row an option, in the order of help. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings/settings.h"
+
+enum { DEPTH_MOST = 255, FRAMES_MAX = 1000000000 };
+
+enum {
+    IN_PICTURES = IN_RENDER | IN_VIEW | IN_PROBE,
+    IN_SCENES = IN_PICTURES | IN_COST | IN_SCENE | IN_BVH | IN_TRACE | IN_HARD,
+    IN_TREES = IN_PICTURES | IN_TRACE | IN_BVH,
+    IN_LIMITED = IN_SCENES & ~IN_VIEW
+};
+
+static const struct setting_value values_stats[] = {
+    {"text", STATS_TEXT, NULL}, {"json", STATS_JSON, NULL}, {0}};
+static const struct setting_value values_segments[] = {
+    {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
+
+/* ---- What keys and panels of the viewer turn through ---- */
+
+static const struct setting_value steps_aa[] = {{"1", 0, "1 a pixel"},
+                                                {"4", 0, "4 a pixel"},
+                                                {"16", 0, "16 a pixel"},
+                                                {"64", 0, "64 a pixel"},
+                                                {"adaptive:0.05", 0, "adaptive"},
+                                                {0}};
+static const struct setting_value steps_bailout[] = {{"0", 0, "0: every ray"},
+                                                     {"0.000244140625", 0, "1/4096"},
+                                                     {"0.0009765625", 0, "1/1024"},
+                                                     {"0.00390625", 0, "1/256"},
+                                                     {"0.015625", 0, "1/64"},
+                                                     {"0.0625", 0, "1/16"},
+                                                     {0}};
+static const struct setting_value more_build[] = {{"binned+opt", 0, NULL},
+                                                  {"binned:4", 0, NULL},
+                                                  {"binned:8", 0, NULL},
+                                                  {"binned:16", 0, NULL},
+                                                  {"binned:64", 0, NULL},
+                                                  {"binned:256", 0, NULL},
+                                                  {0}};
+
+/* ---- Kinds of their own ---- */
+
+static bool read_aa(const struct setting *row, const char *text, void *record, char *why)
+{
+    static const char prefix[] = "adaptive:";
+    whit_renderer_params *picture = &((struct settings *)record)->picture;
+    size_t length = strlen(prefix);
+    char list[80], *end;
+    if (strncmp(text, prefix, length) != 0) {
+        uint32_t found = value_find(row->values, text);
+        if (found == WHIT_NONE)
+            return setting_refuse(why, " `%s`: one of %s is needed", text,
+                                  value_list(row->values, ", ", list, sizeof list));
+        picture->adaptive = 0.0;
+        picture->samples = (uint32_t)row->values[found].value;
+        return true;
+    }
+    double contrast = strtod(text + length, &end);
+    if (end == text + length || *end || !(contrast > 0.0 && contrast <= 1.0))
+        return setting_refuse(why, " `%s`: after adaptive: a number above 0, up to 1, is needed",
+                              text);
+    picture->adaptive = contrast;
+    picture->samples = 1;
+    return true;
+}
+
+static bool write_aa(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    const whit_renderer_params *picture = &((const struct settings *)record)->picture;
+    if (picture->adaptive > 0.0) {
+        strcpy(text, "adaptive:");
+        setting_write_number(picture->adaptive, text + strlen(text), 40);
+    } else {
+        snprintf(text, SETTING_VALUE_BYTES, "%u", picture->samples ? picture->samples : 1);
+    }
+    return true;
+}
+
+static bool read_build(const struct setting *row, const char *text, void *record, char *why)
+{
+    (void)row;
+    return builder_read(text, &((struct settings *)record)->trees, why);
+}
+
+static bool write_build(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    builder_write(&((const struct settings *)record)->trees, text, SETTING_VALUE_BYTES);
+    return true;
+}
+
+static bool read_scale(const struct setting *row, const char *text, void *record, char *why)
+{
+    struct settings *settings = record;
+    char *end;
+    double scale = strtod(text, &end);
+    if (strcmp(text, "auto") == 0)
+        scale = 0.0;
+    else if (end == text || *end || !(scale >= row->min && scale <= row->max))
+        return setting_refuse(why, " `%s`: auto or a number from %g to %g is needed", text,
+                              row->min, row->max);
+    settings->paint_scale = scale;
+    return true;
+}
+
+static bool write_scale(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    double scale = ((const struct settings *)record)->paint_scale;
+    if (scale > 0.0)
+        setting_write_number(scale, text, SETTING_VALUE_BYTES);
+    else
+        strcpy(text, "auto");
+    return true;
+}
+
+static bool read_effects(const struct setting *row, const char *text, void *record, char *why)
+{
+    char *out = ((struct settings *)record)->effects;
+    (void)row;
+    if (!effects_check(text, why))
+        return false;
+    if (strlen(text) >= SETTING_TEXT_BYTES)
+        return setting_refuse(why, ": %d bytes are the most", SETTING_TEXT_BYTES - 1);
+    strcpy(out, strcmp(text, "auto") == 0 ? "" : text);
+    return true;
+}
+
+static bool write_effects(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    const char *effects = ((const struct settings *)record)->effects;
+    strcpy(text, effects[0] ? effects : "auto");
+    return true;
+}
+
+/* ---- The table ---- */
+
+#define AT(kind, member) SETTING_AT_##kind(struct settings, member)
+#define AT_OWN(name)     .kind = SETTING_OWN, .read = read_##name, .write = write_##name
+
+const struct setting settings_table[] = {
+    {"size", 0, "WxH", "pixels", SETTING_AT_SIZE(struct settings, picture.width, picture.height),
+     .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_PLACE, .always = true},
+    {"camera", 0, "NAME|N|numbers",
+     "a camera of the scene, by name or number, or\n"
+     "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"
+     "vertical angle in degrees",
+     "the scene's first", AT(TEXT, camera), .commands = IN_PICTURES | IN_COST | IN_SCENE,
+     .change = SETTING_PLACE},
+    {"time", 0, "T", "seconds of the animation", AT(NUMBER, picture.time_s), .min = -1e6,
+     .max = 1e6, .commands = IN_SCENES, .change = SETTING_PLACE, .json = "time_s"},
+    {"frame", 0, "N", "instead of --time: frame N of the animation", "", AT(COUNT, frame),
+     .max = FRAMES_MAX, .commands = IN_SCENES},
+    {"fps", 0, "F", "frames in a second, for --frame", AT(NUMBER, fps), .min = 1e-3, .max = 1e6,
+     .commands = IN_SCENES},
+
+    {"aa", 0, "1|4|16|...|4096|adaptive:X",
+     "samples a pixel; adaptive: 4, where neighbours differ by\n"
+     "more than X 16, and then 64",
+     AT_OWN(aa), .values = values_samples, .commands = IN_PICTURES | IN_SCENE,
+     .change = SETTING_LIGHT, .always = true, .title = "anti-aliasing", .steps = steps_aa,
+     .key = 'A'},
+    {"depth", 0, "N", "most bounces; 0: only what is seen directly", AT(COUNT, picture.depth),
+     .max = DEPTH_MOST, .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .always = true,
+     .title = "bounces", .step = 1.0, .shown_max = 32.0, .key = '=', .key_back = '-'},
+    {"bailout", 0, "X",
+     "rays that can add less than X to a pixel are not traced;\n"
+     "0: all are",
+     "1/1024", AT(NUMBER, picture.bailout), .max = 1.0, .commands = IN_PICTURES,
+     .change = SETTING_LIGHT, .title = "bail-out", .steps = steps_bailout},
+    {"shadows", 0, NULL,
+     "of glass and blended surfaces: light comes through, or\n"
+     "not; none: light reaches everything",
+     AT(CHOICE, picture.shadows), .values = values_shadows, .commands = IN_PICTURES,
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL, .title = "shadows"},
+    {"light-samples", 0, NULL, "points of an area light that are tested",
+     AT(CHOICE, picture.light_samples), .values = values_light_samples, .commands = IN_PICTURES,
+     .change = SETTING_LIGHT, .title = "light samples"},
+    {"fresnel", 0, NULL, "or Schlick's approximation in its place", AT(EITHER, picture.schlick),
+     .values = values_fresnel, .commands = IN_PICTURES, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL, .title = "Fresnel"},
+    {"effects", 0, "auto|all|+NAME,-NAME",
+     "compile what the scene calls for, or everything: the\n"
+     "picture is the same; or more and less by name: less\n"
+     "changes it. Names and prices: `whit scene --effects`",
+     AT_OWN(effects), .values = values_effects, .commands = IN_PICTURES, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL},
+
+    {"budget-ms", 0, "T",
+     "choose the best of these settings that take at most T ms, by\n"
+     "`whit cost`, which measures the scene for 20 s the first time",
+     "", AT(NUMBER, budget_ms), .min = 1e-3, .max = 1e9, .commands = IN_RENDER | IN_VIEW},
+    {"max-error", 0, "E", "the cheapest ones with an RMSE of at most E", "", AT(NUMBER, max_error),
+     .min = 1e-9, .max = 1e6, .commands = IN_RENDER | IN_VIEW},
+
+    {"view", 0, NULL,
+     "what traversals cost instead of colours: a heat map\n"
+     "(.png) or the numbers (.exr, .pfm)",
+     AT(CHOICE, paint), .values = values_view, .commands = IN_RENDER | IN_VIEW,
+     .change = SETTING_PLACE, .title = "view", .key = 'V'},
+    {"view-rays", 0, NULL, "of which rays, or of all", AT(CHOICE, paint_rays),
+     .values = values_rays, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PLACE,
+     .title = "rays of costs"},
+    {"view-scale", 0, "auto|X", "the number of the brightest colour", AT_OWN(scale), .min = 1e-9,
+     .max = 1e12, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PLACE},
+
+    {"build", 0, "BUILDER[+opt]",
+     "how trees are built: binned[:K] with 2 to 256 bins,\n"
+     "median, sweep, spatial[:ALPHA[,BUDGET]];\n"
+     "+opt improves them by reinsertion; none: no trees, rays\n"
+     "test every triangle",
+     AT_OWN(build), .values = values_build, .commands = IN_PICTURES | IN_TRACE,
+     .change = SETTING_COST, .need = SETTING_NEEDS_TREES, .title = "builder",
+     .more_steps = more_build},
+    {"leaf", 0, "N", "most triangles in a leaf, 1 to 15", AT(COUNT, trees.leaf_limit), .min = 1,
+     .max = 15, .commands = IN_TREES, .change = SETTING_COST, .need = SETTING_NEEDS_TREES},
+    {"instances", 0, NULL,
+     "off: one tree over the triangles of all instances, placed\n"
+     "in the world; auto: where nothing moves and no mesh but a\n"
+     "single ball is there twice",
+     AT(CHOICE, trees.instances), .values = values_instances, .commands = IN_TREES | IN_HARD,
+     .change = SETTING_HITS, .need = SETTING_NEEDS_TREES, .title = "instance tree", .key = 'O'},
+    {"instance-build", 0, NULL, "how the tree over instances is built",
+     AT(CHOICE, trees.instance_build), .values = values_instance_build, .commands = IN_TREES,
+     .change = SETTING_COST, .need = SETTING_NEEDS_TREES},
+    {"instance-update", 0, NULL,
+     "for another time: a new tree over instances, or new\n"
+     "boxes for the old one",
+     AT(EITHER, trees.instance_refit), .values = values_instance_update, .commands = IN_TREES,
+     .change = SETTING_COST, .need = SETTING_NEEDS_TREES},
+    {"traversal", 0, NULL,
+     "which of two nodes comes first: the nearer, by the ray's\n"
+     "sign, as they come",
+     AT(CHOICE, picture.traversal), .values = values_traversal, .commands = IN_TREES,
+     .change = SETTING_COST, .need = SETTING_NEEDS_KERNEL, .title = "traversal", .key = 'T'},
+    {"numerics", 0, NULL,
+     "what decides hits: quick tests that leak, tests that do\n"
+     "not, exact arithmetic",
+     AT(CHOICE, picture.numerics), .values = values_numerics, .commands = IN_TREES | IN_SCENE,
+     .change = SETTING_HITS, .need = SETTING_NEEDS_KERNEL, .title = "numerics", .key = 'M'},
+    {"load-path", 0, NULL, "how kernels read the trees", AT(CHOICE, picture.load_path),
+     .values = values_load_path, .commands = IN_TREES, .change = SETTING_COST,
+     .need = SETTING_NEEDS_KERNEL},
+    {"threads", 0, "N", "threads on the CPU, 0: one a core", AT(COUNT, trees.threads), .max = 1024,
+     .commands = IN_RENDER | IN_PROBE | IN_TRACE | IN_HARD},
+
+    {"texture-limit", 0, "N", "halve textures with a longer side", AT(COUNT, load.texture_limit),
+     .min = 1, .max = 16384, .commands = IN_PICTURES | IN_SCENE | IN_BVH, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_SCENE},
+    {"allow-path", 0, "FOLDER",
+     "files of the scene may name files below FOLDER too, not\n"
+     "only below the scene's own; may be given again",
+     "", .kind = SETTING_FOLDERS, .offset = offsetof(struct settings, allowed),
+     .commands = IN_SCENES, .change = SETTING_PLACE, .need = SETTING_NEEDS_SCENE, .trusted = true},
+    {"memory-limit", 0, "SIZE",
+     "refuse a scene that takes more on host and device, in bytes\n"
+     "or with K, M, G",
+     "half of the machine's", AT(BYTES, load.memory_limit_bytes), .commands = IN_SCENES,
+     .trusted = true},
+    {"import-limit", 0, "S",
+     "seconds of the processor for each file that foreign code\n"
+     "reads; ten times that by the clock",
+     "by its size, 8 to 60", AT(NUMBER, load.import_limit_s), .min = 1e-3, .max = 1e6,
+     .commands = IN_SCENES | IN_COMPARE, .trusted = true},
+    {"require-sandbox", 0, NULL,
+     "fail where such code cannot be locked in, in place of a\n"
+     "warning",
+     AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE, .trusted = true},
+
+    {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
+     .commands = IN_SCENES | IN_BENCH, .change = SETTING_COST, .need = SETTING_NEEDS_KERNEL},
+    {"no-cache", 0, NULL, "keep nothing for the next run, and use nothing that was kept",
+     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH},
+    {"fps-goal", 0, "F",
+     "pictures a second to hold while something moves, by\n"
+     "smaller ones",
+     AT(NUMBER, fps_goal), .min = 0.1, .max = 1000.0, .commands = IN_VIEW, .change = SETTING_COST},
+    {"stats", 0, NULL, "print times, rays and figures of the trees", "", AT(CHOICE, stats),
+     .values = values_stats, .commands = IN_RENDER},
+    {"time-limit", 0, "S", "give up after S seconds, with exit code 5", "",
+     AT(NUMBER, time_limit_s), .min = 1e-3, .max = 1e6, .commands = IN_LIMITED},
+    {"validation", 0, NULL, "run with the Vulkan validation layers", AT(FLAG, validation),
+     .commands = IN_SCENES & ~IN_SCENE},
+    {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
+     .commands = IN_SCENES | IN_COMPARE | IN_BENCH},
+
+    {"tile-size", 0, "N", "pixels on a tile's side, 16 to 512", "by measured time",
+     AT(COUNT, picture.tile_size), .min = 16, .max = 512, .developer = true, .commands = IN_RENDER},
+    {"packets", 0, NULL,
+     "whether camera rays and the shadow rays of what they meet\n"
+     "walk together; auto: where that is quicker",
+     AT(CHOICE, picture.packets), .values = values_packets, .developer = true,
+     .commands = IN_RENDER},
+    {"classes", 0, NULL,
+     "one: a kernel for all materials, and for camera rays and\n"
+     "later ones; many: for each its own; auto: many where the\n"
+     "picture has enough rays to pay for them",
+     AT(CHOICE, picture.classes), .values = values_classes, .developer = true,
+     .commands = IN_RENDER},
+    {"segments", 0, NULL,
+     "how many segments lists have; 2: one for each thread of\n"
+     "lavapipe",
+     AT(CHOICE, picture.segments), .values = values_segments, .developer = true,
+     .commands = IN_RENDER},
+
+    {"tree", 0, NULL, "is gone: trees are built for each run", .kind = SETTING_GONE,
+     .commands = IN_TREES & ~IN_BVH},
+    {"no-bvh", 0, NULL, "is `--build none` now", .kind = SETTING_GONE,
+     .commands = IN_PICTURES | IN_TRACE},
+    {"no-shadows", 0, NULL, "is `--shadows none` now", .kind = SETTING_GONE,
+     .commands = IN_PICTURES},
+    {"opaque-shadows", 0, NULL, "is `--shadows opaque` now", .kind = SETTING_GONE,
+     .commands = IN_PICTURES},
+    {"tile", 0, NULL, "is `--tile-size` now", .kind = SETTING_GONE, .commands = IN_RENDER},
+    {0},
+};
