@@ -38,11 +38,11 @@ struct whit_device {
 };
 
 struct whit_renderer {
-    struct renderer *renderer; /* NULL: CPU only */
-    struct accel *accel;       /* borrowed */
-    const volatile bool *cancel;
-    uint32_t order;    /* ORDER_* */
-    uint32_t numerics; /* NUMERICS_* */
+    struct renderer *renderer;   /* NULL: CPU only */
+    struct accel *accel;         /* borrowed */
+    whit_renderer_params params; /* of the picture; its strings are not read again */
+    uint32_t order;              /* ORDER_* */
+    uint32_t numerics;           /* NUMERICS_* */
     struct log log;
 };
 

@@ -50,6 +50,12 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
     display_bytes(&image->image, rgba);
 }
 
+void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
+{
+    (void)params;
+    image->image.display_scale = 1.0f;
+}
+
 /* Release with free(); NULL when memory runs out, which is logged. */
 static struct image_text *texts_from_public(const struct log *log, const char *path,
                                             const whit_text *texts, uint32_t text_count)

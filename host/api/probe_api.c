@@ -135,6 +135,9 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
         .differing = from->differing,
     };
     memcpy(report->color, from->color, sizeof report->color);
+    whit_image pixel = {.image = {.width = 1, .height = 1, .channels = 4, .pixels = report->color}};
+    whit_image_display_as(&pixel, &renderer->params);
+    whit_image_display_bytes(&pixel, report->shown);
     *out = report;
     return WHIT_OK;
 }

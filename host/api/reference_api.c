@@ -16,6 +16,7 @@ _Static_assert((uint32_t)WHIT_TREE_STRAIGHT == REFERENCE_STRAIGHT &&
 
 struct whit_reference {
     struct reference *reference;
+    whit_renderer_params params; /* its strings are not read again */
     struct log log;
 };
 
@@ -35,6 +36,7 @@ whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params 
         return WHIT_ERROR_MEMORY;
     }
     reference->log = accel->log;
+    reference->params = params ? *params : defaults;
     result = reference_create(&accel->log, accel->accel, &inner, &reference->reference);
     if (result != WHIT_OK) {
         whit_reference_destroy(reference);
@@ -66,6 +68,8 @@ whit_result whit_reference_render(whit_reference *reference, whit_image **color,
         free(to_color);
         free(to_ids);
         to_color = to_ids = NULL;
+    } else {
+        whit_image_display_as(to_color, &reference->params);
     }
     *color = to_color;
     if (ids)

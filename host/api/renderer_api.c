@@ -185,7 +185,7 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     }
     renderer->log = log;
     renderer->accel = accel->accel;
-    renderer->cancel = params->cancel;
+    renderer->params = *params;
     renderer->order = inner.order;
     renderer->numerics = inner.numerics;
     result = device
@@ -237,7 +237,14 @@ whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = render_params_from_public(&renderer->log, params, &inner);
-    return result == WHIT_OK ? renderer_set_view(renderer->renderer, &inner) : result;
+    if (result == WHIT_OK)
+        result = renderer_set_view(renderer->renderer, &inner);
+    if (result == WHIT_OK) {
+        const volatile bool *cancel = renderer->params.cancel;
+        renderer->params = *params;
+        renderer->params.cancel = cancel;
+    }
+    return result;
 }
 
 whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_info *info)
@@ -289,6 +296,8 @@ whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_imag
         whit_image_destroy(image);
         return result;
     }
+    if (aov == WHIT_AOV_COLOR)
+        whit_image_display_as(image, &renderer->params);
     *out = image;
     return WHIT_OK;
 }
@@ -446,7 +455,7 @@ struct cpu_trace {
 
 static bool cancelled(const whit_renderer *renderer)
 {
-    return renderer->cancel && *renderer->cancel;
+    return renderer->params.cancel && *renderer->params.cancel;
 }
 
 static void trace_batch(void *context, uint32_t index)

@@ -61,6 +61,7 @@ typedef struct whit_probe_report {
     uint32_t x, y;
     uint32_t samples; /* that `color` is of; of an adaptive picture the 4 of its first pass */
     float color[4];   /* as in the picture: the same bytes */
+    uint8_t shown[4]; /* as displayed: sRGB */
     /* The tree of the first sample: a ray is followed by its shadow rays, then by its branches,
        each with its own, in the order in which they were traced. The first one is the camera ray.
      */

@@ -144,6 +144,9 @@ typedef enum whit_aov {
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
 } whit_aov;
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
+/* From here on an image of colours is displayed as a picture with these params is, which those of
+   renderers and references are from the beginning. */
+void whit_image_display_as(whit_image *image, const whit_renderer_params *params);
 
 typedef enum whit_ray_kind {
     WHIT_RAY_PRIMARY = 0,

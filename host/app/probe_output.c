@@ -1,17 +1,7 @@
 #include "app/probe.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* As pictures show it: 8 bits a channel, sRGB. */
-static uint32_t displayed(float linear)
-{
-    double x = linear > 0.0f ? (double)linear : 0.0;
-    x = x < 1.0 ? x : 1.0;
-    double code = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
-    return (uint32_t)(code * 255.0 + 0.5);
-}
 
 static bool was_traced(const whit_probe_ray *ray)
 {
@@ -94,7 +84,7 @@ static void print_head(const struct probe *probe)
            picture->height, report->samples, report->samples == 1 ? "" : "s",
            value_word(values_numerics, (int)probe->job.settings.picture.numerics));
     printf("colour     %.9g %.9g %.9g linear, #%02x%02x%02x as shown\n", (double)c[0], (double)c[1],
-           (double)c[2], displayed(c[0]), displayed(c[1]), displayed(c[2]));
+           (double)c[2], report->shown[0], report->shown[1], report->shown[2]);
     print_first(probe);
     uint32_t traced = 0, exact = 0, exact_other = 0;
     printf("rays       ");
@@ -289,8 +279,8 @@ static json_t *pixel_document(const struct probe *probe)
     const whit_probe_ray *first = &report->rays[0];
     json_t *out = document_object();
     char shown[8];
-    snprintf(shown, sizeof shown, "#%02x%02x%02x", displayed(report->color[0]),
-             displayed(report->color[1]), displayed(report->color[2]));
+    snprintf(shown, sizeof shown, "#%02x%02x%02x", report->shown[0], report->shown[1],
+             report->shown[2]);
     document_count(out, "x", report->x);
     document_count(out, "y", report->y);
     document_floats(out, "color", report->color, 3);

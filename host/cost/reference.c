@@ -66,6 +66,8 @@ static whit_image *read_kept(const struct measure *measure, const whit_renderer_
         whit_image_create(params->width, params->height, KEPT_CHANNELS, (const float *)data,
                           &image) != WHIT_OK)
         image = NULL;
+    if (image)
+        whit_image_display_as(image, params);
     free(data);
     return image;
 }

@@ -16,6 +16,13 @@ void image_read_pixel(const struct image *image, size_t index, float rgba[4])
     rgba[3] = image->channels == 4 ? pixel[3] : 1.0f;
 }
 
+void image_displayed_pixel(const struct image *image, size_t index, float rgba[4])
+{
+    image_read_pixel(image, index, rgba);
+    for (uint32_t c = 0; c < 3 && image->display_scale != 0.0f; ++c)
+        rgba[c] *= image->display_scale;
+}
+
 /* Integers also need as many channels. */
 static bool same_kind(const struct image *a, const struct image *b)
 {
@@ -36,9 +43,12 @@ static bool is_finite(const float rgba[4])
     return isfinite(rgba[0]) && isfinite(rgba[1]) && isfinite(rgba[2]) && isfinite(rgba[3]);
 }
 
-/* Alpha is not encoded. */
-static bool is_over_1_255(const float a[4], const float b[4])
+/* Of pixel `i`. Alpha is not encoded. */
+static bool is_over_1_255(const struct image *image_a, const struct image *image_b, size_t i)
 {
+    float a[4], b[4];
+    image_displayed_pixel(image_a, i, a);
+    image_displayed_pixel(image_b, i, b);
     /* Pictures with 8 bits that lie one step apart are not over it. */
     const float limit = 1.0f / 255.0f + 1e-6f;
     for (uint32_t c = 0; c < 4; ++c) {
@@ -64,9 +74,12 @@ static void add_colours(const float a[4], const float b[4], struct image_differe
     ++sums->terms;
 }
 
-static void compare_pixel(const float a[4], const float b[4], struct image_difference *out,
-                          struct sums *sums)
+static void compare_pixel(const struct image *image_a, const struct image *image_b, size_t i,
+                          struct image_difference *out, struct sums *sums)
 {
+    float a[4], b[4];
+    image_read_pixel(image_a, i, a);
+    image_read_pixel(image_b, i, b);
     bool finite_a = is_finite(a), finite_b = is_finite(b);
     bool differ = memcmp(a, b, 4 * sizeof(float)) != 0;
     out->nonfinite_a += !finite_a;
@@ -76,7 +89,7 @@ static void compare_pixel(const float a[4], const float b[4], struct image_diffe
         add_colours(a, b, out, sums);
     bool unlike = differ && !(finite_a && finite_b);
     out->nonfinite_differing += unlike;
-    out->over_1_255 += unlike || (differ && is_over_1_255(a, b));
+    out->over_1_255 += unlike || (differ && is_over_1_255(image_a, image_b, i));
 }
 
 static void compare_words(const uint32_t *a, const uint32_t *b, uint32_t channels,
@@ -110,15 +123,11 @@ whit_result image_compare(const struct log *log, const struct image *a, const st
     struct sums sums = {0};
     out->pixel_count = (uint64_t)a->width * a->height;
     for (size_t i = 0; i < out->pixel_count; ++i) {
-        float p[4], q[4];
-        if (a->words) {
-            size_t at = i * a->channels;
+        size_t at = i * a->channels;
+        if (a->words)
             compare_words(a->words + at, b->words + at, a->channels, out, &sums);
-        } else if (a->pixels) {
-            image_read_pixel(a, i, p);
-            image_read_pixel(b, i, q);
-            compare_pixel(p, q, out, &sums);
-        }
+        else if (a->pixels)
+            compare_pixel(a, b, i, out, &sums);
     }
     divide(&sums, out);
     return WHIT_OK;

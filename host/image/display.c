@@ -38,20 +38,17 @@ static uint8_t encode_alpha(float alpha)
     return (uint8_t)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
 }
 
-void display_encode(const struct display_encoder *encoder, const float *pixel, uint32_t channels,
+void display_encode(const struct display_encoder *encoder, const struct image *image, size_t index,
                     uint8_t *to, uint32_t to_channels)
 {
-    bool finite = true;
-    for (uint32_t c = 0; c < channels; ++c)
-        finite = finite && isfinite(pixel[c]);
-    if (!finite) {
+    float rgba[4];
+    image_displayed_pixel(image, index, rgba);
+    if (!isfinite(rgba[0]) || !isfinite(rgba[1]) || !isfinite(rgba[2]) || !isfinite(rgba[3])) {
         memcpy(to, (const uint8_t[]){255, 0, 255, 255}, to_channels);
         return;
     }
-    for (uint32_t c = 0; c < to_channels; ++c) {
-        float value = pixel[channels == 1 ? 0 : c];
-        to[c] = c == 3 ? encode_alpha(value) : encode(encoder, value);
-    }
+    for (uint32_t c = 0; c < to_channels; ++c)
+        to[c] = c == 3 ? encode_alpha(rgba[c]) : encode(encoder, rgba[c]);
 }
 
 void display_bytes(const struct image *image, uint8_t *rgba)
@@ -60,9 +57,7 @@ void display_bytes(const struct image *image, uint8_t *rgba)
     size_t pixel_count = (size_t)image->width * image->height;
     display_encoder_init(&encoder);
     for (size_t i = 0; i < pixel_count; ++i) {
-        const float *pixel = image->pixels + i * image->channels;
         rgba[4 * i + 3] = 255;
-        display_encode(&encoder, pixel, image->channels, &rgba[4 * i],
-                       image->channels == 4 ? 4 : 3);
+        display_encode(&encoder, image, i, &rgba[4 * i], image->channels == 4 ? 4 : 3);
     }
 }

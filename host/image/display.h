@@ -12,9 +12,8 @@ struct display_encoder {
     float from[257];
 };
 void display_encoder_init(struct display_encoder *encoder);
-/* One pixel of 1, 3 or 4 floats to 1, 3 or 4 bytes; grey is repeated. Magenta where it is not
-   finite. */
-void display_encode(const struct display_encoder *encoder, const float *pixel, uint32_t channels,
+/* Pixel `index` to 1, 3 or 4 bytes; grey is repeated. Magenta where it is not finite. */
+void display_encode(const struct display_encoder *encoder, const struct image *image, size_t index,
                     uint8_t *to, uint32_t to_channels);
 
 /* The bytes of the PNG file of a picture of floats, as RGBA: width * height * 4 of them. */

@@ -289,7 +289,7 @@ static void find_features(const struct work *work, int order, const float *from,
 static void shown_rgb(const struct image *image, size_t index, float rgb[3])
 {
     float pixel[4];
-    image_read_pixel(image, index, pixel);
+    image_displayed_pixel(image, index, pixel);
     bool finite = isfinite(pixel[0]) && isfinite(pixel[1]) && isfinite(pixel[2]);
     for (int c = 0; c < 3; ++c)
         rgb[c] = finite ? clamped(pixel[c]) : c == 1 ? 0.0f : 1.0f;

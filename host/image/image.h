@@ -15,6 +15,9 @@ struct image {
     uint32_t width, height, channels;
     float *pixels;   /* width * height * channels, or NULL */
     uint32_t *words; /* the same for integers, or NULL; exactly one of the two is set */
+    /* Of light: what is displayed (PNG, window, FLIP, over_1_255) are the floats times this, 0: as
+       they are; files of floats keep them. */
+    float display_scale;
 };
 
 /* Zeroed pixels. WHIT_ERROR_MEMORY, also for sizes whose product overflows. */
@@ -53,6 +56,8 @@ WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
 
 /* Pixel `index` of floats as RGBA: grey fills three channels, alpha is 1 where there is none. */
 void image_read_pixel(const struct image *image, size_t index, float rgba[4]);
+/* The same as it is displayed, still linear and not clamped. */
+void image_displayed_pixel(const struct image *image, size_t index, float rgba[4]);
 
 /* How `b` differs from `a`, the reference. */
 struct image_difference {

@@ -144,13 +144,9 @@ static void write_rows(struct job *job, const struct image *image, uint32_t to_c
     display_encoder_init(&encoder);
     job->bytes = allocate(job, (size_t)image->width * to_channels, 1);
     for (uint32_t y = 0; y < image->height; ++y) {
-        const float *pixel = image->pixels + (size_t)y * image->width * image->channels;
-        uint8_t *to = job->bytes;
-        for (uint32_t x = 0; x < image->width; ++x) {
-            display_encode(&encoder, pixel, image->channels, to, to_channels);
-            pixel += image->channels;
-            to += to_channels;
-        }
+        for (uint32_t x = 0; x < image->width; ++x)
+            display_encode(&encoder, image, (size_t)y * image->width + x,
+                           job->bytes + (size_t)x * to_channels, to_channels);
         png_write_row(job->png, job->bytes);
     }
 }
