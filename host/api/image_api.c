@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,8 +53,7 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
 {
-    (void)params;
-    image->image.display_scale = 1.0f;
+    image->image.display_scale = (float)exp2(params->exposure_ev);
 }
 
 /* Release with free(); NULL when memory runs out, which is logged. */

@@ -54,6 +54,7 @@ typedef struct whit_renderer_params {
                                instead of 4, and then 64; `samples` is not read; 0: off */
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
+    double exposure_ev;     /* what is displayed (.png, FLIP, bytes) is times 2^this */
     /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
        for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
        changes the picture. */

@@ -181,6 +181,12 @@ const struct setting settings_table[] = {
     {"fresnel", 0, NULL, "or Schlick's approximation in its place", AT(EITHER, picture.schlick),
      .values = values_fresnel, .commands = IN_PICTURES, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .title = "Fresnel"},
+    {"exposure", 0, "EV",
+     "what is displayed, in the window, PNG and FLIP, times 2^EV;\n"
+     "EXR and PFM stay as they are",
+     AT(NUMBER, picture.exposure_ev), .min = -32.0, .max = 32.0, .commands = IN_PICTURES | IN_COST,
+     .change = SETTING_LIGHT, .title = "exposure", .step = 0.5, .shown_min = -8.0, .shown_max = 8.0,
+     .key = 'E', .json = "exposure_ev"},
     {"effects", 0, "auto|all|+NAME,-NAME",
      "compile what the scene calls for, or everything: the\n"
      "picture is the same; or more and less by name: less\n"

@@ -1,0 +1,190 @@
+/* Every row of the table of settings. With an argument: prints another value of each, for the test
+   of the command line: name, value, commands, change, key, title, key in JSON; tabs between. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "settings/settings.h"
+
+/* What the option takes to say something else than the default. */
+static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES])
+{
+    char usual[SETTING_VALUE_BYTES];
+    const struct settings settings = settings_usual();
+    setting_write(row, &settings, 0, usual);
+    double number = row->kind == SETTING_NUMBER
+                        ? *(const double *)((const char *)&settings + row->offset)
+                        : 0.0;
+    switch (row->kind) {
+    case SETTING_COUNT:
+        snprintf(text, SETTING_VALUE_BYTES, "%.0f", row->max > 100.0 ? 64.0 : row->max);
+        return;
+    case SETTING_NUMBER:
+        setting_write_number(number + 0.5 <= row->max ? number + 0.5 : row->max, text,
+                             SETTING_VALUE_BYTES);
+        return;
+    case SETTING_BYTES:
+        strcpy(text, "8G");
+        return;
+    case SETTING_SIZE:
+        strcpy(text, "24x17");
+        return;
+    case SETTING_TEXT:
+        strcpy(text, "0");
+        return;
+    case SETTING_FOLDERS:
+        strcpy(text, "/tmp");
+        return;
+    default:
+        break;
+    }
+    strcpy(text, strcmp(row->name, "effects") == 0 ? "-textures" : "12");
+    for (const struct setting_value *value = row->values;
+         value && value->word && strcmp(text, "-textures") != 0; ++value) {
+        strcpy(text, value->word);
+        if (strcmp(value->word, usual) != 0)
+            return;
+    }
+}
+
+static bool has_value(const struct setting *row)
+{
+    return row->name && row->kind != SETTING_GONE;
+}
+
+static void a_value_is_written_as_it_is_read(void **state)
+{
+    (void)state;
+    char text[SETTING_VALUE_BYTES], again[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+    uint32_t rows = 0;
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        const struct settings usual = settings_usual();
+        struct settings settings = usual, copy = usual, third = usual;
+        if (!has_value(row))
+            continue;
+        ++rows;
+        other_text(row, text);
+        if (!settings_read(row, text, &settings, why))
+            fail_msg("--%s%s", row->name, why);
+        assert_true(settings_given(&settings, row->name));
+        assert_false(setting_same(row, &settings, &usual));
+        setting_copy(row, &settings, &copy);
+        assert_true(setting_same(row, &settings, &copy));
+        assert_true(setting_write(row, &settings, 0, again));
+        assert_true(setting_read(row, again, &third, why));
+        assert_true(setting_same(row, &settings, &third));
+    }
+    assert_in_range(rows, 40, 64); /* `given` has 64 bits */
+}
+
+/* And changes no other row. */
+static void a_row_has_a_field_of_its_own(void **state)
+{
+    (void)state;
+    char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        const struct settings usual = settings_usual();
+        struct settings settings = usual;
+        if (!has_value(row))
+            continue;
+        other_text(row, text);
+        assert_true(setting_read(row, text, &settings, why));
+        for (const struct setting *other = settings_table; other->name; ++other) {
+            if (has_value(other) && other != row && !setting_same(other, &settings, &usual))
+                fail_msg("--%s %s changes --%s", row->name, text, other->name);
+        }
+    }
+}
+
+static void defaults_are_named_as_they_are(void **state)
+{
+    (void)state;
+    char why[SETTING_WHY_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        const struct settings usual = settings_usual();
+        struct settings settings = usual;
+        bool is_text = row->kind == SETTING_TEXT; /* reads anything */
+        if (has_value(row) && !is_text && row->usual && row->usual[0] &&
+            setting_read(row, row->usual, &settings, why))
+            assert_true(setting_same(row, &settings, &usual));
+        assert_true(row->kind == SETTING_GONE || row->commands != 0);
+        for (const struct setting *other = settings_table; other < row; ++other)
+            assert_string_not_equal(other->name, row->name);
+    }
+}
+
+/* What a row needs is what comparing two settings says. */
+static void needs_are_kept(void **state)
+{
+    (void)state;
+    char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        const struct settings usual = settings_usual();
+        struct settings settings = usual;
+        if (!has_value(row))
+            continue;
+        other_text(row, text);
+        assert_true(setting_read(row, text, &settings, why));
+        bool kernel = row->need == SETTING_NEEDS_VIEW && strcmp(row->name, "view") != 0;
+        assert_int_equal(settings_same_scene(&settings, &usual), row->need < SETTING_NEEDS_SCENE);
+        assert_int_equal(settings_same_kernel(&settings, &usual), kernel);
+        assert_int_equal(settings_same(&settings, &usual),
+                         row->change == SETTING_RUN || !(row->commands & IN_RENDER));
+        bool light = row->change == SETTING_LIGHT && row->need < SETTING_NEEDS_TREES;
+        assert_int_equal(settings_same_light(&settings, &usual), !light);
+    }
+}
+
+static void each_kind_of_text_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"",   "x",   "1x",      "-1", "nan", "99999999999999999999",
+                                        "0x", "1,2", "4x4junk", "\n"};
+    char why[SETTING_WHY_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
+            const struct settings usual = settings_usual();
+            struct settings settings = usual;
+            bool any = row->kind == SETTING_TEXT || row->kind == SETTING_FOLDERS;
+            if (!has_value(row) || !setting_has_argument(row) || (any && texts[i][0]))
+                continue;
+            why[0] = '\0';
+            if (settings_read(row, texts[i], &settings, why))
+                assert_true(row->kind == SETTING_NUMBER || row->kind == SETTING_COUNT);
+            else
+                assert_true(why[0] && memcmp(&settings, &usual, sizeof usual) == 0);
+        }
+    }
+}
+
+static void print_row(const struct setting *row)
+{
+    char text[SETTING_VALUE_BYTES];
+    other_text(row, text);
+    printf("%s\t%s\t%u\t%d\t%c\t%s\t%s\t%d\n", row->name, setting_has_argument(row) ? text : "-",
+           row->commands, (int)row->change, row->key > 32 ? row->key : '-',
+           row->title ? row->title : "-", row->json ? row->json : row->name,
+           row->trusted || row->developer);
+}
+
+int main(int argc, char **argv)
+{
+    (void)argv;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_value_is_written_as_it_is_read),
+        cmocka_unit_test(a_row_has_a_field_of_its_own),
+        cmocka_unit_test(defaults_are_named_as_they_are),
+        cmocka_unit_test(needs_are_kept),
+        cmocka_unit_test(each_kind_of_text_that_is_none_is_refused),
+    };
+    for (const struct setting *row = settings_table; argc > 1 && row->name; ++row) {
+        if (has_value(row))
+            print_row(row);
+    }
+    return argc > 1 ? 0 : cmocka_run_group_tests(tests, NULL, NULL);
+}
