@@ -89,11 +89,11 @@ while read -r name numerics hash; do
     scene=$here/scenes/${name%%-*}.json
     rays=$(($(wc -c <"$here/rays/$name.rays") / 32))
     rm -f "$scratch/hits" "$scratch/twin"
-    if ! whit 30 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/hits" --numerics "$numerics" --device "$device" -q; then
+    if ! whit 30 trace "$scene" --input "$here/rays/$name.rays" -o "$scratch/hits" --numerics "$numerics" --device "$device" -q; then
         differing=failed
     elif [ "$(sha256sum <"$scratch/hits" | cut -d ' ' -f 1)" = "$hash" ]; then
         differing=0
-    elif ! whit 60 trace "$scene" --rays "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q; then
+    elif ! whit 60 trace "$scene" --input "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q; then
         differing="some: its twin failed"
     else # the twin has lavapipe's bits
         differing=$(cmp -l "$scratch/twin" "$scratch/hits" | awk '{ ray = int(($1 - 1) / 32); count += ray != last || NR == 1; last = ray } END { print count + 0 }')

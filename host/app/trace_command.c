@@ -24,12 +24,13 @@ struct trace {
 };
 
 static const struct setting options[] = {
-    {"rays", 0, "FILE", "little-endian records: float origin[3], tmin, dir[3], tmax",
+    {"input", 'i', "FILE", "rays: little-endian records: float origin[3], tmin, dir[3], tmax",
      SETTING_AT_NAME(struct trace, rays_path)},
     {"output", 'o', "FILE",
-     "little-endian records: float t (inf: miss), u, v;\n"
+     "hits: little-endian records: float t (inf: miss), u, v;\n"
      "uint32 primitive (0xffffffff: miss), instance; float ng[3]",
      SETTING_AT_NAME(struct trace, output)},
+    {"rays", 0, NULL, "is `--input` now", .kind = SETTING_GONE},
     {"any", 0, NULL, "any hit will do: only `primitive` says something",
      SETTING_AT_FLAG(struct trace, any)},
     {"on", 0, NULL,
@@ -143,10 +144,10 @@ static int work(struct job *job, struct trace *trace)
 static bool check_request(struct cli_reader *reader, const struct trace *trace)
 {
     if (!trace->rays_path)
-        return cli_misuse(reader, "--rays FILE is missing");
+        return cli_misuse(reader, "--input FILE is missing");
     if (!trace->output)
         return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
-    if (!cli_no_dash(reader, "--rays", trace->rays_path, "for a pipe give /dev/stdin") ||
+    if (!cli_no_dash(reader, "--input", trace->rays_path, "for a pipe give /dev/stdin") ||
         !cli_no_dash(reader, "-o", trace->output, "for a pipe give /dev/stdout"))
         return false;
     if (cli_can_write(trace->output))
@@ -181,7 +182,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 
 const struct cli_command command_trace = {
     .name = "trace",
-    .arguments = "SCENE --rays FILE -o FILE [options]",
+    .arguments = "SCENE --input FILE -o FILE [options]",
     .summary = "Traces a batch of rays and writes their hits.",
     .details =
         "Hits are those with tmin <= t <= tmax; directions need not be unit. `instance` and\n"

@@ -132,7 +132,7 @@ for kind in camera shadow; do
     check "$kind: one origin" \
         test "$(floats "$K/t316-$kind.rays" | awk '{ print $1, $2, $3 }' | sort -u | wc -l)" -eq 1
 done
-"$WHIT" trace "$OUT/t316.json" --rays "$K/t316-bounce.rays" -o "$OUT/twin" --on cpu --quiet
+"$WHIT" trace "$OUT/t316.json" --input "$K/t316-bounce.rays" -o "$OUT/twin" --on cpu --quiet
 check "whit's hits are the twin's" cmp "$OUT/twin" "$K/t316-bounce.whit.hits"
 if [ -x "$(dirname "$WHIT")/whit-embree" ]; then
     check "every row has a verdict" holds '.tables[0].rows | all(.verdict != null)'

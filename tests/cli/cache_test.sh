@@ -17,7 +17,7 @@ unset MESA_SHADER_CACHE_DIR MESA_SHADER_CACHE_DISABLE MESA_SHADER_CACHE_MAX_SIZE
 price() {
     how=$1
     shift
-    expect 0 "$how" cost "$CUBE" --size 32x24 --quick --rays 0 --spend 0.1 --quiet --samples 4 \
+    expect 0 "$how" cost "$CUBE" --size 32x24 --quick --rays 0 --spend 0.1 --quiet --reference-samples 4 \
         --knobs shadows --json "$OUT/now.json" "$@"
     jq -S '[.rows[] | {error, alone, price: (.price | del(.device))}]' "$OUT/now.json" >"$OUT/now"
     [ -f "$OUT/figures" ] || cp "$OUT/now" "$OUT/figures"

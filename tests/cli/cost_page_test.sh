@@ -27,7 +27,7 @@ look() {
 }
 
 page=$OUT/cost.html
-expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --samples 4 --knobs aa,shadows \
+expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --reference-samples 4 --knobs aa,shadows \
     --quiet --html "$page"
 look "$page"
 check "it is drawn" test -s "$OUT/page.png"

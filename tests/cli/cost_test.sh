@@ -22,7 +22,7 @@ small="--size 48x36 --quick --rays 600 --quiet --spend 0.1"
 C=$OUT/files/cost.csv
 D=$OUT/files/other.csv
 # shellcheck disable=SC2086
-expect 0 "a scene" cost "$CUBE" $small --samples 4 --knobs aa,light-samples --within 1e6 --json "$J"
+expect 0 "a scene" cost "$CUBE" $small --reference-samples 4 --knobs aa,light-samples --within 1e6 --json "$J"
 check "--within anything is kept" grep -q "^Best picture within 1e+06 ms: .*: kept" "$OUT/stdout"
 check "the JSON names its device and is whole" jq -e '(.device | length > 0) and
     (.driver | length > 0) and (.command | startswith("whit cost ")) and .complete and
@@ -35,7 +35,7 @@ check "prices have intervals" jq -e 'all(.rows[].price; (.cpu // .wall).ratio as
 
 WHIT=$WRONG
 # shellcheck disable=SC2086
-expect 0 "a scene by known clocks" cost "$GLASS" $small --samples 16 \
+expect 0 "a scene by known clocks" cost "$GLASS" $small --reference-samples 16 \
     --knobs aa,depth,light-samples --csv "$C" --html "$OUT/files/cost.html" \
     --markdown "$OUT/files/cost.md" --json "$J" --under 0.03 --within 1e6
 check "the usual row" grep -q "^usual  " "$OUT/stdout"
@@ -67,7 +67,7 @@ check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
 
 # shellcheck disable=SC2086
-expect 0 "what may change nothing" cost "$CUBE" $small --samples 4 \
+expect 0 "what may change nothing" cost "$CUBE" $small --reference-samples 4 \
     --knobs traversal,build,numerics,arithmetic --csv "$C"
 double=$(value "$C" arithmetic double alone_rmse)
 float=$(value "$C" usual "" alone_rmse)
@@ -92,7 +92,7 @@ cat >"$OUT/far.json" <<'JSON'
     { "shape": "sphere", "translation": [91.6, 0.7, 0.1] } ] }
 JSON
 # shellcheck disable=SC2086
-expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --samples 4 \
+expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --reference-samples 4 \
     --knobs instances --csv "$C"
 for row in usual: instances:on; do
     most=$(value "$C" "${row%:*}" "${row#*:}" aimed_ulp_most)
@@ -101,11 +101,11 @@ done
 check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
 # shellcheck disable=SC2086
-expect 0 "one knob" cost "$GLASS" $small --samples 4 --knobs fresnel --rays 0 --csv "$C"
+expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
 check "and no other" test "$(grep -c '^aa  ' "$OUT/stdout")" -eq 0
 # shellcheck disable=SC2086
-expect 1 "an error that nothing has" cost "$CUBE" $small --samples 4 --knobs shadows --rays 0 \
+expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
     --under 1e-9
 check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
 
@@ -131,7 +131,7 @@ refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 
 export WHIT_TEST_WRONG=schlick
 # shellcheck disable=SC2086
-run cost "$GLASS" $small --samples 4 --knobs fresnel --rays 0 --csv "$D"
+run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
 right=$(value "$C" fresnel schlick alone_rmse) biased=$(value "$D" fresnel schlick alone_rmse)
 check "a biased Schlick: its error grows ($right to $biased)" holds "$biased > 1.5 * $right"
@@ -140,7 +140,7 @@ check "and no other" test "$(value "$C" usual "" alone_rmse)" = "$(value "$D" us
 export WHIT_TEST_WRONG=triangle
 # shellcheck disable=SC2086
 refuse 1 "a wrong triangle" "build median: it may change nothing" \
-    cost "$CUBE" $small --samples 4 --knobs build,traversal --csv "$D"
+    cost "$CUBE" $small --reference-samples 4 --knobs build,traversal --csv "$D"
 unset WHIT_TEST_WRONG
 check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
 check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
@@ -151,7 +151,7 @@ check "rays find it too ($(value "$D" build median aimed_wrong))" \
 
 export WHIT_TEST_WRONG=slow
 # shellcheck disable=SC2086
-run cost "$GLASS" $small --samples 4 --knobs depth --rays 0 --csv "$D"
+run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
 check "10 % more work is found" test "$(value "$D" depth 16 ratio)$(value "$D" depth 16 verdict)" = 1.11
 check "and in no other row" test "$(value "$D" depth 4 ratio)$(value "$D" depth 4 verdict)" = 10

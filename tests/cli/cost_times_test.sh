@@ -12,7 +12,7 @@ D=$OUT/files/slow.csv
 
 # Nothing meets what a convex body reflects: 16 bounces are what 8 are.
 sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
-deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --samples 4 --spend 8"
+deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --reference-samples 4 --spend 8"
 # shellcheck disable=SC2086
 expect 0 "as it is" cost $deep --csv "$C"
 export WHIT_TEST_WRONG=slow

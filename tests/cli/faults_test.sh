@@ -79,7 +79,7 @@ errors=0
 if [ "$LONG" ]; then
     for command in "render $SCENES/cube.json -o a.pfm $small" "render model.obj -o a.pfm $small" \
         "render $SCENES/default.json -o a.pfm --size 320x240 --quiet" \
-        "trace $SCENES/swarm.json --rays $MODELS/one.rays -o a.pfm --quiet"; do
+        "trace $SCENES/swarm.json --input $MODELS/one.rays -o a.pfm --quiet"; do
         # shellcheck disable=SC2086
         little_memory 30 15 900 $command
         check "$command: the last has enough" test $status -eq 0
@@ -186,7 +186,7 @@ check "SIGPIPE ignored: one error" \
 begin_trace() {
     mkfifo "rays$1"
     ulimit -c 0
-    "$WHIT" trace "$SCENES/cube.json" --rays "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
+    "$WHIT" trace "$SCENES/cube.json" --input "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
 }
 echo old >hits
 for signal in HUP:129 TERM:143 INT:130; do

@@ -52,7 +52,7 @@ done
 one_option .exr render "$CUBE" $small -o ok.pfm --ids
 # shellcheck disable=SC2086
 one_option .png render "$CUBE" $small --view visits -o
-one_option "" trace "$CUBE" --rays "$OUT/rays" --on cpu --quiet -o
+one_option "" trace "$CUBE" --input "$OUT/rays" --on cpu --quiet -o
 one_option "" scene "$SCENES/spin.json" --quiet --triangles
 
 refuse 2 "bench --json: no such folder" "nowhere/x: cannot write: No such" \

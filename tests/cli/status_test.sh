@@ -83,10 +83,10 @@ ZERO='\000\000\000\000'
 printf "$ZERO$ZERO\000\000\200\107$ZERO$ZERO$ZERO\000\000\200\277\000\000\200\177" >"$OUT/ray"
 echo old >p.exr
 refuse 1 "trace through too many nodes" "not to be trusted: a traversal was cut short" \
-    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet
+    trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet
 check "leaves the old hits" test "$(cat p.exr)" = old
 expect 0 "on the CPU" \
-    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet --on cpu
+    trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet --on cpu
 check "gives a hit" test "$(wc -c <p.exr)" -eq 32
 rm p.exr
 
@@ -100,7 +100,7 @@ distrust "a small stack of packets" "the node stack overflowed" "$SCENES/default
     --packets on
 SMALL_STACKS=nodes
 refuse 1 "trace with a small node stack" "not to be trusted: the node stack overflowed" \
-    trace "$OUT/pile.obj" --rays "$OUT/ray" -o p.exr --quiet
+    trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --quiet
 check "leaves the old hits" test "$(cat p.exr)" = old
 refuse 1 "hard rays without an answer" "[1-9][0-9]* of [1-9][0-9]* rows: the device gave no answer" \
     hard --case spikes --quick --quiet --numerics watertight

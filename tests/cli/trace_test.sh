@@ -13,7 +13,7 @@ printf "$FOUR$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO$INF" >>"$R"
 printf "$EIGHTH$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO\000\000\000\100" >>"$R"
 
 for on in device cpu brute; do
-    expect 0 "trace --on $on" trace "$CUBE" --rays "$R" -o "$OUT/files/$on" --on $on --quiet
+    expect 0 "trace --on $on" trace "$CUBE" --input "$R" -o "$OUT/files/$on" --on $on --quiet
     check "three hits of 32 bytes" test "$(wc -c <"$OUT/files/$on")" -eq 96
     t=$(od -An -v -tf4 -w32 "$OUT/files/$on" | awk '{ printf "%s ", $1 }')
     check "t is 3.5, nothing, nothing ($t)" test "$t" = "3.5 inf inf "
@@ -25,25 +25,25 @@ for on in device cpu brute; do
 done
 check "the device equals its twin" cmp "$OUT/files/device" "$OUT/files/cpu"
 check "the twin equals brute force" cmp "$OUT/files/cpu" "$OUT/files/brute"
-expect 0 "trace --build none" trace "$CUBE" --rays "$R" -o "$OUT/files/no-bvh" --build none --quiet
+expect 0 "trace --build none" trace "$CUBE" --input "$R" -o "$OUT/files/no-bvh" --build none --quiet
 check "so does the device without trees" cmp "$OUT/files/no-bvh" "$OUT/files/brute"
 
 # More than a ray may test one by one on a device; what needs no trees has no such bound.
 MANY=$SCENES/54k.json
 expect 0 "54,450 triangles without trees" \
-    trace "$MANY" --rays "$R" -o "$OUT/files/many" --on brute --quiet
-for command in "trace --rays $R -o $OUT/files/none" "render -o $OUT/files/none.png" "probe --pixel 0,0"; do
+    trace "$MANY" --input "$R" -o "$OUT/files/many" --on brute --quiet
+for command in "trace --input $R -o $OUT/files/none" "render -o $OUT/files/none.png" "probe --pixel 0,0"; do
     # shellcheck disable=SC2086
     refuse 2 "${command%% *} --build none" "54k.json: without trees .* 54450 over all instances are too many" \
         ${command%% *} "$MANY" ${command#* } --build none
 done
-expect 0 "any hit" trace "$CUBE" --rays "$R" -o "$OUT/files/any" --any --quiet
+expect 0 "any hit" trace "$CUBE" --input "$R" -o "$OUT/files/any" --any --quiet
 any=$(od -An -v -tu4 -w32 "$OUT/files/any" | awk '{ printf "%s ", ($4 == 4294967295) }')
 check "finds the same rays blocked ($any)" test "$any" = "0 1 1 "
 
-expect 0 "no rays at all" trace "$CUBE" --rays /dev/null -o "$OUT/files/none" --on cpu --quiet
+expect 0 "no rays at all" trace "$CUBE" --input /dev/null -o "$OUT/files/none" --on cpu --quiet
 check "gives no hits" test ! -s "$OUT/files/none"
-cat "$R" | "$WHIT" trace "$CUBE" --rays /dev/stdin -o "$OUT/files/piped" --on cpu --quiet
+cat "$R" | "$WHIT" trace "$CUBE" --input /dev/stdin -o "$OUT/files/piped" --on cpu --quiet
 check "rays from a pipe: exit code 0" test $? -eq 0
 check "rays from a pipe give the same hits" cmp "$OUT/files/cpu" "$OUT/files/piped"
 
@@ -51,15 +51,15 @@ find "$OUT/files" -type f ! -name rays -exec rm {} +
 printf 'xxx' >"$OUT/short"
 cat "$R" "$OUT/short" >"$OUT/cut"
 refuse 2 "a ray cut short" "cut: 99 bytes .*at byte 96" \
-    trace "$CUBE" --rays "$OUT/cut" -o "$OUT/files/hits"
+    trace "$CUBE" --input "$OUT/cut" -o "$OUT/files/hits"
 refuse 2 "missing rays" "missing: cannot read" \
-    trace "$CUBE" --rays "$OUT/missing" -o "$OUT/files/hits"
-refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --rays "$OUT" -o "$OUT/files/hits"
+    trace "$CUBE" --input "$OUT/missing" -o "$OUT/files/hits"
+refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --input "$OUT" -o "$OUT/files/hits"
 check "no file was left" test "$(ls -A "$OUT/files")" = rays
 
 printf 'mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/bare.obj"
 head -c 32 /dev/zero >"$OUT/one.rays"
-run trace "$OUT/bare.obj" --rays "$OUT/one.rays" -o "$OUT/one.hits" --on cpu
+run trace "$OUT/bare.obj" --input "$OUT/one.rays" -o "$OUT/one.hits" --on cpu
 check "a warning about the scene" grep -q "^whit: warning: .*none.mtl" "$OUT/stderr"
 check "nothing about lights and cameras" test "$(grep -c "^whit: note:" "$OUT/stderr")" -eq 0
 finish

@@ -68,8 +68,8 @@ refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictu
 refuse 2 "identities as PNG" "x.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$P"
 refuse 2 "a dash as picture" "-o -: pictures go to files" render "$CUBE" -o -
 refuse 2 "a dash as identities" "--ids -: " render "$CUBE" -o "$P" --ids -
-refuse 2 "a dash as rays" "--rays -: .*/dev/stdin" trace "$CUBE" --rays - -o "$OUT/pictures/h"
-refuse 2 "a dash as hits" "-o -: .*/dev/stdout" trace "$CUBE" --rays "$CUBE" -o -
+refuse 2 "a dash as rays" "--input -: .*/dev/stdin" trace "$CUBE" --input - -o "$OUT/pictures/h"
+refuse 2 "a dash as hits" "-o -: .*/dev/stdout" trace "$CUBE" --input "$CUBE" -o -
 refuse 2 "a dash as triangles" "--triangles -: .*/dev/stdout" scene "$CUBE" --triangles -
 refuse 2 "no such folder" "nowhere/x.png" render "$CUBE" -o "$OUT/nowhere/x.png"
 refuse 2 "missing scene" "missing.json" render "$OUT/missing.json" -o "$P"
@@ -87,7 +87,7 @@ refuse 2 "camera without length" "same point" \
 refuse 2 "angle of 180 degrees" "between 0 and 180" \
     render "$CUBE" -o "$P" --camera 0,0,5,0,0,0,0,1,0,180
 
-refuse 2 "trace without rays" "--rays FILE is missing" trace "$CUBE" -o "$OUT/pictures/hits"
+refuse 2 "trace without rays" "--input FILE is missing" trace "$CUBE" -o "$OUT/pictures/hits"
 refuse 2 "devices with an argument" "too many" devices "$CUBE"
 
 # The same environment stops what does need a device.
