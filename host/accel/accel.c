@@ -274,12 +274,12 @@ static whit_result bare_check(struct accel *accel)
     if (accel->params.flatten)
         turns = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
     accel->turns = (uint32_t)turns;
-    if (primitives <= ACCEL_BARE_MOST && turns <= ACCEL_TURNS_MOST)
+    if (primitives <= ACCEL_BARE_MAX && turns <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&accel->log,
               "%s: without trees every ray tests every primitive, and %llu over all instances are "
               "too many: %u are possible, fewer in thousands of instances",
-              scene->name, (unsigned long long)primitives, ACCEL_BARE_MOST);
+              scene->name, (unsigned long long)primitives, ACCEL_BARE_MAX);
     return WHIT_ERROR_USAGE;
 }
 

@@ -107,7 +107,7 @@ enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
 /* With BVH_NONE: primitives over all instances; and turns of loops of one ray, of which lavapipe
    grants an invocation 65,535. */
-enum { ACCEL_BARE_MOST = 40000, ACCEL_TURNS_MOST = 65000 };
+enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
 
 struct accel_params {
     struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */

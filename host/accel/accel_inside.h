@@ -118,10 +118,10 @@ struct gpu_triangle material_bits_record(const struct scene *scene,
 /* ---- flat.c: accel->world ---- */
 
 enum { FLAT_TRIANGLE_BYTES = 300 }; /* at the peak of a build: corners, boxes, builder, records */
-#define FLAT_TRIANGLES_MOST  (BVH_FIRST_MASK / 2)
-#define FLAT_VERTICES_MOST   (UINT32_MAX / 4)
-#define FLAT_INSTANCES_MOST  (UINT32_MAX >> TRIANGLE_INSTANCE_SHIFT)
-#define FLAT_COORDINATE_MOST 1e18 /* as scene_freeze has it in object space */
+#define FLAT_TRIANGLES_MAX  (BVH_FIRST_MASK / 2)
+#define FLAT_VERTICES_MAX   (UINT32_MAX / 4)
+#define FLAT_INSTANCES_MAX  (UINT32_MAX >> TRIANGLE_INSTANCE_SHIFT)
+#define FLAT_COORDINATE_MAX 1e18 /* as scene_freeze has it in object space */
 
 /* The centre stands for a sphere's vertices. */
 static inline uint32_t accel_flat_vertices(const struct scene_mesh *mesh)

@@ -171,7 +171,7 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
     uint64_t pairs = 0, triangles = 0;
     uint32_t status = 0;
     for (uint32_t i = 0; i < task_count; ++i) {
-        pairs += measuring->costs[i].pairs;
+        pairs += measuring->costs[i].inner_nodes;
         triangles += measuring->costs[i].triangles;
         status |= measuring->statuses[i];
     }
@@ -181,7 +181,7 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
         return WHIT_ERROR_STATUS;
     }
     report->measured_rays = measuring->ray_count;
-    report->measured_pairs = (double)pairs / measuring->ray_count;
+    report->measured_inner_nodes = (double)pairs / measuring->ray_count;
     report->measured_triangles = (double)triangles / measuring->ray_count;
     return WHIT_OK;
 }
@@ -254,9 +254,9 @@ whit_result accel_report(const struct accel *accel, uint32_t ray_count, struct a
         area_ends[i] = totals.area;
     }
     if (result == WHIT_OK && totals.area > 0.0) {
-        report->predicted_pairs = totals.inner / totals.area;
+        report->predicted_inner_nodes = totals.inner / totals.area;
         report->predicted_triangles = totals.leaves / totals.area;
-        report->sah_cost = report->predicted_pairs * (cost > 0.0f ? (double)cost : 1.0) +
+        report->sah_cost = report->predicted_inner_nodes * (cost > 0.0f ? (double)cost : 1.0) +
                            report->predicted_triangles;
         report->overlap = totals.inner > 0.0 ? totals.shared / totals.inner : 0.0;
         report->epo = totals.epo_surface > 0.0 ? totals.epo_overlap / totals.epo_surface : 0.0;

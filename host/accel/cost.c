@@ -8,7 +8,7 @@ static uint32_t larger(uint32_t a, uint32_t b)
 void cost_merge(struct cost_sum *sum, const struct cost_sum *part)
 {
     sum->rays += part->rays;
-    sum->pairs += part->pairs;
+    sum->inner_nodes += part->inner_nodes;
     sum->leaves += part->leaves;
     sum->instances += part->instances;
     sum->triangles += part->triangles;
@@ -17,17 +17,17 @@ void cost_merge(struct cost_sum *sum, const struct cost_sum *part)
     sum->depth_sum += part->depth_sum;
     sum->stack = larger(sum->stack, part->stack);
     sum->depth = larger(sum->depth, part->depth);
-    sum->most_pairs = larger(sum->most_pairs, part->most_pairs);
-    sum->most_leaves = larger(sum->most_leaves, part->most_leaves);
-    sum->most_instances = larger(sum->most_instances, part->most_instances);
-    sum->most_triangles = larger(sum->most_triangles, part->most_triangles);
+    sum->max_inner_nodes = larger(sum->max_inner_nodes, part->max_inner_nodes);
+    sum->max_leaves = larger(sum->max_leaves, part->max_leaves);
+    sum->max_instances = larger(sum->max_instances, part->max_instances);
+    sum->max_triangles = larger(sum->max_triangles, part->max_triangles);
 }
 
 void cost_add(struct cost_sum *sum, const struct gpu_cost *cost)
 {
     const struct cost_sum record = {
         .rays = cost->rays,
-        .pairs = cost->pairs,
+        .inner_nodes = cost->inner_nodes,
         .leaves = cost->leaves,
         .instances = cost->instances,
         .triangles = cost->triangles,
@@ -36,10 +36,10 @@ void cost_add(struct cost_sum *sum, const struct gpu_cost *cost)
         .records = 1,
         .stack_sum = cost->stack,
         .depth_sum = cost->depth,
-        .most_pairs = cost->pairs,
-        .most_leaves = cost->leaves,
-        .most_instances = cost->instances,
-        .most_triangles = cost->triangles,
+        .max_inner_nodes = cost->inner_nodes,
+        .max_leaves = cost->leaves,
+        .max_instances = cost->instances,
+        .max_triangles = cost->triangles,
     };
     if (cost->rays > 0)
         cost_merge(sum, &record);

@@ -8,11 +8,11 @@
 
 /* Over records: rays of a batch, or samples of pixels that have rays of a kind. */
 struct cost_sum {
-    uint64_t rays, pairs, leaves, instances, triangles;
+    uint64_t rays, inner_nodes, leaves, instances, triangles;
     uint32_t stack, depth; /* the largest */
     uint64_t records;
-    uint64_t stack_sum, depth_sum;                                    /* over records */
-    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one record */
+    uint64_t stack_sum, depth_sum;                                      /* over records */
+    uint32_t max_inner_nodes, max_leaves, max_instances, max_triangles; /* in one record */
 };
 
 /* A record without rays adds nothing. */

@@ -83,10 +83,10 @@ static void find_range(struct wide *w)
         for (int i = 0; i < 3; ++i) {
             bool some = (w->mantissa[k][i] & 0x7fffffffu) != 0;
             int32_t e = w->exponent[k][i];
-            int32_t *least = k == POINT_DIR ? &dir_lo : &lo;
-            int32_t *most = k == POINT_DIR ? &dir_hi : &hi;
-            *least = some && e < *least ? e : *least;
-            *most = some && e > *most ? e : *most;
+            int32_t *min = k == POINT_DIR ? &dir_lo : &lo;
+            int32_t *max = k == POINT_DIR ? &dir_hi : &hi;
+            *min = some && e < *min ? e : *min;
+            *max = some && e > *max ? e : *max;
         }
     }
     w->first = ((dir_lo < lo ? dir_lo : lo) + lo + lo - 3) >> 4;
@@ -281,7 +281,7 @@ static float round_quotient(const struct wide *w, int32_t top_n, int32_t top_d)
 }
 
 void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
-                struct exact_meeting *out)
+                struct exact_candidate *out)
 {
     struct wide w;
     decode_point(&w, POINT_DIR, dir);

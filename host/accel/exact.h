@@ -24,13 +24,13 @@ struct exact_bounds {
 void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, struct vec3 c,
                   struct exact_bounds *out);
 
-struct exact_meeting {
+struct exact_candidate {
     bool met; /* t >= 0, the closed triangle, not edge-on; false where the key exceeds FLT_MAX */
     float key, u, v;
 };
 
 /* All finite. */
 void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
-                struct exact_meeting *out);
+                struct exact_candidate *out);
 
 #endif

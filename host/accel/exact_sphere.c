@@ -69,7 +69,7 @@ static int32_t at_least(int32_t a, int32_t b)
 
 static void decode_values(struct ball *w, const float values[VALUES])
 {
-    int32_t least[2] = {254, 254}, most[2] = {1, 1};
+    int32_t min[2] = {254, 254}, max[2] = {1, 1};
     for (int i = 0; i < VALUES; ++i) {
         uint32_t bits;
         memcpy(&bits, &values[i], sizeof bits);
@@ -79,14 +79,14 @@ static void decode_values(struct ball *w, const float values[VALUES])
             (bits & 0x80000000u) | (bits & 0x7fffffu) | (exponent != 0 ? 0x800000u : 0u);
         w->exponent[i] = exponent != 0 ? (int32_t)exponent : 1;
         bool some = (w->mantissa[i] & 0x7fffffffu) != 0;
-        least[of] = some && w->exponent[i] < least[of] ? w->exponent[i] : least[of];
-        most[of] = some && w->exponent[i] > most[of] ? w->exponent[i] : most[of];
+        min[of] = some && w->exponent[i] < min[of] ? w->exponent[i] : min[of];
+        max[of] = some && w->exponent[i] > max[of] ? w->exponent[i] : max[of];
     }
     for (int i = 0; i < VALUES; ++i)
-        w->exponent[i] -= least[i < 3 ? 0 : 1];
-    int32_t widest = at_least(most[0] - least[0], most[1] - least[1]);
+        w->exponent[i] -= min[i < 3 ? 0 : 1];
+    int32_t widest = at_least(max[0] - min[0], max[1] - min[1]);
     w->last = (2 * widest + 1) / DIGIT_BITS + 5;
-    w->unit = least[1] - least[0];
+    w->unit = min[1] - min[0];
 }
 
 /* Twice the product of two values, or once; or less it. */
@@ -230,21 +230,21 @@ static uint32_t bits_within(float x)
 /* The least float from lo to hi that the key is not above. */
 static float find_key(struct ball *w, float lo, float hi, bool far)
 {
-    uint32_t least = bits_within(lo), most = bits_within(hi);
-    while (least < most) {
-        uint32_t middle = least + (most - least) / 2;
+    uint32_t min = bits_within(lo), max = bits_within(hi);
+    while (min < max) {
+        uint32_t middle = min + (max - min) / 2;
         if (is_beyond(w, middle, far))
-            least = middle + 1;
+            min = middle + 1;
         else
-            most = middle;
+            max = middle;
     }
     float key;
-    memcpy(&key, &least, sizeof key);
+    memcpy(&key, &min, sizeof key);
     return key;
 }
 
 void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
-                       bool only_far, float t_min, struct sphere_meeting *out)
+                       bool only_far, float t_min, struct sphere_candidate *out)
 {
     struct ball w;
     struct ray_setup ray = make_ray_setup(origin, dir);

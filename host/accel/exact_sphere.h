@@ -18,7 +18,7 @@ struct sphere_bounds {
 void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
                   struct sphere_bounds *out);
 
-struct sphere_meeting {
+struct sphere_candidate {
     bool met;     /* at t >= 0; false where the key exceeds FLT_MAX */
     bool at_exit; /* at the far end */
     bool inward;  /* where it is met: from the ray's origin the centre is ahead */
@@ -28,6 +28,6 @@ struct sphere_meeting {
 /* The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none.
    All finite, radius > 0. */
 void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
-                       bool only_far, float t_min, struct sphere_meeting *out);
+                       bool only_far, float t_min, struct sphere_candidate *out);
 
 #endif

@@ -74,8 +74,8 @@ static whit_result check_size(const struct accel *accel, uint64_t triangles, uin
     char what[64];
     snprintf(what, sizeof what, "its %llu triangles without instances",
              (unsigned long long)triangles);
-    if (triangles > FLAT_TRIANGLES_MOST || vertices > FLAT_VERTICES_MOST)
-        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, FLAT_TRIANGLES_MOST);
+    if (triangles > FLAT_TRIANGLES_MAX || vertices > FLAT_VERTICES_MAX)
+        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, FLAT_TRIANGLES_MAX);
     else if (scene_could_afford(scene, &accel->log, triangles * FLAT_TRIANGLE_BYTES, what))
         return WHIT_OK;
     return WHIT_ERROR_INPUT;
@@ -137,7 +137,7 @@ whit_result accel_flat_create(struct accel *accel)
     accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
     if (!flat || !accel->meshes || !accel->instances)
         return WHIT_ERROR_MEMORY;
-    if (scene->instance_count >= FLAT_INSTANCES_MOST) {
+    if (scene->instance_count >= FLAT_INSTANCES_MAX) {
         log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
         return WHIT_ERROR_INPUT;
     }
@@ -179,7 +179,7 @@ static void place_vertices(void *user, uint32_t index)
         double world[3];
         affine_point(forward, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, world);
         for (int i = 0; i < 3; ++i) {
-            span->bad |= !(fabs(world[i]) <= FLAT_COORDINATE_MOST);
+            span->bad |= !(fabs(world[i]) <= FLAT_COORDINATE_MAX);
             out[3 * (size_t)v + (size_t)i] = (float)world[i];
         }
     }

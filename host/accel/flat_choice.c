@@ -34,7 +34,7 @@ static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *f
         farthest = fmax(farthest, fmax(fabs(world.lo[k]), fabs(world.hi[k])));
         longest = fmax(longest, world.hi[k] - world.lo[k]);
     }
-    return farthest <= FARTHEST * longest && farthest <= FLAT_COORDINATE_MOST;
+    return farthest <= FARTHEST * longest && farthest <= FLAT_COORDINATE_MAX;
 }
 
 static bool is_one_ball(const struct scene_mesh *mesh)
@@ -64,8 +64,8 @@ static bool has_room(const struct scene *scene)
     uint64_t vertices = 0, primitives = scene->triangle_total + scene->sphere_total;
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         vertices += accel_flat_vertices(&scene->meshes[i]);
-    return primitives > 0 && primitives <= FLAT_TRIANGLES_MOST && vertices <= FLAT_VERTICES_MOST &&
-           scene->instance_count < FLAT_INSTANCES_MOST &&
+    return primitives > 0 && primitives <= FLAT_TRIANGLES_MAX && vertices <= FLAT_VERTICES_MAX &&
+           scene->instance_count < FLAT_INSTANCES_MAX &&
            primitives * FLAT_TRIANGLE_BYTES <= scene_room(scene);
 }
 

@@ -142,7 +142,7 @@ struct hard_tally {
     uint64_t wrong;       /* of misses, false hits and wrong ids: no error bound excuses them */
     uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
     uint64_t self_hits;   /* on the primitive that the ray started on; of HARD_MUST_MISS any hit */
-    double ulp_most; /* error of t where the primitive is right, in floats between it and the exact
+    double ulp_max; /* error of t where the primitive is right, in floats between it and the exact
                         one's rounding; not of hits nearer than 16 roundings of the origin */
 };
 

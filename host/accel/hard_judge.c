@@ -111,12 +111,12 @@ whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
 /* Two axes across the direction. */
 static void across(const double dir[3], double first[3], double second[3])
 {
-    int least = 0;
+    int min = 0;
     double axis[3] = {0, 0, 0};
     for (int k = 1; k < 3; ++k)
-        if (fabs(dir[k]) < fabs(dir[least]))
-            least = k;
-    axis[least] = 1.0;
+        if (fabs(dir[k]) < fabs(dir[min]))
+            min = k;
+    axis[min] = 1.0;
     double3_cross(dir, axis, first);
     double3_unit(first);
     double3_cross(dir, first, second);
@@ -277,7 +277,7 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
     if (same) {
         tally->wrong_keys += hit->t != exact->t;
         if (hard_goes_far(&j->rays[i].ray, exact->t))
-            tally->ulp_most = fmax(tally->ulp_most, hard_ulps_between(hit->t, exact->t));
+            tally->ulp_max = fmax(tally->ulp_max, hard_ulps_between(hit->t, exact->t));
     }
     tally->double_hits += is_double(j, rational, i, status);
 }
@@ -314,7 +314,7 @@ static void add_tally(struct hard_tally *sum, const struct hard_tally *more)
     sum->wrong += more->wrong;
     sum->double_hits += more->double_hits;
     sum->self_hits += more->self_hits;
-    sum->ulp_most = fmax(sum->ulp_most, more->ulp_most);
+    sum->ulp_max = fmax(sum->ulp_max, more->ulp_max);
 }
 
 whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,

@@ -49,9 +49,9 @@ static double draw_sign(uint64_t *state)
 }
 
 /* A whole number from -most to most. */
-static double draw_whole(uint64_t *state, uint32_t most)
+static double draw_whole(uint64_t *state, uint32_t max)
 {
-    return (double)(draw(state) % (2 * most + 1)) - (double)most;
+    return (double)(draw(state) % (2 * max + 1)) - (double)max;
 }
 
 static double power_of_half(uint32_t n)

@@ -22,7 +22,7 @@ enum {
 };
 
 /* A round that lowers the cost by less than this is the last. */
-static const double ROUND_LEAST = 0.001;
+static const double ROUND_MIN = 0.001;
 
 struct move {
     float gain; /* scaled area */
@@ -337,7 +337,7 @@ whit_result bvh_optimize(const struct log *log, uint32_t thread_count, double tr
     for (uint32_t i = 0; i < ROUNDS_MAX && now > 0.0; ++i) {
         double gained = round_run(&o);
         now -= gained;
-        if (!(gained > ROUND_LEAST * now))
+        if (!(gained > ROUND_MIN * now))
             break;
     }
     bool better = inner_area(o.nodes, o.node_count) < before;

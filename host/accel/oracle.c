@@ -37,11 +37,11 @@
 #include <string.h>
 
 #include "accel/accel_inside.h"
-#include "accel/wide.h"
+#include "accel/conservative.h"
 
 #define ROUNDING            0x1p-24
 #define DENORMAL            0x1p-149
-#define NORMAL_LEAST        0x1p-126
+#define NORMAL_MIN          0x1p-126
 /* Boxes grow by this much of the distance to the ray's origin: what the float test may still hit
    lies within 16 roundings of it. */
 #define BOX_GROWTH          0x1p-18
@@ -161,16 +161,16 @@ static struct number edge_function(const struct point *c, const struct point *b)
 /* A hit is lost when any edge function changes sign; a miss is turned when all of one sign do. */
 static double edges_margin(const struct number edge[3], bool hit)
 {
-    double least = INFINITY, below = 0.0, above = 0.0;
+    double min = INFINITY, below = 0.0, above = 0.0;
     for (int i = 0; i < 3; ++i) {
         double bounds = fabs(edge[i].value) / edge[i].error;
-        least = fmin(least, bounds);
+        min = fmin(min, bounds);
         if (edge[i].value < 0.0)
             below = fmax(below, bounds);
         else
             above = fmax(above, bounds);
     }
-    return hit ? least : fmin(below, above);
+    return hit ? min : fmin(below, above);
 }
 
 static struct verdict probe_triangle(const struct probe *p, const struct gpu_triangle *triangle)
@@ -193,7 +193,7 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
     }
     struct verdict out = {
         .hit = !(below && above) && det != 0.0, .t_error = INFINITY, .choice = INFINITY};
-    out.margin = fabs(det) < NORMAL_LEAST ? 0.0 : edges_margin(edge, out.hit);
+    out.margin = fabs(det) < NORMAL_MIN ? 0.0 : edges_margin(edge, out.hit);
     if (det != 0.0) {
         out.t = sum / det;
         out.u = edge[1].value / det;
@@ -259,9 +259,9 @@ static void chord_ends(const struct number c[3], double radius, struct chord *ou
 {
     double dd = out->length_squared.value, dd_error = out->length_squared.error;
     double half = sqrt(fmax(out->room, 0.0) / dd);
-    double most = sqrt(fmax(out->room + out->room_error, 0.0) / (dd - dd_error));
-    double least = sqrt(fmax(out->room - out->room_error, 0.0) / (dd + dd_error));
-    double half_error = fmax(most - half, half - least) + 2.0 * ROUNDING * most;
+    double max = sqrt(fmax(out->room + out->room_error, 0.0) / (dd - dd_error));
+    double min = sqrt(fmax(out->room - out->room_error, 0.0) / (dd + dd_error));
+    double half_error = fmax(max - half, half - min) + 2.0 * ROUNDING * max;
     double middle = out->middle.value;
     struct number farther = {middle < 0.0 ? middle - half : middle + half, 0.0};
     farther.error = out->middle.error + half_error + ROUNDING * fabs(farther.value);
@@ -339,7 +339,7 @@ static struct verdict probe_sphere(const struct probe *p, const struct gpu_trian
 /* ---- Every triangle that matters ---- */
 
 struct search {
-    struct wide_walk walk; /* the first member: its callbacks get at the rest */
+    struct conservative_walk walk; /* the first member: its callbacks get at the rest */
     struct probe world, probe;
     /* First pass: the two nearest hits. */
     struct verdict best;
@@ -394,18 +394,18 @@ static void judge(struct search *s, const struct verdict *v, const struct probe 
     s->margin = fmin(s->margin, margin);
 }
 
-static struct wide_ray probe_ray(const struct probe *p)
+static struct conservative_ray probe_ray(const struct probe *p)
 {
-    struct wide_ray ray = {.t_min = p->t_min,
-                           .t_max = p->t_max,
-                           .growth = p->box_growth,
-                           .margin = 16.0 * p->origin_error_largest};
+    struct conservative_ray ray = {.t_min = p->t_min,
+                                   .t_max = p->t_max,
+                                   .growth = p->box_growth,
+                                   .margin = 16.0 * p->origin_error_largest};
     memcpy(ray.origin, p->origin, sizeof ray.origin);
     memcpy(ray.dir, p->dir, sizeof ray.dir);
     return ray;
 }
 
-static bool enter_instance(struct wide_walk *walk, uint32_t instance)
+static bool enter_instance(struct conservative_walk *walk, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     s->probe = probe_local(&s->world, &walk->accel->instances[instance]);
@@ -413,14 +413,14 @@ static bool enter_instance(struct wide_walk *walk, uint32_t instance)
     return true;
 }
 
-static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t instance)
+static void visit_record(struct conservative_walk *walk, uint32_t record, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     const struct probe *p = &s->probe;
     /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
     struct bvh_box box = accel_record_box(triangle);
-    if (s->judging && wide_entry(walk, box.lo, box.hi) == INFINITY)
+    if (s->judging && conservative_entry(walk, box.lo, box.hi) == INFINITY)
         return;
     struct verdict v =
         triangle->flags & TRIANGLE_SPHERE ? probe_sphere(p, triangle) : probe_triangle(p, triangle);
@@ -456,10 +456,10 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
         return;
     s.probe = s.world;
     s.walk.ray = probe_ray(&s.world);
-    wide_walk_run(&s.walk);
+    conservative_walk_run(&s.walk);
     s.judging = true;
     s.walk.limit = s.primitive == HIT_NONE ? INFINITY : s.best.t + 2.0 * s.best.t_error;
-    wide_walk_run(&s.walk);
+    conservative_walk_run(&s.walk);
     hit->second_t = s.second_t;
     hit->edge_margin = s.primitive == HIT_NONE ? -s.margin : s.margin;
     if (s.primitive == HIT_NONE)

@@ -8,7 +8,7 @@
 #include <strings.h>
 
 #include "accel/accel_inside.h"
-#include "accel/wide.h"
+#include "accel/conservative.h"
 
 /* Of the walk's own doubles: some 2^-50. */
 #define BOX_GROWTH 0x1p-40
@@ -324,8 +324,8 @@ enum opinion { NOT_MET, MET, UNSURE };
 
 struct estimate {
     enum opinion met;
-    uint32_t edges;    /* if it is met */
-    float least, most; /* the key is between them, if it is met */
+    uint32_t edges; /* if it is met */
+    float min, max; /* the key is between them, if it is met */
 };
 
 /* t = N / D: with errors n and m, |error| <= (n + |t| m) / (|D| - m), and a few u of t. Rounding is
@@ -338,19 +338,19 @@ static void estimate_key(struct estimate *out, double v[3][3], const struct boun
         det += edge[i].value;
         det_error += edge[i].error + 0x1p-52 * fabs(edge[i].value);
     }
-    out->least = -INFINITY;
-    out->most = INFINITY;
+    out->min = -INFINITY;
+    out->max = INFINITY;
     if (!(fabs(det) > 2.0 * det_error))
         return;
     double t = volume.value / det;
     double error =
         1.001 * (volume.error + fabs(t) * det_error) / (fabs(det) - det_error) + 0x1p-50 * fabs(t);
-    out->least = (float)(t - error) + 0.0f;
-    out->most = (float)(t + error) + 0.0f;
+    out->min = (float)(t - error) + 0.0f;
+    out->max = (float)(t + error) + 0.0f;
 }
 
-static struct estimate estimate_meeting(const double origin[3], const double dir[3],
-                                        const struct gpu_triangle *triangle)
+static struct estimate estimate_candidate(const double origin[3], const double dir[3],
+                                          const struct gpu_triangle *triangle)
 {
     const float *corner[VERTICES] = {triangle->v0, triangle->v1, triangle->v2};
     double v[VERTICES][3];
@@ -391,8 +391,8 @@ static bool surely_misses(const double origin[3], const double dir[3],
     for (int k = 0; k < AXES; ++k) {
         int i = (k + 1) % AXES, j = (k + 2) % AXES;
         double left = m[i] * dir[j], right = m[j] * dir[i];
-        double least = fabs(left - right) - PRODUCT_ERROR * (fabs(left) + fabs(right));
-        off += least > 0.0 ? least * least : 0.0;
+        double min = fabs(left - right) - PRODUCT_ERROR * (fabs(left) + fabs(right));
+        off += min > 0.0 ? min * min : 0.0;
     }
     return off > (1.0 + 0x1p-48) * radius * radius * size;
 }
@@ -400,7 +400,7 @@ static bool surely_misses(const double origin[3], const double dir[3],
 /* ---- Every primitive that matters ---- */
 
 struct search {
-    struct wide_walk walk; /* the first member: its callbacks get at the rest */
+    struct conservative_walk walk; /* the first member: its callbacks get at the rest */
     struct rational *rational;
     const struct rational_query *query;
     const struct gpu_ray *world;
@@ -476,7 +476,7 @@ static void visit_sphere(struct search *s, const struct gpu_triangle *sphere, ui
         offer_hit(s, chord.far_key, 0, instance, sphere->primitive);
 }
 
-static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t instance)
+static void visit_record(struct conservative_walk *walk, uint32_t record, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
@@ -493,11 +493,11 @@ static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t insta
         visit_exactly(s, triangle, instance);
         return;
     }
-    struct estimate e = estimate_meeting(walk->ray.origin, walk->ray.dir, triangle);
-    if (e.met == NOT_MET || e.most < s->world->t_min || e.least > s->t_max || e.least > s->best.t)
+    struct estimate e = estimate_candidate(walk->ray.origin, walk->ray.dir, triangle);
+    if (e.met == NOT_MET || e.max < s->world->t_min || e.min > s->t_max || e.min > s->best.t)
         return;
-    if (e.met == MET && e.least == e.most && isfinite(e.least))
-        offer_hit(s, e.least, e.edges, instance, triangle->primitive);
+    if (e.met == MET && e.min == e.max && isfinite(e.min))
+        offer_hit(s, e.min, e.edges, instance, triangle->primitive);
     else
         visit_exactly(s, triangle, instance);
 }
@@ -506,7 +506,7 @@ static void visit_record(struct wide_walk *walk, uint32_t record, uint32_t insta
 static bool set_ray(struct search *s, const struct gpu_ray *ray)
 {
     s->ray = *ray;
-    s->walk.ray = (struct wide_ray){
+    s->walk.ray = (struct conservative_ray){
         .t_min = (double)ray->t_min, .t_max = (double)s->t_max, .growth = BOX_GROWTH};
     for (int k = 0; k < AXES; ++k) {
         s->walk.ray.origin[k] = (double)ray->origin[k];
@@ -515,7 +515,7 @@ static bool set_ray(struct search *s, const struct gpu_ray *ray)
     return accel_ray_is_usable(ray);
 }
 
-static bool enter_instance(struct wide_walk *walk, uint32_t instance)
+static bool enter_instance(struct conservative_walk *walk, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     struct gpu_ray local = accel_local_ray(&walk->accel->instances[instance], s->world);
@@ -523,7 +523,7 @@ static bool enter_instance(struct wide_walk *walk, uint32_t instance)
 }
 
 /* See instance_spread. */
-static void widen_for_instances(const struct rational *rational, struct wide_ray *ray)
+static void widen_for_instances(const struct rational *rational, struct conservative_ray *ray)
 {
     double dir = fmax(fmax(fabs(ray->dir[0]), fabs(ray->dir[1])), fabs(ray->dir[2]));
     ray->growth = rational->instance_growth + rational->instance_scale * 0x1p-146 / dir;
@@ -546,7 +546,7 @@ void rational_trace(struct rational *rational, const struct gpu_ray *ray,
     if (set_ray(&s, ray) && ray->t_min <= s.t_max) {
         if (!accel->single_identity && !accel->flat)
             widen_for_instances(rational, &s.walk.ray);
-        wide_walk_run(&s.walk);
+        conservative_walk_run(&s.walk);
     }
     *hit = s.best;
 }
@@ -570,7 +570,7 @@ static double instance_spread(const struct gpu_instance *i, double *scale)
 {
     const float *forward[3] = {i->forward0, i->forward1, i->forward2};
     const float *inverse[3] = {i->inverse0, i->inverse1, i->inverse2};
-    double most = 0.0;
+    double max = 0.0;
     for (int r = 0; r < AXES; ++r) {
         double sum = 0.0;
         for (int c = 0; c < AXES; ++c) {
@@ -578,9 +578,9 @@ static double instance_spread(const struct gpu_instance *i, double *scale)
             for (int k = 0; k < AXES; ++k)
                 sum += fabs((double)forward[r][k] * (double)inverse[k][c]);
         }
-        most = fmax(most, sum);
+        max = fmax(max, sum);
     }
-    return most;
+    return max;
 }
 
 struct rational *rational_create(const struct accel *accel)

@@ -11,13 +11,13 @@ enum { REPORT_DEPTH_BINS = BVH_DEPTH_MAX + 2, REPORT_LEAF_BINS = BVH_LEAF_MAX + 
 struct accel_report {
     uint64_t leaves_at_depth[REPORT_DEPTH_BINS]; /* the root is depth 0; the last: and below */
     uint64_t leaves_of_size[REPORT_LEAF_BINS];
-    double sah_cost; /* predicted_pairs times the traversal cost, and predicted_triangles */
+    double sah_cost; /* predicted_inner_nodes times the traversal cost, and predicted_triangles */
     double epo;      /* end-point overlap, relative to the area of all triangles */
     double overlap;  /* area shared by siblings, relative to that of all parents */
     /* Of a random line that meets a root box: by ratios of areas, as if nothing stopped it; and by
        closest-hit traversal, which stops looking behind a hit. */
-    double predicted_pairs, predicted_triangles;
-    double measured_pairs, measured_triangles;
+    double predicted_inner_nodes, predicted_triangles;
+    double measured_inner_nodes, measured_triangles;
     uint64_t measured_rays;
 };
 

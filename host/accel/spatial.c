@@ -16,7 +16,7 @@
 #include "base/threads.h"
 
 enum {
-    TASK_LEAST = 1024,     /* smaller subtrees are not worth a task of their own */
+    TASK_MIN = 1024,       /* smaller subtrees are not worth a task of their own */
     TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
 };
@@ -42,7 +42,7 @@ struct build {
     uint32_t *slots; /* 1: pair slot in use; later its place when squeezed */
     struct task *tasks;
     uint32_t task_count, count, spare;
-    double overlap_least; /* of the halves, from which spatial splits are tried */
+    double overlap_min; /* of the halves, from which spatial splits are tried */
 };
 
 /* ---- Nodes ---- */
@@ -97,7 +97,7 @@ static bool spatial_worthwhile(const struct build *build, const struct subtree *
     const struct build_bounds *bounds = &subtree->range.bounds;
     double overlap = object->cost < INFINITY ? extent_area(object->overlap_lo, object->overlap_hi)
                                              : extent_area(bounds->lo, bounds->hi);
-    return overlap > build->overlap_least;
+    return overlap > build->overlap_min;
 }
 
 /* Finds and makes the best split; false: none is to be made. */
@@ -223,14 +223,13 @@ static int larger_first(const void *a, const void *b)
 static void build_tree(struct build *build, const struct build_bounds *bounds)
 {
     uint32_t threads = build->params.thread_count;
-    build->overlap_least =
-        (double)build->params.spatial_alpha * extent_area(bounds->lo, bounds->hi);
+    build->overlap_min = (double)build->params.spatial_alpha * extent_area(bounds->lo, bounds->hi);
     build->tasks[0] = (struct task){
         .subtree = {.range = {.bounds = *bounds, .count = build->count}, .spare = build->spare}};
     build->task_count = 1;
     uint32_t limit = build->count / (threads * TASKS_PER_THREAD);
-    if (limit < TASK_LEAST)
-        limit = TASK_LEAST;
+    if (limit < TASK_MIN)
+        limit = TASK_MIN;
     while (threads > 1) {
         qsort(build->tasks, build->task_count, sizeof *build->tasks, larger_first);
         uint32_t large = 0;
@@ -328,9 +327,9 @@ static whit_result build_alloc(const struct log *log, struct build *build, struc
 /* References that may be added; all must be within what a node can address. */
 static uint32_t budget(uint32_t count, float share)
 {
-    double most = floor((double)count * (double)share);
+    double max = floor((double)count * (double)share);
     double room = (double)(BVH_FIRST_MASK / 2 - count);
-    return (uint32_t)(most < room ? most : room);
+    return (uint32_t)(max < room ? max : room);
 }
 
 whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
@@ -342,7 +341,7 @@ whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, ui
     }
     struct build build = {.params = *resolved, .boxes = boxes, .count = count};
     build.spare = budget(count, resolved->spatial_budget);
-    if (count <= TASK_LEAST)
+    if (count <= TASK_MIN)
         build.params.thread_count = 1;
     struct build_bounds bounds;
     whit_result result = records_make(log, boxes, count, build.spare, build.params.thread_count,

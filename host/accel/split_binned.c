@@ -10,10 +10,10 @@
 
 enum {
     BINS_MAX = 256,
-    BINS_LEAST = 8, /* where their number is free */
-    BINS_MOST = 32,
+    FREE_BINS_MIN = 8, /* where their number is free */
+    FREE_BINS_MAX = 32,
     CHUNKS_MAX = 16,
-    CHUNK_LEAST = 4096,
+    CHUNK_MIN = 4096,
 };
 
 /* Bin of a centroid: (centroid - origin) * scale, truncated. Partitioning evaluates the very same
@@ -129,7 +129,7 @@ static void bins_fill_threaded(struct bins *bins, const struct grid *grid,
 {
     uint32_t chunk_count = thread_count < CHUNKS_MAX ? thread_count : CHUNKS_MAX;
     struct bins *parts =
-        count / CHUNK_LEAST >= chunk_count ? array_alloc_aligned(chunk_count, sizeof *parts) : NULL;
+        count / CHUNK_MIN >= chunk_count ? array_alloc_aligned(chunk_count, sizeof *parts) : NULL;
     if (!parts) {
         bins_fill(bins, grid, records, count);
         return;
@@ -242,8 +242,8 @@ static void partition(struct build_record *records, uint32_t count, const struct
 /* More bins than boxes find nothing more, and cost more than the boxes. */
 static uint32_t bins_wanted(const struct bvh_params *params, uint32_t count)
 {
-    uint32_t wanted = BINS_LEAST + count / 16;
-    return params->bins ? params->bins : wanted < BINS_MOST ? wanted : BINS_MOST;
+    uint32_t wanted = FREE_BINS_MIN + count / 16;
+    return params->bins ? params->bins : wanted < FREE_BINS_MAX ? wanted : FREE_BINS_MAX;
 }
 
 enum build_choice split_binned(struct build_record *records, const struct build_range *range,

@@ -9,7 +9,7 @@
 #include "base/array.h"
 #include "base/threads.h"
 
-enum { THREADED_LEAST = 4096 }; /* records from which the axes of one node are given to threads */
+enum { THREADED_MIN = 4096 }; /* records from which the axes of one node are given to threads */
 
 struct sweep {
     const struct bvh_params *params;
@@ -187,7 +187,7 @@ static void part(const struct sweep *sweep, const struct build_range *range, uin
         sweep->mark[list[i]] = i < left_count;
     for (uint32_t a = 0; a < 3; ++a)
         parting.right[a] = (uint32_t *)scratch + a * (size_t)range->count;
-    threads_for(range->count < THREADED_LEAST ? 1 : thread_count, 3, part_axis, &parting);
+    threads_for(range->count < THREADED_MIN ? 1 : thread_count, 3, part_axis, &parting);
 }
 
 static enum build_choice split(void *user, const struct build_range *range, uint32_t thread_count,
@@ -203,7 +203,7 @@ static enum build_choice split(void *user, const struct build_range *range, uint
         n.best[a].cost = INFINITY;
     }
     if (area > 0.0f)
-        threads_for(range->count < THREADED_LEAST ? 1 : thread_count, 3, sweep_axis, &n);
+        threads_for(range->count < THREADED_MIN ? 1 : thread_count, 3, sweep_axis, &n);
     uint32_t axis = n.best[1].cost < n.best[0].cost ? 1 : 0;
     axis = n.best[2].cost < n.best[axis].cost ? 2 : axis;
     const struct cut *best = &n.best[axis];
@@ -282,8 +282,7 @@ static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uin
         allocated &= sweep->list[a] != NULL;
     }
     if (allocated)
-        threads_for(count < THREADED_LEAST ? 1 : sweep->params->thread_count, 3, sort_axis,
-                    &sorting);
+        threads_for(count < THREADED_MIN ? 1 : sweep->params->thread_count, 3, sort_axis, &sorting);
     if (allocated && !atomic_load(&sorting.failed))
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", count);

@@ -10,7 +10,7 @@
 #include "base/threads.h"
 
 enum {
-    TASK_LEAST = 2048,    /* smaller subtrees are not worth a task of their own */
+    TASK_MIN = 2048,      /* smaller subtrees are not worth a task of their own */
     TASKS_PER_THREAD = 4, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
 };
@@ -135,8 +135,8 @@ static void build_tree(struct build *build, const struct build_bounds *bounds)
     build->tasks[0] = (struct build_task){.range = {.bounds = *bounds, .count = build->count}};
     build->task_count = 1;
     uint32_t limit = build->count / (threads * TASKS_PER_THREAD);
-    if (limit < TASK_LEAST)
-        limit = TASK_LEAST;
+    if (limit < TASK_MIN)
+        limit = TASK_MIN;
     while (threads > 1 && !atomic_load(&build->stopped)) {
         qsort(build->tasks, build->task_count, sizeof *build->tasks, larger_first);
         uint32_t large = 0;
@@ -207,7 +207,7 @@ whit_result topdown_grow(const struct log *log, const struct build_methods *meth
     struct build build = {.methods = methods,
                           .count = count,
                           .leaf_limit = params->leaf_limit,
-                          .thread_count = count <= TASK_LEAST ? 1 : params->thread_count};
+                          .thread_count = count <= TASK_MIN ? 1 : params->thread_count};
     atomic_init(&build.stopped, false);
     whit_result result = grow_alloc(log, &build, out);
     if (result != WHIT_OK)

@@ -6,10 +6,10 @@
 
 #include "accel/exact.h"
 #include "accel/exact_sphere.h"
+#include "accel/ff_sphere.h"
+#include "accel/ff_triangle.h"
 #include "accel/intersect.h"
 #include "accel/moller.h"
-#include "accel/pairs.h"
-#include "accel/pairs_sphere.h"
 
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
@@ -83,7 +83,7 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
         b_near = b_near * near_scale;
     }
     ++walk->level;
-    ++walk->cost.pairs;
+    ++walk->cost.inner_nodes;
     if (walk->level > walk->cost.depth)
         walk->cost.depth = walk->level;
     float t = walk->numerics == NUMERICS_EXACT ? walk->hi : walk->hit->t;
@@ -106,15 +106,15 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
 
 /* Where a ray meets a primitive, if it does. At NUMERICS_EXACT what decides is the key, the exact t
    rounded to nearest, in lo..hi; it is the t of a finished hit. */
-struct meeting {
+struct candidate {
     bool met;
     float t, u, v;
 };
 
-static struct meeting meet_triangle(const struct walk *walk, const struct ray_setup *ray,
-                                    const struct gpu_triangle *triangle)
+static struct candidate meet_triangle(const struct walk *walk, const struct ray_setup *ray,
+                                      const struct gpu_triangle *triangle)
 {
-    struct meeting m;
+    struct candidate m;
     if (walk->numerics == NUMERICS_FAST) {
         m.met = intersect_moller(ray->origin, ray->dir, vec3_load(triangle->v0),
                                  vec3_load(triangle->v1), vec3_load(triangle->v2), walk->t_min,
@@ -128,10 +128,10 @@ static struct meeting meet_triangle(const struct walk *walk, const struct ray_se
     return m;
 }
 
-static struct meeting meet_sphere(const struct walk *walk, const struct ray_setup *ray,
-                                  const struct chord *chord, bool at_exit, bool own)
+static struct candidate meet_sphere(const struct walk *walk, const struct ray_setup *ray,
+                                    const struct chord *chord, bool at_exit, bool own)
 {
-    struct meeting m;
+    struct candidate m;
     float at = at_exit ? chord->t_far : chord->t_near;
     m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
     m.t = at > chord->t_box ? at : chord->t_box;
@@ -157,8 +157,8 @@ static bool is_behind(const struct walk *walk, float t, uint32_t instance, uint3
              (instance == walk->skip_instance && primitive > walk->skip_primitive)));
 }
 
-static bool accept_meeting(struct walk *walk, const struct meeting *m, uint32_t record,
-                           uint32_t instance)
+static bool accept_candidate(struct walk *walk, const struct candidate *m, uint32_t record,
+                             uint32_t instance)
 {
     uint32_t primitive = walk->accel->triangles[record].primitive;
     if (!m->met || !is_nearer(walk->hit, walk->hit->t, m->t, instance, primitive) ||
@@ -179,22 +179,22 @@ static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
 
 /* Where a triangle is met, exactly; of one that is met anyway (`hit`) for the key alone. */
 static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
-                         struct exact_meeting *out)
+                         struct exact_candidate *out)
 {
     struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
                 v2 = vec3_load(triangle->v2);
     bool key_known;
-    bool known = pair_meet(ray->origin, ray->dir, v0, v1, v2, out, &key_known);
+    bool known = ff_meet(ray->origin, ray->dir, v0, v1, v2, out, &key_known);
     if (!(hit ? key_known : known))
         exact_meet(ray->origin, ray->dir, v0, v1, v2, out);
 }
 
 static void meet_sphere_exactly(const struct ray_setup *ray, const struct gpu_triangle *sphere,
-                                bool only_far, float t_min, struct sphere_meeting *out)
+                                bool only_far, float t_min, struct sphere_candidate *out)
 {
     struct vec3 center = vec3_load(sphere->v0);
     float radius = sphere->v1[0];
-    if (!pair_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out))
+    if (!ff_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out))
         exact_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out);
 }
 
@@ -203,8 +203,8 @@ static void settle_hit(struct walk *walk)
 {
     struct ray_setup ray = ray_at(walk, walk->hit->instance);
     const struct gpu_triangle *record = &walk->accel->triangles[walk->triangle];
-    struct exact_meeting m;
-    struct sphere_meeting on_sphere;
+    struct exact_candidate m;
+    struct sphere_candidate on_sphere;
     if (record->flags & TRIANGLE_SPHERE) {
         meet_sphere_exactly(&ray, record, walk->at_exit, 0.0f, &on_sphere);
         m.key = on_sphere.key;
@@ -232,7 +232,7 @@ static bool may_count(const struct walk *walk, float lo, float hi, uint32_t inst
            (!walk->next || is_behind(walk, hi, instance, primitive));
 }
 
-static bool keep_exact(struct walk *walk, const struct meeting *m, float lo, float hi,
+static bool keep_exact(struct walk *walk, const struct candidate *m, float lo, float hi,
                        uint32_t record, uint32_t instance, bool at_exit)
 {
     if (!walk->any) {
@@ -260,15 +260,16 @@ static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, 
                  vec3_sub(v2, ray->origin), &bounds);
     if (bounds.outside || !may_count(walk, bounds.lo, bounds.hi, instance, triangle->primitive))
         return false;
-    struct meeting m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u, bounds.v};
+    struct candidate m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u,
+                          bounds.v};
     if (bounds.inside && bounds.lo >= walk->t_min && bounds.hi < walk->lo &&
         (!walk->next || bounds.lo > walk->hit_before))
         return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance, false);
-    struct exact_meeting exact;
+    struct exact_candidate exact;
     meet_exactly(ray, triangle, false, &exact);
     m.t = exact.key;
     if (!bounds.inside)
-        m = (struct meeting){true, exact.key, exact.u, exact.v};
+        m = (struct candidate){true, exact.key, exact.u, exact.v};
     if (!exact.met || exact.key < walk->t_min ||
         !is_nearer_key(walk, exact.key, instance, triangle->primitive) ||
         (walk->next && !is_behind(walk, exact.key, instance, triangle->primitive)))
@@ -288,12 +289,12 @@ static bool test_end_exact(struct walk *walk, const struct ray_setup *ray,
     if (bounds->outside || (own && bounds->inward_known && !chord->inward) ||
         !may_count(walk, lo, hi, instance, sphere->primitive))
         return false;
-    struct meeting m = meet_sphere(walk, ray, chord, *at_exit, own);
+    struct candidate m = meet_sphere(walk, ray, chord, *at_exit, own);
     bool rounded = bounds->inside && near_known;
     if (rounded && lo >= walk->t_min && (!own || bounds->inward_known) && hi < walk->lo &&
         (!walk->next || lo > walk->hit_before))
         return keep_exact(walk, &m, lo, hi, record, instance, *at_exit);
-    struct sphere_meeting exact;
+    struct sphere_candidate exact;
     meet_sphere_exactly(ray, sphere, *at_exit, walk->t_min, &exact);
     m.t = exact.key;
     if (!rounded || exact.at_exit != *at_exit)
@@ -331,11 +332,11 @@ static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t
     const struct gpu_triangle *sphere = &walk->accel->triangles[record];
     struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
     bool at_exit = own || !(chord.t_near >= walk->t_min);
-    struct meeting m = meet_sphere(walk, ray, &chord, at_exit, own);
-    bool accepted = accept_meeting(walk, &m, record, instance);
+    struct candidate m = meet_sphere(walk, ray, &chord, at_exit, own);
+    bool accepted = accept_candidate(walk, &m, record, instance);
     if (walk->next && !accepted && !at_exit) {
         m = meet_sphere(walk, ray, &chord, true, own);
-        accepted = accept_meeting(walk, &m, record, instance);
+        accepted = accept_candidate(walk, &m, record, instance);
     }
     return accepted;
 }
@@ -356,9 +357,9 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
                walk->any;
     if (walk->numerics == NUMERICS_EXACT)
         return !own && test_triangle_exact(walk, ray, record, instance) && walk->any;
-    struct meeting m = meet_triangle(walk, ray, triangle);
+    struct candidate m = meet_triangle(walk, ray, triangle);
     m.met &= !own;
-    return accept_meeting(walk, &m, record, instance) && walk->any;
+    return accept_candidate(walk, &m, record, instance) && walk->any;
 }
 
 static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32_t root,
@@ -481,7 +482,7 @@ static void end_hit(struct gpu_hit *hit, const struct accel *accel, uint32_t rec
 static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
 {
     to->rays += from->rays;
-    to->pairs += from->pairs;
+    to->inner_nodes += from->inner_nodes;
     to->leaves += from->leaves;
     to->instances += from->instances;
     to->triangles += from->triangles;

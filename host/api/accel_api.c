@@ -183,9 +183,9 @@ whit_result whit_accel_get_report(const whit_accel *handle, whit_accel_report *r
         .sah_cost = inner.sah_cost,
         .epo = inner.epo,
         .overlap = inner.overlap,
-        .predicted_visits = inner.predicted_pairs,
+        .predicted_visits = inner.predicted_inner_nodes,
         .predicted_triangles = inner.predicted_triangles,
-        .measured_visits = inner.measured_pairs,
+        .measured_visits = inner.measured_inner_nodes,
         .measured_triangles = inner.measured_triangles,
         .measured_rays = inner.measured_rays,
     };
@@ -201,23 +201,23 @@ _Static_assert(sizeof(whit_box) == sizeof(struct accel_box), "boxes are handed o
 struct box_list {
     struct accel_box *boxes;
     uint32_t count, capacity;
-    uint64_t most, total;
+    uint64_t max, total;
     bool failed;
 };
 
 static bool add_box(void *user, const struct accel_box *box)
 {
     struct box_list *list = user;
-    if (list->total++ >= list->most)
+    if (list->total++ >= list->max)
         return true;
     list->failed = !ARRAY_PUSH(list->boxes, list->count, list->capacity, *box);
     return !list->failed;
 }
 
 whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
-                             uint32_t level, uint64_t most, whit_box **boxes, uint64_t *total)
+                             uint32_t level, uint64_t max, whit_box **boxes, uint64_t *total)
 {
-    struct box_list list = {.most = most};
+    struct box_list list = {.max = max};
     struct scene_pose pose = {0};
     *boxes = NULL;
     *total = 0;

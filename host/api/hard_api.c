@@ -133,7 +133,7 @@ static void add_tally(whit_hard_row *row, const struct hard_tally *tally)
     row->wrong += tally->wrong;
     row->double_hits += tally->double_hits;
     row->self_hits += tally->self_hits;
-    row->ulp_most = tally->ulp_most > row->ulp_most ? tally->ulp_most : row->ulp_most;
+    row->ulp_max = tally->ulp_max > row->ulp_max ? tally->ulp_max : row->ulp_max;
 }
 
 /* The rays in run->rays at one level. */

@@ -6,7 +6,7 @@
 #include "api/handles.h"
 #include "base/array.h"
 
-enum { RAYS_DEFAULT = 20000, RAYS_MOST = 1 << 24, SEED = 77 };
+enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };
 
 struct whit_judge {
     struct log log;
@@ -65,8 +65,8 @@ static whit_result make_rays(whit_judge *judge, const whit_judge_params *params,
 static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_judge_params *params)
 {
     uint32_t wanted = params->count ? params->count : RAYS_DEFAULT;
-    if (wanted > RAYS_MOST) {
-        log_error(&judge->log, "%u rays: at most %d", wanted, RAYS_MOST);
+    if (wanted > RAYS_MAX) {
+        log_error(&judge->log, "%u rays: at most %d", wanted, RAYS_MAX);
         return WHIT_ERROR_USAGE;
     }
     judge->threads = params->threads;
@@ -165,7 +165,7 @@ static whit_result measure_t(const whit_judge *judge, const whit_hit *hits, whit
     out->ulp_rays = count;
     out->ulp_median = at_share(ulps, count, 500);
     out->ulp_999 = at_share(ulps, count, 999);
-    out->ulp_most = at_share(ulps, count, 1000);
+    out->ulp_max = at_share(ulps, count, 1000);
     free(ulps);
     return WHIT_OK;
 }

@@ -142,7 +142,7 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
     return WHIT_OK;
 }
 
-whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y, uint32_t most_rays,
+whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y, uint32_t max_rays,
                        whit_probe_report **out)
 {
     struct probe_report report;
@@ -150,7 +150,7 @@ whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y, uint32_t
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
-    result = renderer_probe(renderer->renderer, x, y, most_rays, &report);
+    result = renderer_probe(renderer->renderer, x, y, max_rays, &report);
     if (result == WHIT_OK)
         result = report_from(renderer, &report, out);
     probe_report_finish(&report);

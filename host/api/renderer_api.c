@@ -121,7 +121,7 @@ whit_result render_params_from_public(const struct log *log, const whit_renderer
         .light_samples = params->light_samples,
         .schlick = params->schlick,
         .opaque_shadows = params->shadows == WHIT_SHADOWS_OPAQUE,
-        .compile_beside = params->compile_beside,
+        .compile_async = params->compile_async,
         .many_pictures = params->many_pictures,
         .tile_size = params->tile_size,
         .cancel = params->cancel,
@@ -310,9 +310,9 @@ static double cost_value(whit_view view, const struct gpu_cost *cost)
     case WHIT_VIEW_DEPTH:
         return cost->depth;
     case WHIT_VIEW_VISITS:
-        return (double)cost->pairs + cost->leaves + cost->instances;
+        return (double)cost->inner_nodes + cost->leaves + cost->instances;
     case WHIT_VIEW_BOXES:
-        return 2.0 * cost->pairs;
+        return 2.0 * cost->inner_nodes;
     case WHIT_VIEW_TRIS:
         return cost->triangles;
     case WHIT_VIEW_STACK:
@@ -373,7 +373,7 @@ static whit_cost cost_to_public(const struct cost_sum *cost)
 {
     return (whit_cost){
         .rays = cost->rays,
-        .pairs = cost->pairs,
+        .inner_nodes = cost->inner_nodes,
         .leaves = cost->leaves,
         .instances = cost->instances,
         .triangles = cost->triangles,
@@ -382,10 +382,10 @@ static whit_cost cost_to_public(const struct cost_sum *cost)
         .records = cost->records,
         .stack_sum = cost->stack_sum,
         .depth_sum = cost->depth_sum,
-        .most_pairs = cost->most_pairs,
-        .most_leaves = cost->most_leaves,
-        .most_instances = cost->most_instances,
-        .most_triangles = cost->most_triangles,
+        .max_inner_nodes = cost->max_inner_nodes,
+        .max_leaves = cost->max_leaves,
+        .max_instances = cost->max_instances,
+        .max_triangles = cost->max_triangles,
     };
 }
 
@@ -415,7 +415,7 @@ void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
         .device_bytes = inner.device_bytes,
         .dispatches = inner.dispatches,
         .tiles = inner.tiles,
-        .waits = inner.waits,
+        .deferred = inner.deferred,
         .tile_size = inner.tile_size,
         .load_path = inner.texel_loads ? "texel" : "storage",
         .packets = inner.packets,

@@ -25,6 +25,6 @@
 #include "whit_renderer.h"
 #include "whit_scene.h"
 
-#define WHIT_VERSION "0.1.0"
+#define WHIT_VERSION "0.2.0"
 
 #endif

@@ -78,7 +78,7 @@ typedef struct whit_box {
    of every instance, at `time_s`, which the accel must stand at. At most `most` of them; *boxes is
    one block, free() it. *total: how many there are. */
 WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
-                                        uint32_t level, uint64_t most, whit_box **boxes,
+                                        uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);
 
 #ifdef __cplusplus

@@ -43,7 +43,7 @@ typedef struct whit_hard_row {
     uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
     uint64_t self_hits;   /* on the surface that the ray started from */
     uint64_t differing;   /* rays whose hits on the device and of the twin differ by a bit */
-    double ulp_most;      /* error of t, in floats between it and the exact one's rounding */
+    double ulp_max;       /* error of t, in floats between it and the exact one's rounding */
     double device_ms, twin_ms; /* of `rays`; device: < 0 where not measured */
     bool unanswered; /* the device said that its hits are not to be trusted, as where a driver ends
                         long loops: the twin's are judged */
@@ -117,7 +117,7 @@ typedef struct whit_judgement {
     /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
        of hits nearer than 2^-20 of the origin's coordinates. */
     uint64_t ulp_rays;
-    double ulp_median, ulp_999, ulp_most; /* ulp_999: of 99.9 % of them it is at most this */
+    double ulp_median, ulp_999, ulp_max; /* ulp_999: of 99.9 % of them it is at most this */
 } whit_judgement;
 /* `hits`: one for each of the rays, in their order, found at `numerics`. */
 WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,

@@ -75,7 +75,7 @@ typedef struct whit_probe_report {
    rendered stays. The first call compiles a kernel. `most_rays`: that are recorded; 0: 16383, which
    is the limit. WHIT_ERROR_USAGE outside of the picture. */
 WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y,
-                                  uint32_t most_rays, whit_probe_report **out);
+                                  uint32_t max_rays, whit_probe_report **out);
 void whit_probe_report_destroy(whit_probe_report *report);
 
 #ifdef __cplusplus

@@ -62,7 +62,7 @@ typedef struct whit_renderer_params {
     /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
        compiles that of the scene; the pictures are the same. Errors of that thread are logged from
        it. */
-    bool compile_beside;
+    bool compile_async;
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
@@ -161,13 +161,13 @@ typedef enum whit_ray_kind {
    which are the largest. */
 typedef struct whit_cost {
     uint64_t rays;
-    uint64_t pairs; /* inner nodes opened: box tests are twice that */
+    uint64_t inner_nodes; /* inner nodes opened: box tests are twice that */
     uint64_t leaves, instances, triangles;
     uint32_t stack, depth;
     /* A record is a ray of a batch, or a sample of a pixel that has rays of the kind. */
     uint64_t records;
     uint64_t stack_sum, depth_sum; /* over records: means are these over `records` */
-    uint32_t most_pairs, most_leaves, most_instances, most_triangles; /* in one record */
+    uint32_t max_inner_nodes, max_leaves, max_instances, max_triangles; /* in one record */
 } whit_cost;
 
 typedef enum whit_view {
@@ -217,9 +217,9 @@ typedef struct whit_stats {
     double bailout_bound;
     uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
     uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
-    bool general;                 /* drawn by the general kernel: see params.compile_beside */
+    bool general;                 /* drawn by the general kernel: see params.compile_async */
     uint32_t dispatches, tiles, tile_size;
-    uint32_t waits;        /* exact numerics: steps of pixels' rays that took more than floats */
+    uint32_t deferred;     /* exact numerics: steps of pixels' rays that took more than floats */
     const char *load_path; /* "storage" or "texel" */
     bool packets;          /* camera rays walked together */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */

@@ -33,7 +33,7 @@ typedef enum whit_packets {
     WHIT_PACKETS_AUTO =
         0,           /* where that is quicker: on lavapipe, in one large tree and with enough
                         rays to pay for kernels that take longer to make; or with
-                        whit_renderer_params.compile_beside, whose kernels are for many pictures */
+                        whit_renderer_params.compile_async, whose kernels are for many pictures */
     WHIT_PACKETS_ON, /* elsewhere too; see whit_stats.packets */
     WHIT_PACKETS_OFF,
 } whit_packets;

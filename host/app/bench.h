@@ -7,8 +7,8 @@
 #include "cost/sample.h"
 
 enum {
-    BENCH_RUNS_MOST = 99,
-    BENCH_NOTES_MOST = 32,
+    BENCH_RUNS_MAX = 99,
+    BENCH_NOTES_MAX = 32,
     BENCH_PATH = 2200,
     BENCH_SCRATCH = 512,
     BENCH_GRACE_MS = 3000
@@ -40,7 +40,7 @@ struct bench_scene {
 
 /* Times in ms, in the order of the runs. */
 struct bench_times {
-    double ms[BENCH_RUNS_MOST];
+    double ms[BENCH_RUNS_MAX];
     uint32_t count;
 };
 
@@ -121,11 +121,11 @@ WHIT_CHECK whit_result bench_child_run(const struct bench_child *child,
 
 /* ---- Tables ---- */
 
-enum { TABLE_COLUMNS_MOST = 12, TABLE_ROWS_MOST = 64, TABLE_CELL = 56 };
+enum { TABLE_COLUMNS_MAX = 12, TABLE_ROWS_MAX = 64, TABLE_CELL = 56 };
 struct table {
     uint32_t column_count, row_count, cell;
     bool is_open; /* a line ends in its last cell, without a rule behind it */
-    char cells[TABLE_ROWS_MOST][TABLE_COLUMNS_MOST][TABLE_CELL];
+    char cells[TABLE_ROWS_MAX][TABLE_COLUMNS_MAX][TABLE_CELL];
 };
 /* Heads of columns, ended by NULL. */
 void table_begin(struct table *table, const char *const *heads);

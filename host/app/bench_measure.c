@@ -87,13 +87,13 @@ void bench_end(struct bench *bench)
 
 void bench_add(struct bench_times *times, double ms)
 {
-    if (times->count < BENCH_RUNS_MOST)
+    if (times->count < BENCH_RUNS_MAX)
         times->ms[times->count++] = ms;
 }
 
 double bench_quantile(const struct bench_times *times, double share)
 {
-    double sorted[BENCH_RUNS_MOST];
+    double sorted[BENCH_RUNS_MAX];
     memcpy(sorted, times->ms, times->count * sizeof *sorted);
     sample_sort(sorted, times->count);
     return sample_quantile(sorted, times->count, share);
@@ -111,7 +111,7 @@ double bench_spread(const struct bench_times *times)
 
 int bench_compare(const struct bench_times *a, const struct bench_times *b)
 {
-    double differences[BENCH_RUNS_MOST];
+    double differences[BENCH_RUNS_MAX];
     uint32_t count = a->count < b->count ? a->count : b->count;
     return sample_compare(a->ms, b->ms, count, differences, NULL);
 }
@@ -130,7 +130,7 @@ static double sum_of_costs(const struct bench_case *c, double *rays, double *tri
         const whit_cost *cost = &c->counted.costs[kind];
         *rays += (double)cost->rays;
         *triangles += (double)cost->triangles;
-        visits += (double)(cost->pairs + cost->leaves + cost->instances);
+        visits += (double)(cost->inner_nodes + cost->leaves + cost->instances);
     }
     return visits;
 }

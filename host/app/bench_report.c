@@ -224,10 +224,10 @@ static void judge_orders(struct section *section, const struct bench_case *cases
     double visits[3];
     for (int i = 0; i < 3; ++i)
         visits[i] = bench_visits(&cases[i]);
-    bool most = visits[0] > visits[1] && visits[0] > visits[2];
+    bool max = visits[0] > visits[1] && visits[0] > visits[2];
     section_say(section,
                 "Without an order rays open %s: %.2f nodes, %.2f by distance, %.2f by sign.",
-                most ? "the most nodes" : "NOT the most nodes", visits[0], visits[1], visits[2]);
+                max ? "the most nodes" : "NOT the most nodes", visits[0], visits[1], visits[2]);
     section_say(section,
                 "Depth: the deepest level whose boxes a camera ray looked at, its mean over camera "
                 "rays and the most.");

@@ -16,7 +16,7 @@ void section_begin(struct section *section, struct bench *bench, const char *nam
 
 void section_say(struct section *section, const char *format, ...)
 {
-    if (section->said_count == BENCH_NOTES_MOST)
+    if (section->said_count == BENCH_NOTES_MAX)
         return;
     char *text = section->said[section->said_count++];
     va_list args;

@@ -10,7 +10,7 @@ struct section {
     struct bench *bench;
     json_t *object, *rows, *sentences;
     struct table table;
-    char said[BENCH_NOTES_MOST][400];
+    char said[BENCH_NOTES_MAX][400];
     uint32_t said_count;
 };
 

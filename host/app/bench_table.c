@@ -7,7 +7,7 @@ void table_begin(struct table *table, const char *const *heads)
 {
     *table = (struct table){0};
     table->row_count = 1;
-    for (; heads[table->column_count] && table->column_count < TABLE_COLUMNS_MOST;
+    for (; heads[table->column_count] && table->column_count < TABLE_COLUMNS_MAX;
          ++table->column_count)
         snprintf(table->cells[0][table->column_count], TABLE_CELL, "%s",
                  heads[table->column_count]);
@@ -15,7 +15,7 @@ void table_begin(struct table *table, const char *const *heads)
 
 void table_row(struct table *table)
 {
-    table->row_count += table->row_count < TABLE_ROWS_MOST;
+    table->row_count += table->row_count < TABLE_ROWS_MAX;
     table->cell = 0;
 }
 
@@ -84,7 +84,7 @@ static void print_rule(const struct table *table, const size_t *widths)
 
 void table_print(const struct table *table)
 {
-    size_t widths[TABLE_COLUMNS_MOST] = {0};
+    size_t widths[TABLE_COLUMNS_MAX] = {0};
     for (uint32_t r = 0; r < table->row_count; ++r) {
         for (uint32_t c = 0; c < table->column_count; ++c) {
             size_t letters = count_letters(table->cells[r][c]);

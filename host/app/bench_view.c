@@ -134,7 +134,7 @@ static void row(struct section *section, const struct bench_view_case *c)
     table_cell(table, "%.1f", bench_view_number(c->moving, "quick_ms", "median"));
     table_cell(table, "1/%.0f", bench_view_number(c->moving, "divisor", "median"));
     table_cell(table, "%.0f, %.0f", bench_view_number(c->moving, "gap_ms", "median"),
-               bench_view_number(c->moving, "gap_ms", "most"));
+               bench_view_number(c->moving, "gap_ms", "max"));
     table_cell(table, "%.0f of %.0f", bench_view_number(c->moving, "gaps_over_100_ms", NULL),
                bench_view_number(c->moving, "gap_ms", "count"));
     table_cell(table, "%.0f, %.0f", bench_view_number(c->moving, "latency_ms", "median"),

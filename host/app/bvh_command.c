@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "app/study.h"
 
-enum { RUNS_DEFAULT = 3, RAYS_DEFAULT = 100000, RAYS_MOST = 100000000, LIST_MAX = 1024 };
+enum { RUNS_DEFAULT = 3, RAYS_DEFAULT = 100000, RAYS_MAX = 100000000, LIST_MAX = 1024 };
 
 static const char builders_default[] = "median,binned,sweep,spatial,binned+opt";
 
@@ -89,7 +89,7 @@ static const struct setting options[] = {
     {"runs", 0, "N", "builds and batches of rays that a median is of (3)",
      SETTING_AT_COUNT(struct study, run_count), .min = 1, .max = STUDY_RUNS_MAX},
     {"rays", 0, "N", "rays of each kind: primary, shadow, diffuse (100000)",
-     SETTING_AT_COUNT(struct study, ray_count), .min = 1, .max = RAYS_MOST},
+     SETTING_AT_COUNT(struct study, ray_count), .min = 1, .max = RAYS_MAX},
     {"no-trace", 0, NULL, "trees only, no rays on a device",
      SETTING_AT_FLAG(struct study, no_trace)},
     {"validate", 0, NULL, "check every tree; exit code 1 when one is wrong",

@@ -38,17 +38,17 @@ struct cli_command {
     const char *(*word)(const char *option, uint32_t index);
 };
 
-enum { CLI_OTHERS_MOST = 64 };
+enum { CLI_OTHERS_MAX = 64 };
 
 /* Reads the arguments of one command. */
 struct cli_reader {
     const struct cli_command *command;
     int argc;
     char **argv;
-    const char *value;                   /* of the option at hand */
-    const char *positional;              /* the first argument that is not an option, or NULL */
-    const char *second;                  /* the second one, where the command takes two */
-    const char *others[CLI_OTHERS_MOST]; /* from the second one on, where it takes many */
+    const char *value;                  /* of the option at hand */
+    const char *positional;             /* the first argument that is not an option, or NULL */
+    const char *second;                 /* the second one, where the command takes two */
+    const char *others[CLI_OTHERS_MAX]; /* from the second one on, where it takes many */
     uint32_t other_count;
     bool done;         /* with `status`: no more options, or an error, or help was printed */
     int status;        /* < 0: go on with the work; else exit with it */

@@ -146,8 +146,7 @@ static whit_result save_json(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
     bool integers = compare->info.integers;
-    json_t *root = document_object(), *flip = integers ? json_null() : document_object();
-    document_text(root, "whit", WHIT_VERSION);
+    json_t *root = document_root(), *flip = integers ? json_null() : document_object();
     document_text(root, "a", compare->paths[0]);
     document_text(root, "b", compare->paths[1]);
     document_count(root, "width", compare->info.width);
@@ -282,7 +281,7 @@ static whit_result check_pair(struct compare *compare)
 
 static whit_result find_out(struct compare *compare)
 {
-    const char *folders[SETTING_FOLDERS_MOST];
+    const char *folders[SETTING_FOLDERS_MAX];
     whit_load_params load = settings_load(&compare->job.settings, folders);
     whit_result result = WHIT_OK;
     load.cancel = &cli_cancel;

@@ -31,9 +31,9 @@ void cost_on_progress(void *user, double done, double seconds_left, const char *
 
 /* ---- Tables and sentences, the same in all forms (cost_table.c) ---- */
 
-enum { COST_COLUMNS = 11, COST_HIT_COLUMNS = 13, COST_CELL = 64, COST_COLUMNS_MOST = 13 };
+enum { COST_COLUMNS = 11, COST_HIT_COLUMNS = 13, COST_CELL = 64, COST_COLUMNS_MAX = 13 };
 struct cost_cells {
-    char text[COST_COLUMNS_MOST][COST_CELL];
+    char text[COST_COLUMNS_MAX][COST_CELL];
 };
 extern const struct page_column cost_columns[COST_COLUMNS], cost_hit_columns[COST_HIT_COLUMNS];
 void cost_row_cells(const struct cost_report *report, const struct cost_row *row,

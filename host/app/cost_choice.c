@@ -9,7 +9,7 @@
 
 enum { KEPT_VERSION = 3, KEPT_NAME = 32, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
 /* What takes less tells more of who else had the processor. */
-static const double TRIAL_MS_LEAST = 20.0;
+static const double TRIAL_MS_MIN = 20.0;
 
 /* Of the figures. */
 static void kept_name(const struct job *job, char name[KEPT_NAME])
@@ -38,7 +38,7 @@ static whit_result measure(struct job *job, struct cost_report **report)
         .time_limit_s = cli_time_left_s(),
         .knobs = knobs_of_light(),
         .seconds = COST_SECONDS_QUICK,
-        .samples_most = SAMPLES,
+        .samples_max = SAMPLES,
         .progress = cost_on_progress,
         .progress_user = &progress,
         .hush = cli_hush,
@@ -110,7 +110,7 @@ static whit_result try_now(const struct cost_report *report, const struct job *j
     whit_renderer_params tried = full;
     struct cost_times times;
     double larger = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
-    if (expected_ms / larger >= TRIAL_MS_LEAST)
+    if (expected_ms / larger >= TRIAL_MS_MIN)
         cost_small_size(report, &tried.width, &tried.height);
     else
         larger = 1.0;

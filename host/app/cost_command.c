@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "settings/quote.h"
 
-enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MOST = 1 << 22, SAMPLES_QUICK = 16 };
+enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
 /* Drivers cannot be stopped while they compile a kernel, and some take that long. */
 enum { GRACE_MS = 20000 };
 
@@ -60,9 +60,9 @@ static const struct setting options[] = {
     {"samples", 0, NULL, "is `--reference-samples` now", .kind = SETTING_GONE},
     {"reference-samples", 0, NULL,
      "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",
-     SETTING_AT_CHOICE(struct cost, request.samples_most), .values = values_reference_samples},
+     SETTING_AT_CHOICE(struct cost, request.samples_max), .values = values_reference_samples},
     {"rays", 0, "N", "of each of the two sets; 0: none (20000)",
-     SETTING_AT_COUNT(struct cost, rays), .max = RAYS_MOST},
+     SETTING_AT_COUNT(struct cost, rays), .max = RAYS_MAX},
     {"knobs", 0, "NAME,...", "only these (all that the scene calls for)", .kind = SETTING_OWN,
      .read = read_knobs},
     {"compare", 0, NULL, "two files of --json in place of the scene: what differs",
@@ -94,8 +94,8 @@ static void complete(struct cost *cost)
     struct cost_request *request = &cost->request;
     if (request->seconds == 0.0)
         request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
-    if (request->samples_most == 0 && cost->quick)
-        request->samples_most = SAMPLES_QUICK;
+    if (request->samples_max == 0 && cost->quick)
+        request->samples_max = SAMPLES_QUICK;
     request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
                     : cost->quick                  ? RAYS_QUICK
                                                    : RAYS_USUAL;

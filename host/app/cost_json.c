@@ -5,8 +5,6 @@
 
 #include "app/cost.h"
 
-enum { FORMAT = 1 };
-
 /* ---- Writing ---- */
 
 static json_t *median_document(const struct sample_median *median)
@@ -74,7 +72,7 @@ static json_t *hits_document(const struct cost_hits *hits)
     document_count(out, "ulp_rays", judged->ulp_rays);
     document_number(out, "ulp_median", judged->ulp_median);
     document_number(out, "ulp_999", judged->ulp_999);
-    document_number(out, "ulp_most", judged->ulp_most);
+    document_number(out, "ulp_max", judged->ulp_max);
     document_number(out, "ms", hits->ms);
     return out;
 }
@@ -128,8 +126,6 @@ static json_t *answer_document(const struct cost_report *report, const struct co
 static void put_head(json_t *out, const struct cost_report *report, const char *scene,
                      const char *command)
 {
-    document_count(out, "format", FORMAT);
-    document_text(out, "whit", WHIT_VERSION);
     document_text(out, "command", command);
     document_text(out, "scene", scene);
     document_hash(out, "scene_hash", report->scene_hash);
@@ -144,7 +140,7 @@ static void put_head(json_t *out, const struct cost_report *report, const char *
     document_count(out, "height", report->height);
     document_count(out, "judged_width", report->judged_width);
     document_count(out, "judged_height", report->judged_height);
-    document_number(out, "usual_ms_most", report->usual_ms_most);
+    document_number(out, "usual_ms_max", report->usual_ms_max);
     document_number(out, "small_ms", report->small_ms);
 }
 
@@ -165,7 +161,7 @@ static json_t *reference_document(const struct cost_report *report)
 static json_t *report_document(const struct cost_report *report, const char *scene,
                                const char *command)
 {
-    json_t *out = document_object(), *rows = document_array(), *answers = document_array();
+    json_t *out = document_root(), *rows = document_array(), *answers = document_array();
     json_t *absent = document_array();
     put_head(out, report, scene, command);
     document_put(out, "reference", reference_document(report));
@@ -327,7 +323,7 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
     report->height = (uint32_t)whole(root, "height");
     report->judged_width = (uint32_t)whole(root, "judged_width");
     report->judged_height = (uint32_t)whole(root, "judged_height");
-    report->usual_ms_most = number(root, "usual_ms_most", 0.0);
+    report->usual_ms_max = number(root, "usual_ms_max", 0.0);
     report->small_ms = number(root, "small_ms", 0.0);
     report->reference_samples = (uint32_t)whole(json_object_get(root, "reference"), "samples");
     for (uint32_t c = 0; c < COST_CLOCKS; ++c)
@@ -335,7 +331,7 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
             report->clock = (enum cost_clock)c;
     json_array_foreach(rows, i, row)
     {
-        if (report->row_count < COST_ROWS_MOST)
+        if (report->row_count < COST_ROWS_MAX)
             read_row(row, &report->rows[report->row_count++]);
     }
     if (scene)
@@ -345,7 +341,7 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
 /* Takes over `root`. */
 static bool read_known(json_t *root, struct cost_report *report, char **scene)
 {
-    bool known = root && number(root, "format", 0.0) == FORMAT &&
+    bool known = root && number(root, "format", 0.0) == DOCUMENT_FORMAT &&
                  json_is_array(json_object_get(root, "rows")) &&
                  json_array_size(json_object_get(root, "rows")) > 0;
     *report = (struct cost_report){0};

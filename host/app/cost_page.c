@@ -6,20 +6,20 @@
 #include "app/cost.h"
 #include "app/plot.h"
 
-enum { POINTS_MOST = COST_ROWS_MOST };
+enum { POINTS_MAX = COST_ROWS_MAX };
 
 /* ---- Plots ---- */
 
 struct points {
-    struct plot_point list[POINTS_MOST];
-    char titles[POINTS_MOST][256];
+    struct plot_point list[POINTS_MAX];
+    char titles[POINTS_MAX][256];
     uint32_t count;
 };
 
 static void add_point(struct points *points, const struct cost_report *report,
                       const struct cost_row *row, double x, double y, bool has_bar)
 {
-    if (points->count == POINTS_MOST)
+    if (points->count == POINTS_MAX)
         return;
     char *title = points->titles[points->count];
     snprintf(title, sizeof points->titles[0], "%s %s: %.4g ms, RMSE %.3g, FLIP %.4f%s", row->knob,
@@ -132,7 +132,7 @@ static void put_convergence(struct page *page, const struct cost_report *report,
 static void put_row(struct page *page, const struct page_column *columns, uint32_t count,
                     const struct cost_cells *cells, bool marked)
 {
-    const char *texts[COST_COLUMNS_MOST];
+    const char *texts[COST_COLUMNS_MAX];
     for (uint32_t i = 0; i < count; ++i)
         texts[i] = cells->text[i];
     page_table_row(page, columns, count, texts, marked);

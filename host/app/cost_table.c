@@ -89,7 +89,7 @@ void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_c
     const whit_judgement *judged = &hits->judged;
     const uint64_t counts[] = {judged->rays,   judged->wrong,      judged->leaks,
                                judged->misses, judged->false_hits, judged->other_ids};
-    const double ulps[] = {judged->ulp_median, judged->ulp_999, judged->ulp_most};
+    const double ulps[] = {judged->ulp_median, judged->ulp_999, judged->ulp_max};
     memset(cells, 0, sizeof *cells);
     put(cells->text[0], "%s", row->knob);
     put(cells->text[1], "%s", row->setting);
@@ -260,8 +260,8 @@ struct table {
     FILE *to;
     put_row *put;
     const struct page_column *columns;
-    uint32_t count, widths[COST_COLUMNS_MOST], row_count;
-    struct cost_cells rows[2 * COST_ROWS_MOST + 1];
+    uint32_t count, widths[COST_COLUMNS_MAX], row_count;
+    struct cost_cells rows[2 * COST_ROWS_MAX + 1];
 };
 
 static void add(struct table *table, const struct cost_cells *cells)
@@ -429,7 +429,7 @@ static void put_csv_hits(FILE *to, const struct cost_hits *hits)
     put_count(to, known, judged->non_finite);
     put_number(to, known, judged->ulp_median);
     put_number(to, known, judged->ulp_999);
-    put_number(to, known, judged->ulp_most);
+    put_number(to, known, judged->ulp_max);
     put_number(to, known, hits->ms);
 }
 
@@ -478,7 +478,7 @@ static void write_csv(const struct cost *cost, FILE *to)
 {
     static const char *const hits[] = {"rays",       "wrong",     "leaks",      "misses",
                                        "false_hits", "other_ids", "non_finite", "ulp_median",
-                                       "ulp_999",    "ulp_most",  "ms"};
+                                       "ulp_999",    "ulp_max",   "ms"};
     fputs("scene,device,driver,knob,setting,option,may_change,clock,wall_ms,cpu_ms,device_ms,ratio,"
           "ratio_low,ratio_high,rounds,verdict,build_ms,rmse,relative_mse,largest,over_1_255,flip,"
           "non_finite,alone_rmse,pixels_changed,ids_changed,best",

@@ -4,15 +4,15 @@
 #include "settings/values.h"
 
 enum { FIGURES = 7 };
-static const char *const figure_names[FIGURES] = {"pairs",     "boxes", "leaves", "triangles",
-                                                  "instances", "stack", "depth"};
+static const char *const figure_names[FIGURES] = {"inner_nodes", "boxes", "leaves", "triangles",
+                                                  "instances",   "stack", "depth"};
 
 /* A ray; stack and depth: of a sample of a pixel. */
 static void find_means(const whit_cost *cost, double out[FIGURES])
 {
     double rays = cost->rays ? (double)cost->rays : 1.0;
     double records = cost->records ? (double)cost->records : 1.0;
-    out[0] = (double)cost->pairs / rays;
+    out[0] = (double)cost->inner_nodes / rays;
     out[1] = 2.0 * out[0];
     out[2] = (double)cost->leaves / rays;
     out[3] = (double)cost->triangles / rays;
@@ -22,13 +22,13 @@ static void find_means(const whit_cost *cost, double out[FIGURES])
 }
 
 /* In one sample of a pixel. */
-static void find_most(const whit_cost *cost, uint64_t out[FIGURES])
+static void find_max(const whit_cost *cost, uint64_t out[FIGURES])
 {
-    out[0] = cost->most_pairs;
-    out[1] = 2 * (uint64_t)cost->most_pairs;
-    out[2] = cost->most_leaves;
-    out[3] = cost->most_triangles;
-    out[4] = cost->most_instances;
+    out[0] = cost->max_inner_nodes;
+    out[1] = 2 * (uint64_t)cost->max_inner_nodes;
+    out[2] = cost->max_leaves;
+    out[3] = cost->max_triangles;
+    out[4] = cost->max_instances;
     out[5] = cost->stack;
     out[6] = cost->depth;
 }
@@ -36,15 +36,15 @@ static void find_most(const whit_cost *cost, uint64_t out[FIGURES])
 static void print_kind(const char *name, const whit_cost *cost)
 {
     double means[FIGURES];
-    uint64_t most[FIGURES];
+    uint64_t max[FIGURES];
     find_means(cost, means);
-    find_most(cost, most);
+    find_max(cost, max);
     printf("  %-10s %10llu", name, (unsigned long long)cost->rays);
     for (int i = 0; i < FIGURES; ++i)
         printf(" %9.2f", means[i]);
     printf("\n  %-10s %10s", "", "most");
     for (int i = 0; i < FIGURES; ++i)
-        printf(" %9llu", (unsigned long long)most[i]);
+        printf(" %9llu", (unsigned long long)max[i]);
     putchar('\n');
 }
 
@@ -63,17 +63,17 @@ void costs_print(const whit_stats *stats)
 static json_t *kind_document(const whit_cost *cost)
 {
     double means[FIGURES];
-    uint64_t most[FIGURES];
+    uint64_t max[FIGURES];
     find_means(cost, means);
-    find_most(cost, most);
+    find_max(cost, max);
     json_t *kind = document_object(), *mean = document_object(), *largest = document_object();
     document_count(kind, "rays", cost->rays);
     for (int i = 0; i < FIGURES; ++i) {
         document_number(mean, figure_names[i], means[i]);
-        document_count(largest, figure_names[i], most[i]);
+        document_count(largest, figure_names[i], max[i]);
     }
     document_put(kind, "mean", mean);
-    document_put(kind, "most", largest);
+    document_put(kind, "max", largest);
     return kind;
 }
 

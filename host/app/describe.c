@@ -55,7 +55,7 @@ int describe_complete(const struct cli_command *const *commands, uint32_t count,
 
 /* ---- The table of docs/cli.md ---- */
 
-enum { HELP_MOST = 1024 };
+enum { HELP_MAX = 1024 };
 
 static void put_cell(const char *text)
 {
@@ -80,7 +80,7 @@ static bool takes_as_is(const struct cli_command *command, const struct setting 
 static void print_row(const struct cli_command *const *commands, uint32_t count, uint32_t first,
                       const struct setting *option)
 {
-    char list[80], help[HELP_MOST], other[HELP_MOST];
+    char list[80], help[HELP_MAX], other[HELP_MAX];
     const char *argument = cli_argument_name(option, list, sizeof list);
     cli_help(commands[first], option, help, sizeof help);
     for (uint32_t i = 0; i < first; ++i) {
@@ -146,7 +146,7 @@ static void put_head(FILE *to, const char *name, const char *summary)
 
 static void put_option(FILE *to, const struct cli_command *command, const struct setting *option)
 {
-    char list[80], text[200], help[HELP_MOST], letter[8] = "";
+    char list[80], text[200], help[HELP_MAX], letter[8] = "";
     const char *argument = cli_argument_name(option, list, sizeof list);
     if (option->letter)
         snprintf(letter, sizeof letter, "-%c, ", option->letter);

@@ -11,7 +11,7 @@ enum { PATH_BYTES = 512 };
 WHIT_PRINTF(2, 3) static void add(struct device_hints *hints, const char *format, ...)
 {
     va_list arguments;
-    if (hints->count == DEVICE_HINTS_MOST)
+    if (hints->count == DEVICE_HINTS_MAX)
         return;
     va_start(arguments, format);
     vsnprintf(hints->list[hints->count++], DEVICE_HINT_BYTES, format, arguments);

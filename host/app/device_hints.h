@@ -4,11 +4,11 @@
 
 #include "api/whit.h"
 
-enum { DEVICE_HINTS_MOST = 4, DEVICE_HINT_BYTES = 320 };
+enum { DEVICE_HINTS_MAX = 4, DEVICE_HINT_BYTES = 320 };
 
 struct device_hints {
     uint32_t count;
-    char list[DEVICE_HINTS_MOST][DEVICE_HINT_BYTES]; /* a sentence each */
+    char list[DEVICE_HINTS_MAX][DEVICE_HINT_BYTES]; /* a sentence each */
 };
 
 /* `root`: "" , or a folder in place of `/`, for tests. `asked`: what NVIDIA_DRIVER_CAPABILITIES

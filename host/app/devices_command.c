@@ -63,8 +63,7 @@ static int print_json(const whit_device_info *infos, uint32_t count,
     json_t *list = document_array();
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, device_document(&infos[i]));
-    json_t *root = document_object();
-    document_text(root, "whit", WHIT_VERSION);
+    json_t *root = document_root();
     document_put(root, "devices", list);
     document_put(root, "hints", hints_document(hints));
     document_put(root, "cache", cache_document());

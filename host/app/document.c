@@ -27,6 +27,14 @@ json_t *document_object(void)
     return must(json_object());
 }
 
+json_t *document_root(void)
+{
+    json_t *root = document_object();
+    document_text(root, "whit", WHIT_VERSION);
+    document_count(root, "format", DOCUMENT_FORMAT);
+    return root;
+}
+
 json_t *document_array(void)
 {
     return must(json_array());

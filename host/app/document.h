@@ -13,6 +13,10 @@
 #include "api/whit.h"
 
 json_t *document_object(void);
+/* What every document of whit begins with: its version, and that of the names of keys. From 2 on
+   keys are added, and none is renamed or removed while the number stays. */
+enum { DOCUMENT_FORMAT = 2 };
+json_t *document_root(void);
 json_t *document_array(void);
 void document_append(json_t *array, json_t *value);                /* takes over `value` */
 void document_put(json_t *object, const char *key, json_t *value); /* likewise */

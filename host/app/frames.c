@@ -127,7 +127,7 @@ static uint32_t larger(uint32_t a, uint32_t b)
 static void add_cost(const whit_cost *from, whit_cost *to)
 {
     to->rays += from->rays;
-    to->pairs += from->pairs;
+    to->inner_nodes += from->inner_nodes;
     to->leaves += from->leaves;
     to->instances += from->instances;
     to->triangles += from->triangles;
@@ -136,10 +136,10 @@ static void add_cost(const whit_cost *from, whit_cost *to)
     to->records += from->records;
     to->stack_sum += from->stack_sum;
     to->depth_sum += from->depth_sum;
-    to->most_pairs = larger(from->most_pairs, to->most_pairs);
-    to->most_leaves = larger(from->most_leaves, to->most_leaves);
-    to->most_instances = larger(from->most_instances, to->most_instances);
-    to->most_triangles = larger(from->most_triangles, to->most_triangles);
+    to->max_inner_nodes = larger(from->max_inner_nodes, to->max_inner_nodes);
+    to->max_leaves = larger(from->max_leaves, to->max_leaves);
+    to->max_instances = larger(from->max_instances, to->max_instances);
+    to->max_triangles = larger(from->max_triangles, to->max_triangles);
 }
 
 static void add_stage(const whit_stage *from, whit_stage *to)
@@ -169,7 +169,7 @@ static void add_stats(const whit_stats *from, whit_stats *to)
         to->pixels_by_samples[i] += from->pixels_by_samples[i];
     to->dispatches += from->dispatches;
     to->tiles += from->tiles;
-    to->waits += from->waits;
+    to->deferred += from->deferred;
     to->tile_size = from->tile_size;
     to->device_bytes = from->device_bytes;
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)

@@ -1,7 +1,7 @@
 #include "app/commands.h"
 #include "app/hard.h"
 
-enum { RAYS_LEAST = 512, RAYS_MOST = 100000000, RAYS_QUICK = 512 };
+enum { RAYS_MIN = 512, RAYS_MAX = 100000000, RAYS_QUICK = 512 };
 
 static const struct setting_value values_hard_view[] = {{"leaks", 1, NULL}, {0}};
 
@@ -9,7 +9,7 @@ static const struct setting options[] = {
     {"numerics", 0, NULL, "this level alone (all three)", SETTING_AT_CHOICE(struct hard, level),
      .values = values_numerics},
     {"rays", 0, "N", "rays of each row of the table, at least 512 (20000)",
-     SETTING_AT_COUNT(struct hard, params.rays), .min = RAYS_LEAST, .max = RAYS_MOST},
+     SETTING_AT_COUNT(struct hard, params.rays), .min = RAYS_MIN, .max = RAYS_MAX},
     {"case", 0, "TEXT", "of the built-in cases those with TEXT in their name",
      SETTING_AT_NAME(struct hard, params.filter)},
     {"quick", 0, NULL, "512 rays a row", SETTING_AT_FLAG(struct hard, quick)},

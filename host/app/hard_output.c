@@ -62,7 +62,7 @@ static void print_row(const whit_hard_row *row, const whit_hard_row *before, str
            again ? "" : row->place, value_word(values_numerics, (int)row->numerics));
     printf("%9llu%8llu%7llu%8llu%8llu%7llu%8llu%6llu%10.3g", whole(row->rays), whole(row->misses),
            whole(row->leaks), whole(row->false_hits), whole(row->other_ids), whole(row->wrong),
-           whole(row->double_hits), whole(row->self_hits), row->ulp_most);
+           whole(row->double_hits), whole(row->self_hits), row->ulp_max);
     if (row->device_ms >= 0.0)
         printf("%11.2f", row->device_ms);
     else
@@ -86,7 +86,7 @@ static void print_sum(const whit_hard_report *report, whit_numerics numerics, st
         sum.wrong += row->wrong;
         sum.double_hits += row->double_hits;
         sum.self_hits += row->self_hits;
-        sum.ulp_most = row->ulp_most > sum.ulp_most ? row->ulp_most : sum.ulp_most;
+        sum.ulp_max = row->ulp_max > sum.ulp_max ? row->ulp_max : sum.ulp_max;
         sum.device_ms += row->device_ms > 0.0 ? row->device_ms : 0.0;
         sum.twin_ms += row->twin_ms;
         sum.differing += row->differing;
@@ -149,7 +149,7 @@ static json_t *row_document(const whit_hard_row *row)
     document_count(out, "double_hits", row->double_hits);
     document_count(out, "self_hits", row->self_hits);
     document_count(out, "differing", row->differing);
-    document_number(out, "ulp_most", row->ulp_most);
+    document_number(out, "ulp_max", row->ulp_max);
     document_ms(out, "device_ms", row->device_ms);
     document_ms(out, "twin_ms", row->twin_ms);
     document_flag(out, "unanswered", row->unanswered);
@@ -173,10 +173,9 @@ static json_t *surface_document(const whit_hard_report *report)
 whit_result hard_save_json(const struct hard *hard)
 {
     const whit_hard_report *report = hard->report;
-    json_t *out = document_object(), *rows = document_array();
+    json_t *out = document_root(), *rows = document_array();
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
-    document_text(out, "whit", WHIT_VERSION);
     document_text(out, "scene", hard->job.settings.scene);
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);

@@ -43,7 +43,7 @@ void job_start(const struct job *job)
 
 whit_result job_load(struct job *job)
 {
-    const char *folders[SETTING_FOLDERS_MOST];
+    const char *folders[SETTING_FOLDERS_MAX];
     whit_load_params params = settings_load(&job->settings, folders);
     double limit_s = job->settings.time_limit_s, start_ms = whit_clock_ms();
     params.time_limit_s = limit_s > 0.0 && limit_s < 60.0 ? cli_time_left_s() : 0.0;

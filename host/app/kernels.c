@@ -2,7 +2,7 @@
 #include "app/commands.h"
 #include "app/document.h"
 
-enum { LINE_MOST = 100 };
+enum { LINE_WIDTH = 100 };
 
 static void print_kernel(const whit_kernel *kernel)
 {
@@ -13,7 +13,7 @@ static void print_kernel(const whit_kernel *kernel)
         char text[192];
         int length = snprintf(text, sizeof text, "%s %.10g", cli_shown(kernel->statistics[i].name),
                               kernel->statistics[i].value);
-        bool wraps = i == 0 || used + length > LINE_MOST;
+        bool wraps = i == 0 || used + length > LINE_WIDTH;
         printf("%s%s", wraps ? "\n      " : ", ", text);
         used = wraps ? length : used + length + 2;
     }
@@ -52,9 +52,8 @@ static json_t *kernel_document(const whit_kernel *kernel)
 static int print_json(const struct job *job, const whit_device_info *info,
                       const whit_kernel *kernels, uint32_t count)
 {
-    json_t *root = document_object(), *device = document_object(), *list = document_array();
+    json_t *root = document_root(), *device = document_object(), *list = document_array();
     json_t *of = document_object();
-    document_text(root, "whit", WHIT_VERSION);
     document_text(root, "file", job->settings.scene);
     document_text(device, "name", info->name);
     document_text(device, "driver", info->driver);
@@ -71,7 +70,7 @@ static int print_json(const struct job *job, const whit_device_info *info,
 
 int kernels_run(struct job *job, bool json)
 {
-    static whit_kernel kernels[WHIT_KERNELS_MOST];
+    static whit_kernel kernels[WHIT_KERNELS_MAX];
     whit_device_info device;
     uint32_t count = 0;
     whit_result result = job_build(job);

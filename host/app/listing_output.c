@@ -129,8 +129,7 @@ static json_t *bounds_document(const whit_scene_info *info)
 
 int listing_print_json(const struct job *job, const whit_scene_info *info)
 {
-    json_t *root = document_object();
-    document_text(root, "whit", WHIT_VERSION);
+    json_t *root = document_root();
     document_text(root, "file", job->settings.scene);
     document_hash(root, "hash", info->hash);
     document_count(root, "file_bytes", info->file_bytes);

@@ -177,7 +177,7 @@ static int take_positional(struct cli_reader *reader, const char *word)
     const char **place = &reader->positional;
     if (reader->command->takes_two && reader->positional)
         place = &reader->second;
-    if (reader->command->takes_many && reader->positional && reader->other_count < CLI_OTHERS_MOST)
+    if (reader->command->takes_many && reader->positional && reader->other_count < CLI_OTHERS_MAX)
         place = &reader->others[reader->other_count++];
     if (*place) {
         cli_misuse(reader, "`%s` is one argument too many", word);

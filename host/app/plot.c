@@ -10,10 +10,10 @@ static const double WIDTH = 720.0, HEIGHT = 400.0, LEFT = 84.0, RIGHT = 16.0, TO
 /* ---- Ticks ---- */
 
 /* 1, 2 or 5 times a power of ten, at least `least`. */
-static double nice_step(double least)
+static double nice_step(double min)
 {
-    double power = pow(10.0, floor(log10(least)));
-    double digit = least / power * (1.0 - 1e-12);
+    double power = pow(10.0, floor(log10(min)));
+    double digit = min / power * (1.0 - 1e-12);
     return power * (digit <= 1.0 ? 1.0 : digit <= 2.0 ? 2.0 : digit <= 5.0 ? 5.0 : 10.0);
 }
 
@@ -22,7 +22,7 @@ static uint32_t linear_ticks(double low, double high, uint32_t wanted, double *t
     uint32_t count = 0;
     double step = nice_step((high - low) / wanted), slack = 1e-9 * step;
     double first = ceil((low - slack) / step);
-    for (double i = first; i * step <= high + slack && count < PLOT_TICKS_MOST; ++i)
+    for (double i = first; i * step <= high + slack && count < PLOT_TICKS_MAX; ++i)
         ticks[count++] = i * step + 0.0; /* no -0 */
     return count;
 }
@@ -38,7 +38,7 @@ static uint32_t log_ticks(double low, double high, uint32_t wanted, double *tick
     for (int power = first; power <= last; ++power) {
         if (power % stride != 0)
             continue;
-        for (int d = 0; d < used && count < PLOT_TICKS_MOST; ++d) {
+        for (int d = 0; d < used && count < PLOT_TICKS_MAX; ++d) {
             double value = digits[d] * pow(10.0, power);
             if (value >= low * (1.0 - 1e-9) && value <= high * (1.0 + 1e-9))
                 ticks[count++] = value;
@@ -48,7 +48,7 @@ static uint32_t log_ticks(double low, double high, uint32_t wanted, double *tick
 }
 
 uint32_t plot_ticks(double low, double high, bool is_log, uint32_t wanted,
-                    double ticks[PLOT_TICKS_MOST])
+                    double ticks[PLOT_TICKS_MAX])
 {
     uint32_t count = is_log ? log_ticks(low, high, wanted, ticks) : 0;
     return count >= 2 ? count : linear_ticks(low, high, wanted, ticks);
@@ -64,9 +64,9 @@ void plot_widen(double *low, double *high, bool is_log)
         *low /= factor;
         *high *= factor;
     } else {
-        double least = *low, more = 0.05 * (*high - *low);
+        double min = *low, more = 0.05 * (*high - *low);
         more = more > 0.0 ? more : *high != 0.0 ? 0.05 * fabs(*high) : 1.0;
-        if (least >= 0.0 && least <= 0.4 * *high)
+        if (min >= 0.0 && min <= 0.4 * *high)
             *low = 0.0;
         else
             *low -= more;
@@ -177,7 +177,7 @@ static void put_y_tick(struct page *page, double y, double value, const char *ki
 static void put_ticks(struct page *page, const struct scale *scale, uint32_t wanted,
                       void (*put)(struct page *page, double at, double value, const char *kind))
 {
-    double ticks[PLOT_TICKS_MOST];
+    double ticks[PLOT_TICKS_MAX];
     uint32_t count = plot_ticks(scale->low, scale->high, scale->is_log, wanted, ticks);
     if (scale->has_lane)
         put(page, scale->lane, 0.0, " zero");

@@ -7,9 +7,9 @@
 /* Where 1, 2 or 5 times a power of ten lie from `low` to `high` (low < high), about `wanted` of
    them, at most PLOT_TICKS_MOST; on a logarithmic axis (low > 0) powers of ten, with 2 and 5 times
    them where it has few. Gives their number. */
-enum { PLOT_TICKS_MOST = 24 };
+enum { PLOT_TICKS_MAX = 24 };
 uint32_t plot_ticks(double low, double high, bool is_log, uint32_t wanted,
-                    double ticks[PLOT_TICKS_MOST]);
+                    double ticks[PLOT_TICKS_MAX]);
 /* The axis from the least to the most of what it shows, widened a little; on one that is not
    logarithmic to 0 where that is near. Also of one value, or none (`low` > `high`). */
 void plot_widen(double *low, double *high, bool is_log);

@@ -5,7 +5,7 @@
 
 #include "app/cache.h"
 
-enum { RAYS_MOST = 16383 };
+enum { RAYS_MAX = 16383 };
 
 static bool read_coordinate(const char **text, char end, uint32_t *out)
 {
@@ -34,7 +34,7 @@ static const struct setting options[] = {
      .read = read_pixel},
     {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path)},
     {"rays", 0, "N", "most rays that are recorded, 1 to 16383 (16383)",
-     SETTING_AT_COUNT(struct probe, most_rays), .min = 1, .max = RAYS_MOST},
+     SETTING_AT_COUNT(struct probe, max_rays), .min = 1, .max = RAYS_MAX},
     {0},
 };
 
@@ -68,7 +68,7 @@ static whit_result find_out(struct probe *probe)
     cli_progress_init(&progress.bar, true);
     whit_result result = render_prepare(&probe->job, &request, &progress, &renderer);
     if (result == WHIT_OK)
-        result = whit_probe(renderer, probe->x, probe->y, probe->most_rays, &probe->report);
+        result = whit_probe(renderer, probe->x, probe->y, probe->max_rays, &probe->report);
     whit_renderer_destroy(renderer);
     return result == WHIT_OK ? job_still_wanted() : result;
 }

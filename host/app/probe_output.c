@@ -48,7 +48,7 @@ static uint32_t count_kind(const whit_probe_report *report, whit_ray_kind kind)
 
 /* ---- Text ---- */
 
-enum { TEXT_MOST = 96 };
+enum { TEXT_MAX = 96 };
 
 static void put_vector(const char *name, const float v[3])
 {
@@ -102,45 +102,45 @@ static void print_head(const struct probe *probe)
     printf("exact      differs in %u of %u\n\n", exact_other, exact);
 }
 
-static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char text[TEXT_MOST])
+static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char text[TEXT_MAX])
 {
     int indent = (int)(ray->generation < 20 ? ray->generation : 20) * 2;
     char name[34];
     if (ray->kind == WHIT_RAY_SHADOW)
-        snprintf(text, TEXT_MOST, "%*sshadow, %s, point %u", indent, "",
+        snprintf(text, TEXT_MAX, "%*sshadow, %s, point %u", indent, "",
                  whit_text_show(light_of(probe, ray->light).name, name, sizeof name),
                  ray->light_sample);
     else
-        snprintf(text, TEXT_MOST, "%*s%s%s", indent, "", value_word(values_rays, (int)ray->kind),
+        snprintf(text, TEXT_MAX, "%*s%s%s", indent, "", value_word(values_rays, (int)ray->kind),
                  ray->straight ? ", straight on" : "");
 }
 
-static void hit_text(const whit_probe_hit *hit, char text[TEXT_MOST])
+static void hit_text(const whit_probe_hit *hit, char text[TEXT_MAX])
 {
     if (has_met(hit))
-        snprintf(text, TEXT_MOST, "%.9g at %u/%u", hit->t, hit->instance, hit->primitive);
+        snprintf(text, TEXT_MAX, "%.9g at %u/%u", hit->t, hit->instance, hit->primitive);
     else
-        snprintf(text, TEXT_MOST, "nothing");
+        snprintf(text, TEXT_MAX, "nothing");
 }
 
-static void end_text(const whit_probe_ray *ray, char text[TEXT_MOST])
+static void end_text(const whit_probe_ray *ray, char text[TEXT_MAX])
 {
     const char *name = whit_probe_end_name(ray->end);
     if (ray->passed)
-        snprintf(text, TEXT_MOST, "%s, passed %u", name, ray->passed);
+        snprintf(text, TEXT_MAX, "%s, passed %u", name, ray->passed);
     else
-        snprintf(text, TEXT_MOST, "%s", name);
+        snprintf(text, TEXT_MAX, "%s", name);
 }
 
 /* What the table says of a ray, column by column. */
 enum { COLUMN_RAY, COLUMN_END, COLUMN_DEVICE, COLUMN_TWIN, COLUMN_EXACT, COLUMNS };
 
 static void cell_text(const struct probe *probe, const whit_probe_ray *ray, int column,
-                      char text[TEXT_MOST])
+                      char text[TEXT_MAX])
 {
     bool equal = column == COLUMN_TWIN ? ray->equal : ray->exact_equal;
     const whit_probe_hit *hit = column == COLUMN_TWIN ? &ray->twin : &ray->exact;
-    snprintf(text, TEXT_MOST, "-");
+    snprintf(text, TEXT_MAX, "-");
     if (column == COLUMN_RAY)
         ray_text(probe, ray, text);
     else if (column == COLUMN_END)
@@ -151,7 +151,7 @@ static void cell_text(const struct probe *probe, const whit_probe_ray *ray, int 
         hit_text(&ray->device, text);
     else if (equal && (column == COLUMN_TWIN || (float)hit->t == (float)ray->device.t ||
                        ray->kind == WHIT_RAY_SHADOW))
-        snprintf(text, TEXT_MOST, "=");
+        snprintf(text, TEXT_MAX, "=");
     else
         hit_text(hit, text);
 }
@@ -176,7 +176,7 @@ int probe_print(const struct probe *probe)
     static const char *const heads[COLUMNS] = {"ray", "ended", "device: t at instance/primitive",
                                                "twin", "exact"};
     const whit_probe_report *report = probe->report;
-    char text[TEXT_MOST];
+    char text[TEXT_MAX];
     int widths[COLUMNS];
     print_head(probe);
     for (int c = 0; c < COLUMNS; ++c) {
@@ -293,10 +293,9 @@ static json_t *pixel_document(const struct probe *probe)
 whit_result probe_save_json(const struct probe *probe)
 {
     const whit_probe_report *report = probe->report;
-    json_t *out = document_object(), *picture = document_object(), *rays = document_array();
+    json_t *out = document_root(), *picture = document_object(), *rays = document_array();
     whit_device_info device;
     whit_device_get_info(probe->job.device, &device);
-    document_text(out, "whit", WHIT_VERSION);
     document_text(out, "scene", probe->job.settings.scene);
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);

@@ -38,11 +38,11 @@ whit_result ray_file_open(const char *path, struct ray_file *file)
     return WHIT_OK;
 }
 
-whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t most, uint64_t *count)
+whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t max, uint64_t *count)
 {
     errno = 0;
     *count = 0;
-    size_t bytes = fread(rays, 1, (size_t)most * sizeof *rays, file->stream);
+    size_t bytes = fread(rays, 1, (size_t)max * sizeof *rays, file->stream);
     if (ferror(file->stream)) {
         cli_error("%s: cannot read: %s", file->path, strerror(errno ? errno : EIO));
         return WHIT_ERROR_INPUT;

@@ -17,7 +17,7 @@ struct ray_file {
    where it is known, else at its end. Close it in any case. */
 WHIT_CHECK whit_result ray_file_open(const char *path, struct ray_file *file);
 /* The next rays, at most `most`; *count is 0 at the end. */
-WHIT_CHECK whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t most,
+WHIT_CHECK whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t max,
                                      uint64_t *count);
 void ray_file_close(struct ray_file *file);
 

@@ -10,7 +10,7 @@
 /* Rounds follow from the time of a frame: all frames of all effects take about this long, but never
    fewer rounds than give a median and quartiles. */
 static const double MEASURE_MS = 15e3;
-enum { ROUNDS_LEAST = 5, ROUNDS_MOST = 41 };
+enum { ROUNDS_MIN = 5, ROUNDS_MAX = 41 };
 
 static whit_result make_renderer(const struct receipt *receipt, const char *effects,
                                  whit_renderer **out)
@@ -47,9 +47,7 @@ static uint32_t rounds_for(const struct receipt *receipt, uint32_t effects)
 {
     double pair_ms = 2.0 * fmax(bench_median(&receipt->frame), 0.1);
     double rounds = MEASURE_MS / (effects ? effects : 1) / pair_ms;
-    return rounds < ROUNDS_LEAST  ? ROUNDS_LEAST
-           : rounds > ROUNDS_MOST ? ROUNDS_MOST
-                                  : (uint32_t)rounds;
+    return rounds < ROUNDS_MIN ? ROUNDS_MIN : rounds > ROUNDS_MAX ? ROUNDS_MAX : (uint32_t)rounds;
 }
 
 /* The renderer for the scene, and one that has the effect more, or less. */
@@ -101,7 +99,7 @@ static uint32_t list_effects(struct receipt *receipt, const whit_renderer *base)
     uint32_t switched = 0;
     whit_scene_get_info(receipt->job->scene, &scene);
     receipt->row_count =
-        scene.effect_count < RECEIPT_ROWS_MOST ? scene.effect_count : RECEIPT_ROWS_MOST;
+        scene.effect_count < RECEIPT_ROWS_MAX ? scene.effect_count : RECEIPT_ROWS_MAX;
     for (uint32_t i = 0; i < receipt->row_count; ++i) {
         whit_effect_info effect;
         whit_scene_get_effect(receipt->job->scene, i, &effect);
@@ -120,7 +118,7 @@ static whit_result time_base(struct receipt *receipt, whit_renderer *base)
 {
     double ms;
     whit_result result = time_frame(base, &ms); /* compiles, and warms up */
-    for (int i = 0; result == WHIT_OK && i < ROUNDS_LEAST; ++i) {
+    for (int i = 0; result == WHIT_OK && i < ROUNDS_MIN; ++i) {
         result = time_frame(base, &ms);
         bench_add(&receipt->frame, ms);
     }

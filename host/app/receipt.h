@@ -17,13 +17,13 @@ struct receipt_row {
     double largest;
 };
 
-enum { RECEIPT_ROWS_MOST = 64 };
+enum { RECEIPT_ROWS_MAX = 64 };
 struct receipt {
     const struct job *job;
     whit_kernel_info kernel;
     struct bench_times frame;
     uint32_t row_count;
-    struct receipt_row rows[RECEIPT_ROWS_MOST];
+    struct receipt_row rows[RECEIPT_ROWS_MAX];
 };
 
 /* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that

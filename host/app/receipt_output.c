@@ -87,9 +87,8 @@ int receipt_print_json(const struct receipt *receipt)
     whit_device_info info;
     whit_scene_get_info(receipt->job->scene, &scene);
     whit_device_get_info(receipt->job->device, &info);
-    json_t *root = document_object(), *device = document_object(), *kernel = document_object();
+    json_t *root = document_root(), *device = document_object(), *kernel = document_object();
     json_t *effects = document_array();
-    document_text(root, "whit", WHIT_VERSION);
     document_text(root, "file", receipt->job->settings.scene);
     document_hash(root, "hash", scene.hash);
     document_text(device, "name", info.name);

@@ -86,7 +86,7 @@ bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
     document_text(object, "rays", value_word(values_rays, (int)settings->paint_rays));
     document_number(object, "scale", figures->scale);
     document_number(object, "mean", figures->mean);
-    document_number(object, "most", figures->most);
+    document_number(object, "max", figures->max);
     recipe->view = document_line(object);
     if (!recipe->view)
         cli_error("out of memory");

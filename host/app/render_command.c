@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "base/text.h"
 
-enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MOST = 4096 };
+enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MAX = 4096 };
 
 static const struct setting options[] = {
     {"output", 'o', "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)",
@@ -84,10 +84,10 @@ static bool is_index(const char *text, uint32_t count)
 
 static whit_result refuse_camera(const struct job *job, const char *wanted, uint32_t count)
 {
-    const char *names[CAMERA_NAMES_MOST];
-    uint32_t most = count < CAMERA_NAMES_MOST ? count : CAMERA_NAMES_MOST;
+    const char *names[CAMERA_NAMES_MAX];
+    uint32_t max = count < CAMERA_NAMES_MAX ? count : CAMERA_NAMES_MAX;
     char list[512] = "";
-    for (uint32_t i = 0; i < most; ++i) {
+    for (uint32_t i = 0; i < max; ++i) {
         whit_camera_info camera;
         whit_scene_get_camera(job->scene, i, &camera);
         names[i] = camera.name;
@@ -98,7 +98,7 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
         else if (i == 8)
             snprintf(list + used, sizeof list - used, ", ...");
     }
-    const char *nearest = text_nearest(wanted, names, most);
+    const char *nearest = text_nearest(wanted, names, max);
     if (nearest)
         cli_error("%s: there is no camera `%s`; did you mean `%s`?", job->settings.scene, wanted,
                   nearest);

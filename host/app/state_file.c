@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STATE_BYTES_MOST = 65536, WORDS_MOST = 8, WHERE_BYTES = 600 };
+enum { STATE_BYTES_MAX = 65536, WORDS_MAX = 8, WHERE_BYTES = 600 };
 
 bool state_file_open(struct state_file *file, const char *path, char *said, size_t said_bytes)
 {
@@ -12,17 +12,17 @@ bool state_file_open(struct state_file *file, const char *path, char *said, size
     errno = 0;
     FILE *from = fopen(path, "r");
     size_t length = 0;
-    file->text = malloc(STATE_BYTES_MOST + 1);
+    file->text = malloc(STATE_BYTES_MAX + 1);
     if (from && file->text)
-        length = fread(file->text, 1, STATE_BYTES_MOST + 1, from);
+        length = fread(file->text, 1, STATE_BYTES_MAX + 1, from);
     bool failed = !from || !file->text || ferror(from);
     if (failed)
         snprintf(said, said_bytes, "%s: cannot be read: %s", path, strerror(errno ? errno : EIO));
-    else if (length > STATE_BYTES_MOST || memchr(file->text, '\0', length))
+    else if (length > STATE_BYTES_MAX || memchr(file->text, '\0', length))
         snprintf(said, said_bytes, "%s: not a file of settings", path);
     if (from)
         fclose(from);
-    if (!failed && length <= STATE_BYTES_MOST && !memchr(file->text, '\0', length)) {
+    if (!failed && length <= STATE_BYTES_MAX && !memchr(file->text, '\0', length)) {
         file->text[length] = '\0';
         return true;
     }
@@ -73,12 +73,12 @@ static char *next_word(char **at, bool *whole)
 }
 
 /* Whether the line has as many words as it may; argv[0] is the command. */
-static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MOST + 1])
+static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MAX + 1])
 {
     bool whole = true;
     char *word;
     while (whole && (word = next_word(&line, &whole)) != NULL) {
-        if (reader->argc == WORDS_MOST)
+        if (reader->argc == WORDS_MAX)
             return cli_misuse(reader, "one option a line");
         argv[reader->argc++] = word;
     }
@@ -89,7 +89,7 @@ static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MOST +
 static bool read_line(struct cli_reader *reader, char *line, struct settings *settings)
 {
     static char name[] = "whit";
-    char *argv[WORDS_MOST + 1] = {name};
+    char *argv[WORDS_MAX + 1] = {name};
     reader->argv = argv;
     if (line[strspn(line, " \t\r")] == '#')
         return true;

@@ -205,8 +205,7 @@ static json_t *frames_document(const struct job *job, const struct sequence *seq
 static int print_json(const struct job *job, const struct render_request *request,
                       const struct figures *figures)
 {
-    json_t *root = document_object();
-    document_text(root, "whit", WHIT_VERSION);
+    json_t *root = document_root();
     document_put(root, "scene", scene_document(job, figures));
     document_put(root, "picture", picture_document(job, request));
     json_t *device = document_object();
@@ -229,7 +228,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_count(work, "dispatches", figures->render->dispatches);
     document_count(work, "tiles", figures->render->tiles);
     document_count(work, "tile_size", figures->render->tile_size);
-    document_count(work, "waits", figures->render->waits);
+    document_count(work, "deferred", figures->render->deferred);
     document_text(work, "load_path", figures->render->load_path);
     document_flag(work, "packets", figures->render->packets);
     document_put(root, "work", work);
@@ -392,8 +391,8 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads%s\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
            figures->render->load_path, figures->render->packets ? ", camera rays in packets" : "");
-    if (figures->render->waits > 0)
-        printf("  %u steps of pixels' rays took more than floats\n", figures->render->waits);
+    if (figures->render->deferred > 0)
+        printf("  %u steps of pixels' rays took more than floats\n", figures->render->deferred);
     printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",
            (double)whit_peak_memory_bytes() / 1048576.0,
            (double)figures->render->device_bytes / 1048576.0);

@@ -14,8 +14,8 @@ struct study_spread study_spread_of(double *values, uint32_t count)
     sample_sort(values, count);
     return (struct study_spread){
         .median = sample_quantile(values, count, 0.5),
-        .least = values[0],
-        .most = values[count - 1],
+        .min = values[0],
+        .max = values[count - 1],
     };
 }
 

@@ -10,7 +10,7 @@ enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
 
 /* Of the runs. */
 struct study_spread {
-    double median, least, most;
+    double median, min, max;
 };
 
 struct study_row {

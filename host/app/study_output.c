@@ -96,7 +96,7 @@ static void print_rates(const struct study *study, const struct study_row *row)
         const struct study_spread *rate = &row->mrays_per_s[kind];
         if (study->rays[kind].count)
             printf("  %-9s%.3f Mray/s (%.3f to %.3f), %u rays\n",
-                   study_kind_name((enum study_kind)kind), rate->median, rate->least, rate->most,
+                   study_kind_name((enum study_kind)kind), rate->median, rate->min, rate->max,
                    study->rays[kind].count);
     }
 }
@@ -108,7 +108,7 @@ static void print_details(const struct study *study, const struct study_row *row
     printf("\n%s\n", row->name);
     for (uint32_t i = 0; i < study->thread_count; ++i)
         printf("  %-9s%.2f ms (%.2f to %.2f) by %u thread%s\n", "build", row->build_ms[i].median,
-               row->build_ms[i].least, row->build_ms[i].most, study->threads[i],
+               row->build_ms[i].min, row->build_ms[i].max, study->threads[i],
                study->threads[i] == 1 ? "" : "s");
     uint32_t primitives = info->triangle_count + info->sphere_count;
     printf("  %-9s%u nodes, %u leaves, ", "trees", info->node_count, info->leaf_count);
@@ -149,15 +149,15 @@ static int print_text(const struct study *study)
 static void put_spread(json_t *object, const struct study_spread *spread)
 {
     document_number(object, "median", spread->median);
-    document_number(object, "least", spread->least);
-    document_number(object, "most", spread->most);
+    document_number(object, "min", spread->min);
+    document_number(object, "max", spread->max);
 }
 
 static void put_times(json_t *object, const struct study_spread *spread_ms)
 {
     document_ms(object, "median", spread_ms->median);
-    document_ms(object, "least", spread_ms->least);
-    document_ms(object, "most", spread_ms->most);
+    document_ms(object, "min", spread_ms->min);
+    document_ms(object, "max", spread_ms->max);
 }
 
 static json_t *build_document(const struct study *study, const struct study_row *row)
@@ -186,7 +186,7 @@ static json_t *bins_document(const uint64_t *bins, uint32_t count)
 static json_t *visits_document(double pairs, double triangles)
 {
     json_t *visits = document_object();
-    document_number(visits, "pairs", pairs);
+    document_number(visits, "inner_nodes", pairs);
     document_number(visits, "triangles", triangles);
     return visits;
 }
@@ -275,8 +275,7 @@ static json_t *hits_document(const struct study *study)
 
 static int print_json(const struct study *study)
 {
-    json_t *root = document_object(), *rays = document_object(), *rows = document_array();
-    document_text(root, "whit", WHIT_VERSION);
+    json_t *root = document_root(), *rays = document_object(), *rows = document_array();
     document_put(root, "scene", scene_document(study));
     document_put(root, "device", device_document(study));
     document_count(root, "runs", study->run_count);

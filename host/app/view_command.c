@@ -101,10 +101,10 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
 
 /* ---- Scenes ---- */
 
-enum { SCENES_MOST = 512 };
+enum { SCENES_MAX = 512 };
 
 struct scene_list {
-    char *paths[SCENES_MOST];
+    char *paths[SCENES_MAX];
     uint32_t count;
 };
 
@@ -130,7 +130,7 @@ static void list_folder(struct scene_list *list, const char *folder)
 {
     DIR *dir = opendir(folder[0] ? folder : ".");
     struct dirent *entry;
-    while (dir && (entry = readdir(dir)) != NULL && list->count < SCENES_MOST) {
+    while (dir && (entry = readdir(dir)) != NULL && list->count < SCENES_MAX) {
         size_t bytes = strlen(folder) + strlen(entry->d_name) + 1;
         char *path = is_scene(entry->d_name) ? malloc(bytes) : NULL;
         if (!path)

@@ -13,7 +13,7 @@ static void find_figures(const whit_image *values, struct view_figures *out)
     double sum = 0.0;
     for (size_t i = 0; i < count; ++i) {
         sum += (double)floats[i];
-        out->most = fmax(out->most, (double)floats[i]);
+        out->max = fmax(out->max, (double)floats[i]);
     }
     out->mean = sum / (double)count;
 }
@@ -24,7 +24,7 @@ static whit_result heat_map(const struct settings *settings, const struct view_f
     char title[80], unit[64];
     snprintf(title, sizeof title, "%s, %s rays", value_title(values_view, (int)settings->paint),
              value_word(values_rays, (int)settings->paint_rays));
-    snprintf(unit, sizeof unit, "mean %.3g, most %g", figures->mean, figures->most);
+    snprintf(unit, sizeof unit, "mean %.3g, most %g", figures->mean, figures->max);
     const whit_heat_params params = {.scale = figures->scale, .title = title, .unit = unit};
     whit_result result = whit_image_heat(values, &params, out);
     if (result != WHIT_OK)

@@ -8,7 +8,7 @@ struct json_t;
 
 /* What a picture says about its numbers. */
 struct view_figures {
-    double mean, most, scale; /* over pixels; scale: of the heat map, used or not */
+    double mean, max, scale; /* over pixels; scale: of the heat map, used or not */
 };
 
 /* True for files that get colours in place of numbers. */

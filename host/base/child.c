@@ -35,7 +35,7 @@
 #define LIMIT_ADDRESS_SPACE 1
 #endif
 
-enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_LEAST = 1 << 20 };
+enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_MIN = 1 << 20 };
 
 struct child {
     pid_t pid;
@@ -145,8 +145,8 @@ static void close_fd(int *fd)
    may be less than what is allowed. */
 static bool make_room(struct child *child, uint64_t reply_bytes)
 {
-    size_t room = (size_t)(reply_bytes > ROOM_LEAST ? reply_bytes : ROOM_LEAST);
-    for (; room >= ROOM_LEAST; room /= 2) {
+    size_t room = (size_t)(reply_bytes > ROOM_MIN ? reply_bytes : ROOM_MIN);
+    for (; room >= ROOM_MIN; room /= 2) {
         void *data = mmap(NULL, room, PROT_READ | PROT_WRITE,
                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (data == MAP_FAILED)

@@ -45,42 +45,42 @@ void foreign_text(const void *text, size_t bytes, char *out, size_t out_bytes)
 static whit_result explain(enum child_end end, const struct child_limits *limits,
                            const struct child_reply *reply, char reason[FOREIGN_REASON_BYTES])
 {
-    const size_t most = FOREIGN_REASON_BYTES;
+    const size_t max = FOREIGN_REASON_BYTES;
     const char *who = limits->who;
     switch (end) {
     case CHILD_DONE:
         return WHIT_OK;
     case CHILD_CRASHED:
-        snprintf(reason, most, "the %s crashed on this file (signal %d)", who, reply->signal);
+        snprintf(reason, max, "the %s crashed on this file (signal %d)", who, reply->signal);
         return WHIT_ERROR_INPUT;
     case CHILD_FORBIDDEN:
-        snprintf(reason, most, "the %s tried on this file what it may not, and was stopped", who);
+        snprintf(reason, max, "the %s tried on this file what it may not, and was stopped", who);
         return WHIT_ERROR_INPUT;
     case CHILD_TIME:
-        snprintf(reason, most,
+        snprintf(reason, max,
                  "the %s did not finish within %.3g s of the processor's time, or %.3g s by the "
                  "clock (--import-limit S gives it more)",
                  who, limits->cpu_s, child_clock_limit_s(limits));
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
-        snprintf(reason, most, "the %s asked for more than %.4g MiB of memory%s", who,
+        snprintf(reason, max, "the %s asked for more than %.4g MiB of memory%s", who,
                  (double)limits->memory_bytes / 1048576.0,
                  limits->memory_bytes == DEFAULT_MEMORY_BYTES ? "" : ", half of --memory-limit");
         return WHIT_ERROR_INPUT;
     case CHILD_CANCELLED:
-        snprintf(reason, most, "loading was cancelled");
+        snprintf(reason, max, "loading was cancelled");
         return WHIT_ERROR_CANCELLED;
     case CHILD_NOT_STARTED:
-        snprintf(reason, most, "the %s's process could not be started: %s", who, strerror(errno));
+        snprintf(reason, max, "the %s's process could not be started: %s", who, strerror(errno));
         return WHIT_ERROR_MEMORY;
     case CHILD_OPEN:
-        snprintf(reason, most, "the %s cannot be locked in here (%s), and that is required", who,
+        snprintf(reason, max, "the %s cannot be locked in here (%s), and that is required", who,
                  strerror(reply->open_because));
         return WHIT_ERROR_USAGE;
     case CHILD_REPLY:
         break;
     }
-    snprintf(reason, most, "the %s gave no usable reply", who);
+    snprintf(reason, max, "the %s gave no usable reply", who);
     return WHIT_ERROR_INPUT;
 }
 

@@ -71,8 +71,8 @@ uint64_t platform_peak_memory_bytes(void)
     struct rusage own, children;
     if (getrusage(RUSAGE_SELF, &own) != 0 || getrusage(RUSAGE_CHILDREN, &children) != 0)
         return 0;
-    long most = own.ru_maxrss > children.ru_maxrss ? own.ru_maxrss : children.ru_maxrss;
-    return (uint64_t)most * 1024; /* Linux counts in KiB */
+    long max = own.ru_maxrss > children.ru_maxrss ? own.ru_maxrss : children.ru_maxrss;
+    return (uint64_t)max * 1024; /* Linux counts in KiB */
 }
 
 void platform_memory_bytes(uint64_t *all, uint64_t *own)

@@ -134,8 +134,8 @@ static void close_the_rest(void)
 {
     if (syscall(SYS_close_range, SANDBOX_FD_COUNT, ~0u, 0) == 0)
         return;
-    long most = sysconf(_SC_OPEN_MAX);
-    for (int fd = SANDBOX_FD_COUNT; fd < most; ++fd)
+    long max = sysconf(_SC_OPEN_MAX);
+    for (int fd = SANDBOX_FD_COUNT; fd < max; ++fd)
         close(fd);
 }
 

@@ -10,7 +10,7 @@
    needs. */
 static size_t decode(const unsigned char *text, uint32_t *code)
 {
-    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[5] = {0, 0, 0x80, 0x800, 0x10000};
     *code = text[0];
     if (text[0] < 0x80)
         return 1;
@@ -24,7 +24,7 @@ static size_t decode(const unsigned char *text, uint32_t *code)
         *code = *code << 6 | (text[i] & 0x3fu);
     }
     bool surrogate = *code >= 0xd800 && *code < 0xe000;
-    return *code < least[length] || *code > 0x10ffff || surrogate ? 0 : length;
+    return *code < min[length] || *code > 0x10ffff || surrogate ? 0 : length;
 }
 
 /* What steers a terminal, or is itself not seen and changes how what is seen reads. */
@@ -141,7 +141,7 @@ const char *text_nearest(const char *word, const char *const *names, uint32_t co
 {
     const char *nearest = NULL;
     size_t length = strlen(word);
-    uint32_t least = length <= 3 ? 1 : length <= 6 ? 2 : 3;
+    uint32_t min = length <= 3 ? 1 : length <= 6 ? 2 : 3;
     if (length == 0 || length > WORD_MAX)
         return NULL;
     for (uint32_t i = 0; i < count; ++i) {
@@ -149,9 +149,9 @@ const char *text_nearest(const char *word, const char *const *names, uint32_t co
             continue;
         uint32_t steps = distance(word, names[i]);
         bool prefix = strncmp(word, names[i], length) == 0;
-        if (steps <= least || (prefix && !nearest)) {
+        if (steps <= min || (prefix && !nearest)) {
             nearest = names[i];
-            least = steps < least ? steps : least;
+            min = steps < min ? steps : min;
         }
     }
     return nearest;

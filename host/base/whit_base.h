@@ -24,7 +24,7 @@ extern "C" {
 #define WHIT_BAILOUT_DEFAULT (1.0 / 1024.0)
 
 /* Samples of a pixel. */
-#define WHIT_SAMPLES_MOST    4096
+#define WHIT_SAMPLES_MAX     4096
 
 /* The one vocabulary of failure, from `base` to the public API. The reason is logged once,
    where it happens; callers pass the code up. */
@@ -73,14 +73,14 @@ typedef struct whit_statistic {
     char name[64];
     double value;
 } whit_statistic;
-enum { WHIT_STATISTICS_MOST = 48, WHIT_KERNELS_MOST = 16 };
+enum { WHIT_STATISTICS_MAX = 48, WHIT_KERNELS_MAX = 16 };
 /* A kernel of a picture as the device's driver makes it. */
 typedef struct whit_kernel {
     const char *name;      /* of its stage: "camera", "shade glass" */
     bool deferred;         /* for the rays that the one before leaves open, at exact numerics */
     uint32_t instructions; /* SPIR-V, of its functions */
     double create_ms;      /* by the clock; lavapipe goes on at the first dispatch */
-    whit_statistic statistics[WHIT_STATISTICS_MOST];
+    whit_statistic statistics[WHIT_STATISTICS_MAX];
     uint32_t statistic_count; /* 0: the driver tells nothing */
 } whit_kernel;
 

@@ -101,7 +101,7 @@ struct search {
     const struct cost_goal *goal;
     const struct knob *table;
     uint32_t count, aa;
-    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MOST];
+    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
     double tolerated; /* second pass: errors up to this are as good as the least; < 0: first pass */
     uint8_t settings[COST_CHOICE_KNOBS];
     struct cost_choice best;
@@ -217,7 +217,7 @@ static bool is_better(const struct search *search, double ms, double error)
 static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 {
     if (knob == search->count) {
-        double ms = search->report->usual_ms_most * ratio;
+        double ms = search->report->usual_ms_max * ratio;
         double error = from_sum(sum, search->goal->metric);
         if (!is_better(search, ms, error))
             return;

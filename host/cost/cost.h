@@ -14,7 +14,7 @@ enum cost_clock { COST_WALL, COST_CPU, COST_DEVICE, COST_CLOCKS };
 const char *cost_clock_name(enum cost_clock clock); /* "wall" */
 
 /* Two renderers in turns. */
-enum { COST_ROUNDS_MOST = 41, COST_ROUNDS_LEAST = 7 };
+enum { COST_ROUNDS_MAX = 41, COST_ROUNDS_MIN = 7 };
 struct cost_price {
     uint32_t rounds, width, height;
     struct sample_median usual_ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
@@ -36,7 +36,7 @@ WHIT_CHECK whit_result cost_price_double(whit_renderer *usual, const whit_render
 /* One renderer, `rounds` times after one that warms up, set to draw `view`. */
 struct cost_times {
     struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
-    double wall_most_ms;                  /* 90 % took at most this, by the wall clock */
+    double wall_max_ms;                   /* 90 % took at most this, by the wall clock */
 };
 WHIT_CHECK whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
                                  uint32_t rounds, struct cost_times *out);
@@ -82,7 +82,7 @@ struct cost_row {
 enum cost_goal_kind { COST_UNDER, COST_WITHIN }; /* an error, a time in ms */
 enum cost_metric { COST_RMSE, COST_FLIP };
 const char *cost_metric_name(enum cost_metric metric); /* "rmse" */
-enum { COST_GOALS_MOST = 2, COST_CHOICE_KNOBS = 32 };
+enum { COST_GOALS_MAX = 2, COST_CHOICE_KNOBS = 32 };
 struct cost_goal {
     enum cost_goal_kind kind;
     enum cost_metric metric;
@@ -95,7 +95,7 @@ struct cost_answer {
     double ms, error; /* predicted */
 };
 
-enum { COST_ROWS_MOST = 64, COST_ABSENT_MOST = 64, COST_KNOBS_ALL = 0 };
+enum { COST_ROWS_MAX = 64, COST_ABSENT_MAX = 64, COST_KNOBS_ALL = 0 };
 struct cost_absent {
     char name[64], why[64];
 };
@@ -111,13 +111,13 @@ struct cost_report {
     char device[256], driver[256], kind[16], load_path[16];
     uint64_t scene_hash;
     uint32_t row_count; /* row 0: the usual settings */
-    struct cost_row rows[COST_ROWS_MOST];
+    struct cost_row rows[COST_ROWS_MAX];
     uint32_t absent_count;
-    struct cost_absent absent[COST_ABSENT_MOST];
-    double usual_ms_most; /* 90 % of pictures took at most this, at full size, by the wall clock */
-    double small_ms;      /* of the usual picture of cost_small_size, by the clock */
+    struct cost_absent absent[COST_ABSENT_MAX];
+    double usual_ms_max; /* 90 % of pictures took at most this, at full size, by the wall clock */
+    double small_ms;     /* of the usual picture of cost_small_size, by the clock */
     uint32_t answer_count;
-    struct cost_answer answers[COST_GOALS_MOST];
+    struct cost_answer answers[COST_GOALS_MAX];
     whit_image *reference; /* of the most samples, or NULL */
 };
 
@@ -127,13 +127,13 @@ struct cost_request {
     whit_accel *accel;               /* with the usual settings; goes to the picture's time */
     const struct settings *settings; /* what knobs do not set is taken from it */
     const volatile bool *cancel;
-    double time_limit_s;   /* of all measurements; 0: none */
-    uint64_t knobs;        /* bits of knob_table; 0: all */
-    double seconds;        /* that it may take, roughly */
-    uint32_t samples_most; /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
-    uint32_t rays;         /* of each set; 0: none */
+    double time_limit_s;  /* of all measurements; 0: none */
+    uint64_t knobs;       /* bits of knob_table; 0: all */
+    double seconds;       /* that it may take, roughly */
+    uint32_t samples_max; /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
+    uint32_t rays;        /* of each set; 0: none */
     uint32_t goal_count;
-    struct cost_goal goals[COST_GOALS_MOST]; /* each gets a row that measures the choice */
+    struct cost_goal goals[COST_GOALS_MAX]; /* each gets a row that measures the choice */
     bool keep_pictures;
     void (*progress)(void *user, double done, double seconds_left, const char *what);
     void (*hush)(bool on); /* while a setting is tried that devices may refuse; or NULL */

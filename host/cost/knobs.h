@@ -19,14 +19,14 @@ struct knob_setting {
     const char *effect; /* that the scene must call for, or NULL */
     const char *name;   /* in reports; NULL: the text */
 };
-enum { KNOB_SETTINGS_MOST = 8 };
+enum { KNOB_SETTINGS_MAX = 8 };
 struct knob {
     const char *name;
     const char *setting; /* its row of the table of settings; NULL: none, it is of the reference */
     const char *about;   /* what it is, in a few words */
     uint32_t usual;      /* what whit takes by itself */
     uint32_t count;
-    struct knob_setting settings[KNOB_SETTINGS_MOST];
+    struct knob_setting settings[KNOB_SETTINGS_MAX];
 };
 
 /* The table, always the same. */

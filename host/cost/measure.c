@@ -126,7 +126,7 @@ void measure_close(struct measure *measure)
 static void note_absence(struct cost_report *report, const struct knob *knob, uint32_t setting,
                          const char *why)
 {
-    if (report->absent_count == COST_ABSENT_MOST)
+    if (report->absent_count == COST_ABSENT_MAX)
         return;
     struct cost_absent *absent = &report->absent[report->absent_count++];
     snprintf(absent->name, sizeof absent->name, "%s %s", knob->name,
@@ -178,7 +178,7 @@ static void list_rows(const struct cost_request *request, struct cost_report *re
                 continue;
             if (why)
                 note_absence(report, &table[k], s, why);
-            else if (report->row_count < COST_ROWS_MOST)
+            else if (report->row_count < COST_ROWS_MAX)
                 add_row(report, &table[k], k, s);
         }
     }
@@ -292,7 +292,7 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
                                        .row = WHIT_NONE,
                                        .ms = choice.ms,
                                        .error = choice.error};
-        if (!choice.found || report->row_count == COST_ROWS_MOST)
+        if (!choice.found || report->row_count == COST_ROWS_MAX)
             break;
         destroy_pictures(&report->rows[report->row_count]);
         result = measure_choice(measure, &choice, answer);
@@ -331,7 +331,7 @@ void cost_report_destroy(struct cost_report *report)
 {
     if (!report)
         return;
-    for (uint32_t i = 0; i < COST_ROWS_MOST; ++i)
+    for (uint32_t i = 0; i < COST_ROWS_MAX; ++i)
         destroy_pictures(&report->rows[i]);
     whit_image_destroy(report->reference);
     free(report);

@@ -22,7 +22,7 @@ enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *re
 struct pricing {
     whit_renderer *renderers[2];
     whit_reference *reference; /* in place of the second, or NULL */
-    double ms[COST_CLOCKS][2][COST_ROUNDS_MOST];
+    double ms[COST_CLOCKS][2][COST_ROUNDS_MAX];
     bool has_device;
 };
 
@@ -55,7 +55,7 @@ static whit_result run_once(void *user, uint32_t way, uint32_t round)
 
 static struct sample_median median_of(const double *values, uint32_t count)
 {
-    double copy[COST_ROUNDS_MOST];
+    double copy[COST_ROUNDS_MAX];
     memcpy(copy, values, count * sizeof *copy);
     return sample_median_of(copy, count);
 }
@@ -63,7 +63,7 @@ static struct sample_median median_of(const double *values, uint32_t count)
 static void conclude(const struct pricing *pricing, enum cost_clock clock, uint32_t rounds,
                      struct cost_price *out)
 {
-    double values[COST_ROUNDS_MOST];
+    double values[COST_ROUNDS_MAX];
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
         const double *usual = pricing->ms[c][0], *setting = pricing->ms[c][1];
         if (c == COST_DEVICE && !pricing->has_device)
@@ -99,7 +99,7 @@ whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
 {
     struct pricing pricing = {.renderers = {usual, setting}, .has_device = true};
     whit_result result = WHIT_OK;
-    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    rounds = rounds < COST_ROUNDS_MAX ? rounds : COST_ROUNDS_MAX;
     *out = (struct cost_price){.rounds = rounds};
     if (first)
         result = whit_renderer_set_view(usual, first);
@@ -119,7 +119,7 @@ whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *
                               struct cost_price *out)
 {
     struct pricing pricing = {.renderers = {usual}, .reference = reference, .has_device = true};
-    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    rounds = rounds < COST_ROUNDS_MAX ? rounds : COST_ROUNDS_MAX;
     *out = (struct cost_price){.rounds = rounds, .width = first->width, .height = first->height};
     whit_result result = whit_renderer_set_view(usual, first);
     return result == WHIT_OK ? price(&pricing, clock, rounds, out) : result;
@@ -129,7 +129,7 @@ whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
                       struct cost_times *out)
 {
     struct pricing pricing = {.renderers = {renderer}, .has_device = true};
-    rounds = rounds < COST_ROUNDS_MOST ? rounds : COST_ROUNDS_MOST;
+    rounds = rounds < COST_ROUNDS_MAX ? rounds : COST_ROUNDS_MAX;
     *out = (struct cost_times){0};
     whit_result result = whit_renderer_set_view(renderer, view);
     if (result == WHIT_OK)
@@ -142,7 +142,7 @@ whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
         if (c != COST_DEVICE || pricing.has_device)
             out->ms[c] = median_of(pricing.ms[c][0], rounds);
     sample_sort(pricing.ms[COST_WALL][0], rounds);
-    out->wall_most_ms = sample_quantile(pricing.ms[COST_WALL][0], rounds, 0.9);
+    out->wall_max_ms = sample_quantile(pricing.ms[COST_WALL][0], rounds, 0.9);
     return WHIT_OK;
 }
 

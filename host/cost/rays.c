@@ -13,11 +13,11 @@ const char *cost_set_name(enum cost_set set)
 
 /* With and without instances it is other triangles that rays are aimed at and held against. */
 static whit_result make_judges(struct measure *measure, whit_instances instances,
-                               whit_judge **judges, uint64_t *most)
+                               whit_judge **judges, uint64_t *max)
 {
     const struct cost_request *request = measure->request;
     whit_result result = WHIT_OK;
-    *most = 0;
+    *max = 0;
     for (uint32_t set = 0; result == WHIT_OK && request->rays && set < COST_SETS; ++set) {
         const whit_judge_params params = {
             .aimed = set == COST_AIMED,
@@ -33,7 +33,7 @@ static whit_result make_judges(struct measure *measure, whit_instances instances
         result = whit_judge_create(request->scene, &params, request->log, &judges[set]);
         if (result == WHIT_OK)
             whit_judge_rays(judges[set], &count);
-        *most = count > *most ? count : *most;
+        *max = count > *max ? count : *max;
         if (result == WHIT_OK)
             result = measure_still_wanted(measure);
     }
@@ -42,28 +42,28 @@ static whit_result make_judges(struct measure *measure, whit_instances instances
 
 whit_result measure_judges(struct measure *measure)
 {
-    uint64_t most;
+    uint64_t max;
     whit_result result =
-        make_judges(measure, measure->usual.trees.instances, measure->judges, &most);
-    measure->hits = result == WHIT_OK && most ? calloc((size_t)most, sizeof *measure->hits) : NULL;
-    return result == WHIT_OK && most && !measure->hits ? WHIT_ERROR_MEMORY : result;
+        make_judges(measure, measure->usual.trees.instances, measure->judges, &max);
+    measure->hits = result == WHIT_OK && max ? calloc((size_t)max, sizeof *measure->hits) : NULL;
+    return result == WHIT_OK && max && !measure->hits ? WHIT_ERROR_MEMORY : result;
 }
 
 /* The least of some times, after one that warms up. */
 static whit_result trace(struct measure *measure, whit_renderer *renderer, const whit_judge *judge,
-                         double *least_ms)
+                         double *min_ms)
 {
     uint64_t count;
     const whit_ray *rays = whit_judge_rays(judge, &count);
     whit_result result = WHIT_OK;
-    *least_ms = -1.0;
+    *min_ms = -1.0;
     for (int i = 0; result == WHIT_OK && i <= TRACES; ++i) {
         double start_ms = whit_clock_ms();
         result = whit_trace(renderer, WHIT_TRACE_DEVICE, rays, count, false, measure->hits, NULL);
         double ms = whit_trace_device_ms(renderer);
         ms = ms >= 0.0 ? ms : whit_clock_ms() - start_ms;
-        if (i > 0 && (*least_ms < 0.0 || ms < *least_ms))
-            *least_ms = ms;
+        if (i > 0 && (*min_ms < 0.0 || ms < *min_ms))
+            *min_ms = ms;
     }
     return result;
 }
@@ -98,9 +98,9 @@ whit_result measure_hits(struct measure *measure, whit_renderer *renderer,
 {
     whit_judge *own[COST_SETS] = {NULL};
     bool as_usual = target->trees.instances == measure->usual.trees.instances;
-    uint64_t most;
+    uint64_t max;
     whit_result result =
-        as_usual ? WHIT_OK : make_judges(measure, target->trees.instances, own, &most);
+        as_usual ? WHIT_OK : make_judges(measure, target->trees.instances, own, &max);
     if (result == WHIT_OK)
         result = judge_hits(measure, renderer, as_usual ? measure->judges : own,
                             target->picture.numerics, row);

@@ -7,7 +7,7 @@
 #include "cost/measure.h"
 
 /* Raised when pictures of the reference change: then those that are kept are of no use. */
-enum { KEPT_VERSION = 4, KEPT_CHANNELS = 4, SHRINK_MOST = 16, SHRINK_GOOD = 4, SIDE_LEAST = 16 };
+enum { KEPT_VERSION = 4, KEPT_CHANNELS = 4, SHRINK_MAX = 16, SHRINK_GOOD = 4, SIDE_MIN = 16 };
 enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
 
 static bool calls_for_area_lights(const whit_scene *scene)
@@ -141,8 +141,8 @@ static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink
     double width = report->width / shrink, height = report->height / shrink;
     double all_ms = pixel_ms * (report->reference_samples + 1) +
                     measure->usual_pixel_ms * pictures_to_judge(report);
-    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < SIDE_LEAST ||
-           height / 2.0 < SIDE_LEAST;
+    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < SIDE_MIN ||
+           height / 2.0 < SIDE_MIN;
 }
 
 /* By how much the picture is smaller than the request's, so that references and what is judged by
@@ -152,18 +152,18 @@ static whit_result choose_shrink(struct measure *measure, double seconds, uint32
     struct cost_report *report = measure->report;
     whit_image *image = NULL;
     double ms = 0.0;
-    for (*shrink = 1; *shrink < SHRINK_MOST; *shrink *= 2) {
+    for (*shrink = 1; *shrink < SHRINK_MAX; *shrink *= 2) {
         if (is_kept(measure, *shrink))
             return WHIT_OK;
     }
-    const whit_renderer_params probe = reference_params(measure, SHRINK_MOST, 1);
+    const whit_renderer_params probe = reference_params(measure, SHRINK_MAX, 1);
     whit_result result = render(measure, &probe, &image, &ms);
     whit_image_destroy(image);
     double pixel_ms = ms / ((double)probe.width * probe.height);
-    if (measure->request->samples_most == 0 && !fits(measure, pixel_ms, SHRINK_GOOD, seconds))
+    if (measure->request->samples_max == 0 && !fits(measure, pixel_ms, SHRINK_GOOD, seconds))
         report->reference_samples = SAMPLES_FEW;
     *shrink = 1;
-    while (*shrink < SHRINK_MOST && !fits(measure, pixel_ms, *shrink, seconds))
+    while (*shrink < SHRINK_MAX && !fits(measure, pixel_ms, *shrink, seconds))
         *shrink *= 2;
     return result;
 }
@@ -174,7 +174,7 @@ whit_result measure_references(struct measure *measure, double seconds)
     uint32_t shrink = 1;
     report->reference_depth = MEASURE_DEPTH;
     report->reference_samples =
-        measure->request->samples_most ? measure->request->samples_most : SAMPLES_MANY;
+        measure->request->samples_max ? measure->request->samples_max : SAMPLES_MANY;
     report->reference_light_samples =
         calls_for_area_lights(measure->request->scene) ? MEASURE_LIGHT_SAMPLES : 16;
     measure_say(measure, "reference in double");

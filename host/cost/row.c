@@ -6,9 +6,9 @@
 
 #include "cost/measure.h"
 
-enum { SHRINK_MOST = 16, BUILDS = 3, WARM_SIDE = 16, FULL_LEAST = 6 };
+enum { SHRINK_MAX = 16, BUILDS = 3, WARM_SIDE = 16, FULL_MIN = 6 };
 /* Below it what a dispatch costs by itself would count. */
-static const double FRAME_MS_LEAST = 10.0;
+static const double FRAME_MS_MIN = 10.0;
 
 whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
                                    uint32_t width, uint32_t height)
@@ -108,22 +108,22 @@ static void plan(const struct measure *measure, double ratio, double ms, uint32_
 {
     const struct cost_report *report = measure->report;
     double pair_ms = 0.0;
-    for (uint32_t shrink = 1; shrink <= SHRINK_MOST; shrink *= 2) {
+    for (uint32_t shrink = 1; shrink <= SHRINK_MAX; shrink *= 2) {
         uint32_t w = report->width / shrink, h = report->height / shrink;
         double usual_ms = measure->usual_pixel_ms * w * h;
-        if (shrink > 1 && (w < 16 || h < 16 || usual_ms * sqrt(fmax(ratio, 1.0)) < FRAME_MS_LEAST))
+        if (shrink > 1 && (w < 16 || h < 16 || usual_ms * sqrt(fmax(ratio, 1.0)) < FRAME_MS_MIN))
             break;
         *width = w;
         *height = h;
         pair_ms = usual_ms * (1.0 + ratio);
         /* And once to warm up. */
-        if (pair_ms * (COST_ROUNDS_LEAST + 1) <= ms)
+        if (pair_ms * (COST_ROUNDS_MIN + 1) <= ms)
             break;
     }
     double fit = ms / fmax(pair_ms, 1e-3) - 1.0;
-    *rounds = fit < COST_ROUNDS_LEAST  ? COST_ROUNDS_LEAST
-              : fit > COST_ROUNDS_MOST ? COST_ROUNDS_MOST
-                                       : (uint32_t)fit;
+    *rounds = fit < COST_ROUNDS_MIN   ? COST_ROUNDS_MIN
+              : fit > COST_ROUNDS_MAX ? COST_ROUNDS_MAX
+                                      : (uint32_t)fit;
 }
 
 /* From the ratios, and from what the usual picture takes at full size. */
@@ -342,14 +342,14 @@ static whit_result time_full(struct measure *measure, double seconds)
         measure_sized(measure, &measure->usual, report->width, report->height);
     double full_ms = measure->usual_pixel_ms * full.width * full.height;
     double fit = seconds * 1e3 / full_ms - 1.0;
-    uint32_t rounds = fit < FULL_LEAST         ? FULL_LEAST
-                      : fit > COST_ROUNDS_MOST ? COST_ROUNDS_MOST
-                                               : (uint32_t)fit;
+    uint32_t rounds = fit < FULL_MIN          ? FULL_MIN
+                      : fit > COST_ROUNDS_MAX ? COST_ROUNDS_MAX
+                                              : (uint32_t)fit;
     struct cost_times times;
     whit_result result = cost_time(measure->renderer, &full, rounds, &times);
     for (uint32_t c = 0; result == WHIT_OK && c < COST_CLOCKS; ++c)
         row->ms[c] = times.ms[c].count > 0 ? times.ms[c].median : -1.0;
-    report->usual_ms_most = times.wall_most_ms;
+    report->usual_ms_max = times.wall_max_ms;
     row->ms_low = times.ms[report->clock].low;
     row->ms_high = times.ms[report->clock].high;
     return result;

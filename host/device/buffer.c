@@ -78,11 +78,11 @@ static whit_result check_limit(const struct buffer *buffer, uint64_t size_bytes,
 {
     if (size_bytes <= limit)
         return WHIT_OK;
-    char size[32], most[32];
+    char size[32], max[32];
     describe_size(size_bytes, size, sizeof size);
-    describe_size(limit, most, sizeof most);
+    describe_size(limit, max, sizeof max);
     log_error(&buffer->device->log, "buffer \"%s\": %s is over the device's limit of %s for %s",
-              buffer->name, size, most, what);
+              buffer->name, size, max, what);
     return WHIT_ERROR_DEVICE;
 }
 

@@ -178,17 +178,17 @@ void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t gr
 {
     if (!is_recording(commands))
         return;
-    const uint32_t *most = commands->device->properties.limits.maxComputeWorkGroupCount;
+    const uint32_t *max = commands->device->properties.limits.maxComputeWorkGroupCount;
     if (!commands->bound) {
         RECORDING_FAILS(commands, WHIT_ERROR_USAGE, "commands \"%s\": dispatch without a pipeline",
                         commands->name);
         return;
     }
-    if (groups_x > most[0] || groups_y > most[1] || groups_z > most[2]) {
+    if (groups_x > max[0] || groups_y > max[1] || groups_z > max[2]) {
         RECORDING_FAILS(commands, WHIT_ERROR_DEVICE,
                         "pipeline \"%s\": %u x %u x %u groups; the device's limit is %u x %u x %u",
-                        commands->bound->name, groups_x, groups_y, groups_z, most[0], most[1],
-                        most[2]);
+                        commands->bound->name, groups_x, groups_y, groups_z, max[0], max[1],
+                        max[2]);
         return;
     }
     vkCmdDispatch(commands->vk, groups_x, groups_y, groups_z);

@@ -16,7 +16,7 @@ void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
 uint32_t evaluate_new_id(struct evaluation *e)
 {
     const struct result_id fresh = {0};
-    e->failed = e->failed || e->result_count >= SPIRV_BOUND_MOST;
+    e->failed = e->failed || e->result_count >= SPIRV_BOUND_MAX;
     if (!e->failed && !ARRAY_PUSH(e->results, e->result_count, e->result_capacity, fresh))
         e->failed = e->starved = true;
     if (e->failed)
@@ -586,7 +586,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
 static bool begin(struct evaluation *e)
 {
     if (e->count <= SPIRV_HEADER_WORDS || e->words[0] != SPIRV_MAGIC || e->words[3] == 0 ||
-        e->words[3] > SPIRV_BOUND_MOST)
+        e->words[3] > SPIRV_BOUND_MAX)
         return false;
     e->source_count = e->result_count = e->result_capacity = e->words[3];
     e->source = array_alloc_zeroed(e->source_count, sizeof *e->source);

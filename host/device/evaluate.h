@@ -18,7 +18,7 @@
 
 #include "device/spirv_ops.h"
 
-enum { SPIRV_MAGIC = 0x07230203, SPIRV_HEADER_WORDS = 5, SPIRV_BOUND_MOST = 1 << 20 };
+enum { SPIRV_MAGIC = 0x07230203, SPIRV_HEADER_WORDS = 5, SPIRV_BOUND_MAX = 1 << 20 };
 
 /* An id of the module that came in, while the function that it stands in is walked through. */
 struct source_id {

@@ -2,7 +2,7 @@
 #include "device/evaluate.h"
 
 /* That are looked at by their place. */
-static uint32_t least_words(uint32_t op)
+static uint32_t min_words(uint32_t op)
 {
     return op == OP_SELECT                                                 ? 6
            : op == OP_LOGICAL_AND || op == OP_LOGICAL_OR                   ? 5
@@ -23,7 +23,7 @@ static bool read_instruction(struct evaluation *e, uint32_t at, uint32_t *functi
     uint32_t op = spirv_op(words), length = spirv_length(words);
     struct spirv_shape shape = spirv_shape(op);
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS, id = 0;
-    if (length < least_words(op))
+    if (length < min_words(op))
         return false;
     if (op == OP_FUNCTION || op == OP_FUNCTION_PARAMETER || op == OP_FUNCTION_CALL) {
         head = HEAD_WORDS_RESULT;

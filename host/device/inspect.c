@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "device/evaluate.h"
 
-enum { BINDINGS_MOST = 64 };
+enum { BINDINGS_MAX = 64 };
 
 /* Bits of the bindings whose variables the instruction names. */
 static uint64_t named_bindings(const uint32_t *at, const uint8_t *binding_of, uint32_t bound)
@@ -34,7 +34,7 @@ static bool inspect_words(const uint32_t *words, size_t word_count, uint8_t *bin
         if (length == 0 || length > word_count - at)
             return false;
         if (op == OP_DECORATE && length == 4 && instruction[2] == DECORATION_BINDING &&
-            instruction[1] < words[3] && instruction[3] < BINDINGS_MOST)
+            instruction[1] < words[3] && instruction[3] < BINDINGS_MAX)
             binding_of[instruction[1]] = (uint8_t)(instruction[3] + 1);
         in_function = in_function || op == OP_FUNCTION;
         out->instructions += in_function;
@@ -49,7 +49,7 @@ bool spirv_inspect(const uint32_t *words, size_t word_count, struct spirv_info *
 {
     *out = (struct spirv_info){0};
     if (word_count <= SPIRV_HEADER_WORDS || words[0] != SPIRV_MAGIC || words[3] == 0 ||
-        words[3] > SPIRV_BOUND_MOST)
+        words[3] > SPIRV_BOUND_MAX)
         return false;
     uint8_t *binding_of = array_alloc_zeroed(words[3], 1);
     bool done = binding_of && inspect_words(words, word_count, binding_of, out);

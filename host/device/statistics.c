@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-enum { EXECUTABLES_MOST = 8 };
+enum { EXECUTABLES_MAX = 8 };
 
 struct statistics {
     whit_statistic *list;
@@ -15,7 +15,7 @@ struct statistics {
 /* `executable`: its name, where there are several; NULL else. */
 static void add(struct statistics *to, const char *executable, const char *name, double value)
 {
-    if (to->count == WHIT_STATISTICS_MOST)
+    if (to->count == WHIT_STATISTICS_MAX)
         return;
     whit_statistic *own = &to->list[to->count++];
     snprintf(own->name, sizeof own->name, "%.24s%s%.36s", executable ? executable : "",
@@ -45,8 +45,8 @@ static whit_result read_executable(const struct pipeline *pipeline, uint32_t ind
 {
     struct device *device = pipeline->device;
     whit_result result = WHIT_OK;
-    VkPipelineExecutableStatisticKHR statistics[WHIT_STATISTICS_MOST];
-    uint32_t count = WHIT_STATISTICS_MOST;
+    VkPipelineExecutableStatisticKHR statistics[WHIT_STATISTICS_MAX];
+    uint32_t count = WHIT_STATISTICS_MAX;
     for (uint32_t i = 0; i < count; ++i)
         statistics[i] = (VkPipelineExecutableStatisticKHR){
             .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR};
@@ -69,12 +69,12 @@ whit_result pipeline_get_statistics(const struct pipeline *pipeline, whit_statis
     struct device *device = pipeline->device;
     struct statistics to = {.list = list};
     whit_result result = WHIT_OK;
-    VkPipelineExecutablePropertiesKHR executables[EXECUTABLES_MOST];
-    uint32_t executable_count = EXECUTABLES_MOST;
+    VkPipelineExecutablePropertiesKHR executables[EXECUTABLES_MAX];
+    uint32_t executable_count = EXECUTABLES_MAX;
     *count = 0;
     if (!pipeline->asks_statistics)
         return WHIT_OK;
-    for (uint32_t i = 0; i < EXECUTABLES_MOST; ++i)
+    for (uint32_t i = 0; i < EXECUTABLES_MAX; ++i)
         executables[i] = (VkPipelineExecutablePropertiesKHR){
             .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
     const VkPipelineInfoKHR info = {

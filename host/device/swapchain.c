@@ -158,12 +158,12 @@ static whit_result make_layouts(struct swapchain *swapchain)
         .pPushConstantRanges = &range,
     };
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, IMAGES_MOST},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, IMAGES_MOST},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, IMAGES_MAX},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, IMAGES_MAX},
     };
     VkDescriptorPoolCreateInfo pool = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = IMAGES_MOST,
+        .maxSets = IMAGES_MAX,
         .poolSizeCount = 2,
         .pPoolSizes = sizes,
     };
@@ -312,11 +312,11 @@ static whit_result make_chain(struct swapchain *swapchain, uint32_t width, uint3
     }
     if (width == 0 || height == 0 || extent.width == 0 || extent.height == 0)
         return WHIT_OK;
-    uint32_t most = can.maxImageCount ? can.maxImageCount : IMAGES_MOST;
+    uint32_t max = can.maxImageCount ? can.maxImageCount : IMAGES_MAX;
     VkSwapchainCreateInfoKHR info = {
         .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
         .surface = device->surface,
-        .minImageCount = clamp(can.minImageCount, 2, most),
+        .minImageCount = clamp(can.minImageCount, 2, max),
         .imageFormat = swapchain->format.format,
         .imageColorSpace = swapchain->format.colorSpace,
         .imageExtent = extent,
@@ -382,13 +382,13 @@ fail:
 static whit_result make_views(struct swapchain *swapchain)
 {
     struct device *device = swapchain->device;
-    VkImage images[IMAGES_MOST];
+    VkImage images[IMAGES_MAX];
     uint32_t count = 0;
     whit_result result = WHIT_OK;
     VK_TRY(device, vkGetSwapchainImagesKHR(device->vk, swapchain->vk, &count, NULL));
-    if (count > IMAGES_MOST) {
+    if (count > IMAGES_MAX) {
         log_error(&device->log, "the window wants %u images; whit keeps %d at most", count,
-                  IMAGES_MOST);
+                  IMAGES_MAX);
         return WHIT_ERROR_DEVICE;
     }
     VK_TRY(device, vkGetSwapchainImagesKHR(device->vk, swapchain->vk, &count, images));

@@ -5,7 +5,7 @@
 #include "device/swapchain.h"
 #include "device/vulkan.h"
 
-enum { IMAGES_MOST = 8 };
+enum { IMAGES_MAX = 8 };
 
 struct window_image {
     VkImage image;
@@ -22,7 +22,7 @@ struct swapchain {
     VkExtent2D extent; /* 0 x 0: no images */
     VkSwapchainKHR vk;
     uint32_t image_count;
-    struct window_image images[IMAGES_MOST];
+    struct window_image images[IMAGES_MAX];
 
     VkCommandPool pool;
     VkCommandBuffer commands;

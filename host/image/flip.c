@@ -100,10 +100,10 @@ static float remap(float distance, float largest)
 
 /* ---- Filters ---- */
 
-enum { RADIUS_MOST = 144 };
+enum { RADIUS_MAX = 144 };
 struct kernel {
     int radius;
-    float weights[2 * RADIUS_MOST + 1];
+    float weights[2 * RADIUS_MAX + 1];
 };
 
 /* Contrast sensitivity in space, a sum of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees.
@@ -199,7 +199,7 @@ static whit_result work_init(struct work *work, const struct image *image, doubl
     *work = (struct work){.width = image->width, .height = image->height};
     work->count = (size_t)image->width * image->height;
     work->memory = array_alloc(work->count, (2 * PLANES + 2) * sizeof(float));
-    work->padded = array_alloc((size_t)image->width + 2 * RADIUS_MOST, sizeof(float));
+    work->padded = array_alloc((size_t)image->width + 2 * RADIUS_MAX, sizeof(float));
     if (!work->memory || !work->padded)
         return WHIT_ERROR_MEMORY;
     for (int i = 0; i < 2 * PLANES; ++i)
@@ -340,7 +340,7 @@ whit_result image_flip(const struct image *a, const struct image *b, double pixe
     if (pixels_per_degree == 0.0)
         pixels_per_degree = FLIP_PIXELS_PER_DEGREE;
     if (!a->pixels || !b->pixels || a->width != b->width || a->height != b->height ||
-        !(pixels_per_degree >= 1.0 && pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MOST))
+        !(pixels_per_degree >= 1.0 && pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MAX))
         return WHIT_ERROR_USAGE;
     whit_result result = work_init(&work, a, pixels_per_degree);
     if (result == WHIT_OK)

@@ -6,7 +6,7 @@
 
 /* A screen of 0.7 m with 3840 pixels, seen from 0.7 m: 3840 pi / 180. */
 #define FLIP_PIXELS_PER_DEGREE 67.02064327658226
-enum { FLIP_PIXELS_PER_DEGREE_MOST = 1000 };
+enum { FLIP_PIXELS_PER_DEGREE_MAX = 1000 };
 
 struct flip_summary {
     double mean, largest; /* of the map */

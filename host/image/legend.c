@@ -25,7 +25,7 @@ enum {
     TICK_ROWS = 3,
     NUMBER_TOP = BAR_TOP + BAR_ROWS + TICK_ROWS + 2,
     STRIP_ROWS = NUMBER_TOP + 11,
-    WIDTH_LEAST = 120, /* narrower pictures get a wider strip, */
+    WIDTH_MIN = 120,   /* narrower pictures get a wider strip, */
     WIDTH_WANTED = 320 /* as wide as this where the title needs it */
 };
 enum { BACKGROUND = 20, INK = 225 };
@@ -74,7 +74,7 @@ void legend_init(struct legend *legend, uint32_t picture_width, const char *titl
     copy_text(legend->unit, unit);
     uint32_t gap = legend->unit[0] ? UNIT_GAP : 0;
     uint32_t wanted = text_width(legend->title) + gap + text_width(legend->unit) + 2 * MARGIN;
-    wanted = wanted > WIDTH_WANTED ? WIDTH_WANTED : wanted < WIDTH_LEAST ? WIDTH_LEAST : wanted;
+    wanted = wanted > WIDTH_WANTED ? WIDTH_WANTED : wanted < WIDTH_MIN ? WIDTH_MIN : wanted;
     wanted *= legend->zoom;
     legend->width = picture_width > wanted ? picture_width : wanted;
     legend->height = STRIP_ROWS * legend->zoom;
@@ -108,13 +108,13 @@ struct corner {
     float x, y, z;
     uint8_t color[4];
 };
-enum { QUADS_MOST = 16 }; /* of a letter */
+enum { QUADS_MAX = 16 }; /* of a letter */
 
 /* From pixel `x` of the picture and row `y` of the font. */
 static void draw_text(const struct canvas *canvas, uint32_t x, uint32_t y, const char *text)
 {
     static const uint8_t ink[3] = {INK, INK, INK};
-    struct corner corners[4 * QUADS_MOST];
+    struct corner corners[4 * QUADS_MAX];
     for (; *text; ++text) {
         char letter[2] = {*text, 0};
         int quads = stb_easy_font_print(0.0f, 0.0f, letter, NULL, corners, (int)sizeof corners);
@@ -167,10 +167,10 @@ static void draw_number(const struct legend *legend, const struct canvas *canvas
 }
 
 /* 1, 2 or 5 times a power of ten, at least `least`. */
-static double tick_step(double least)
+static double tick_step(double min)
 {
-    double power = pow(10.0, floor(log10(least)));
-    double digit = least / power;
+    double power = pow(10.0, floor(log10(min)));
+    double digit = min / power;
     return power * (digit <= 1.0 ? 1.0 : digit <= 2.0 ? 2.0 : digit <= 5.0 ? 5.0 : 10.0);
 }
 
@@ -182,8 +182,8 @@ static void draw_ticks(const struct legend *legend, const struct canvas *canvas,
     snprintf(last, sizeof last, "%g", legend->scale);
     uint32_t number_width = (text_width(last) + 14) * canvas->zoom;
     uint32_t room = legend->is_signed ? bar->width / 2 : bar->width;
-    uint32_t most = room / number_width < 10 ? room / number_width : 10;
-    double step = tick_step(legend->scale / (most ? most : 1) * (1.0 - 1e-9));
+    uint32_t max = room / number_width < 10 ? room / number_width : 10;
+    double step = tick_step(legend->scale / (max ? max : 1) * (1.0 - 1e-9));
     double end = legend->scale * (1.0 - 1.5 * number_width / (double)room);
     draw_number(legend, canvas, bar, 0.0, "0");
     for (int side = legend->is_signed ? -1 : 1; side <= 1; side += 2) {

@@ -283,12 +283,12 @@ static void decode_16(const uint8_t *from, struct image *image)
    at best. */
 static void check_amount(struct job *job)
 {
-    enum { DEFLATE_MOST = 1032 };
+    enum { DEFLATE_MAX = 1032 };
     uint64_t depth = png_get_bit_depth(job->png, job->info);
     uint64_t bits = (uint64_t)png_get_image_width(job->png, job->info) * depth *
                     png_get_channels(job->png, job->info);
     uint64_t bytes = (bits + 7) / 8 * png_get_image_height(job->png, job->info);
-    if (bytes / DEFLATE_MOST > job->source->size_bytes)
+    if (bytes / DEFLATE_MAX > job->source->size_bytes)
         png_error(job->png, "the file is cut short");
 }
 

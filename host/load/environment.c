@@ -10,8 +10,8 @@
 #include "load/picture.h"
 #include "scene/afford.h"
 
-#define FILE_BYTES_MOST ((uint64_t)1 << 30)
-#define SIDE_MOST       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
+#define FILE_BYTES_MAX ((uint64_t)1 << 30)
+#define SIDE_MAX       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
 
 /* .hdr, .exr and .pfm: grey spreads to RGB, alpha is dropped. */
 static whit_result read_image(const struct scene *scene, const char *path,
@@ -81,13 +81,13 @@ static whit_result read_picture(struct scene *scene, const char *path,
     uint8_t *data = NULL;
     size_t size_bytes = 0;
     char reason[FOREIGN_REASON_BYTES];
-    whit_result result = file_read(log, &scene->roots, path, FILE_BYTES_MOST, &data, &size_bytes);
+    whit_result result = file_read(log, &scene->roots, path, FILE_BYTES_MAX, &data, &size_bytes);
     if (result != WHIT_OK)
         return result;
-    uint64_t most = scene_room(scene) / scene_texel_cost(3, 1);
-    result = picture_read(log, foreign, most, data, size_bytes, out, reason);
+    uint64_t max = scene_room(scene) / scene_texel_cost(3, 1);
+    result = picture_read(log, foreign, max, data, size_bytes, out, reason);
     free(data);
-    bool too_large = result == WHIT_ERROR_INPUT && (uint64_t)out->width * out->height > most;
+    bool too_large = result == WHIT_ERROR_INPUT && (uint64_t)out->width * out->height > max;
     if (too_large && !afford(scene, path, out))
         return result;
     if (result != WHIT_OK)
@@ -128,7 +128,7 @@ whit_result load_environment(struct scene *scene, const char *path,
         result = WHIT_ERROR_INPUT;
         goto fail;
     }
-    if (!picture_shrink(&picture, SIDE_MOST)) {
+    if (!picture_shrink(&picture, SIDE_MAX)) {
         log_error(log, "%s: out of memory", path);
         result = WHIT_ERROR_MEMORY;
         goto fail;

@@ -101,18 +101,18 @@ static bool check_version(const struct gltf *gltf)
 {
     struct gltf_place at = gltf_place("asset");
     json_t *asset;
-    const char *version, *least;
+    const char *version, *min;
     if (!gltf_object(gltf, gltf->root, &at, "asset", &asset))
         return false;
     if (!asset)
         return fail_file(gltf, "there is no `asset` in it: this is not glTF 2.0");
     if (!gltf_string(gltf, asset, &at, "version", &version) ||
-        !gltf_string(gltf, asset, &at, "minVersion", &least))
+        !gltf_string(gltf, asset, &at, "minVersion", &min))
         return false;
     if (!version || strncmp(version, "2.", 2) != 0)
         return gltf_fail(gltf, &at, "version `%s` is not 2.x", text_token(version).text);
-    return !least || strcmp(least, "2.0") == 0 ||
-           gltf_fail(gltf, &at, "minVersion `%s` is more than 2.0", text_token(least).text);
+    return !min || strcmp(min, "2.0") == 0 ||
+           gltf_fail(gltf, &at, "minVersion `%s` is more than 2.0", text_token(min).text);
 }
 
 static bool is_known(const char *extension)

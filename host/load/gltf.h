@@ -74,7 +74,7 @@ bool gltf_floats(const struct gltf *gltf, const json_t *in, const struct gltf_pl
                  const char *key, uint32_t count, float *out);
 /* A whole number of at least 0 and at most `most`. */
 bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
-                const char *key, uint64_t most, uint64_t *out);
+                const char *key, uint64_t max, uint64_t *out);
 /* An index below `count`. */
 bool gltf_index(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                 const char *key, uint32_t count, uint32_t *out);

@@ -136,7 +136,7 @@ static bool whole_value(const json_t *value, double *out)
 }
 
 bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
-                const char *key, uint64_t most, uint64_t *out)
+                const char *key, uint64_t max, uint64_t *out)
 {
     const json_t *value = json_object_get(in, key);
     double number;
@@ -144,9 +144,9 @@ bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_pla
         return true;
     if (!whole_value(value, &number))
         return gltf_fail(gltf, at, "`%s` should be a whole number of at least 0", key);
-    if (number > (double)most)
+    if (number > (double)max)
         return gltf_fail(gltf, at, "`%s` is %.0f, at most %llu is possible", key, number,
-                         (unsigned long long)most);
+                         (unsigned long long)max);
     *out = (uint64_t)number;
     return true;
 }

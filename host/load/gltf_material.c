@@ -28,13 +28,13 @@ static whit_result extension(struct reading *r, const char *name, json_t **out)
     return gltf_extension(r->gltf, r->object, &r->at, name, out) ? WHIT_OK : WHIT_ERROR_INPUT;
 }
 
-static bool number(struct reading *r, const json_t *in, const char *key, double least, double most,
+static bool number(struct reading *r, const json_t *in, const char *key, double min, double max,
                    float *out)
 {
     double value = (double)*out;
     if (!gltf_number(r->gltf, in, &r->at, key, &value))
         return false;
-    *out = (float)fmin(fmax(value, least), most);
+    *out = (float)fmin(fmax(value, min), max);
     return true;
 }
 

@@ -38,7 +38,7 @@ struct import_part {
 
 /* To cut one face into triangles takes assimp time by the cube of its corners where they are laid
    out for that: 1.2 s for so many, 9 s for twice as many (AMD EPYC). */
-#define IMPORT_CORNERS_MOST 1024u
+#define IMPORT_CORNERS_MAX 1024u
 
 /* What the importer left out. `corners`: those of the first face that has more than it may, else 0;
    such a model comes back without parts. `face` is its index in its mesh. */

@@ -580,7 +580,7 @@ static bool has_long_face(const struct aiScene *scene, struct import_counts *cou
     for (uint32_t i = 0; i < scene->mNumMeshes; i++) {
         const struct aiMesh *mesh = scene->mMeshes[i];
         for (uint32_t face = 0; face < mesh->mNumFaces; face++) {
-            if (mesh->mFaces[face].mNumIndices <= IMPORT_CORNERS_MOST)
+            if (mesh->mFaces[face].mNumIndices <= IMPORT_CORNERS_MAX)
                 continue;
             counts->face = face;
             counts->corners = mesh->mFaces[face].mNumIndices;

@@ -12,7 +12,7 @@
 #include "base/platform.h"
 
 /* Of a progressive file each scan is work for all of the picture, however few bytes it has. */
-enum { SCANS_MOST = 64 };
+enum { SCANS_MAX = 64 };
 
 /* libjpeg leaves its functions by longjmp. Whatever must survive that lives in here, outside the
    frame that calls setjmp. */
@@ -66,7 +66,7 @@ static void on_message(j_common_ptr info, int level)
 static void on_progress(j_common_ptr info)
 {
     struct job *job = job_of(info);
-    if (job->info.input_scan_number > SCANS_MOST)
+    if (job->info.input_scan_number > SCANS_MAX)
         leave(job, WHIT_ERROR_INPUT, "it has too many scans");
 }
 

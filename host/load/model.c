@@ -24,7 +24,7 @@ static void log_long_face(const struct log *log, const char *path, uint32_t line
     else
         snprintf(place, sizeof place, ": face %llu", (unsigned long long)counts->face);
     log_error(log, "%s%s has %llu corners, at most %u are possible: cut it into triangles", path,
-              place, (unsigned long long)counts->corners, IMPORT_CORNERS_MOST);
+              place, (unsigned long long)counts->corners, IMPORT_CORNERS_MAX);
 }
 
 static whit_result import(struct scene *scene, const struct model_request *request,

@@ -65,10 +65,10 @@ static bool parse_number(const char *word, float *out)
 }
 
 /* Up to `most` numbers; the line stands behind the last one. */
-static uint32_t parse_numbers(char **at, float *out, uint32_t most)
+static uint32_t parse_numbers(char **at, float *out, uint32_t max)
 {
     uint32_t count = 0;
-    while (count < most) {
+    while (count < max) {
         char *start = skip_blanks(*at), *end = start;
         while (*end && !is_blank(*end))
             end++;

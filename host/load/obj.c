@@ -154,7 +154,7 @@ static uint32_t count_words(const char *at, const char *end)
 
 uint32_t obj_longest_face(const char *text)
 {
-    uint32_t longest = 0, most = 0, first = 0, words = 0;
+    uint32_t longest = 0, max = 0, first = 0, words = 0;
     bool joined = false;
     for (uint32_t line = 1; *text; line++) {
         const char *end = text + strcspn(text, "\n"), *last = end;
@@ -163,8 +163,8 @@ uint32_t obj_longest_face(const char *text)
             words = 0;
         }
         words += count_words(text, end);
-        if (first && words > most) {
-            most = words;
+        if (first && words > max) {
+            max = words;
             longest = first;
         }
         while (last > text && last[-1] == '\r')

@@ -15,11 +15,11 @@
 /* stb_image does not always say so. Blocks over the limit are refused: of a PNG it believes every
    length, and unpacks all that is there, whatever the header tells of. */
 static _Thread_local bool lacks_memory, over_limit;
-static _Thread_local uint64_t block_bytes_most;
+static _Thread_local uint64_t block_bytes_max;
 
 static void *take_block(void *block, size_t bytes)
 {
-    if (bytes > block_bytes_most) {
+    if (bytes > block_bytes_max) {
         over_limit = true;
         return NULL;
     }
@@ -38,8 +38,8 @@ static void *take_block(void *block, size_t bytes)
 #define STBI_NO_PNM
 #define STBI_NO_HDR /* it never ends on a row that is cut short; image/ reads them */
 #define STBI_NO_LINEAR
-#define SIDE_MOST           16384
-#define STBI_MAX_DIMENSIONS SIDE_MOST
+#define SIDE_MAX            16384
+#define STBI_MAX_DIMENSIONS SIDE_MAX
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 /* Functions declared and never defined are reported at the end of the file: no pop helps there. */
@@ -55,14 +55,14 @@ static void *take_block(void *block, size_t bytes)
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
-#define PIXELS_MOST      ((uint64_t)1 << 26)
+#define PIXELS_MAX       ((uint64_t)1 << 26)
 /* Decoders believe what a header says and allocate it. No format makes more of its bytes than PNG
    can: deflate 1032 bytes of one, of 8 pixels each. */
 #define PIXELS_FREE      ((uint64_t)1 << 16)
 #define PIXELS_PER_BYTE  ((uint64_t)8 * 1032)
 #define BLOCK_BYTES_FREE ((uint64_t)1 << 18) /* tables of decoders */
 
-static uint64_t pixels_most(size_t size_bytes)
+static uint64_t pixels_max(size_t size_bytes)
 {
     return PIXELS_FREE + PIXELS_PER_BYTE * size_bytes;
 }
@@ -72,11 +72,11 @@ const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_byt
     uint64_t pixels = (uint64_t)width * height;
     if (pixels == 0)
         return "it is empty";
-    if (pixels > PIXELS_MOST)
+    if (pixels > PIXELS_MAX)
         return "it has more than 2^26 pixels";
-    if (width > SIDE_MOST || height > SIDE_MOST)
+    if (width > SIDE_MAX || height > SIDE_MAX)
         return "a side has more than 16384 pixels";
-    return pixels > pixels_most(size_bytes) ? "its header tells of more than there is in it" : NULL;
+    return pixels > pixels_max(size_bytes) ? "its header tells of more than there is in it" : NULL;
 }
 
 /* Of a PNG chunk that it does not know stb_image repeats the name, whatever its bytes. */
@@ -115,7 +115,7 @@ static void picture_sides(const uint8_t *data, size_t size_bytes, uint32_t *widt
         jpeg_sides(data, size_bytes, width, height);
         return;
     }
-    block_bytes_most = BLOCK_BYTES_FREE;
+    block_bytes_max = BLOCK_BYTES_FREE;
     if (stbi_info_from_memory(data, (int)size_bytes, &sides[0], &sides[1], &channels)) {
         *width = (uint32_t)sides[0];
         *height = (uint32_t)sides[1];
@@ -132,7 +132,7 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
     if (jpeg_is(data, size_bytes))
         return jpeg_decode(data, size_bytes, out, reason);
     int size = (int)size_bytes, width, height, channels;
-    block_bytes_most = BLOCK_BYTES_FREE;
+    block_bytes_max = BLOCK_BYTES_FREE;
     lacks_memory = over_limit = false;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return WHIT_ERROR_INPUT;
@@ -144,7 +144,7 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
     }
     /* 16 bits of 4 channels, in a buffer that grows by doubling; or the file's own bytes, likewise.
      */
-    block_bytes_most =
+    block_bytes_max =
         BLOCK_BYTES_FREE + 2 * size_bytes + 16 * ((uint64_t)(uint32_t)width + 1) * (uint32_t)height;
     out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
     if (!out->rgba) {
@@ -164,7 +164,7 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
 struct file {
     const uint8_t *data;
     size_t size_bytes;
-    uint64_t pixels_most;
+    uint64_t pixels_max;
 };
 
 static whit_result decode_file(void *user, void *to, child_write write,
@@ -175,7 +175,7 @@ static whit_result decode_file(void *user, void *to, child_write write,
     const char *reason = "";
     picture_sides(file->data, file->size_bytes, &answer->numbers[0], &answer->numbers[1]);
     uint32_t width = answer->numbers[0], height = answer->numbers[1];
-    if ((uint64_t)width * height > file->pixels_most &&
+    if ((uint64_t)width * height > file->pixels_max &&
         !picture_why_refused(width, height, file->size_bytes))
         return WHIT_ERROR_INPUT;
     whit_result result = picture_decode(file->data, file->size_bytes, &picture, &reason);
@@ -189,13 +189,13 @@ static whit_result decode_file(void *user, void *to, child_write write,
 }
 
 whit_result picture_read(const struct log *log, const struct foreign_params *params,
-                         uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                         uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                          struct picture *out, char reason[FOREIGN_REASON_BYTES])
 {
-    struct file file = {data, size_bytes, pixels_most};
+    struct file file = {data, size_bytes, pixels_max};
     struct child_reply reply;
     struct foreign_answer answer;
-    struct child_limits limits = foreign_limits(params, "decoder", size_bytes, 4 * PIXELS_MOST);
+    struct child_limits limits = foreign_limits(params, "decoder", size_bytes, 4 * PIXELS_MAX);
     *out = (struct picture){0};
     whit_result result = foreign_ask(log, &limits, decode_file, &file, &reply, &answer);
     memcpy(reason, answer.reason, sizeof answer.reason);
@@ -204,7 +204,7 @@ whit_result picture_read(const struct log *log, const struct foreign_params *par
     if (result != WHIT_OK)
         return result;
     uint64_t pixels = (uint64_t)answer.numbers[0] * answer.numbers[1];
-    if (pixels == 0 || pixels > PIXELS_MOST || reply.size_bytes != 4 * pixels + sizeof answer) {
+    if (pixels == 0 || pixels > PIXELS_MAX || reply.size_bytes != 4 * pixels + sizeof answer) {
         snprintf(reason, FOREIGN_REASON_BYTES, "the decoder's reply is damaged");
         child_reply_free(&reply);
         return WHIT_ERROR_INPUT;
@@ -266,9 +266,9 @@ static bool halve(struct picture *picture)
     return true;
 }
 
-bool picture_shrink(struct picture *picture, uint32_t side_most)
+bool picture_shrink(struct picture *picture, uint32_t side_max)
 {
-    while (picture->width > side_most || picture->height > side_most) {
+    while (picture->width > side_max || picture->height > side_max) {
         if ((picture->width <= 1 && picture->height <= 1) || !halve(picture))
             return false;
     }

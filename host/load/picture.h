@@ -23,7 +23,7 @@ struct picture {
    and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_most`
    nothing is decoded, the result is WHIT_ERROR_INPUT and `out` has the sides. */
 WHIT_CHECK whit_result picture_read(const struct log *log, const struct foreign_params *params,
-                                    uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                    uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                     struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 
 /* `rgba` from the bytes of a PNG, JPEG, BMP, TGA or GIF (its first frame). A file whose header
@@ -34,7 +34,7 @@ WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, st
 /* Why a file of so many bytes, whose header tells of these sides, is refused; NULL: it is not. */
 const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes);
 /* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
-bool picture_shrink(struct picture *picture, uint32_t side_most);
+bool picture_shrink(struct picture *picture, uint32_t side_max);
 void picture_finish(struct picture *picture);
 
 /* `path`, or the one file that differs from it by case and by \ for /. Release with free(); NULL

@@ -43,8 +43,8 @@ static bool read_count(const uint8_t *line, size_t bytes, unsigned long long *co
 whit_result ply_check(const struct log *log, const char *path, const uint8_t *data,
                       size_t size_bytes)
 {
-    unsigned long long most = 0, count;
-    uint32_t number = 1, most_number = 0;
+    unsigned long long max = 0, count;
+    uint32_t number = 1, max_number = 0;
     for (size_t at = 0; at < size_bytes; ++number) {
         size_t bytes = 0;
         while (at + bytes < size_bytes && data[at + bytes] != '\n' && data[at + bytes] != '\r')
@@ -56,16 +56,16 @@ whit_result ply_check(const struct log *log, const char *path, const uint8_t *da
         at += bytes + 1;
         if (line[bytes] == '\r' && at < size_bytes && data[at] == '\n')
             ++at;
-        if (read_count(line, bytes, &count) && count > most) {
-            most = count;
-            most_number = number;
+        if (read_count(line, bytes, &count) && count > max) {
+            max = count;
+            max_number = number;
         }
         if (!starts_with(line + blanks, bytes - blanks, "end_header"))
             continue;
-        if (at > size_bytes || most <= size_bytes - at)
+        if (at > size_bytes || max <= size_bytes - at)
             return WHIT_OK;
         log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path,
-                  most_number, most, size_bytes - at);
+                  max_number, max, size_bytes - at);
         return WHIT_ERROR_INPUT;
     }
     log_error(log, "%s:%u: the file ends within its header", path, number);

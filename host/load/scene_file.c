@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "load/scene_reader.h"
 
-#define FILE_BYTES_MOST ((uint64_t)64 << 20)
-#define RADIANS         (3.14159265358979323846 / 180.0)
+#define FILE_BYTES_MAX ((uint64_t)64 << 20)
+#define RADIANS        (3.14159265358979323846 / 180.0)
 
 static double distance(const double a[3], const double b[3])
 {
@@ -370,7 +370,7 @@ whit_result load_scene_file(struct scene *scene, const char *path, const struct 
     size_t size_bytes = 0;
     json_error_t error;
     whit_result result =
-        file_read(&scene->log, &scene->roots, path, FILE_BYTES_MOST, &text, &size_bytes);
+        file_read(&scene->log, &scene->roots, path, FILE_BYTES_MAX, &text, &size_bytes);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;

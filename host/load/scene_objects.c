@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "load/scene_objects.h"
 
-#define DEPTH_MOST 64u
+#define DEPTH_MAX 64u
 
 static const char *const object_keys[] = {"name",     "translation", "rotation", "quaternion",
                                           "scale",    "matrix",      "material", "animation",
@@ -38,8 +38,8 @@ static bool read_repeat(struct reader *reader, const struct place *place, const 
             return reader_fail(reader, &at_count, "three whole numbers from 1 are expected");
         out->count[i] = (uint32_t)count[i];
     }
-    if (count[0] * count[1] * count[2] > INSTANCES_MOST)
-        return reader_fail(reader, &at_count, "more than %u copies", INSTANCES_MOST);
+    if (count[0] * count[1] * count[2] > INSTANCES_MAX)
+        return reader_fail(reader, &at_count, "more than %u copies", INSTANCES_MAX);
     return true;
 }
 
@@ -172,8 +172,8 @@ static bool read_object(struct reader *reader, const struct place *place, const 
 bool reader_objects(struct reader *reader, const struct place *place, const json_t *value,
                     uint32_t parent, uint32_t depth)
 {
-    if (depth > DEPTH_MOST)
-        return reader_fail(reader, place, "children more than %u deep", DEPTH_MOST);
+    if (depth > DEPTH_MAX)
+        return reader_fail(reader, place, "children more than %u deep", DEPTH_MAX);
     if (!json_is_array(value))
         return reader_fail(reader, place, "objects in [ ] are expected");
     for (size_t i = 0; i < json_array_size(value); ++i) {

@@ -5,7 +5,7 @@
 
 #include "load/scene_reader.h"
 
-#define INSTANCES_MOST 4000000u
+#define INSTANCES_MAX 4000000u
 
 enum shape {
     SHAPE_BOX,

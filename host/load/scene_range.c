@@ -88,9 +88,9 @@ bool range_copy(struct reader *reader, const struct place *place, const struct s
     struct scene *scene = reader->scene;
     uint32_t first = scene->node_count;
     if (scene->instance_count + (uint64_t)(range->instance_end - range->first_instance) >
-            INSTANCES_MOST ||
-        first + (uint64_t)(range->node_end - range->first_node) > INSTANCES_MOST)
-        return reader_fail(reader, place, "more than %u instances", INSTANCES_MOST);
+            INSTANCES_MAX ||
+        first + (uint64_t)(range->node_end - range->first_node) > INSTANCES_MAX)
+        return reader_fail(reader, place, "more than %u instances", INSTANCES_MAX);
     for (uint32_t i = range->first_node; i < range->node_end; ++i) {
         struct scene_node node = scene->nodes[i];
         node.name = string_copy(node.name);

@@ -245,39 +245,39 @@ bool reader_object(struct reader *reader, const struct place *place, const json_
 }
 
 static bool check_number(struct reader *reader, const struct place *place, const json_t *value,
-                         double least, double most, double *out)
+                         double min, double max, double *out)
 {
     if (!json_is_number(value))
         return reader_fail(reader, place, "a number is expected");
     double number = json_number_value(value);
-    if (!(number >= least && number <= most))
-        return reader_fail(reader, place, "%g is out of range (%g to %g)", number, least, most);
+    if (!(number >= min && number <= max))
+        return reader_fail(reader, place, "%g is out of range (%g to %g)", number, min, max);
     *out = number;
     return true;
 }
 
 bool reader_number(struct reader *reader, const struct place *place, const json_t *object,
-                   const char *key, double least, double most, double *out)
+                   const char *key, double min, double max, double *out)
 {
     const json_t *value = json_object_get(object, key);
     struct place here = {place, key, 0};
-    return !value || check_number(reader, &here, value, least, most, out);
+    return !value || check_number(reader, &here, value, min, max, out);
 }
 
 bool reader_float(struct reader *reader, const struct place *place, const json_t *object,
-                  const char *key, double least, double most, float *out)
+                  const char *key, double min, double max, float *out)
 {
     double number = (double)*out;
     if (!json_object_get(object, key))
         return true;
-    if (!reader_number(reader, place, object, key, least, most, &number))
+    if (!reader_number(reader, place, object, key, min, max, &number))
         return false;
     *out = (float)number;
     return true;
 }
 
 bool reader_count(struct reader *reader, const struct place *place, const json_t *object,
-                  const char *key, uint32_t least, uint32_t most, uint32_t *out)
+                  const char *key, uint32_t min, uint32_t max, uint32_t *out)
 {
     const json_t *value = json_object_get(object, key);
     struct place here = {place, key, 0};
@@ -286,7 +286,7 @@ bool reader_count(struct reader *reader, const struct place *place, const json_t
         return true;
     if (!json_is_integer(value))
         return reader_fail(reader, &here, "a whole number is expected");
-    if (!check_number(reader, &here, value, least, most, &number))
+    if (!check_number(reader, &here, value, min, max, &number))
         return false;
     *out = (uint32_t)number;
     return true;

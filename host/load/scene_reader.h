@@ -63,11 +63,11 @@ const char *reader_foreign_key(const json_t *value, const char *const *const *li
                                size_t other_count);
 
 bool reader_number(struct reader *reader, const struct place *place, const json_t *object,
-                   const char *key, double least, double most, double *out);
+                   const char *key, double min, double max, double *out);
 bool reader_float(struct reader *reader, const struct place *place, const json_t *object,
-                  const char *key, double least, double most, float *out);
+                  const char *key, double min, double max, float *out);
 bool reader_count(struct reader *reader, const struct place *place, const json_t *object,
-                  const char *key, uint32_t least, uint32_t most, uint32_t *out);
+                  const char *key, uint32_t min, uint32_t max, uint32_t *out);
 bool reader_bool(struct reader *reader, const struct place *place, const json_t *object,
                  const char *key, bool *out);
 /* *out is borrowed from the JSON. */

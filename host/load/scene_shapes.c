@@ -7,8 +7,8 @@
 #include "scene/afford.h"
 #include "scene/shapes.h"
 
-#define SIZE_MOST    1e15
-#define SPHERES_MOST 10000000u
+#define SHAPE_SIZE_MAX 1e15
+#define SPHERES_MAX    10000000u
 
 static const char *const box_keys[] = {"shape", "size", NULL};
 static const char *const plane_keys[] = {"shape", "size", "steps", "uv_scale", NULL};
@@ -43,7 +43,7 @@ static bool read_size(struct reader *reader, const struct place *place, const js
     if (!value)
         return true;
     if (json_is_number(value)) {
-        if (!reader_number(reader, place, object, "size", 1e-15, SIZE_MOST, &out[0]))
+        if (!reader_number(reader, place, object, "size", 1e-15, SHAPE_SIZE_MAX, &out[0]))
             return false;
         for (size_t i = 1; i < count; ++i)
             out[i] = out[0];
@@ -52,9 +52,9 @@ static bool read_size(struct reader *reader, const struct place *place, const js
     if (!reader_vector(reader, &here, value, count, out))
         return false;
     for (size_t i = 0; i < count; ++i) {
-        if (!(out[i] > 0.0 && out[i] <= SIZE_MOST))
+        if (!(out[i] > 0.0 && out[i] <= SHAPE_SIZE_MAX))
             return reader_fail(reader, &here, "every side must be over 0 and at most %g",
-                               SIZE_MOST);
+                               SHAPE_SIZE_MAX);
     }
     return true;
 }
@@ -92,26 +92,27 @@ static bool read_sizes(struct reader *reader, const struct place *place, const j
         .bays = 9,
     };
     size_t size_count = shape == SHAPE_BOX ? 3 : shape == SHAPE_PLANE ? 2 : 1;
-    uint32_t steps_most = shape == SHAPE_TERRAIN ? 4096 : 2048;
-    uint32_t level_least = shape == SHAPE_ATRIUM ? 1 : 0;
-    uint32_t level_most = shape == SHAPE_SPHEREFLAKE ? 6 : 8;
+    uint32_t steps_max = shape == SHAPE_TERRAIN ? 4096 : 2048;
+    uint32_t level_min = shape == SHAPE_ATRIUM ? 1 : 0;
+    uint32_t level_max = shape == SHAPE_SPHEREFLAKE ? 6 : 8;
     if (!read_size(reader, place, object, size_count, out->size) ||
-        !reader_number(reader, place, object, "radius", 1e-15, SIZE_MOST, &out->radius) ||
+        !reader_number(reader, place, object, "radius", 1e-15, SHAPE_SIZE_MAX, &out->radius) ||
         !reader_numbers(reader, place, object, "center", 3, out->center) ||
         !reader_bool(reader, place, object, "balls", &out->balls))
         return false;
     out->radius_top = out->radius;
-    return reader_number(reader, place, object, "radius_top", 0.0, SIZE_MOST, &out->radius_top) &&
-           reader_number(reader, place, object, "tube", 1e-15, SIZE_MOST, &out->tube) &&
-           reader_number(reader, place, object, "height", 1e-15, SIZE_MOST, &out->height) &&
-           reader_number(reader, place, object, "length", 1e-15, SIZE_MOST, &out->length) &&
-           reader_number(reader, place, object, "width", 1e-15, SIZE_MOST, &out->width) &&
+    return reader_number(reader, place, object, "radius_top", 0.0, SHAPE_SIZE_MAX,
+                         &out->radius_top) &&
+           reader_number(reader, place, object, "tube", 1e-15, SHAPE_SIZE_MAX, &out->tube) &&
+           reader_number(reader, place, object, "height", 1e-15, SHAPE_SIZE_MAX, &out->height) &&
+           reader_number(reader, place, object, "length", 1e-15, SHAPE_SIZE_MAX, &out->length) &&
+           reader_number(reader, place, object, "width", 1e-15, SHAPE_SIZE_MAX, &out->width) &&
            reader_number(reader, place, object, "uv_scale", -1e6, 1e6, &out->uv_scale) &&
            reader_count(reader, place, object, "segments", 3, 4096, &out->segments) &&
            reader_count(reader, place, object, "rings", 2, 4096, &out->rings) &&
            reader_count(reader, place, object, "sides", 3, 4096, &out->sides) &&
-           reader_count(reader, place, object, "steps", 1, steps_most, &out->steps) &&
-           reader_count(reader, place, object, "level", level_least, level_most, &out->level) &&
+           reader_count(reader, place, object, "steps", 1, steps_max, &out->steps) &&
+           reader_count(reader, place, object, "level", level_min, level_max, &out->level) &&
            reader_count(reader, place, object, "count", 1, 1000000, &out->count) &&
            reader_count(reader, place, object, "bays", 1, 64, &out->bays) &&
            reader_count(reader, place, object, "seed", 0, 1000000000, &out->seed);
@@ -247,17 +248,17 @@ static bool read_balls(struct reader *reader, const struct place *place, const j
     const json_t *value = json_object_get(object, "spheres");
     struct place here = {place, "spheres", 0};
     size_t count = json_is_array(value) ? json_array_size(value) : 0;
-    if (count == 0 || count > SPHERES_MOST)
+    if (count == 0 || count > SPHERES_MAX)
         return reader_fail(reader, &here, "1 to %u spheres [x, y, z, radius] are expected",
-                           SPHERES_MOST);
+                           SPHERES_MAX);
     double *spheres = array_alloc(count, 4 * sizeof *spheres);
     bool good = spheres || reader_no_memory(reader);
     for (size_t i = 0; good && i < count; ++i) {
         struct place at = {&here, NULL, i};
         double *sphere = spheres + 4 * i;
         good = reader_vector(reader, &at, json_array_get(value, i), 4, sphere);
-        if (good && !(sphere[3] >= 1e-15 && sphere[3] <= SIZE_MOST))
-            good = reader_fail(reader, &at, "the radius must be from 1e-15 to %g", SIZE_MOST);
+        if (good && !(sphere[3] >= 1e-15 && sphere[3] <= SHAPE_SIZE_MAX))
+            good = reader_fail(reader, &at, "the radius must be from 1e-15 to %g", SHAPE_SIZE_MAX);
     }
     struct scene_mesh mesh = {0};
     if (good && shape_balls(spheres, (uint32_t)count, &mesh) != WHIT_OK)

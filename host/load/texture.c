@@ -11,8 +11,8 @@
 #include "load/picture.h"
 #include "scene/afford.h"
 
-#define FILE_BYTES_MOST ((uint64_t)1 << 29)
-#define SIDE_MOST       4096u
+#define FILE_BYTES_MAX ((uint64_t)1 << 29)
+#define SIDE_MAX       4096u
 
 enum { BY_FILE = 1, BY_BYTES };
 
@@ -24,7 +24,7 @@ struct key {
 
 static uint32_t limit_of(const struct load_params *params)
 {
-    return params && params->texture_limit ? params->texture_limit : SIDE_MOST;
+    return params && params->texture_limit ? params->texture_limit : SIDE_MAX;
 }
 
 static bool key_of_file(const char *path, const struct load_params *params, struct key *key)
@@ -103,7 +103,7 @@ static whit_result read_source(struct scene *scene, const char *path, struct sou
 {
     struct unread unread = {path, reason};
     const struct log silent = {.fn = keep_reason, .user = &unread, .level = WHIT_LOG_ERROR};
-    whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MOST, &source->owned,
+    whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MAX, &source->owned,
                                    &source->size_bytes);
     scene->file_bytes += source->size_bytes;
     source->data = source->owned;
@@ -115,11 +115,11 @@ static whit_result decode_source(struct scene *scene, const char *name,
                                  const struct foreign_params *foreign, struct source *source,
                                  struct picture *picture, char reason[FOREIGN_REASON_BYTES])
 {
-    uint64_t pixels_most = scene_room(scene) / scene_texel_cost(1, 1);
-    whit_result result = picture_read(&scene->log, foreign, pixels_most, source->data,
+    uint64_t pixels_max = scene_room(scene) / scene_texel_cost(1, 1);
+    whit_result result = picture_read(&scene->log, foreign, pixels_max, source->data,
                                       source->size_bytes, picture, reason);
     uint64_t pixels = (uint64_t)picture->width * picture->height;
-    if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_most))
+    if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_max))
         return result;
     source->too_large = !scene_afford(
         scene, scene_texel_cost(picture->width, picture->height), "texture `%s` of %ux%u pixels",

@@ -3,7 +3,7 @@
    then primitive. */
 #include <string.h>
 
-#include "accel/wide.h"
+#include "accel/conservative.h"
 #include "reference/inside.h"
 
 /* Boxes are of floats, and grow by more than their roundings and those of the walk. */
@@ -14,7 +14,7 @@
 enum mode { MODE_CLOSEST, MODE_NEXT, MODE_SHADOW };
 
 struct search {
-    struct wide_walk walk;
+    struct conservative_walk walk;
     const struct reference *reference;
     enum mode mode;
     double world_origin[3], world_dir[3];
@@ -34,7 +34,7 @@ static void take_line(struct search *s, const double origin[3], const double dir
     s->walk.ray.growth = growth;
 }
 
-static bool enter_instance(struct wide_walk *walk, uint32_t instance)
+static bool enter_instance(struct conservative_walk *walk, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     const struct affine *inverse = &s->reference->placings[instance].inverse;
@@ -53,7 +53,7 @@ static bool comes_before(double t, uint32_t instance, uint32_t primitive, const 
 }
 
 /* In reach, nearer than what is known, and there for rays of this kind at all. */
-static bool is_reached(const struct search *s, const struct meeting *m,
+static bool is_reached(const struct search *s, const struct candidate *m,
                        const struct gpu_triangle *record, uint32_t instance)
 {
     if (!m->met || !(m->t >= 0.0) || !(m->t <= s->walk.ray.t_max))
@@ -72,7 +72,7 @@ static bool is_reached(const struct search *s, const struct meeting *m,
     return comes_before(m->t, instance, record->primitive, &s->best);
 }
 
-static bool is_solid(const struct search *s, const struct meeting *m,
+static bool is_solid(const struct search *s, const struct candidate *m,
                      const struct gpu_triangle *record, uint32_t instance)
 {
     if (!(record->flags & TRIANGLE_CUTOUT))
@@ -111,8 +111,8 @@ static struct dvec3 kept_by(const struct reference *reference, const struct surf
 }
 
 /* Kernels take the stops of plain filters from the record, ten bits a channel. */
-static void add_filter(struct search *s, const struct meeting *m, const struct gpu_triangle *record,
-                       uint32_t instance)
+static void add_filter(struct search *s, const struct candidate *m,
+                       const struct gpu_triangle *record, uint32_t instance)
 {
     const struct reference *reference = s->reference;
     bool detail = (record->flags & TRIANGLE_FILTER_DETAIL) != 0;
@@ -138,8 +138,8 @@ static void add_filter(struct search *s, const struct meeting *m, const struct g
 }
 
 /* True: the ray ends here. */
-static bool take_meeting(struct search *s, const struct meeting *m, uint32_t record_index,
-                         uint32_t instance)
+static bool take_candidate(struct search *s, const struct candidate *m, uint32_t record_index,
+                           uint32_t instance)
 {
     const struct gpu_triangle *record = &s->reference->accel->triangles[record_index];
     if (!is_reached(s, m, record, instance) || !is_solid(s, m, record, instance))
@@ -161,19 +161,19 @@ static bool take_meeting(struct search *s, const struct meeting *m, uint32_t rec
     return true;
 }
 
-static void visit_record(struct wide_walk *walk, uint32_t index, uint32_t instance)
+static void visit_record(struct conservative_walk *walk, uint32_t index, uint32_t instance)
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *record = &walk->accel->triangles[index];
     bool own = s->mode != MODE_NEXT && record->primitive == s->skip_primitive &&
                instance == s->skip_instance;
-    struct meeting m;
+    struct candidate m;
     if (record->flags & TRIANGLE_SPHERE) {
         m = meet_sphere(&s->line, record, false, own);
-        bool ended = take_meeting(s, &m, index, instance);
+        bool ended = take_candidate(s, &m, index, instance);
         m = meet_sphere(&s->line, record, true, own);
         if (!ended)
-            take_meeting(s, &m, index, instance);
+            take_candidate(s, &m, index, instance);
         return;
     }
     if (own)
@@ -181,7 +181,7 @@ static void visit_record(struct wide_walk *walk, uint32_t index, uint32_t instan
     m = meet_triangle(&s->line, record);
     if (record->flags & TRIANGLE_MIRRORED && walk->accel->flat)
         m.front = !m.front;
-    take_meeting(s, &m, index, instance);
+    take_candidate(s, &m, index, instance);
 }
 
 static struct search search_begin(const struct reference *reference, enum mode mode,
@@ -207,7 +207,7 @@ struct hit hit_closest(const struct reference *reference, const struct ray *ray)
     struct search s = search_begin(reference, MODE_CLOSEST, ray->origin, ray->dir, INFINITY);
     s.skip_instance = ray->skip_instance;
     s.skip_primitive = ray->skip_primitive;
-    wide_walk_run(&s.walk);
+    conservative_walk_run(&s.walk);
     return s.best;
 }
 
@@ -216,7 +216,7 @@ struct hit hit_next(const struct reference *reference, const struct ray *ray,
 {
     struct search s = search_begin(reference, MODE_NEXT, ray->origin, ray->dir, t_max);
     s.known = known;
-    wide_walk_run(&s.walk);
+    conservative_walk_run(&s.walk);
     return s.best;
 }
 
@@ -226,7 +226,7 @@ struct shadow hit_shadow(const struct reference *reference, const struct shadow_
     s.skip_instance = ray->skip_instance;
     s.skip_primitive = ray->skip_primitive;
     s.light_end = isfinite(ray->distance) ? ray->distance : 0.0;
-    wide_walk_run(&s.walk);
+    conservative_walk_run(&s.walk);
     struct shadow out = {.blocked = s.best.primitive != HIT_NONE, .blocker = s.best};
     memcpy(out.stops, s.stops, sizeof out.stops);
     return out;

@@ -32,7 +32,7 @@ struct reference {
 
 /* Media that a ray is in: material + 1, by rising priority, of equal ones the later one higher. */
 struct media {
-    uint32_t entries[MEDIA_MOST];
+    uint32_t entries[MEDIA_MAX];
     uint32_t count;
 };
 
@@ -82,7 +82,7 @@ struct line {
     double shear_x, shear_y;
 };
 
-struct meeting {
+struct candidate {
     bool met;
     double t, u, v;
     struct dvec3 normal;
@@ -91,10 +91,10 @@ struct meeting {
 };
 
 struct line line_make(const double origin[3], const double dir[3]);
-struct meeting meet_triangle(const struct line *line, const struct gpu_triangle *triangle);
+struct candidate meet_triangle(const struct line *line, const struct gpu_triangle *triangle);
 /* One of the ends of the chord. `own`: the line starts on it; then only the far end is there. */
-struct meeting meet_sphere(const struct line *line, const struct gpu_triangle *sphere, bool at_exit,
-                           bool own);
+struct candidate meet_sphere(const struct line *line, const struct gpu_triangle *sphere,
+                             bool at_exit, bool own);
 
 /* ---- hits.c: what rays meet ---- */
 
@@ -144,7 +144,7 @@ struct dvec3 surface_vertex_normal(const struct reference *reference, const stru
                                    uint32_t corner);
 /* What identifies the place for textures, without the rest: mesh, material, u, v, colours. */
 struct surface surface_texture_place(const struct reference *reference, uint32_t instance,
-                                     const struct meeting *m, const struct gpu_triangle *record);
+                                     const struct candidate *m, const struct gpu_triangle *record);
 /* ---- texture.c ---- */
 
 struct texel {
@@ -213,7 +213,7 @@ struct crossing media_cross(struct tracer *tracer, const struct ray *ray, const 
 
 /* ---- light.c ---- */
 
-struct light_turn {
+struct light_sample_info {
     struct dvec3 to_light; /* unit */
     double distance;       /* infinity: a sun */
     struct dvec3 arriving; /* irradiance over pi of what faces the light, before shadows */
@@ -222,12 +222,12 @@ struct light_turn {
 
 /* Point `index` of a light, as seen from p. False: nothing arrives. */
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
-              struct dvec3 p, struct light_turn *turn);
+              struct dvec3 p, struct light_sample_info *turn);
 /* Area over pi and samples. */
 double light_area_share(const struct reference *reference, const struct scene_light *light);
 double light_form_factor(const struct scene_light *light, struct dvec3 p, struct dvec3 n);
 struct dvec3 light_sky(const struct reference *reference, struct dvec3 dir);
-#define LIGHT_MOST 1e24
+#define LIGHT_MAX 1e24
 
 /* ---- lighting.c ---- */
 

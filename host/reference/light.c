@@ -42,14 +42,14 @@ static double spot_share(const struct scene_light *light, double cos_away)
 
 static struct dvec3 at_most(struct dvec3 light)
 {
-    return d3(fmin(light.x, LIGHT_MOST), fmin(light.y, LIGHT_MOST), fmin(light.z, LIGHT_MOST));
+    return d3(fmin(light.x, LIGHT_MAX), fmin(light.y, LIGHT_MAX), fmin(light.z, LIGHT_MAX));
 }
 
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
-              struct dvec3 p, struct light_turn *turn)
+              struct dvec3 p, struct light_sample_info *turn)
 {
     bool flat = scene_light_is_flat(light);
-    *turn = (struct light_turn){.arriving = d3_load(light->color)};
+    *turn = (struct light_sample_info){.arriving = d3_load(light->color)};
     struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
     if (light->kind == SCENE_LIGHT_DIRECTIONAL) {
         turn->to_light = d3_scale(direction, -1.0);
@@ -72,7 +72,7 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
         share *= cos_emitter;
     if (flat) {
-        turn->strength = fmin(cos_emitter / square, LIGHT_MOST);
+        turn->strength = fmin(cos_emitter / square, LIGHT_MAX);
         share = light_area_share(tracer->reference, light) * turn->strength;
     }
     turn->arriving = at_most(d3_scale(turn->arriving, share));

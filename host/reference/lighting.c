@@ -91,7 +91,8 @@ static void record_shadow(struct tracer *tracer, const struct receiver *at,
 /* How much of a light passes. What is lifted off its triangle may be met by light from below the
    triangle's plane, which must then pass beside the triangle. */
 static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at,
-                                const struct light_turn *turn, uint32_t light, uint32_t point)
+                                const struct light_sample_info *turn, uint32_t light,
+                                uint32_t point)
 {
     const struct reference *reference = tracer->reference;
     if (reference->params.picture.no_shadows)
@@ -130,7 +131,7 @@ static void add_point(struct tracer *tracer, const struct receiver *at, const st
 {
     const struct scene_light *light = &tracer->reference->pose.lights[index];
     const struct surface *s = at->s;
-    struct light_turn turn;
+    struct light_sample_info turn;
     if (!light_at(tracer, light, point, s->p, &turn))
         return;
     double cos_light = dvec3_dot(turn.to_light, s->ns);

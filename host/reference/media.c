@@ -8,7 +8,7 @@
 #define FLOAT_ROUNDINGS 8.0
 #define ROUNDING        0x1p-24
 
-enum { CROSSED_MOST = 4 };
+enum { CROSSED_MAX = 4 };
 
 static uint32_t priority_of(const struct reference *reference, uint32_t entry)
 {
@@ -28,7 +28,7 @@ uint32_t media_top(const struct media *media)
 static void put_in(struct tracer *tracer, struct media *media, uint32_t entry)
 {
     uint32_t at = media->count;
-    if (media->count == MEDIA_MOST) {
+    if (media->count == MEDIA_MAX) {
         tracer->too_many_media = true;
         return;
     }
@@ -89,7 +89,7 @@ struct media media_around_eye(const struct reference *reference)
     const uint32_t words[] = {frame->eye_media0, frame->eye_media1, frame->eye_media2,
                               frame->eye_media3};
     struct media media = {.count = 0};
-    for (uint32_t i = 0; i < MEDIA_MOST; ++i) {
+    for (uint32_t i = 0; i < MEDIA_MAX; ++i) {
         uint32_t entry = words[i / 2] >> (16 * (i % 2)) & 0xffffu;
         if (entry)
             media.entries[media.count++] = entry;
@@ -100,8 +100,8 @@ struct media media_around_eye(const struct reference *reference)
 /* ---- Surfaces that are crossed at one place ---- */
 
 struct crossed {
-    uint32_t entries[CROSSED_MOST], instances[CROSSED_MOST];
-    bool leaving[CROSSED_MOST];
+    uint32_t entries[CROSSED_MAX], instances[CROSSED_MAX];
+    bool leaving[CROSSED_MAX];
     uint32_t count;
 };
 
@@ -112,7 +112,7 @@ static uint32_t find_crossed(const struct crossed *crossed, uint32_t entry, uint
         if (crossed->entries[i - 1] == entry && crossed->instances[i - 1] == instance)
             return i - 1;
     }
-    return CROSSED_MOST;
+    return CROSSED_MAX;
 }
 
 static void add_crossed(struct crossed *crossed, uint32_t entry, uint32_t instance, bool leaving)
@@ -148,7 +148,7 @@ static void gather_touching(const struct reference *reference, const struct ray 
 {
     double near = hit.t + slack(s, ray, hit.t), reach = near + contact(reference, s, ray);
     uint32_t rank = rank_of(s, inside);
-    while (crossed->count < CROSSED_MOST) {
+    while (crossed->count < CROSSED_MAX) {
         hit = hit_next(reference, ray, &hit, reach);
         if (hit.primitive == HIT_NONE)
             return;
@@ -158,9 +158,9 @@ static void gather_touching(const struct reference *reference, const struct ray 
             return;
         uint32_t entry = other.material_index + 1;
         uint32_t same = find_crossed(crossed, entry, hit.instance);
-        if (same != CROSSED_MOST && crossed->leaving[same] == leaves)
+        if (same != CROSSED_MAX && crossed->leaving[same] == leaves)
             continue; /* at an edge both neighbours are met */
-        if (same != CROSSED_MOST && hit.t > near)
+        if (same != CROSSED_MAX && hit.t > near)
             return; /* a body thinner than the contact distance, which does not mean it */
         add_crossed(crossed, entry, hit.instance, leaves);
         c->p = other.p;

@@ -5,13 +5,13 @@
 struct line line_make(const double origin[3], const double dir[3])
 {
     struct line line;
-    double most = 0.0;
+    double max = 0.0;
     line.z = 2;
     for (int i = 0; i < 3; ++i) {
         line.origin[i] = origin[i];
         line.dir[i] = dir[i];
-        if (fabs(dir[i]) > most) {
-            most = fabs(dir[i]);
+        if (fabs(dir[i]) > max) {
+            max = fabs(dir[i]);
             line.z = i;
         }
     }
@@ -46,9 +46,9 @@ static bool owns_edge(double area, struct dvec3 from, struct dvec3 to, bool left
     return left ? dy > 0.0 || (dy == 0.0 && dx > 0.0) : dy < 0.0 || (dy == 0.0 && dx < 0.0);
 }
 
-struct meeting meet_triangle(const struct line *line, const struct gpu_triangle *triangle)
+struct candidate meet_triangle(const struct line *line, const struct gpu_triangle *triangle)
 {
-    struct meeting m = {.met = false};
+    struct candidate m = {.met = false};
     struct dvec3 a = sheared(line, triangle->v0), b = sheared(line, triangle->v1),
                  c = sheared(line, triangle->v2);
     double bc = edge_area(b, c), ca = edge_area(c, a), ab = edge_area(a, b);
@@ -70,10 +70,10 @@ struct meeting meet_triangle(const struct line *line, const struct gpu_triangle 
 
 /* The half chord from the line's distance to the centre; of the ends the one nearer to the origin
    from the product of both, so that nothing cancels (Haines et al. 2019). */
-struct meeting meet_sphere(const struct line *line, const struct gpu_triangle *sphere, bool at_exit,
-                           bool own)
+struct candidate meet_sphere(const struct line *line, const struct gpu_triangle *sphere,
+                             bool at_exit, bool own)
 {
-    struct meeting m = {.owned = true, .front = !at_exit};
+    struct candidate m = {.owned = true, .front = !at_exit};
     struct dvec3 d = d3(line->dir[0], line->dir[1], line->dir[2]);
     struct dvec3 c =
         dvec3_sub(d3_load(sphere->v0), d3(line->origin[0], line->origin[1], line->origin[2]));

@@ -182,7 +182,7 @@ static whit_result tracer_result(const struct reference *r, const struct tracer 
         return WHIT_ERROR_MEMORY;
     }
     if (tracer->too_many_media) {
-        log_error(&r->log, "a ray is in more than %u media at once", MEDIA_MOST);
+        log_error(&r->log, "a ray is in more than %u media at once", MEDIA_MAX);
         return WHIT_ERROR_STATUS;
     }
     return WHIT_OK;

@@ -91,7 +91,7 @@ static struct surface begin_surface(const struct reference *reference, uint32_t 
 }
 
 struct surface surface_texture_place(const struct reference *reference, uint32_t instance,
-                                     const struct meeting *m, const struct gpu_triangle *record)
+                                     const struct candidate *m, const struct gpu_triangle *record)
 {
     struct surface s = begin_surface(reference, instance, record->primitive);
     s.u = m->u;

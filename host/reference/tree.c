@@ -45,8 +45,8 @@ static uint32_t record_ray(struct tracer *tracer, const struct ray *ray, enum re
     return tree_record(tracer, &node);
 }
 
-static void record_meeting(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
-                           const struct surface *s)
+static void record_candidate(struct tracer *tracer, const struct ray *ray, const struct hit *hit,
+                             const struct surface *s)
 {
     if (ray->node == REFERENCE_NONE)
         return;
@@ -172,7 +172,7 @@ static struct dvec3 shade_hit(struct tracer *tracer, struct ray *ray, const stru
     bool inside = surface_face(&s, ray->dir);
     struct crossing c = media_cross(tracer, ray, hit, &s, inside);
     if (!c.seen) {
-        record_meeting(tracer, ray, hit, &s);
+        record_candidate(tracer, ray, hit, &s);
         record_end(tracer, ray, REFERENCE_END_UNSEEN, d3_all(0.0));
         push_through(tracer, ray, &c);
         return d3_all(0.0);
@@ -180,7 +180,7 @@ static struct dvec3 shade_hit(struct tracer *tracer, struct ray *ray, const stru
     struct optics o = optics_at(reference, &s, ray->dir, c.eta);
     if (dvec3_dot(s.ns, ray->dir) > 0.0)
         s.ns = s.ng;
-    record_meeting(tracer, ray, hit, &s);
+    record_candidate(tracer, ray, hit, &s);
     if (s.material->shadow_catcher)
         optics_make_catcher(&o);
     struct dvec3 open = d3_all(0.0), light = d3_add(o.diffuse, o.emission);

@@ -53,7 +53,7 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
         passes_check(renderer);
         result = upload_all(renderer);
         if (renderer->packet_stack_size != stack_size) { /* known when nodes of eight are made */
-            beside_finish(renderer);
+            async_finish(renderer);
             passes_finish(renderer);
         }
         renderer->between_times = result != WHIT_OK;

@@ -12,7 +12,7 @@
 #include "base/vec.h"
 
 /* Pairs of boxes that are compared before any two are taken to touch: some 50 ms. */
-enum { PAIRS_MOST = 1 << 23 };
+enum { PAIRS_MAX = 1 << 23 };
 
 bool bodies_bounded_by(const struct scene_material *m)
 {
@@ -384,7 +384,7 @@ static double sweep_surfaces(const struct bodies *bodies, const struct surfaces 
             const struct surface *b = &surfaces->all[j];
             if (b->lo[0] > a->hi[0] + gap)
                 break;
-            if (++pairs > PAIRS_MOST)
+            if (++pairs > PAIRS_MAX)
                 return 0.0;
             if (a->body != b->body && !(a->round && b->round) &&
                 boxes_meet(a->lo, a->hi, b->lo, b->hi, gap))
@@ -421,7 +421,7 @@ static double sweep_bodies(const struct scene *scene, const struct scene_pose *p
             const struct body *b = &bodies->all[ranked[j].body];
             if (b->lo[0] > a->hi[0] + within)
                 break;
-            if (++pairs > PAIRS_MOST)
+            if (++pairs > PAIRS_MAX)
                 return 0.0;
             if (!boxes_meet(a->lo, a->hi, b->lo, b->hi, within))
                 continue;
@@ -465,16 +465,16 @@ static double search(const struct scene *scene, const struct scene_pose *pose,
 }
 
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
-                        struct bodies *bodies, double distance_most)
+                        struct bodies *bodies, double distance_max)
 {
     enum { ROOM = 4 }; /* a camera that moves away is not searched for at each of its pictures */
     if (bodies->count < 2)
         return false;
     if (bodies->gap > 0.0 || bodies->searched == 0.0) {
-        if (!(distance_most < bodies->searched)) {
-            bodies->searched = ROOM * distance_most;
+        if (!(distance_max < bodies->searched)) {
+            bodies->searched = ROOM * distance_max;
             bodies->gap = search(scene, pose, bodies, bodies->searched);
         }
     }
-    return !(bodies->gap > distance_most);
+    return !(bodies->gap > distance_max);
 }

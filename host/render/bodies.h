@@ -30,7 +30,7 @@ bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struc
 /* Whether surfaces of two bodies may come nearer than `distance_most`, in world units; also where
    it takes too long to tell, or memory runs out. */
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
-                        struct bodies *bodies, double distance_most);
+                        struct bodies *bodies, double distance_max);
 void bodies_finish(struct bodies *bodies);
 
 #endif

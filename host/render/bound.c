@@ -13,7 +13,7 @@ static double largest(const float rgb[3])
 
 /* What lights can bring to a point at most; < 0: no bound is known. `highlights`: of some material.
    Flat emitters fill no more than all that a surface sees, which bounds its diffuse light alone. */
-static double arriving_most(const struct renderer *renderer, bool highlights)
+static double arriving_max(const struct renderer *renderer, bool highlights)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < renderer->pose.light_count; ++i) {
@@ -35,7 +35,7 @@ static double arriving_most(const struct renderer *renderer, bool highlights)
 }
 
 /* A material's light of its own, and the weights of all rays that it calls for, at most. */
-struct most {
+struct max {
     double own, weights;
 };
 
@@ -46,14 +46,14 @@ static bool uses(const struct scene_material *m, enum scene_slot slot)
 
 /* GGX times visibility and the light's cosine: 1 / alpha^2 where the half vector is the normal,
    times 0.5 / alpha, as the spread is no less than alpha times the cosine (lib/optics.glsl). */
-static double ggx_most(const struct scene_material *m)
+static double ggx_max(const struct scene_material *m)
 {
     double alpha = uses(m, SCENE_SLOT_METAL_ROUGH) ? 0.0 : pow((double)m->roughness, 2.0);
     alpha = fmax(alpha, 0.02);
     return 0.5 / (alpha * alpha * alpha);
 }
 
-static double weights_most(const struct scene_material *m, double base)
+static double weights_max(const struct scene_material *m, double base)
 {
     double through = largest(m->transmission), mirror = largest(m->reflection), weights = mirror;
     if (m->model == SCENE_MODEL_METAL_ROUGH) {
@@ -74,37 +74,37 @@ static bool has_highlight(const struct scene_material *m)
            (m->model == SCENE_MODEL_PHONG && largest(m->specular) > 0.0);
 }
 
-static struct most material_most(const struct renderer *renderer, const struct scene_material *m,
-                                 double arriving)
+static struct max material_max(const struct renderer *renderer, const struct scene_material *m,
+                               double arriving)
 {
     double base = largest(m->diffuse), ambient = largest(m->ambient);
     double highlight = largest(m->specular);
     if (m->model == SCENE_MODEL_METAL_ROUGH) {
         highlight = fmax(1.0, base); /* of F0 */
         ambient = base + highlight;
-        highlight *= ggx_most(m);
+        highlight *= ggx_max(m);
     }
-    struct most most = {.own = base + largest(m->emission), .weights = weights_most(m, base)};
+    struct max max = {.own = base + largest(m->emission), .weights = weights_max(m, base)};
     if (m->model != SCENE_MODEL_UNLIT)
-        most.own = largest(m->emission) + ambient * largest(renderer->frame.ambient) +
-                   (base + (has_highlight(m) ? highlight : 0.0)) * arriving;
-    return most;
+        max.own = largest(m->emission) + ambient * largest(renderer->frame.ambient) +
+                  (base + (has_highlight(m) ? highlight : 0.0)) * arriving;
+    return max;
 }
 
-static double sky_most(const struct renderer *renderer)
+static double sky_max(const struct renderer *renderer)
 {
     const struct scene_environment *sky = &renderer->scene->environment;
     const struct gpu_frame *frame = &renderer->frame;
-    double most =
+    double max =
         fmax(largest(frame->zenith), fmax(largest(frame->horizon), largest(frame->ground)));
     if (sky->kind != SCENE_ENVIRONMENT_MAP || frame->environment_size == 0)
-        return most;
+        return max;
     if (!sky->rgb)
         return -1.0;
-    most = 0.0;
+    max = 0.0;
     for (size_t i = 0; i < (size_t)sky->width * sky->height; ++i)
-        most = fmax(most, largest(&sky->rgb[3 * i]));
-    return most * largest(sky->scale);
+        max = fmax(max, largest(&sky->rgb[3 * i]));
+    return max * largest(sky->scale);
 }
 
 static bool *worn_materials(const struct scene *scene)
@@ -119,13 +119,13 @@ static bool *worn_materials(const struct scene *scene)
 }
 
 /* The most that a ray can bring: the sky, or a surface's own light and what its rays bring. */
-static double ray_most(const struct renderer *renderer, const bool *worn)
+static double ray_max(const struct renderer *renderer, const bool *worn)
 {
     const struct scene *scene = renderer->scene;
     bool highlights = false;
     for (uint32_t i = 0; i < scene->material_count; ++i)
         highlights |= worn[i] && has_highlight(&scene->materials[i]);
-    double arriving = arriving_most(renderer, highlights), sky = sky_most(renderer);
+    double arriving = arriving_max(renderer, highlights), sky = sky_max(renderer);
     if (arriving < 0.0 || sky < 0.0)
         return -1.0;
     double radiance = 0.0;
@@ -134,8 +134,8 @@ static double ray_most(const struct renderer *renderer, const bool *worn)
         for (uint32_t i = 0; i < scene->material_count; ++i) {
             if (!worn[i])
                 continue;
-            struct most most = material_most(renderer, &scene->materials[i], arriving);
-            next = fmax(next, most.own + most.weights * radiance);
+            struct max max = material_max(renderer, &scene->materials[i], arriving);
+            next = fmax(next, max.own + max.weights * radiance);
         }
         radiance = next;
     }
@@ -148,7 +148,7 @@ double bailout_bound(const struct renderer *renderer)
     if (cut == 0.0)
         return 0.0;
     bool *worn = worn_materials(renderer->scene);
-    double most = worn ? ray_most(renderer, worn) : -1.0;
+    double max = worn ? ray_max(renderer, worn) : -1.0;
     free(worn);
-    return most < 0.0 ? -1.0 : cut * most;
+    return max < 0.0 ? -1.0 : cut * max;
 }

@@ -332,12 +332,12 @@ whit_result render_camera_rays(const struct log *log, const struct scene_pose *p
     return WHIT_OK;
 }
 
-whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t most,
+whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
                                  struct gpu_ray **rays, uint64_t *count)
 {
     const struct render_params *params = &renderer->params;
     uint32_t width = params->width, height = params->height;
-    for (uint32_t by = 2; (uint64_t)width * height > most && width * height > 1; ++by) {
+    for (uint32_t by = 2; (uint64_t)width * height > max && width * height > 1; ++by) {
         width = (params->width + by - 1) / by;
         height = (params->height + by - 1) / by;
     }

@@ -2,7 +2,7 @@
 #include "base/clock.h"
 #include "render/renderer.h"
 
-_Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MOST, "room for all kernels");
+_Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MAX, "room for all kernels");
 
 static whit_result list_kernel(struct device *device, const struct pipeline_params *params,
                                bool deferred, whit_kernel *kernel)

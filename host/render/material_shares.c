@@ -46,7 +46,7 @@ static whit_result read_tile(struct target *target, const struct gpu_generation 
         hits->first = first > hits->first ? first : hits->first;
         hits->last = last > hits->last ? last : hits->last;
     }
-    hits->list = array_alloc((size_t)hits->capacity * CLASSES_MOST, 4);
+    hits->list = array_alloc((size_t)hits->capacity * CLASSES_MAX, 4);
     hits->rows = array_alloc(hits->capacity, row_bytes);
     if (!hits->list || !hits->rows)
         return render_no_memory(target->renderer, "shares of materials");
@@ -78,7 +78,7 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
     if (material_count == 0) /* nothing can be hit */
         return WHIT_OK;
     if (!*counts)
-        *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MOST, sizeof **counts);
+        *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MAX, sizeof **counts);
     if (!*counts)
         return render_no_memory(renderer, "shares of materials");
     struct tile_hits hits;
@@ -126,7 +126,7 @@ void material_shares_get(const struct target *target, struct render_stats *stats
     uint32_t material_count = target->renderer->scene->material_count;
     const uint64_t *counts = target->stages.material_hits;
     stats->share_count = 0;
-    for (uint32_t k = 0; counts && k < CLASSES_MOST; ++k) {
+    for (uint32_t k = 0; counts && k < CLASSES_MAX; ++k) {
         uint64_t all = 0;
         for (uint32_t i = 0; i < material_count; ++i)
             all += counts[k * material_count + i];

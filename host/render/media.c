@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "render/renderer.h"
 
-enum { MATERIALS_MOST = 65534, DIRECTIONS = 3, HITS_MOST = 4096 };
+enum { MATERIALS_MAX = 65534, DIRECTIONS = 3, HITS_MAX = 4096 };
 
 static bool any_medium(const struct scene *scene)
 {
@@ -99,7 +99,7 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
     float last_t = 0.0f;
     bool last_left = false;
     traverse_next_float(renderer->accel, &ray, NULL, &hit, &status);
-    for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MOST; ++hits) {
+    for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MAX; ++hits) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[hit.instance].mesh];
         uint32_t material = mesh->materials[hit.primitive];
         if (bodies_bounded_by(&scene->materials[material])) {
@@ -147,7 +147,7 @@ static int by_exit(const void *a, const void *b)
 static bool add_medium(const struct scene *scene, uint32_t material, uint32_t *list,
                        uint32_t *count)
 {
-    if (*count == MEDIA_MOST)
+    if (*count == MEDIA_MAX)
         return false;
     uint32_t at = (*count)++;
     for (; at > 0 && scene->materials[list[at - 1]].priority > scene->materials[material].priority;
@@ -159,14 +159,13 @@ static bool add_medium(const struct scene *scene, uint32_t material, uint32_t *l
 
 static whit_result fill_eye(struct renderer *renderer, struct surroundings *s)
 {
-    uint32_t list[MEDIA_MOST] = {0}, count = 0;
+    uint32_t list[MEDIA_MAX] = {0}, count = 0;
     if (s->count > 1)
         qsort(s->all, s->count, sizeof *s->all, by_exit);
     for (uint32_t i = 0; i < s->count; ++i) {
         for (int32_t n = times_inside(&s->all[i]); n > 0; --n) {
             if (!add_medium(renderer->scene, s->all[i].material, list, &count)) {
-                log_error(&renderer->log, "the camera is in more than %u media at once",
-                          MEDIA_MOST);
+                log_error(&renderer->log, "the camera is in more than %u media at once", MEDIA_MAX);
                 return WHIT_ERROR_STATUS;
             }
         }
@@ -200,9 +199,9 @@ whit_result media_frame(struct renderer *renderer)
     frame->eye_media0 = frame->eye_media1 = frame->eye_media2 = frame->eye_media3 = 0;
     if (!any_medium(renderer->scene))
         return WHIT_OK;
-    if (renderer->scene->material_count > MATERIALS_MOST) {
+    if (renderer->scene->material_count > MATERIALS_MAX) {
         log_error(&renderer->log, "%s: %u materials; with refraction at most %d are told apart",
-                  renderer->scene->name, renderer->scene->material_count, MATERIALS_MOST);
+                  renderer->scene->name, renderer->scene->material_count, MATERIALS_MAX);
         return WHIT_ERROR_USAGE;
     }
     struct bodies *bodies = &renderer->bodies;

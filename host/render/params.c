@@ -2,7 +2,7 @@
 #include "render/renderer.h"
 
 enum { DEPTH_LARGEST = 255 }; /* bounces of a ray have 8 bits */
-enum { LIGHT_SAMPLES_MOST = 64 };
+enum { LIGHT_SAMPLES_MAX = 64 };
 
 static bool is_power_of_4(uint32_t n)
 {
@@ -23,17 +23,17 @@ whit_result params_check(const struct log *log, struct render_params *params)
         return WHIT_ERROR_USAGE;
     }
     uint32_t n = params->samples, first = params->first_sample;
-    if (!is_power_of_4(n) || n > WHIT_SAMPLES_MOST) {
+    if (!is_power_of_4(n) || n > WHIT_SAMPLES_MAX) {
         log_error(log, "%u samples a pixel: must be 1, 4, 16, 64, 256, 1024 or 4096", n);
         return WHIT_ERROR_USAGE;
     }
-    if (first % n != 0 || first > WHIT_SAMPLES_MOST - n) {
+    if (first % n != 0 || first > WHIT_SAMPLES_MAX - n) {
         log_error(log, "samples of a pixel from %u on: must be a multiple of %u below %d", first, n,
-                  WHIT_SAMPLES_MOST);
+                  WHIT_SAMPLES_MAX);
         return WHIT_ERROR_USAGE;
     }
     n = params->light_samples;
-    if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MOST)) {
+    if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MAX)) {
         log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
         return WHIT_ERROR_USAGE;
     }
@@ -69,7 +69,7 @@ whit_result params_check_loops(const struct renderer *renderer)
     bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
     uint64_t rays = shadows ? lights_samples(renderer) : 1;
     if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
-        rays * accel->turns <= ACCEL_TURNS_MOST)
+        rays * accel->turns <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&renderer->log,
               "%s: without trees every ray tests %llu primitives, which is too much where each hit "

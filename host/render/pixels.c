@@ -12,8 +12,8 @@ uint32_t pixels_blocks_across(uint32_t pixels)
 
 uint32_t pixels_levels(const struct render_params *params)
 {
-    uint32_t most = params->adaptive > 0.0 ? ADAPTIVE_MOST : params->samples, levels = 0;
-    while (most >> (levels + 1))
+    uint32_t max = params->adaptive > 0.0 ? ADAPTIVE_MAX : params->samples, levels = 0;
+    while (max >> (levels + 1))
         ++levels;
     return levels;
 }
@@ -27,11 +27,11 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
     uint32_t tile = tile_size ? tile_size : TILE_USUAL;
     uint64_t slots = (uint64_t)tile * tile;
-    slots = slots > QUEUED_SLOTS_MOST ? QUEUED_SLOTS_MOST : slots;
+    slots = slots > QUEUED_SLOTS_MAX ? QUEUED_SLOTS_MAX : slots;
     p->levels = pixels_levels(&renderer->params);
     /* The sums of samples are in the same buffer, behind the pixels. */
-    uint64_t most_pixels = limit / 16 - slots * p->levels;
-    uint64_t rows = most_pixels / width / 8 * 8;
+    uint64_t max_pixels = limit / 16 - slots * p->levels;
+    uint64_t rows = max_pixels / width / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
     if (p->band_rows == 0) {

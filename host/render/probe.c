@@ -16,7 +16,7 @@ enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 static whit_result create_buffers(struct target *probe)
 {
     uint64_t bytes =
-        sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MOST * sizeof(struct gpu_probe_ray);
+        sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MAX * sizeof(struct gpu_probe_ray);
     whit_result result = WHIT_OK;
     if (!probe->records)
         result = buffer_create(probe->renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
@@ -79,7 +79,7 @@ static int compare_records(const void *a, const void *b)
         const struct gpu_probe_ray *r = i ? b : a;
         bool reflected = (r->kind & PROBE_KIND_MASK) == RAY_REFLECTED;
         uint64_t which = is_shadow(r) ? 0 : r->kind & PROBE_STRAIGHT ? 2 : reflected ? 3 : 1;
-        uint64_t parent = r->parent == PROBE_RAYS_MOST ? 0 : (uint64_t)r->parent + 1;
+        uint64_t parent = r->parent == PROBE_RAYS_MAX ? 0 : (uint64_t)r->parent + 1;
         keys[i] = parent << 40 | which << 36 | (which ? 0 : r->turn);
     }
     return (keys[0] > keys[1]) - (keys[0] < keys[1]);
@@ -90,7 +90,7 @@ static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t 
 {
     for (uint32_t i = 0; i < count; ++i) {
         struct gpu_probe_ray *r = &records[i];
-        if (r->parent != PROBE_RAYS_MOST)
+        if (r->parent != PROBE_RAYS_MAX)
             r->parent = places[r->parent];
         if (is_shadow(r))
             continue;
@@ -107,7 +107,7 @@ static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*
     static const float whole[3] = {1, 1, 1};
     for (uint32_t i = 0; i < count; ++i) {
         struct gpu_probe_ray *r = &records[i];
-        bool first = r->parent == PROBE_RAYS_MOST;
+        bool first = r->parent == PROBE_RAYS_MAX;
         const struct gpu_probe_ray *parent = first ? NULL : &records[r->parent];
         for (int k = 0; k < 3; ++k) {
             float share = first ? whole[k] : shares[r->parent][k];
@@ -130,7 +130,7 @@ static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*
 static whit_result sort_records(const struct renderer *renderer, struct gpu_probe_ray *records,
                                 uint32_t count)
 {
-    uint32_t *places = array_alloc(PROBE_RAYS_MOST, sizeof *places);
+    uint32_t *places = array_alloc(PROBE_RAYS_MAX, sizeof *places);
     float(*shares)[3] = array_alloc(count, sizeof *shares);
     whit_result result = WHIT_OK;
     if (places && shares) {
@@ -145,13 +145,13 @@ static whit_result sort_records(const struct renderer *renderer, struct gpu_prob
     return result;
 }
 
-static uint32_t least(uint32_t a, uint32_t b)
+static uint32_t min(uint32_t a, uint32_t b)
 {
     return a < b ? a : b;
 }
 
 /* *records is free()d by the caller. */
-static whit_result read_records(const struct renderer *renderer, uint32_t most,
+static whit_result read_records(const struct renderer *renderer, uint32_t max,
                                 struct probe_report *report, struct gpu_probe_ray **records)
 {
     struct gpu_probe head;
@@ -159,24 +159,24 @@ static whit_result read_records(const struct renderer *renderer, uint32_t most,
     whit_result result = buffer_read(buffer, 0, &head, sizeof head);
     if (result != WHIT_OK)
         return result;
-    uint32_t rays = least(head.rays, PROBE_RAYS_MOST);
-    uint32_t others = least(head.others, PROBE_RAYS_MOST);
+    uint32_t rays = min(head.rays, PROBE_RAYS_MAX);
+    uint32_t others = min(head.others, PROBE_RAYS_MAX);
     *records = array_alloc((size_t)rays + others, sizeof **records);
     if (!*records)
         return render_no_memory(renderer, "probed rays");
     uint64_t bytes = sizeof **records;
     result = buffer_read(buffer, sizeof head, *records, rays * bytes);
     if (result == WHIT_OK)
-        result = buffer_read(buffer, sizeof head + PROBE_RAYS_MOST * bytes, *records + rays,
+        result = buffer_read(buffer, sizeof head + PROBE_RAYS_MAX * bytes, *records + rays,
                              others * bytes);
     if (result == WHIT_OK)
         result = sort_records(renderer, *records, rays + others);
-    report->ray_count = least(rays + others, most);
+    report->ray_count = min(rays + others, max);
     report->dropped = head.rays + head.others - report->ray_count;
     return result;
 }
 
-static whit_result run(struct renderer *renderer, uint32_t most, struct probe_report *report,
+static whit_result run(struct renderer *renderer, uint32_t max, struct probe_report *report,
                        struct gpu_probe_ray **records)
 {
     struct target *probe = &renderer->probe;
@@ -189,7 +189,7 @@ static whit_result run(struct renderer *renderer, uint32_t most, struct probe_re
     if (result == WHIT_OK)
         result = trace_pixel(probe, report);
     if (result == WHIT_OK)
-        result = read_records(renderer, most, report, records);
+        result = read_records(renderer, max, report, records);
     return result;
 }
 
@@ -222,7 +222,7 @@ static void place_ray(const struct gpu_probe_ray *record, const struct branch *b
 {
     struct probe_ray *ray = &rays[place];
     *ray = (struct probe_ray){.traced = *record, .parent = HIT_NONE};
-    if (record->parent == PROBE_RAYS_MOST)
+    if (record->parent == PROBE_RAYS_MAX)
         return;
     ray->parent = branches[record->parent].place;
     ray->generation = rays[ray->parent].generation + 1;
@@ -238,7 +238,7 @@ static bool count_branches(const struct gpu_probe_ray *records, uint32_t count,
 {
     for (uint32_t i = 0; i < count; ++i) {
         uint32_t parent = records[i].parent;
-        if (records[i].end == PROBE_WAITS || (i == 0) != (parent == PROBE_RAYS_MOST) ||
+        if (records[i].end == PROBE_DEFERRED || (i == 0) != (parent == PROBE_RAYS_MAX) ||
             (i > 0 && parent >= i))
             return false;
         if (i == 0)
@@ -292,7 +292,7 @@ static whit_result check(const struct renderer *renderer, uint32_t x, uint32_t y
     return WHIT_ERROR_USAGE;
 }
 
-whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, uint32_t most,
+whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, uint32_t max,
                            struct probe_report *out)
 {
     const struct render_params *params = &renderer->params;
@@ -306,8 +306,8 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     if (result == WHIT_OK)
         result = params_check_loops(renderer);
     if (result == WHIT_OK)
-        result = run(renderer, most > 0 && most < PROBE_RAYS_MOST ? most : PROBE_RAYS_MOST, out,
-                     &records);
+        result =
+            run(renderer, max > 0 && max < PROBE_RAYS_MAX ? max : PROBE_RAYS_MAX, out, &records);
     if (result == WHIT_OK)
         result = order_rays(renderer, records, out);
     if (result == WHIT_OK)

@@ -42,7 +42,7 @@ struct probe_report {
    there is room for. WHIT_ERROR_USAGE outside of the picture; WHIT_ERROR_STATUS as renderer_render.
    On failure *out is empty. */
 WHIT_CHECK whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y,
-                                      uint32_t most, struct probe_report *out);
+                                      uint32_t max, struct probe_report *out);
 void probe_report_finish(struct probe_report *report);
 
 /* probe_twin.c: fills in `twin` and all below it, of every ray. */

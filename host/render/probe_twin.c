@@ -8,14 +8,14 @@
 #include "render/renderer.h"
 
 /* Surfaces on the way of one ray that exact answers can be told to leave out. */
-enum { PASSED_MOST = 64 };
+enum { PASSED_MAX = 64 };
 
 struct asking {
     const struct renderer *renderer;
     struct rational *rational;
     struct probe_ray *ray;
     struct gpu_ray line;
-    uint32_t passed_instance[PASSED_MOST], passed_primitive[PASSED_MOST];
+    uint32_t passed_instance[PASSED_MAX], passed_primitive[PASSED_MAX];
 };
 
 static bool is_shadow(const struct asking *a)
@@ -54,7 +54,7 @@ static bool may_pass(const struct asking *a, const struct gpu_hit *hit)
 static void pass(struct asking *a, const struct gpu_hit *hit)
 {
     uint32_t at = a->ray->passed++;
-    if (at < PASSED_MOST) {
+    if (at < PASSED_MAX) {
         a->passed_instance[at] = hit->instance;
         a->passed_primitive[at] = hit->primitive;
     }
@@ -63,7 +63,7 @@ static void pass(struct asking *a, const struct gpu_hit *hit)
 /* Whether it was passed. A sphere may be passed at each of its ends, and is met as often. */
 static bool take_passed(struct asking *a, const struct rational_hit *hit)
 {
-    for (uint32_t i = 0; i < a->ray->passed && i < PASSED_MOST; ++i) {
+    for (uint32_t i = 0; i < a->ray->passed && i < PASSED_MAX; ++i) {
         if (a->passed_instance[i] == hit->instance && a->passed_primitive[i] == hit->primitive) {
             a->passed_primitive[i] = HIT_NONE;
             return true;
@@ -136,7 +136,7 @@ static void ask_exactly(struct asking *a)
                                      .primitive = ray->traced.skip_primitive};
     struct rational_query query = {.own = &own};
     struct rational_hit hit, before;
-    if (ray->passed > PASSED_MOST)
+    if (ray->passed > PASSED_MAX)
         return;
     rational_trace(a->rational, &a->line, &query, &hit);
     while (hit.primitive != HIT_NONE && take_passed(a, &hit)) {

@@ -10,8 +10,8 @@
 enum {
     RAYS_A_SLOT = 16,
     LIT_A_SLOT = 2,
-    RAYS_LEAST = 1 << 16,
-    GENERATIONS_MOST = 640,
+    RAYS_MIN = 1 << 16,
+    GENERATIONS_MAX = 640,
     QUEUE_GROWTH = 4
 };
 
@@ -55,14 +55,14 @@ whit_result queues_create(struct target *target)
     const bool *called = renderer->effects.called;
     bool calls = called[SCENE_EFFECT_REFLECTION] || called[SCENE_EFFECT_REFRACTION] ||
                  called[SCENE_EFFECT_CUTOUTS] || called[SCENE_EFFECT_CATCHERS];
-    queues->generation_count = secondary ? GENERATIONS_MOST : 2;
+    queues->generation_count = secondary ? GENERATIONS_MAX : 2;
     queues->ray_capacity = p->chunk_slots;
     queues->lit_capacity =
         p->chunk_slots * 2; /* each half of a list is of one half of a dispatch */
     if (secondary) {
-        uint32_t least = larger(target->stages.rays_least, RAYS_LEAST);
-        queues->ray_capacity = larger(p->chunk_slots * RAYS_A_SLOT, least);
-        queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, least / 4);
+        uint32_t min = larger(target->stages.rays_min, RAYS_MIN);
+        queues->ray_capacity = larger(p->chunk_slots * RAYS_A_SLOT, min);
+        queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, min / 4);
     }
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
     uint64_t heads = sizeof(struct gpu_tally) +
@@ -85,13 +85,13 @@ whit_result queues_create(struct target *target)
         {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
         {&queues->sums, rays * 16, loaded, "sums"},
         {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},
-        {&queues->hit_list, rays * 4 * CLASSES_MOST, loaded, "hits to shade"},
+        {&queues->hit_list, rays * 4 * CLASSES_MAX, loaded, "hits to shade"},
         {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE,
          "weights that are cut"},
         {&queues->cut_sums, calls ? (uint64_t)renderer->params.width * p->band_rows * 8 : 0,
          BUFFER_STORAGE, "sums of weights that are cut"},
-        {&queues->waiting,
-         variant_waits(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
+        {&queues->deferred,
+         variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
         {&queues->kinds, renderer->params.count || target->probed ? sent * 4 : 0, BUFFER_STORAGE,
          "kinds of rays"},
@@ -119,7 +119,7 @@ bool queues_can_grow(const struct target *target)
 whit_result queues_grow(struct target *target)
 {
     struct pixel_buffers *p = &target->buffers;
-    target->stages.rays_least = p->queues.ray_capacity * QUEUE_GROWTH;
+    target->stages.rays_min = p->queues.ray_capacity * QUEUE_GROWTH;
     target->renderer->scene_buffers.bytes -= p->queues.bytes;
     p->bytes -= p->queues.bytes;
     queues_finish(&p->queues);
@@ -132,7 +132,7 @@ void queues_finish(struct queue_buffers *queues)
 {
     struct buffer *all[] = {queues->generations, queues->empty, queues->rays,     queues->hits,
                             queues->lit,         queues->sums,  queues->hit_list, queues->cuts,
-                            queues->cut_sums,    queues->kinds, queues->lit_list, queues->waiting};
+                            queues->cut_sums,    queues->kinds, queues->lit_list, queues->deferred};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

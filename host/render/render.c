@@ -60,13 +60,13 @@ whit_result status_check(struct target *target)
 }
 
 /* Behind the bits, in the same buffer. */
-whit_result waits_clear(struct target *target)
+whit_result deferred_clear(struct target *target)
 {
     const uint32_t none = 0;
     return buffer_write(target->buffers.status, sizeof none, &none, sizeof none);
 }
 
-whit_result waits_read(const struct target *target, uint32_t *count)
+whit_result deferred_read(const struct target *target, uint32_t *count)
 {
     return buffer_read(target->buffers.status, sizeof *count, count, sizeof *count);
 }
@@ -117,23 +117,23 @@ static whit_result submit(struct target *target)
     return status_check(target);
 }
 
-void render_clear_waiting(struct renderer *renderer, struct buffer *waiting)
+void render_clear_deferred(struct renderer *renderer, struct buffer *deferred)
 {
-    if (!waiting)
+    if (!deferred)
         return;
-    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, groups_x), 4, 0);
-    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, groups_y), 8, 1);
-    commands_fill(renderer->commands, waiting, offsetof(struct gpu_work, count), 4, 0);
+    commands_fill(renderer->commands, deferred, offsetof(struct gpu_work, groups_x), 4, 0);
+    commands_fill(renderer->commands, deferred, offsetof(struct gpu_work, groups_y), 8, 1);
+    commands_fill(renderer->commands, deferred, offsetof(struct gpu_work, count), 4, 0);
 }
 
-void render_take_waiting(struct target *target, const struct pass *pass, struct buffer *waiting,
-                         const void *push, uint32_t push_bytes)
+void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
+                          const void *push, uint32_t push_bytes)
 {
     struct commands *commands = target->renderer->commands;
     commands_barrier(commands);
-    commands_bind(commands, pass->looks, pass->looks_set);
+    commands_bind(commands, pass->deferred, pass->deferred_set);
     commands_push(commands, push, push_bytes);
-    commands_dispatch_indirect(commands, waiting, 0);
+    commands_dispatch_indirect(commands, deferred, 0);
     ++target->stats.dispatches;
 }
 
@@ -234,8 +234,8 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
         uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;
         uint32_t held = renderer->picture.buffers.chunk_slots / RENDER_BLOCK_PIXELS;
         blocks = blocks < held ? blocks : held;
-        uint32_t most = renderer->picture.stages.blocks_most;
-        blocks = most && most < blocks ? most : blocks;
+        uint32_t max = renderer->picture.stages.blocks_max;
+        blocks = max && max < blocks ? max : blocks;
         struct gpu_chunk chunk = {.first_block = block,
                                   .block_count = end - block < blocks ? end - block : blocks,
                                   .band_y = band_y,
@@ -342,11 +342,11 @@ whit_result renderer_render(struct renderer *renderer)
         .share = 1.0,
     };
     if (result == WHIT_OK)
-        result = waits_clear(&renderer->picture);
+        result = deferred_clear(&renderer->picture);
     if (result == WHIT_OK)
         result = render_picture(renderer, &progress);
     if (result == WHIT_OK)
-        result = waits_read(&renderer->picture, &renderer->picture.stats.waits);
+        result = deferred_read(&renderer->picture, &renderer->picture.stats.deferred);
     renderer->picture.stats.render_ms = clock_ms() - progress.start_ms;
     renderer->rendered = result == WHIT_OK;
     return result;

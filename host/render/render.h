@@ -32,7 +32,7 @@ struct render_params {
     bool all_effects; /* compile everything */
     /* Bits 1 << SCENE_EFFECT_*: compiled though not called for; left out though called for. */
     uint64_t effects_added, effects_removed;
-    bool compile_beside, many_pictures;
+    bool compile_async, many_pictures;
     uint32_t tile_size; /* 16..512; 0: by measured time */
     const volatile bool *cancel;
     void (*progress)(void *user, double done);
@@ -92,8 +92,8 @@ struct render_stats {
     bool general;
     uint64_t device_bytes;
     uint32_t dispatches, tiles, tile_size;
-    uint32_t waits; /* NUMERICS_EXACT: pixels of dispatches, each a ray with its shadow rays, that
-                       floats left open */
+    uint32_t deferred; /* NUMERICS_EXACT: pixels of dispatches, each a ray with its shadow rays,
+                       that floats left open */
     bool texel_loads, packets;
     struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
     struct render_stage stages[RENDER_STAGE_COUNT];
@@ -124,7 +124,7 @@ WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct sc
 
 /* The same of the picture that was set last, or of a smaller one of at most `most` pixels whose
    sides are that of it over a whole number. *rays: free(). */
-WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t most,
+WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
                                             struct gpu_ray **rays, uint64_t *count);
 
 /* Whether a renderer that is made with these params has one kernel where others have several: what

@@ -36,13 +36,13 @@ static whit_result create_parts(struct renderer *renderer)
 /* Renderers that only trace batches never need the kernels of pictures. */
 whit_result renderer_compile(struct renderer *renderer)
 {
-    if (stages_are_made(&renderer->picture) && !renderer->beside.general)
+    if (stages_are_made(&renderer->picture) && !renderer->async.general)
         return stages_bind(&renderer->picture);
     double start_ms = clock_ms();
-    whit_result result = renderer->params.compile_beside ? beside_prepare(renderer)
-                                                         : stages_compile(&renderer->picture);
+    whit_result result = renderer->params.compile_async ? async_prepare(renderer)
+                                                        : stages_compile(&renderer->picture);
     if (result == WHIT_OK)
-        renderer->picture.stats.general = renderer->beside.general;
+        renderer->picture.stats.general = renderer->async.general;
     else
         passes_finish(renderer);
     renderer->picture.stats.compile_ms = clock_ms() - start_ms;
@@ -90,7 +90,7 @@ whit_result renderer_create(const struct log *log, struct device *device, struct
     whit_result result = renderer_init(renderer, log, device, accel, params);
     if (result == WHIT_OK)
         result = create_parts(renderer);
-    if (result == WHIT_OK && renderer->params.compile_beside)
+    if (result == WHIT_OK && renderer->params.compile_async)
         result = renderer_compile(renderer);
     if (result != WHIT_OK) {
         renderer_destroy(renderer);
@@ -104,7 +104,7 @@ void renderer_finish(struct renderer *renderer)
 {
     commands_destroy(renderer->commands);
     passes_finish(renderer);
-    beside_finish(renderer);
+    async_finish(renderer);
     trace_finish(&renderer->trace);
     target_finish(&renderer->probe);
     target_finish(&renderer->picture);

@@ -28,7 +28,7 @@ struct queue_buffers {
     struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
-        *waiting;         /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+        *deferred;        /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
     struct buffer *kinds; /* RAY_*, with params.count */
     uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
@@ -49,12 +49,12 @@ struct pixel_buffers {
     uint64_t bytes; /* of all of them, also counted in scene_buffers.bytes */
 };
 
-/* A kernel, and where rays may wait (SPEC_LOOKS) the one that takes what the first has put on the
-   waiting list, else NULL. */
+/* A kernel, and where rays may wait (SPEC_SETTLES) the one that takes what the first has put on the
+   list of deferred rays, else NULL. */
 struct pass {
-    struct pipeline *pipeline, *looks;
-    uint32_t rays_each;                  /* items that an invocation takes */
-    struct binding_set *set, *looks_set; /* what they work on */
+    struct pipeline *pipeline, *deferred;
+    uint32_t rays_each;                     /* items that an invocation takes */
+    struct binding_set *set, *deferred_set; /* what they work on */
 };
 
 /* In the order in which a generation of rays goes through them; the last one from the youngest
@@ -77,7 +77,7 @@ struct stage_set {
         passes[STAGE_COUNT];    /* empty where a stage has nothing to do, or shares another's */
     enum stage of[STAGE_COUNT]; /* whose kernel a stage runs: its own, or a later one's */
     uint32_t classes;           /* of materials, each with a shading kernel of its own */
-    bool calls[CLASSES_MOST];   /* whether hits of a class call for rays */
+    bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
 };
 
 /* Of the tile in hand, see stage_times.c. */
@@ -95,19 +95,19 @@ struct stages {
     uint32_t expected;       /* generations of the last tile */
     bool full;               /* a queue was, in the last submission */
     uint64_t *material_hits; /* of each class and material, in timed tiles; NULL: none so far */
-    uint32_t blocks_most;    /* of tiles, since one was too large; 0: as many as fit */
-    uint32_t rays_least; /* that the queues have room for, since a block was too large for them */
+    uint32_t blocks_max;     /* of tiles, since one was too large; 0: as many as fit */
+    uint32_t rays_min; /* that the queues have room for, since a block was too large for them */
 };
 
 struct trace_state {
     struct buffer *rays, *hits, *costs;
-    struct buffer *waiting; /* work list; NULL where no ray waits */
-    struct pass singles[2]; /* for closest hits, for any */
-    struct pass beams[2];   /* likewise, of rays that start at one point, in packets */
-    uint32_t capacity;      /* rays */
-    uint64_t together;      /* rays of the last batch that walked in packets */
+    struct buffer *deferred; /* work list; NULL where no ray waits */
+    struct pass singles[2];  /* for closest hits, for any */
+    struct pass beams[2];    /* likewise, of rays that start at one point, in packets */
+    uint32_t capacity;       /* rays */
+    uint64_t together;       /* rays of the last batch that walked in packets */
     double device_ms;
-    uint32_t waits; /* rays of the last batch that floats left open */
+    uint32_t deferred_count; /* rays of the last batch that floats left open */
 };
 
 /* What one picture in the making knows. An adaptive one is made in several passes. */
@@ -121,10 +121,10 @@ struct progress {
     uint8_t *levels; /* of each pixel: 1: 4 samples, 2: 16, 3: 64; NULL when not adaptive */
 };
 
-/* With params.compile_beside: see beside.c. */
-struct beside_state {
-    struct beside_job *job; /* the specialised kernel in the making; NULL: none is */
-    bool general;           /* renderer->picture.stages.set is of general kernels */
+/* With params.compile_async: see beside.c. */
+struct async_state {
+    struct async_job *job; /* the specialised kernel in the making; NULL: none is */
+    bool general;          /* renderer->picture.stages.set is of general kernels */
 };
 
 /* The buffers that the stages read and write, the kernels bound to them, and the figures of what
@@ -154,7 +154,7 @@ struct renderer {
     bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
     struct trace_state trace;
-    struct beside_state beside;
+    struct async_state async;
     struct commands *commands;
     struct gpu_frame frame;
     struct bodies bodies;               /* of media, of the frame's pose */
@@ -172,7 +172,7 @@ struct renderer {
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
 enum { READ_SLICE = 4096 };             /* pixels that are read at once */
-enum { ADAPTIVE_MOST = 64 };            /* samples of a pixel of an adaptive picture */
+enum { ADAPTIVE_MAX = 64 };             /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -285,7 +285,7 @@ struct gpu_spec variant_spec(const struct target *target);
 /* The same with every effect. */
 struct gpu_spec variant_general_spec(const struct target *target);
 /* Every effect that the renderer's buffers allow and its params do not remove. */
-struct gpu_spec variant_beside_spec(const struct target *target);
+struct gpu_spec variant_async_spec(const struct target *target);
 /* Classes of materials that have shading kernels of their own. */
 uint32_t variant_classes(const struct target *target);
 /* Whether one kernel draws what has several elsewhere: renderer->few_kernels, and probes. */
@@ -294,7 +294,7 @@ bool variant_few_kernels(const struct target *target);
 bool variant_calls_rays(const struct gpu_spec *spec);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
-bool variant_waits(const struct target *target);
+bool variant_has_deferred(const struct target *target);
 /* Rows of 16 bytes of a hit: HIT_ROWS of bind/queues.glsl. */
 uint32_t variant_hit_rows(const struct renderer *renderer);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.
@@ -378,16 +378,16 @@ void stage_times_next(struct target *target, uint32_t row);
 void stage_times_take(struct target *target);
 /* A tile is done, of `generations`, with so many items that waited. */
 WHIT_CHECK whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk,
-                                       uint32_t generations, uint32_t waits);
+                                       uint32_t generations, uint32_t deferred);
 /* Fills in names, and the times of all items. */
 void stage_times_scale(const struct renderer *renderer, struct render_stats *stats);
 
 /* beside.c: renderer->picture.stages are the best kernels that there are without waiting for them:
    at first the general one, while a thread compiles the specialised one, and from some later call
    on that. The thread logs when it fails; the general kernel then stays. */
-WHIT_CHECK whit_result beside_prepare(struct renderer *renderer);
+WHIT_CHECK whit_result async_prepare(struct renderer *renderer);
 /* Waits for the thread. */
-void beside_finish(struct renderer *renderer);
+void async_finish(struct renderer *renderer);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);
@@ -431,12 +431,12 @@ WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 /* render.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
-/* Empties a waiting list, if there is one. Barriers are the caller's. */
-void render_clear_waiting(struct renderer *renderer, struct buffer *waiting);
+/* Empties a list of deferred rays, if there is one. Barriers are the caller's. */
+void render_clear_deferred(struct renderer *renderer, struct buffer *deferred);
 /* Goes on, behind a barrier, with what the dispatch before has left on the list. `push`: for it,
    with `waiting` set. */
-void render_take_waiting(struct target *target, const struct pass *pass, struct buffer *waiting,
-                         const void *push, uint32_t push_bytes);
+void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
+                          const void *push, uint32_t push_bytes);
 /* Workgroups of the camera rays of a chunk. */
 uint32_t render_groups(const struct gpu_chunk *chunk);
 /* Pixel `i` of block `block`, as slot_pixel() of the kernel. False when outside of the picture. */
@@ -444,9 +444,9 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
                        uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct target *target);
 
-/* render.c: what kernels have listed as waiting since `waits_clear`. */
-WHIT_CHECK whit_result waits_clear(struct target *target);
-WHIT_CHECK whit_result waits_read(const struct target *target, uint32_t *count);
+/* render.c: what kernels have listed as waiting since `deferred_clear`. */
+WHIT_CHECK whit_result deferred_clear(struct target *target);
+WHIT_CHECK whit_result deferred_read(const struct target *target, uint32_t *count);
 
 /* render.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct target *target);

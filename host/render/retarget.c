@@ -61,7 +61,7 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
                         renderer->has_secondary != had_secondary ||
                         media_touch(renderer) != touched;
     if (result == WHIT_OK && other_kernel) {
-        beside_finish(renderer);
+        async_finish(renderer);
         passes_finish(renderer);
     }
     renderer->between_times = result != WHIT_OK;

@@ -92,13 +92,13 @@ static void add_generation(struct target *target, const struct gpu_generation *g
 }
 
 whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk,
-                            uint32_t generations, uint32_t waits)
+                            uint32_t generations, uint32_t deferred)
 {
     struct stage_times *times = &target->stages.times;
     uint64_t pixels = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
     add_items(target, RENDER_STAGE_CAMERA, pixels);
     add_items(target, RENDER_STAGE_RESOLVE, pixels);
-    add_items(target, RENDER_STAGE_DEFERRED, waits);
+    add_items(target, RENDER_STAGE_DEFERRED, deferred);
     struct gpu_generation *all = array_alloc(generations, sizeof *all);
     if (!all)
         return render_no_memory(target->renderer, "the counts of a tile");

@@ -48,7 +48,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         job->of[i] = (enum stage)i;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!later || renderer->has_secondary) &&
-                         (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MOST);
+                         (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
@@ -210,7 +210,7 @@ void stages_unbind(struct stages *stages)
 {
     for (int i = 0; i < STAGE_COUNT; ++i)
         pass_unbind(&stages->set.passes[i]);
-    stages->expected = stages->blocks_most = 0;
+    stages->expected = stages->blocks_max = 0;
 }
 
 uint64_t stages_generation_offset(uint32_t generation)
@@ -286,14 +286,14 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
     struct gpu_chunk *chunk = &run->chunk;
     struct commands *commands = target->renderer->commands;
     const struct pass *pass = &target->stages.set.passes[target->stages.set.of[stage]];
-    struct buffer *waiting = target->buffers.queues.waiting;
+    struct buffer *deferred = target->buffers.queues.deferred;
     whit_result result = split_submission(run);
     if (result != WHIT_OK)
         return result;
     chunk->list = list;
     stage_times_next(target, row_of(stage, list));
-    if (pass->looks) {
-        render_clear_waiting(target->renderer, waiting);
+    if (pass->deferred) {
+        render_clear_deferred(target->renderer, deferred);
         commands_barrier(commands);
     }
     commands_bind(commands, pass->pipeline, pass->set);
@@ -306,11 +306,11 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
                                    stages_generation_offset(chunk->generation) + list_offset(list));
     ++target->stats.dispatches;
     ++run->dispatches;
-    if (pass->looks) {
-        struct gpu_chunk waits = *chunk;
-        waits.waiting = 1;
+    if (pass->deferred) {
+        struct gpu_chunk again = *chunk;
+        again.deferred = 1;
         stage_times_next(target, RENDER_STAGE_DEFERRED);
-        render_take_waiting(target, pass, waiting, &waits, sizeof waits);
+        render_take_deferred(target, pass, deferred, &again, sizeof again);
     }
     commands_barrier(commands);
     return WHIT_OK;
@@ -424,9 +424,9 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
     struct tile_run run = {.target = target, .chunk = *tile, .progress = progress};
     run.chunk.ray_capacity = queues->ray_capacity;
     run.chunk.lit_capacity = queues->lit_capacity;
-    uint32_t done = 0, end = stages->expected, left = 1, waits = 0, waits_before = 0;
+    uint32_t done = 0, end = stages->expected, left = 1, deferred = 0, deferred_before = 0;
     stage_times_begin(target);
-    whit_result result = waits_read(target, &waits_before);
+    whit_result result = deferred_read(target, &deferred_before);
     if (result != WHIT_OK)
         return result;
     while (left > 0) {
@@ -447,9 +447,9 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
         end += MORE_AT_ONCE;
     }
     stages->expected = done;
-    result = waits_read(target, &waits);
+    result = deferred_read(target, &deferred);
     if (result == WHIT_OK)
-        result = stage_times_end(target, tile, done, waits - waits_before);
+        result = stage_times_end(target, tile, done, deferred - deferred_before);
     if (result == WHIT_OK && !target->probed)
         result = costs_add(target, tile);
     return result == WHIT_OK ? take_tally(target) : result;
@@ -475,12 +475,12 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
         return WHIT_ERROR_STATUS;
     }
     uint32_t end = chunk->first_block + chunk->block_count;
-    uint32_t most = (chunk->block_count + 1) / 2;
+    uint32_t max = (chunk->block_count + 1) / 2;
     struct gpu_chunk part = *chunk;
-    target->stages.blocks_most = most;
+    target->stages.blocks_max = max;
     for (; result == WHIT_OK && part.first_block < end;
-         part.first_block += most, part.sums_row += most * RENDER_BLOCK_PIXELS) {
-        part.block_count = end - part.first_block < most ? end - part.first_block : most;
+         part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS) {
+        part.block_count = end - part.first_block < max ? end - part.first_block : max;
         if (progress->listed)
             result = adaptive_list(target, progress, &part);
         if (result == WHIT_OK && (!progress->listed || part.listed > 0))

@@ -15,7 +15,7 @@ void stats_clear(struct render_stats *stats)
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)
 {
     *stats = renderer->picture.stats;
-    stats->packets = renderer->packets && renderer->packet_stack_size <= PACKET_STACK_MOST;
+    stats->packets = renderer->packets && renderer->packet_stack_size <= PACKET_STACK_MAX;
     stage_times_scale(renderer, stats);
     material_shares_get(&renderer->picture, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;

@@ -7,10 +7,10 @@
 #include "base/clock.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20,    /* rays in device memory */
-    TRACE_FIRST = 1 << 14,       /* rays of the first dispatch, whose time sets the next one's */
-    TRACE_FIRST_BARE = 1 << 10,  /* the same without trees */
-    TRACE_BEAMS_LEAST = 1 << 17, /* rays of a batch that are worth the kernel of beams */
+    TRACE_CAPACITY = 1 << 20,   /* rays in device memory */
+    TRACE_FIRST = 1 << 14,      /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
+    TRACE_BEAMS_MIN = 1 << 17,  /* rays of a batch that are worth the kernel of beams */
 };
 /* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
@@ -24,15 +24,15 @@ void trace_finish(struct trace_state *trace)
     buffer_destroy(trace->rays);
     buffer_destroy(trace->hits);
     buffer_destroy(trace->costs);
-    buffer_destroy(trace->waiting);
+    buffer_destroy(trace->deferred);
     *trace = (struct trace_state){0};
 }
 
 /* Pieces grow fourfold: a capacity is the first one times a power of 4. */
-static uint32_t choose_capacity(uint32_t most_rays)
+static uint32_t choose_capacity(uint32_t max_rays)
 {
     uint32_t capacity = TRACE_FIRST;
-    while (capacity < TRACE_CAPACITY && (most_rays == 0 || capacity < most_rays))
+    while (capacity < TRACE_CAPACITY && (max_rays == 0 || capacity < max_rays))
         capacity *= 4;
     return capacity;
 }
@@ -47,7 +47,7 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
 {
     struct trace_state *trace = &renderer->trace;
     whit_result result = beams ? upload_wide(renderer) : WHIT_OK;
-    beams = beams && renderer->packet_stack_size <= PACKET_STACK_MOST;
+    beams = beams && renderer->packet_stack_size <= PACKET_STACK_MAX;
     uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     if (result == WHIT_OK && !trace->rays) {
         trace->capacity = choose_capacity(renderer->params.trace_rays);
@@ -61,11 +61,11 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
         result =
             buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
                           BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
-    bool lists = variant_waits(&renderer->picture) || variant_has_beams(renderer);
-    if (result == WHIT_OK && lists && !trace->waiting)
+    bool lists = variant_has_deferred(&renderer->picture) || variant_has_beams(renderer);
+    if (result == WHIT_OK && lists && !trace->deferred)
         result =
             buffer_create(renderer->device, sizeof(struct gpu_work) + (uint64_t)trace->capacity * 4,
-                          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->waiting);
+                          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->deferred);
     if (result == WHIT_OK)
         result = prepare_pass(renderer, any, false);
     if (result == WHIT_OK && beams)
@@ -73,16 +73,16 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     return result;
 }
 
-/* Records a dispatch over the rays that the one before it has put on the waiting list. */
-static void record_waiting(struct renderer *renderer, struct pipeline *pipeline,
-                           struct binding_set *set, const struct gpu_batch *batch)
+/* Records a dispatch over the rays that the one before it has put on the list of deferred rays. */
+static void record_deferred(struct renderer *renderer, struct pipeline *pipeline,
+                            struct binding_set *set, const struct gpu_batch *batch)
 {
-    struct gpu_batch waiting = *batch;
-    waiting.waiting = 1;
+    struct gpu_batch deferred = *batch;
+    deferred.deferred = 1;
     commands_barrier(renderer->commands);
     commands_bind(renderer->commands, pipeline, set);
-    commands_push(renderer->commands, &waiting, sizeof waiting);
-    commands_dispatch_indirect(renderer->commands, renderer->trace.waiting, 0);
+    commands_push(renderer->commands, &deferred, sizeof deferred);
+    commands_dispatch_indirect(renderer->commands, renderer->trace.deferred, 0);
 }
 
 /* Rays [0, batch->ray_count) of the ray buffer. `beams`: first together those that can be. */
@@ -96,16 +96,16 @@ static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
     if (result != WHIT_OK)
         return result;
     commands_fill(renderer->commands, renderer->picture.buffers.status, 0, 4, 0);
-    render_clear_waiting(renderer, renderer->trace.waiting);
+    render_clear_deferred(renderer, renderer->trace.deferred);
     commands_barrier(renderer->commands);
     commands_bind(renderer->commands, pass->pipeline, pass->set);
     commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
     commands_dispatch(renderer->commands, (batch->ray_count + each - 1) / each, 1, 1);
     if (beams)
-        record_waiting(renderer, singles->pipeline, singles->set, batch);
-    else if (pass->looks)
-        record_waiting(renderer, pass->looks, pass->looks_set, batch);
+        record_deferred(renderer, singles->pipeline, singles->set, batch);
+    else if (pass->deferred)
+        record_deferred(renderer, pass->deferred, pass->deferred_set, batch);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);
@@ -136,7 +136,7 @@ static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams,
     whit_result result = dispatch(renderer, any, true, &batch);
     struct gpu_work alone;
     if (result == WHIT_OK)
-        result = buffer_read(renderer->trace.waiting, 0, &alone, sizeof alone);
+        result = buffer_read(renderer->trace.deferred, 0, &alone, sizeof alone);
     *beams = result == WHIT_OK && alone.count < count / 2;
     renderer->trace.together += alone.count < count ? count - alone.count : 0;
     return result;
@@ -167,11 +167,11 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     }
     renderer->trace.device_ms = 0.0;
     renderer->trace.together = 0;
-    bool many = count >= TRACE_BEAMS_LEAST || renderer->params.packets == RENDER_PACKETS_ON;
+    bool many = count >= TRACE_BEAMS_MIN || renderer->params.packets == RENDER_PACKETS_ON;
     bool beams = many && variant_has_beams(renderer);
     whit_result result = prepare(renderer, any, beams);
     if (result == WHIT_OK)
-        result = waits_clear(&renderer->picture);
+        result = deferred_clear(&renderer->picture);
     uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BARE : TRACE_FIRST;
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
         result = cancelled(renderer);
@@ -191,7 +191,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
         done += size;
     }
     if (result == WHIT_OK)
-        result = waits_read(&renderer->picture, &renderer->trace.waits);
+        result = deferred_read(&renderer->picture, &renderer->trace.deferred_count);
     return result;
 }
 

@@ -351,7 +351,7 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
     uint32_t chosen = 1;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
         bool pays = rays * halvings * packet_choices[i].saved_ns >= packet_choices[i].kernels_ns;
-        bool many = params->compile_beside || (params->many_pictures && i == 0);
+        bool many = params->compile_async || (params->many_pictures && i == 0);
         if (halvings > 0.0 && (pays || many))
             chosen = packet_choices[i].rays;
     }

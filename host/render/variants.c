@@ -17,7 +17,7 @@ uint32_t variant_camera(const struct renderer *renderer)
                                                         : CAMERA_PERSPECTIVE;
 }
 
-bool variant_waits(const struct target *target)
+bool variant_has_deferred(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
     return renderer->params.numerics == NUMERICS_EXACT && !renderer->params.count &&
@@ -76,7 +76,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_PROBE = target->probed;
-    spec.SPEC_LOOKS = !variant_waits(target);
+    spec.SPEC_SETTLES = !variant_has_deferred(target);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
     spec.SPEC_WIDE_ROWS =
@@ -154,7 +154,7 @@ struct gpu_spec variant_general_spec(const struct target *target)
     return spec;
 }
 
-struct gpu_spec variant_beside_spec(const struct target *target)
+struct gpu_spec variant_async_spec(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
     /* All but what the buffers hold nothing for. */
@@ -169,7 +169,7 @@ struct gpu_spec variant_beside_spec(const struct target *target)
     }
     effects_choose(&all, &effects);
     struct gpu_spec spec = make_spec(target, &effects, renderer->has_secondary);
-    spec.SPEC_LOOKS = 1; /* one kernel is sooner made than two */
+    spec.SPEC_SETTLES = 1; /* one kernel is sooner made than two */
     return spec;
 }
 
@@ -205,7 +205,7 @@ static struct bindings bind_trees(const struct target *target)
     bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
     bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, scene->nodes8);
     bind(&bindings, BIND_STATUS, BINDING_STORAGE, target->buffers.status);
-    bind(&bindings, BIND_WAITING, BINDING_STORAGE, NULL);
+    bind(&bindings, BIND_DEFERRED, BINDING_STORAGE, NULL);
     return bindings;
 }
 
@@ -246,7 +246,7 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_GENERATION_TEXELS, BINDING_TEXELS, queues->generations);
     bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
     bind(&bindings, BIND_RAY_TEXELS, BINDING_TEXELS, queues->rays);
-    bind(&bindings, BIND_WAITING, BINDING_STORAGE, queues->waiting);
+    bind(&bindings, BIND_DEFERRED, BINDING_STORAGE, queues->deferred);
     bind(&bindings, BIND_RAY_KINDS, BINDING_STORAGE, queues->kinds);
     bind(&bindings, BIND_HIT_ROWS, BINDING_STORAGE, queues->hits);
     bind(&bindings, BIND_HIT_TEXELS, BINDING_TEXELS, queues->hits);
@@ -266,9 +266,9 @@ static struct bindings bind_stages(const struct target *target)
 bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
 {
     memcpy(spec, params->spec, sizeof *spec);
-    if (spec->SPEC_LOOKS)
+    if (spec->SPEC_SETTLES)
         return false;
-    spec->SPEC_LOOKS = 1;
+    spec->SPEC_SETTLES = 1;
     spec->SPEC_PACKETS = 0; /* few rays */
     spec->SPEC_PACKET_RAYS = 1;
     return true;
@@ -282,17 +282,17 @@ static whit_result create_pipelines(struct device *device, const struct pipeline
     whit_result result = pipeline_create(device, params, &pass->pipeline);
     if (result != WHIT_OK || !variant_defers(params, &spec))
         return result;
-    struct pipeline_params looks = *params;
-    looks.spec = (const uint32_t *)&spec;
-    return pipeline_create(device, &looks, &pass->looks);
+    struct pipeline_params deferred = *params;
+    deferred.spec = (const uint32_t *)&spec;
+    return pipeline_create(device, &deferred, &pass->deferred);
 }
 
 /* Of both pipelines. */
 static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count)
 {
     whit_result result = binding_set_create(pass->pipeline, bindings->buffers, count, &pass->set);
-    if (result == WHIT_OK && pass->looks)
-        result = binding_set_create(pass->looks, bindings->buffers, count, &pass->looks_set);
+    if (result == WHIT_OK && pass->deferred)
+        result = binding_set_create(pass->deferred, bindings->buffers, count, &pass->deferred_set);
     return result;
 }
 
@@ -312,7 +312,7 @@ bool render_few_kernels(const struct render_params *params)
     double samples = params->adaptive > 0.0 ? 4.0 : fmax((double)params->samples, 1.0);
     if (params->classes != RENDER_CLASSES_AUTO)
         return params->classes == RENDER_CLASSES_ONE;
-    return !params->many_pictures && !params->compile_beside &&
+    return !params->many_pictures && !params->compile_async &&
            (double)params->width * params->height * samples < RAYS_FOR_MANY;
 }
 
@@ -329,7 +329,7 @@ uint32_t variant_classes(const struct target *target)
     bool both = !renderer->params.all_effects && !variant_few_kernels(target) &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;
-    return both ? CLASSES_MOST : 1;
+    return both ? CLASSES_MAX : 1;
 }
 
 /* Takes out of a shading kernel what the materials of its class do not call for. */
@@ -390,11 +390,11 @@ static uint32_t lit_parts(const struct gpu_spec *spec)
 /* Rays of a lane of a batch that start at one point and go about the same way. */
 enum { BEAM_RAYS = 8 };
 
-/* As has_looks of shaders/bind/traverse.glsl: a record that waits is looked at for one ray a lane.
+/* As settles of shaders/bind/traverse.glsl: a record that waits is looked at for one ray a lane.
  */
 static bool packets_look(const struct gpu_spec *spec, bool shadow)
 {
-    return (spec->SPEC_NUMERICS == NUMERICS_EXACT && spec->SPEC_LOOKS) || spec->SPEC_CUTOUTS ||
+    return (spec->SPEC_NUMERICS == NUMERICS_EXACT && spec->SPEC_SETTLES) || spec->SPEC_CUTOUTS ||
            (shadow && spec->SPEC_FILTERS && spec->SPEC_FILTER_DETAIL == FILTERS_PATTERNED) ||
            (!shadow && spec->SPEC_SPHERES != SPHERES_NONE && spec->SPEC_CULLING);
 }
@@ -405,7 +405,7 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
 {
     uint32_t stack = renderer->packet_stack_size;
     spec->SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
-    if (!renderer->packets || spec->SPEC_PROBE || stack > PACKET_STACK_MOST)
+    if (!renderer->packets || spec->SPEC_PROBE || stack > PACKET_STACK_MAX)
         return;
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : renderer->packet_rays;
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
@@ -428,7 +428,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     static const struct {
         enum kernel kernel;
         const char *name;
-        bool waits;
+        bool deferred;
         uint32_t generations;
     } stages[STAGE_COUNT] = {
         [STAGE_CAMERA] = {KERNEL_CLOSEST, "camera", true, 1},
@@ -444,7 +444,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     *job = (struct variant_job){.spec = *set_spec};
     struct gpu_spec *spec = &job->spec;
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
-    spec->SPEC_LOOKS |= !stages[stage].waits;
+    spec->SPEC_SETTLES |= !stages[stage].deferred;
     spec->SPEC_LIT_PARTS = lit_parts(spec);
     spec->SPEC_CLASSES = classes;
     spec->SPEC_SEGMENTS = renderer->params.segments ? renderer->params.segments
@@ -475,7 +475,7 @@ bool variant_has_beams(const struct renderer *renderer)
 whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams, struct pass *pass)
 {
     struct bindings bindings = bind_trees(&renderer->picture);
-    bind(&bindings, BIND_WAITING, BINDING_STORAGE, renderer->trace.waiting);
+    bind(&bindings, BIND_DEFERRED, BINDING_STORAGE, renderer->trace.deferred);
     bind_loads(&bindings, BIND_RAYS, BIND_BATCH_TEXELS, renderer->scene_buffers.texel_loads,
                renderer->trace.rays);
     bind(&bindings, BIND_HITS, BINDING_STORAGE, renderer->trace.hits);
@@ -510,21 +510,21 @@ bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect
 void pass_unbind(struct pass *pass)
 {
     binding_set_destroy(pass->set);
-    binding_set_destroy(pass->looks_set);
-    pass->set = pass->looks_set = NULL;
+    binding_set_destroy(pass->deferred_set);
+    pass->set = pass->deferred_set = NULL;
 }
 
 void pass_finish(struct pass *pass)
 {
     pass_unbind(pass);
     pipeline_destroy(pass->pipeline);
-    pipeline_destroy(pass->looks);
+    pipeline_destroy(pass->deferred);
     *pass = (struct pass){0};
 }
 
 void passes_finish(struct renderer *renderer)
 {
-    renderer->beside.general = false;
+    renderer->async.general = false;
     stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);
     for (int any = 0; any < 2; ++any) {

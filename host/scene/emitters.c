@@ -8,17 +8,17 @@
 #include "base/array.h"
 #include "scene/freeze.h"
 
-#define SAMPLES_MOST   16
+#define SAMPLES_MAX   16
 /* Of these at most are flat lights: each costs every lit point as many shadow rays as it has
    points, 16 by default. */
-#define FLAT_MOST      8
+#define FLAT_MOST     8
 /* How far the corners of two triangles may be off those of a parallelogram, per length of a side.
  */
-#define CORNER_SLACK   1e-5
-#define TRIANGLES_MOST (4u << 20)
+#define CORNER_SLACK  1e-5
+#define TRIANGLES_MAX (4u << 20)
 /* Emitted power per area of the scene's great circle, below which emission decorates but does not
    light: the lamps of a car do not make its daylight. */
-#define POWER_LEAST    0.004
+#define POWER_MIN     0.004
 
 struct emitter {
     uint32_t instance, material, triangle;
@@ -81,7 +81,7 @@ static bool gather_instance(const struct scene *scene, const struct scene_pose *
         if (!(power > 0.0) || !isfinite(power))
             continue;
         struct emitter emitter = {instance, mesh->materials[t], t, power};
-        if (list->count == TRIANGLES_MOST ||
+        if (list->count == TRIANGLES_MAX ||
             !ARRAY_PUSH(list->items, list->count, list->capacity, emitter))
             return false;
         list->power += power;
@@ -206,14 +206,14 @@ static uint32_t count_runs(const struct emitter_list *list)
 static bool sample_all(struct scene *scene, const struct emitter_list *list)
 {
     uint32_t runs = count_runs(list);
-    if (runs > SAMPLES_MOST)
-        return sample_run(scene, list->items, list->count, SAMPLES_MOST);
+    if (runs > SAMPLES_MAX)
+        return sample_run(scene, list->items, list->count, SAMPLES_MAX);
     for (uint32_t i = 0, length; i < list->count; i += length) {
         length = run_length(list, i);
         double power = 0.0;
         for (uint32_t k = 0; k < length; ++k)
             power += list->items[i + k].power;
-        uint32_t samples = 1 + (uint32_t)((SAMPLES_MOST - runs) * power / list->power + 1e-9);
+        uint32_t samples = 1 + (uint32_t)((SAMPLES_MAX - runs) * power / list->power + 1e-9);
         if (!sample_run(scene, list->items + i, length, samples))
             return false;
     }
@@ -345,7 +345,7 @@ static bool power_suffices(const struct emitter_list *list, const struct scene_p
     double diagonal2 = 0.0;
     for (int i = 0; i < 3; ++i)
         diagonal2 += (pose->hi[i] - pose->lo[i]) * (pose->hi[i] - pose->lo[i]);
-    return list->power >= POWER_LEAST * 3.14159265358979323846 * diagonal2 / 4.0;
+    return list->power >= POWER_MIN * 3.14159265358979323846 * diagonal2 / 4.0;
 }
 
 whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose *pose,
@@ -358,10 +358,10 @@ whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose 
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         if (gather_instance(scene, pose, i, &list))
             continue;
-        if (list.count == TRIANGLES_MOST) {
+        if (list.count == TRIANGLES_MAX) {
             scene_note(scene, SCENE_NOTE_WARNING,
                        "more than %u emissive triangles: they are not sampled as lights",
-                       TRIANGLES_MOST);
+                       TRIANGLES_MAX);
             goto done;
         }
         result = WHIT_ERROR_MEMORY;

@@ -14,8 +14,8 @@
 #define SHARE      0.9
 #define BRIGHTNESS 0.8
 /* Stated lights are left alone between these. */
-#define LEAST      0.02
-#define MOST       2.0
+#define MIN        0.02
+#define MAX        2.0
 
 static const double PI = 3.14159265358979323846;
 
@@ -207,7 +207,7 @@ whit_result freeze_expose(struct scene *scene, bool emitters, double *factor)
         return WHIT_OK;
     whit_result result = measure(scene, &bright);
     if (result != WHIT_OK || !(bright > 0.0) || !isfinite(BRIGHTNESS / bright) ||
-        (!emitters && bright >= LEAST && bright <= MOST))
+        (!emitters && bright >= MIN && bright <= MAX))
         return result;
     *factor = BRIGHTNESS / bright;
     for (uint32_t i = 0; i < scene->light_count; ++i) {

@@ -8,7 +8,7 @@
 #include "base/text.h"
 
 /* That of shaders/bind/light.glsl, which takes no more of what arrives. */
-#define LIGHT_MOST 1e24f
+#define LIGHT_MAX 1e24f
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
 {
@@ -82,18 +82,18 @@ static void check_channels(struct scene *scene)
     scene->channel_count = kept;
 }
 
-static bool mend(float *value, float least, float most, float otherwise)
+static bool mend(float *value, float min, float max, float otherwise)
 {
     float before = *value;
-    *value = !isfinite(before) ? otherwise : fminf(fmaxf(before, least), most);
+    *value = !isfinite(before) ? otherwise : fminf(fmaxf(before, min), max);
     return !(*value == before);
 }
 
-static uint32_t mend_rgb(float rgb[3], float most, float otherwise)
+static uint32_t mend_rgb(float rgb[3], float max, float otherwise)
 {
     uint32_t mended = 0;
     for (int i = 0; i < 3; ++i)
-        mended += mend(&rgb[i], 0.0f, most, otherwise);
+        mended += mend(&rgb[i], 0.0f, max, otherwise);
     return mended;
 }
 
@@ -101,7 +101,7 @@ static uint32_t mend_material(struct scene_material *m)
 {
     const float huge = 1e30f;
     uint32_t count = mend_rgb(m->ambient, huge, 1.0f) + mend_rgb(m->diffuse, huge, 0.7f) +
-                     mend_rgb(m->specular, huge, 0.0f) + mend_rgb(m->emission, LIGHT_MOST, 0.0f) +
+                     mend_rgb(m->specular, huge, 0.0f) + mend_rgb(m->emission, LIGHT_MAX, 0.0f) +
                      mend_rgb(m->reflection, huge, 0.0f) + mend_rgb(m->transmission, huge, 0.0f) +
                      mend_rgb(m->absorption, huge, 0.0f);
     count += mend(&m->shininess, 0.0f, 1e6f, 32.0f);
@@ -336,7 +336,7 @@ static uint32_t mend_light(struct scene_light *light)
     double length = length_of(d);
     for (int i = 0; i < 3; ++i) {
         d[i] = length > 0.0 && isfinite(length) ? d[i] / length : -(double)(i == 1);
-        count += mend(&light->color[i], 0.0f, LIGHT_MOST, 0.0f);
+        count += mend(&light->color[i], 0.0f, LIGHT_MAX, 0.0f);
     }
     if (!(light->range > 0.0f) || !isfinite(light->range))
         light->range = 0.0f;

@@ -8,8 +8,8 @@
 #include "base/vec.h"
 #include "scene/shaper.h"
 
-#define PI         3.14159265358979323846
-#define STEPS_MOST 8192u
+#define PI        3.14159265358979323846
+#define STEPS_MAX 8192u
 
 whit_result shape_box(const double size[3], struct scene_mesh *out)
 {
@@ -46,7 +46,7 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
                         struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!shape_positive(width) || !shape_positive(depth) || !steps || steps > STEPS_MOST ||
+    if (!shape_positive(width) || !shape_positive(depth) || !steps || steps > STEPS_MAX ||
         !isfinite(uv_scale) || fabs(uv_scale) > 1e6)
         return WHIT_ERROR_USAGE;
     uint64_t row = (uint64_t)steps + 1;
@@ -74,8 +74,8 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
 whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struct scene_mesh *out)
 {
     struct shaper shaper;
-    if (!shape_positive(radius) || segments < 3 || rings < 2 || segments > STEPS_MOST ||
-        rings > STEPS_MOST)
+    if (!shape_positive(radius) || segments < 3 || rings < 2 || segments > STEPS_MAX ||
+        rings > STEPS_MAX)
         return WHIT_ERROR_USAGE;
     uint32_t row = segments + 1;
     whit_result result =
@@ -154,11 +154,11 @@ static whit_result icosphere_init(struct icosphere *ico, uint32_t level)
         {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-    const size_t face_most = (size_t)20 << (2 * level);
+    const size_t face_max = (size_t)20 << (2 * level);
     *ico = (struct icosphere){.table_size = 64u << (2 * level)};
-    ico->points = array_alloc(face_most / 2 + 2, sizeof *ico->points);
-    ico->faces = array_alloc(face_most, sizeof *ico->faces);
-    ico->next = array_alloc(face_most, sizeof *ico->next);
+    ico->points = array_alloc(face_max / 2 + 2, sizeof *ico->points);
+    ico->faces = array_alloc(face_max, sizeof *ico->faces);
+    ico->next = array_alloc(face_max, sizeof *ico->next);
     ico->keys = array_alloc_zeroed(ico->table_size, sizeof *ico->keys);
     ico->middles = array_alloc(ico->table_size, sizeof *ico->middles);
     if (!ico->points || !ico->faces || !ico->next || !ico->keys || !ico->middles) {
@@ -233,7 +233,7 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
 {
     struct shaper shaper;
     if (!shape_positive(radius) || !shape_positive(tube) || segments < 3 || sides < 3 ||
-        segments > STEPS_MOST || sides > STEPS_MOST)
+        segments > STEPS_MAX || sides > STEPS_MAX)
         return WHIT_ERROR_USAGE;
     uint32_t row = sides + 1;
     whit_result result =
@@ -286,7 +286,7 @@ whit_result shape_cylinder(double radius, double radius_top, double height, uint
     struct shaper shaper;
     bool cone = radius_top == 0.0;
     if (!shape_positive(radius) || (!cone && !shape_positive(radius_top)) ||
-        !shape_positive(height) || segments < 3 || segments > STEPS_MOST)
+        !shape_positive(height) || segments < 3 || segments > STEPS_MAX)
         return WHIT_ERROR_USAGE;
     uint64_t caps = cone ? 1 : 2, row = (uint64_t)segments + 1;
     whit_result result =

@@ -12,7 +12,7 @@
 #define FLOOR2 6.8
 #define EAVES  12.4
 
-enum { BAYS_MOST = 64, LEVEL_MOST = 8, TILES_PER_BAY = 4 };
+enum { BAYS_MAX = 64, LEVEL_MAX = 8, TILES_PER_BAY = 4 };
 
 struct atrium {
     struct shaper shaper;
@@ -414,7 +414,7 @@ static void add_all(struct atrium *atrium)
 
 whit_result shape_atrium(uint32_t bays, uint32_t level, struct scene_mesh *out)
 {
-    if (!bays || bays > BAYS_MOST || !level || level > LEVEL_MOST)
+    if (!bays || bays > BAYS_MAX || !level || level > LEVEL_MAX)
         return WHIT_ERROR_USAGE;
     struct atrium atrium = {
         .shaper.measuring = true, .bays = bays, .level = level, .end = 0.5 * PITCH * bays};

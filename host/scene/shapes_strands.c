@@ -5,7 +5,7 @@
 #include "scene/shapes.h"
 
 #define PI 3.14159265358979323846
-enum { STRANDS_MOST = 4000000 };
+enum { STRANDS_MAX = 4000000 };
 
 /* M. O'Neill, PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
    Number Generation, 2014: RXS-M-XS 32. */
@@ -72,7 +72,7 @@ whit_result shape_strands(double size, double length, double width, uint32_t cou
 {
     struct shaper shaper;
     if (!shape_positive(size) || !shape_positive(length) || !shape_positive(width) ||
-        !(width <= length) || !count || count > STRANDS_MOST)
+        !(width <= length) || !count || count > STRANDS_MAX)
         return WHIT_ERROR_USAGE;
     whit_result result = shaper_init(&shaper, 12 * (uint64_t)count, 4 * (uint64_t)count);
     if (result != WHIT_OK)

@@ -8,12 +8,12 @@
 #define FILL 0.93 /* of the picture's height or width, by what is seen */
 
 /* fmin and fmax without their care for NaN, which costs a call each. */
-static double least(double a, double b)
+static double min(double a, double b)
 {
     return a < b ? a : b;
 }
 
-static double most(double a, double b)
+static double max(double a, double b)
 {
     return a > b ? a : b;
 }
@@ -52,8 +52,8 @@ static void fit_distance(const float *corners, uint32_t count, const double way[
     for (size_t i = 0; i < count; ++i) {
         double p[3];
         corner_in_view(corners + 3 * i, view, p);
-        right = most(right, p[0] - tx * p[2]), left = most(left, -p[0] - tx * p[2]);
-        top = most(top, p[1] - ty * p[2]), bottom = most(bottom, -p[1] - ty * p[2]);
+        right = max(right, p[0] - tx * p[2]), left = max(left, -p[0] - tx * p[2]);
+        top = max(top, p[1] - ty * p[2]), bottom = max(bottom, -p[1] - ty * p[2]);
     }
     double distance = fmax(right / (tx * back + side), left / (tx * back - side));
     distance = fmax(distance, top / (ty * back + rise));
@@ -77,7 +77,7 @@ static void aim(const struct soup *soup, struct view *view)
         corner_in_view(soup->outline[i], view, p);
         for (int k = 0; k < 2; ++k) {
             double slope = (p[k] - c[k]) / fmax(p[2] - c[2], 1e-9);
-            lo[k] = least(lo[k], slope), hi[k] = most(hi[k], slope);
+            lo[k] = min(lo[k], slope), hi[k] = max(hi[k], slope);
         }
     }
     for (int i = 0; i < 3; ++i)
@@ -104,14 +104,14 @@ void view_fit(const struct soup *soup, const double way[3], bool closely, struct
 /* The first and the last pixel whose centre is inside an interval's ends. */
 static int pixel_from(double low)
 {
-    double at = most(low - 0.5, 0.0);
+    double at = max(low - 0.5, 0.0);
     int pixel = at < SKETCH_ACROSS ? (int)at : SKETCH_ACROSS;
     return pixel + (pixel < at);
 }
 
 static int pixel_to(double high, int count)
 {
-    double at = least(high - 0.5, count - 1.0);
+    double at = min(high - 0.5, count - 1.0);
     return at >= 0.0 ? (int)at : -1;
 }
 
@@ -120,10 +120,9 @@ static void draw_projected(struct sketch *sketch, const double a[3], const doubl
                            const double c[3], bool front, bool pictured)
 {
     double area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    int x0 = pixel_from(least(least(a[0], b[0]), c[0])),
-        y0 = pixel_from(least(least(a[1], b[1]), c[1]));
-    int x1 = pixel_to(most(most(a[0], b[0]), c[0]), SKETCH_ACROSS);
-    int y1 = pixel_to(most(most(a[1], b[1]), c[1]), SKETCH_DOWN);
+    int x0 = pixel_from(min(min(a[0], b[0]), c[0])), y0 = pixel_from(min(min(a[1], b[1]), c[1]));
+    int x1 = pixel_to(max(max(a[0], b[0]), c[0]), SKETCH_ACROSS);
+    int y1 = pixel_to(max(max(a[1], b[1]), c[1]), SKETCH_DOWN);
     if (x0 > x1 || y0 > y1 || area == 0.0)
         return;
     for (int y = y0; y <= y1; ++y) {

@@ -6,9 +6,9 @@
 
 #include "base/array.h"
 
-#define TRIANGLES_MOST 400000u
-#define MOMENTS        9     /* of an animation that the picture is fitted to */
-#define MOVING_MOST    10000 /* instances */
+#define TRIANGLES_MAX 400000u
+#define MOMENTS       9     /* of an animation that the picture is fitted to */
+#define MOVING_MAX    10000 /* instances */
 
 static void put_corner(const struct soup *soup, const struct affine *matrix, const double p[3],
                        float out[3])
@@ -87,7 +87,7 @@ static void moments_finish(struct moments *moments)
 static whit_result moments_init(const struct scene *scene, const struct scene_pose *now,
                                 struct moments *out)
 {
-    bool moves = scene->time_end_s > 0.0f && scene->instance_count <= MOVING_MOST;
+    bool moves = scene->time_end_s > 0.0f && scene->instance_count <= MOVING_MAX;
     out->poses[0] = *now;
     out->count = 1;
     memcpy(out->lo, now->lo, sizeof out->lo);
@@ -168,7 +168,7 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
         total += scene->meshes[scene->instances[i].mesh].triangle_count;
         spheres |= scene->meshes[scene->instances[i].mesh].sphere_count > 0;
     }
-    soup->whole = total <= TRIANGLES_MOST && !spheres;
+    soup->whole = total <= TRIANGLES_MAX && !spheres;
     uint64_t room = (soup->whole ? total : 0) + 3ull * moments.count * scene->instance_count;
     soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
     soup->pictured = array_alloc((size_t)room, sizeof *soup->pictured);

@@ -17,11 +17,11 @@ static bool refuse(const char *text, char *why)
 }
 
 /* A number that ends at the end of the text, or at a comma when `*rest` is wanted. */
-static bool read_number(const char *text, double least, double most, double *out, const char **rest)
+static bool read_number(const char *text, double min, double max, double *out, const char **rest)
 {
     char *end;
     *out = strtod(text, &end);
-    if (end == text || isspace((unsigned char)text[0]) || !(*out >= least && *out <= most))
+    if (end == text || isspace((unsigned char)text[0]) || !(*out >= min && *out <= max))
         return false;
     if (*end == ',' && rest)
         *rest = end + 1;

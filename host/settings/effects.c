@@ -5,13 +5,13 @@
 #include "base/text.h"
 #include "settings/settings.h"
 
-enum { NAMES_MOST = 64 };
+enum { NAMES_MAX = 64 };
 
 static bool check_name(const char *name, bool adds, char *why)
 {
-    const char *names[NAMES_MOST];
+    const char *names[NAMES_MAX];
     uint32_t count = 0;
-    for (; count < NAMES_MOST && (names[count] = whit_effect_name(count)); ++count) {
+    for (; count < NAMES_MAX && (names[count] = whit_effect_name(count)); ++count) {
         if (strcmp(name, names[count]) != 0)
             continue;
         if (adds ? whit_effect_can_add(count) : whit_effect_can_remove(count))

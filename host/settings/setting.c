@@ -48,7 +48,7 @@ static uint64_t size_of(enum setting_kind kind)
     case SETTING_TEXT:
         return SETTING_TEXT_BYTES;
     case SETTING_FOLDERS:
-        return SETTING_FOLDERS_MOST * sizeof(folder);
+        return SETTING_FOLDERS_MAX * sizeof(folder);
     default:
         return 0;
     }
@@ -149,10 +149,10 @@ static bool read_folder(const char *text, folder *out, char *why)
 {
     size_t length = strlen(text);
     uint32_t count = 0;
-    while (count < SETTING_FOLDERS_MOST && out[count][0])
+    while (count < SETTING_FOLDERS_MAX && out[count][0])
         ++count;
-    if (!length || length >= sizeof(folder) || count == SETTING_FOLDERS_MOST)
-        return setting_refuse(why, " takes a folder, %d times at most", SETTING_FOLDERS_MOST);
+    if (!length || length >= sizeof(folder) || count == SETTING_FOLDERS_MAX)
+        return setting_refuse(why, " takes a folder, %d times at most", SETTING_FOLDERS_MAX);
     memcpy(out[count], text, length + 1);
     return true;
 }
@@ -248,7 +248,7 @@ bool setting_write(const struct setting *setting, const void *record, uint32_t i
     case SETTING_TEXT:
         return put(text, at);
     case SETTING_FOLDERS:
-        return index < SETTING_FOLDERS_MOST && put(text, ((const folder *)at)[index]);
+        return index < SETTING_FOLDERS_MAX && put(text, ((const folder *)at)[index]);
     case SETTING_NAME:
         return put(text, *(const char *const *)at ? *(const char *const *)at : "");
     case SETTING_OWN:
@@ -269,7 +269,7 @@ bool setting_same(const struct setting *setting, const void *a, const void *b)
                strcmp(text_a, text_b) == 0;
     if (setting->kind == SETTING_TEXT)
         return strcmp(at_a, at_b) == 0;
-    for (uint32_t i = 0; setting->kind == SETTING_FOLDERS && i < SETTING_FOLDERS_MOST; ++i) {
+    for (uint32_t i = 0; setting->kind == SETTING_FOLDERS && i < SETTING_FOLDERS_MAX; ++i) {
         if (strcmp(((const folder *)at_a)[i], ((const folder *)at_b)[i]) != 0)
             return false;
     }

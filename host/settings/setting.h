@@ -6,7 +6,7 @@
 
 #include "settings/values.h"
 
-enum { SETTING_TEXT_BYTES = 384, SETTING_PATH_BYTES = 1024, SETTING_FOLDERS_MOST = 8 };
+enum { SETTING_TEXT_BYTES = 384, SETTING_PATH_BYTES = 1024, SETTING_FOLDERS_MAX = 8 };
 /* Of what setting_write gives, and of why setting_read refuses. */
 enum { SETTING_VALUE_BYTES = SETTING_PATH_BYTES, SETTING_WHY_BYTES = 1400 };
 

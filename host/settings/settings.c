@@ -103,11 +103,11 @@ whit_renderer_params settings_picture(const struct settings *settings)
 }
 
 whit_load_params settings_load(const struct settings *settings,
-                               const char *folders[SETTING_FOLDERS_MOST])
+                               const char *folders[SETTING_FOLDERS_MAX])
 {
     whit_load_params params = settings->load;
     params.allowed_folders = folders;
-    while (params.allowed_count < SETTING_FOLDERS_MOST &&
+    while (params.allowed_count < SETTING_FOLDERS_MAX &&
            settings->allowed[params.allowed_count][0]) {
         folders[params.allowed_count] = settings->allowed[params.allowed_count];
         ++params.allowed_count;

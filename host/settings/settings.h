@@ -25,8 +25,8 @@ struct settings {
     uint32_t reload;                /* another number: the scene is read again */
     uint64_t given;                 /* bits of rows that options named: see settings_given */
 
-    whit_load_params load;                                  /* without pointers */
-    char allowed[SETTING_FOLDERS_MOST][SETTING_PATH_BYTES]; /* folders; "" behind the last */
+    whit_load_params load;                                 /* without pointers */
+    char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* folders; "" behind the last */
     whit_accel_params trees;
     whit_renderer_params picture;     /* without pointers: see settings_picture */
     char camera[SETTING_TEXT_BYTES];  /* "": the scene's first */
@@ -81,7 +81,7 @@ bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES]);
  */
 whit_renderer_params settings_picture(const struct settings *settings);
 whit_load_params settings_load(const struct settings *settings,
-                               const char *folders[SETTING_FOLDERS_MOST]);
+                               const char *folders[SETTING_FOLDERS_MAX]);
 
 /* ---- Comparing ---- */
 

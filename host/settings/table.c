@@ -5,7 +5,7 @@
 
 #include "settings/settings.h"
 
-enum { DEPTH_MOST = 255, FRAMES_MAX = 1000000000 };
+enum { DEPTH_MAX = 255, FRAMES_MAX = 1000000000 };
 
 enum {
     IN_PICTURES = IN_RENDER | IN_VIEW | IN_PROBE,
@@ -163,7 +163,7 @@ const struct setting settings_table[] = {
      .change = SETTING_LIGHT, .always = true, .title = "anti-aliasing", .steps = steps_aa,
      .key = 'A'},
     {"depth", 0, "N", "most bounces; 0: only what is seen directly", AT(COUNT, picture.depth),
-     .max = DEPTH_MOST, .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .always = true,
+     .max = DEPTH_MAX, .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .always = true,
      .title = "bounces", .step = 1.0, .shown_max = 32.0, .key = '=', .key_back = '-'},
     {"bailout", 0, "X",
      "rays that can add less than X to a pixel are not traced;\n"

@@ -41,9 +41,9 @@ static const char *title_of(const struct setting *row, uint32_t i)
     return row->steps && step->title ? step->title : step->word;
 }
 
-uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MOST])
+uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MAX])
 {
-    uint32_t count = step_count(row) < CHOICE_WORDS_MOST ? step_count(row) : CHOICE_WORDS_MOST;
+    uint32_t count = step_count(row) < CHOICE_WORDS_MAX ? step_count(row) : CHOICE_WORDS_MAX;
     for (uint32_t i = 0; i < count; ++i)
         words[i] = title_of(row, i);
     return count;
@@ -122,7 +122,7 @@ static bool is_told(const struct setting *row)
 }
 
 uint32_t choice_changes(const struct settings *a, const struct settings *b,
-                        struct choice_change changes[CHOICE_CHANGES_MOST])
+                        struct choice_change changes[CHOICE_CHANGES_MAX])
 {
     uint32_t count = 0;
     if (!settings_same_scene(a, b)) {
@@ -133,7 +133,7 @@ uint32_t choice_changes(const struct settings *a, const struct settings *b,
     }
     for (const struct setting *row = settings_table; row->name; ++row) {
         struct choice_change *change = &changes[count];
-        if (!is_told(row) || setting_same(row, a, b) || count == CHOICE_CHANGES_MOST)
+        if (!is_told(row) || setting_same(row, a, b) || count == CHOICE_CHANGES_MAX)
             continue;
         change->name = row->title ? row->title : row->name;
         change->painted = row->change == SETTING_PLACE;

@@ -8,8 +8,8 @@
 /* The row behind `row`, or with NULL the first; NULL: there is none. */
 const struct setting *choice_next(const struct setting *row);
 /* The steps in words, CHOICE_WORDS_MOST at most; 0: it is a number. */
-enum { CHOICE_WORDS_MOST = 16 };
-uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MOST]);
+enum { CHOICE_WORDS_MAX = 16 };
+uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MAX]);
 /* Which of them it is at; -1: none of them. */
 int choice_get(const struct settings *settings, const struct setting *row);
 void choice_set(struct settings *settings, const struct setting *row, uint32_t step);
@@ -23,7 +23,7 @@ void choice_say(const struct settings *settings, const struct setting *row, char
                 size_t bytes);
 
 /* In what two settings differ, beside place. */
-enum { CHOICE_WORDS = 96, CHOICE_CHANGES_MOST = 32 };
+enum { CHOICE_WORDS = 96, CHOICE_CHANGES_MAX = 32 };
 struct choice_change {
     const char *name;
     bool painted; /* it is what is painted, not how it is found or shaded */
@@ -31,6 +31,6 @@ struct choice_change {
 };
 /* Their number. */
 uint32_t choice_changes(const struct settings *a, const struct settings *b,
-                        struct choice_change changes[CHOICE_CHANGES_MOST]);
+                        struct choice_change changes[CHOICE_CHANGES_MAX]);
 
 #endif

@@ -95,12 +95,12 @@ static void subtract(const whit_image *a, const whit_image *b, float *out)
     const float *s = whit_image_floats(a), *t = whit_image_floats(b);
     uint32_t counted = info.channels < 3 ? info.channels : 3;
     for (size_t left = (size_t)info.width * info.height; left > 0; --left) {
-        float most = 0.0f;
+        float max = 0.0f;
         for (uint32_t c = 0; c < counted; ++c) {
             float d = fabsf(s[c] - t[c]);
-            most = d <= most || isnan(most) ? most : d; /* keeps what is not a number */
+            max = d <= max || isnan(max) ? max : d; /* keeps what is not a number */
         }
-        *out++ = most;
+        *out++ = max;
         s += info.channels;
         t += info.channels;
     }

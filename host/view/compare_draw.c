@@ -5,13 +5,13 @@
 #include "view/choices.h"
 #include "view/view_private.h"
 
-enum { NAMES_MOST = 4 }; /* lines of a name */
+enum { NAMES_MAX = 4 }; /* lines of a name */
 static const uint32_t COLORS[2] = {0xFF60C8FFu, 0xFFFFC880u};
 
 /* "A  traversal sign", with a line for each setting that the other does not share. */
 static void draw_name(const struct view *view, int side)
 {
-    struct choice_change changes[CHOICE_CHANGES_MOST];
+    struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct engine_frame *b = &view->compare.other;
     const struct settings *other = b->rgba ? &b->settings : &view->compare.frozen;
     uint32_t count = choice_changes(&view->frame.settings, other, changes);
@@ -20,15 +20,15 @@ static void draw_name(const struct view *view, int side)
         ui_same_line(3);
         if (count == 0)
             ui_text(side ? "as it was" : "the same as B");
-        for (uint32_t i = 0; i < count && i < NAMES_MOST; ++i) {
+        for (uint32_t i = 0; i < count && i < NAMES_MAX; ++i) {
             if (i > 0) {
                 ui_text(" ");
                 ui_same_line(3);
             }
             ui_text("%s %.40s", changes[i].name, side ? changes[i].b : changes[i].a);
         }
-        if (count > NAMES_MOST)
-            ui_text_dim("and %u more", count - NAMES_MOST);
+        if (count > NAMES_MAX)
+            ui_text_dim("and %u more", count - NAMES_MAX);
         if (side == 1 && !b->rgba)
             ui_text_dim("not drawn yet");
     }

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PIXELS_MOST = 128 * 96, ROUNDS = 9 };
+enum { PIXELS_MAX = 128 * 96, ROUNDS = 9 };
 
 /* ---- Switches in words ---- */
 
@@ -48,7 +48,7 @@ static whit_renderer_params small_picture(const struct effect_work *work)
 {
     whit_renderer_params params = settings_picture(work->settings);
     uint32_t width = params.width, height = params.height;
-    for (uint32_t by = 2; (uint64_t)params.width * params.height > PIXELS_MOST; ++by) {
+    for (uint32_t by = 2; (uint64_t)params.width * params.height > PIXELS_MAX; ++by) {
         params.width = (width + by - 1) / by;
         params.height = (height + by - 1) / by;
     }
@@ -95,11 +95,11 @@ static whit_result price_effect(const struct effect_work *work, whit_renderer *u
 static whit_result price_all(const struct effect_work *work, whit_renderer *usual)
 {
     whit_result result = WHIT_OK;
-    for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i) && result == WHIT_OK; ++i) {
+    for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i) && result == WHIT_OK; ++i) {
         struct effect_price price = {0};
         if (!whit_renderer_compiles(usual, i) || !whit_effect_can_remove(i))
             continue;
-        work->say(work->user, (double)i / EFFECTS_MOST, whit_effect_name(i));
+        work->say(work->user, (double)i / EFFECTS_MAX, whit_effect_name(i));
         result = *work->cancel ? WHIT_ERROR_CANCELLED : price_effect(work, usual, i, &price);
         if (result == WHIT_OK)
             work->found(work->user, i, &price);

@@ -6,7 +6,7 @@
 #include "cost/cost.h"
 #include "settings/settings.h"
 
-enum { EFFECTS_MOST = 64 };
+enum { EFFECTS_MAX = 64 };
 
 /* Of one switch: the pictures before and after it. */
 struct effect_price {

@@ -8,7 +8,7 @@
 #include "base/platform.h"
 #include "view/engine_private.h"
 
-enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MOST = 2 };
+enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };
 static const uint64_t LARGE_SCENE = 1000000; /* triangles */
 
 static void wake_window(struct engine *engine)
@@ -93,7 +93,7 @@ static void job_destroy(struct engine_job *job)
 /* A scene that some session has loaded already, held; NULL: none. */
 static struct scene_ref *find_scene(const struct engine *engine, const struct settings *settings)
 {
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         const struct session *session = engine->sessions[i];
         if (session && settings_same_scene(&session->scene->settings, settings))
             return scene_ref_take(session->scene);
@@ -143,7 +143,7 @@ static void forget_session(struct engine *engine, uint32_t index)
 
 static void forget_if(struct engine *engine, const struct session *session)
 {
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         if (engine->sessions[i] == session && session)
             forget_session(engine, i);
     }
@@ -155,28 +155,28 @@ static bool is_shown(const struct engine *engine, const struct session *session)
     return engine->lanes[0].session == session || (other->wanted && other->session == session);
 }
 
-static uint32_t sessions_most(const struct engine *engine, const struct session *newest)
+static uint32_t sessions_max(const struct engine *engine, const struct session *newest)
 {
-    uint32_t most = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
+    uint32_t max = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
     bool large = newest->scene->info.triangle_count > LARGE_SCENE;
-    return large && most > SESSIONS_LARGE ? SESSIONS_LARGE : most;
+    return large && max > SESSIONS_LARGE ? SESSIONS_LARGE : max;
 }
 
 /* Makes room for one more: scenes that nobody looks at go first, then what was not used longest. */
 static void make_room(struct engine *engine, const struct session *newest)
 {
     for (;;) {
-        uint32_t count = 0, oldest = ENGINE_SESSIONS_MOST;
-        for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+        uint32_t count = 0, oldest = ENGINE_SESSIONS_MAX;
+        for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
             const struct session *session = engine->sessions[i];
             count += session != NULL;
             if (!session || is_shown(engine, session))
                 continue;
-            if (oldest == ENGINE_SESSIONS_MOST ||
+            if (oldest == ENGINE_SESSIONS_MAX ||
                 session->last_use < engine->sessions[oldest]->last_use)
                 oldest = i;
         }
-        if (count < sessions_most(engine, newest) || oldest == ENGINE_SESSIONS_MOST)
+        if (count < sessions_max(engine, newest) || oldest == ENGINE_SESSIONS_MAX)
             return;
         forget_session(engine, oldest);
     }
@@ -184,7 +184,7 @@ static void make_room(struct engine *engine, const struct session *newest)
 
 static struct session *find_session(const struct engine *engine, const struct settings *settings)
 {
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         struct session *session = engine->sessions[i];
         if (session && settings_same_kernel(&session->settings, settings))
             return session;
@@ -195,7 +195,7 @@ static struct session *find_session(const struct engine *engine, const struct se
 static void keep_session(struct engine *engine, struct session *session)
 {
     make_room(engine, session);
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         if (!engine->sessions[i]) {
             engine->sessions[i] = session;
             return;
@@ -395,7 +395,7 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
 /* The device is gone: everything on it is made again, unless that happens again and again. */
 static void lose_device(struct engine *engine, struct session *session)
 {
-    engine->device_lost = ++engine->lost > LOST_MOST;
+    engine->device_lost = ++engine->lost > LOST_MAX;
     forget_if(engine, session);
 }
 
@@ -543,8 +543,8 @@ whit_result engine_create(const struct engine_params *params, struct engine **ou
         return WHIT_ERROR_MEMORY;
     pthread_condattr_t monotonic;
     engine->params = *params;
-    if (engine->params.sessions > ENGINE_SESSIONS_MOST)
-        engine->params.sessions = ENGINE_SESSIONS_MOST;
+    if (engine->params.sessions > ENGINE_SESSIONS_MAX)
+        engine->params.sessions = ENGINE_SESSIONS_MAX;
     pthread_condattr_init(&monotonic);
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&engine->lock, NULL);
@@ -574,7 +574,7 @@ uint32_t engine_destroy(struct engine *engine)
     pthread_mutex_unlock(&engine->lock);
     thread_join(engine->thread);
     job_destroy(engine->job);
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MOST; ++i) {
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         if (engine->sessions[i])
             drop_session(engine, engine->sessions[i]);
     }

@@ -30,7 +30,7 @@ void engine_ask(struct engine *engine, const struct settings *settings, bool mov
    what engine_ask says. NULL: no more. */
 void engine_ask_other(struct engine *engine, const struct settings *settings);
 
-enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MOST = 8192 };
+enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MAX = 8192 };
 
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {

@@ -27,7 +27,7 @@ static void add(struct text *text, const char *format, ...)
 
 static void describe(const struct settings *a, const struct settings *b, char *out, size_t bytes)
 {
-    struct choice_change changes[CHOICE_CHANGES_MOST];
+    struct choice_change changes[CHOICE_CHANGES_MAX];
     uint32_t count = choice_changes(a, b, changes);
     struct text text = {out, bytes};
     out[0] = '\0';

@@ -119,7 +119,7 @@ static whit_result read_boxes(const struct engine_task *task, struct engine_fram
         return WHIT_OK;
     whit_result result =
         whit_accel_boxes(task->session->accel, s->picture.time_s, s->boxes == BOXES_INSTANCES,
-                         s->boxes_level, ENGINE_BOXES_MOST, &frame->boxes, &count);
+                         s->boxes_level, ENGINE_BOXES_MAX, &frame->boxes, &count);
     frame->boxes_total = count;
     return result;
 }
@@ -139,7 +139,7 @@ static whit_result count_visits(const struct engine_task *task, struct engine_fr
         result = whit_renderer_sample_costs(task->session->renderer, pixels, &cost);
     if (result != WHIT_OK || cost.rays == 0)
         return result;
-    frame->visits = (double)(cost.pairs + cost.leaves + cost.instances) / (double)cost.rays;
+    frame->visits = (double)(cost.inner_nodes + cost.leaves + cost.instances) / (double)cost.rays;
     frame->visits_rays = cost.rays;
     return WHIT_OK;
 }

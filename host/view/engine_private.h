@@ -7,7 +7,7 @@
 #include "base/threads.h"
 #include "view/engine.h"
 
-enum { ENGINE_SESSIONS_MOST = 8, ENGINE_LANES = 2 };
+enum { ENGINE_SESSIONS_MAX = 8, ENGINE_LANES = 2 };
 
 /* A session in the making. */
 struct engine_job {
@@ -70,9 +70,9 @@ struct engine {
     struct engine_lane lanes[ENGINE_LANES];
     struct settings place; /* of the window's last picture: that of the other one */
     uint32_t place_divisor;
-    uint64_t places;                                /* how often that was set */
-    struct engine_job *job;                         /* NULL: none */
-    struct session *sessions[ENGINE_SESSIONS_MOST]; /* of the drawing thread; NULL: free */
+    uint64_t places;                               /* how often that was set */
+    struct engine_job *job;                        /* NULL: none */
+    struct session *sessions[ENGINE_SESSIONS_MAX]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing is */
     double drawing_since_ms; /* when it began */
     bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */

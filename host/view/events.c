@@ -49,7 +49,7 @@ static const struct key_name {
     {KEY_F1 + 10, "F11"},
     {KEY_F12, "F12"},
 };
-enum { KEY_NAMES = sizeof key_names / sizeof *key_names, REPLAY_BYTES_MOST = 1 << 28 };
+enum { KEY_NAMES = sizeof key_names / sizeof *key_names, REPLAY_BYTES_MAX = 1 << 28 };
 static const char *const button_names[] = {"left", "right", "middle"};
 
 static bool is_own_name(int key)
@@ -348,7 +348,7 @@ whit_result events_load(const struct log *log, const char *path, struct view_eve
     size_t bytes = 0;
     *events = NULL;
     *count = 0;
-    whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MOST, &text, &bytes);
+    whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MAX, &text, &bytes);
     if (result == WHIT_OK)
         result = read_lines(log, path, (char *)text, &list);
     if (result == WHIT_OK && !join(&list, (const char *)text, bytes)) {

@@ -172,23 +172,15 @@ static void draw_hud(const struct view *view)
 
 /* Keys, what they do and their state, once or twice across the window; the widths in characters.
  */
-enum {
-    SHEET_CELLS = 3,
-    SHEET_KEYS = 10,
-    SHEET_NAME = 23,
-    SHEET_STATE = 22,
-    SHEET_STATE_LEAST = 11
-};
+enum { SHEET_CELLS = 3, SHEET_KEYS = 10, SHEET_NAME = 23, SHEET_STATE = 22, SHEET_STATE_MIN = 11 };
 
 static int lay_out_sheet(int widths[2 * SHEET_CELLS])
 {
-    const int least = SHEET_KEYS + 16 + SHEET_STATE_LEAST;
-    int groups = ui_characters(2 * SHEET_CELLS) >= 2 * least ? 2 : 1;
+    const int min = SHEET_KEYS + 16 + SHEET_STATE_MIN;
+    int groups = ui_characters(2 * SHEET_CELLS) >= 2 * min ? 2 : 1;
     int room = ui_characters(groups * SHEET_CELLS) / groups - SHEET_KEYS;
     int state = room - SHEET_NAME;
-    state = state < SHEET_STATE_LEAST ? SHEET_STATE_LEAST
-            : state < SHEET_STATE     ? state
-                                      : SHEET_STATE;
+    state = state < SHEET_STATE_MIN ? SHEET_STATE_MIN : state < SHEET_STATE ? state : SHEET_STATE;
     int name = room - state < SHEET_NAME ? room - state : SHEET_NAME;
     for (int i = 0; i < groups; ++i) {
         widths[i * SHEET_CELLS] = SHEET_KEYS;
@@ -210,7 +202,7 @@ static void draw_key(const struct view *view, const struct key_binding *key)
 
 static void draw_keys(const struct view *view)
 {
-    const struct key_binding *rows[KEYS_MOST];
+    const struct key_binding *rows[KEYS_MAX];
     uint32_t count, told = 0;
     int widths[2 * SHEET_CELLS], groups = lay_out_sheet(widths);
     const struct key_binding *keys = key_bindings(&count);
@@ -327,7 +319,7 @@ static void draw_boxes(const struct view *view)
     if (ui_panel_begin("boxes", 1.0f, 0.0f, UI_PANEL_PLAIN)) {
         ui_text("%s, level %u", trees[s->boxes], s->boxes_level);
         ui_text("%llu boxes%s", (unsigned long long)frame->boxes_total,
-                frame->boxes_total > ENGINE_BOXES_MOST ? ", the first 8192 are drawn" : "");
+                frame->boxes_total > ENGINE_BOXES_MAX ? ", the first 8192 are drawn" : "");
         ui_text_color(0xFFFFC060u, "inner nodes");
         ui_same_line(0);
         ui_text_color(0xFF20A0FFu, "leaves, also from above");

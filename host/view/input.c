@@ -8,7 +8,7 @@ static const double ORBIT_RADIANS = 3.14159265358979; /* across the window's hei
 static const double ZOOM_NOTCH = 0.85;
 static const double FLY_A_SECOND = 0.8; /* distances to the target */
 static const double CLICK_PIXELS = 4.0; /* less is no drag */
-static const double STEP_MOST_S = 0.25; /* of one picture, however long it took */
+static const double STEP_MAX_S = 0.25;  /* of one picture, however long it took */
 
 static enum ui_key ui_key_of(int key)
 {
@@ -39,7 +39,7 @@ static bool flies(const struct view *view, int key)
 static void on_key(struct view *view, const struct view_event *event)
 {
     enum ui_key own = ui_key_of(event->key);
-    if (event->key >= 0 && event->key < KEYS_MOST)
+    if (event->key >= 0 && event->key < KEYS_MAX)
         view->input.down[event->key] = event->down;
     if (own != UI_KEY_COUNT)
         ui_key_event(view->ui, own, event->down);
@@ -187,7 +187,7 @@ static bool play(struct view *view, double now_ms)
 {
     struct view_clock *clock = &view->clock;
     double *time_s = &view->settings.picture.time_s;
-    double passed_s = fmin((now_ms - clock->last_ms) * 1e-3, STEP_MOST_S);
+    double passed_s = fmin((now_ms - clock->last_ms) * 1e-3, STEP_MAX_S);
     clock->last_ms = now_ms;
     if (!view_plays(view))
         return false;
@@ -205,7 +205,7 @@ static bool play(struct view *view, double now_ms)
 bool input_step(struct view *view, double now_ms)
 {
     struct view_input *input = &view->input;
-    double seconds = fmin((now_ms - input->step_ms) * 1e-3, STEP_MOST_S);
+    double seconds = fmin((now_ms - input->step_ms) * 1e-3, STEP_MAX_S);
     input->step_ms = now_ms;
     bool flew = fly(view, seconds), played = play(view, now_ms);
     return flew || played;

@@ -9,7 +9,7 @@
 #include "view/view_private.h"
 
 static const double ESCAPE_MS = 1500.0; /* between the two that quit */
-enum { BOXES_LEVEL_MOST = 127 };
+enum { BOXES_LEVEL_MAX = 127 };
 
 /* ---- Choices ---- */
 
@@ -117,7 +117,7 @@ static void say_boxes(const struct view *view, char *text, size_t bytes)
 
 static void deeper_boxes(struct view *view)
 {
-    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MOST)
+    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MAX)
         ++view->settings.boxes_level;
 }
 
@@ -485,15 +485,15 @@ static const struct key_binding bindings[] = {
     {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", .act = escape},
 };
 
-enum { SETTING_KEYS_MOST = 32, KEY_NAME = 8 };
+enum { SETTING_KEYS_MAX = 32, KEY_NAME = 8 };
 
 /* Of the settings that have keys, and then the others. */
-static struct key_binding all[SETTING_KEYS_MOST + sizeof bindings / sizeof *bindings];
+static struct key_binding all[SETTING_KEYS_MAX + sizeof bindings / sizeof *bindings];
 static uint32_t all_count;
 
 static void add_setting(const struct setting *row)
 {
-    static char names[SETTING_KEYS_MOST][KEY_NAME];
+    static char names[SETTING_KEYS_MAX][KEY_NAME];
     char *name = names[all_count];
     if (row->key_back)
         snprintf(name, KEY_NAME, "%c %c", row->key_back, row->key);
@@ -512,7 +512,7 @@ const struct key_binding *key_bindings(uint32_t *count)
 {
     if (all_count == 0) {
         for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
-            if (row->key && all_count + 2 <= SETTING_KEYS_MOST)
+            if (row->key && all_count + 2 <= SETTING_KEYS_MAX)
                 add_setting(row);
         }
         memcpy(all + all_count, bindings, sizeof bindings);

@@ -7,7 +7,7 @@
 
 static void note(struct view_figures *figures, double value)
 {
-    if (figures->count < FIGURES_MOST)
+    if (figures->count < FIGURES_MAX)
         figures->values[figures->count] = value;
     ++figures->count;
 }
@@ -20,7 +20,7 @@ static int compare(const void *a, const void *b)
 
 double figures_quantile(struct view_figures *figures, double share)
 {
-    uint32_t count = figures->count < FIGURES_MOST ? figures->count : FIGURES_MOST;
+    uint32_t count = figures->count < FIGURES_MAX ? figures->count : FIGURES_MAX;
     if (count == 0)
         return 0.0;
     qsort(figures->values, count, sizeof *figures->values, compare);

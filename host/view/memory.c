@@ -11,7 +11,7 @@
 #include "base/array.h"
 #include "base/file.h"
 
-enum { SCENES_MOST = 200 };
+enum { SCENES_MAX = 200 };
 
 /* The folder, with a slash; NULL where there is none. free(). */
 static char *state_folder(void)
@@ -78,7 +78,7 @@ bool memory_find(const char *scene, char *camera, size_t camera_bytes)
 /* The oldest go: objects keep the order in which they were filled. */
 static void forget_old(json_t *all)
 {
-    while (json_object_size(all) > SCENES_MOST)
+    while (json_object_size(all) > SCENES_MAX)
         json_object_del(all, json_object_iter_key(json_object_iter(all)));
 }
 

@@ -45,8 +45,7 @@ static void draw_box(const struct view *view, const whit_box *box)
 void overlay_boxes(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
-    uint64_t count =
-        frame->boxes_total < ENGINE_BOXES_MOST ? frame->boxes_total : ENGINE_BOXES_MOST;
+    uint64_t count = frame->boxes_total < ENGINE_BOXES_MAX ? frame->boxes_total : ENGINE_BOXES_MAX;
     if (!overlay_is_possible(view))
         return;
     for (uint64_t i = 0; frame->boxes && i < count; ++i)

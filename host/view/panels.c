@@ -10,7 +10,7 @@
 #include "view/view_private.h"
 
 enum { NAMES_LAST = 9999, WORDS_BYTES = 8192 };
-static const double FPS_LEAST = 1.0, FPS_MOST = 240.0;
+static const double FPS_MIN = 1.0, FPS_MAX = 240.0;
 
 /* ---- Files of settings ---- */
 
@@ -37,7 +37,7 @@ static void list_states(struct panels *panels)
     for (name_file(1, "view", name); last < NAMES_LAST && file_exists(name);
          name_file(last + 1, "view", name))
         ++last;
-    for (int i = last; i > 0 && panels->state_count < STATES_MOST; --i)
+    for (int i = last; i > 0 && panels->state_count < STATES_MAX; --i)
         name_file(i, "view", panels->states[panels->state_count++]);
 }
 
@@ -112,7 +112,7 @@ static void draw_number(struct view *view, const struct setting *row)
 static void draw_choice(struct view *view, const struct setting *row)
 {
     char shown[CHOICE_WORDS];
-    const char *words[CHOICE_WORDS_MOST];
+    const char *words[CHOICE_WORDS_MAX];
     uint32_t count = choice_words(row, words);
     int value = choice_get(&view->settings, row);
     if (count == 0) {
@@ -135,7 +135,7 @@ static void draw_hud_choice(struct view *view)
 static void draw_files(struct view *view)
 {
     struct panels *panels = &view->panels;
-    const char *names[STATES_MOST];
+    const char *names[STATES_MAX];
     int value = -1;
     if (!panels->states_known)
         list_states(panels);
@@ -158,7 +158,7 @@ static void draw_settings(struct view *view)
             if (!rays || view->settings.paint != PAINT_COLOR)
                 draw_choice(view, row);
         }
-        if (ui_slider("fps goal", &fps, FPS_LEAST, FPS_MOST, true))
+        if (ui_slider("fps goal", &fps, FPS_MIN, FPS_MAX, true))
             set_fps_goal(view, fps);
         draw_hud_choice(view);
         if (view->wish.stage != WISH_NONE && ui_button("choose again"))
@@ -268,7 +268,7 @@ static void draw_effects(struct view *view)
         int columns = say_reasons() ? 3 : 2;
         if (ui_table_begin("effects", columns)) {
             ui_table_header(titles, columns);
-            for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i)
+            for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i); ++i)
                 draw_effect(view, i);
             ui_table_end();
         }

@@ -7,16 +7,16 @@
 
 #include "view/prices.h"
 
-enum { VIEW_FREE_NAME = 32, STATES_MOST = 32 };
+enum { VIEW_FREE_NAME = 32, STATES_MAX = 32 };
 
 struct panels {
     bool settings, effects;
     uint64_t change;   /* the last one that was looked at */
     int pending;       /* 1 + the effect that was switched; 0: none, -1: several */
     const void *scene; /* that the prices are of */
-    struct effect_price prices[EFFECTS_MOST]; /* of switches that were made */
-    struct prices *measured;                  /* of all, while their panel is open; or NULL */
-    char states[STATES_MOST][VIEW_FREE_NAME]; /* files of settings, the newest first */
+    struct effect_price prices[EFFECTS_MAX]; /* of switches that were made */
+    struct prices *measured;                 /* of all, while their panel is open; or NULL */
+    char states[STATES_MAX][VIEW_FREE_NAME]; /* files of settings, the newest first */
     uint32_t state_count;
     bool states_known;
 };

@@ -196,10 +196,10 @@ static double drawn_length(const struct view *view, const whit_probe_ray *ray)
         longest += d * d;
         length += r * r;
     }
-    double most = length > 0.0 ? 2.0 * sqrt(longest / length) : 0.0;
+    double max = length > 0.0 ? 2.0 * sqrt(longest / length) : 0.0;
     if (ray->kind == WHIT_RAY_SHADOW && !isfinite(t))
         t = (double)ray->ray.t_max;
-    return isfinite(t) && t < most ? t : most;
+    return isfinite(t) && t < max ? t : max;
 }
 
 static void draw_rays(const struct view *view)

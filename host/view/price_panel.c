@@ -16,7 +16,7 @@ void prices_leave(struct view *view, struct prices *prices)
     if (!prices)
         return;
     prices_cancel(prices);
-    while (at < LEAVING_MOST - 1 && view->leaving[at])
+    while (at < LEAVING_MAX - 1 && view->leaving[at])
         ++at;
     prices_stop(view->leaving[at]); /* where there are many at once, the last one is waited for */
     view->leaving[at] = prices;
@@ -24,7 +24,7 @@ void prices_leave(struct view *view, struct prices *prices)
 
 void prices_part(struct view *view)
 {
-    for (uint32_t i = 0; i < LEAVING_MOST; ++i) {
+    for (uint32_t i = 0; i < LEAVING_MAX; ++i) {
         if (view->leaving[i] && prices_are_still(view->leaving[i])) {
             prices_stop(view->leaving[i]);
             view->leaving[i] = NULL;

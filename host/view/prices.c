@@ -26,7 +26,7 @@ struct prices {
     double done, seconds_left;
     char what[PRICES_TEXT];
     struct cost_report *report;
-    struct effect_price effects[EFFECTS_MOST];
+    struct effect_price effects[EFFECTS_MAX];
 };
 
 static void tell(void *user, double done, double seconds_left, const char *what)
@@ -62,7 +62,7 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
         .cancel = &prices->cancel,
         .knobs = prices->knobs,
         .seconds = prices->seconds,
-        .samples_most = REFERENCE_SAMPLES,
+        .samples_max = REFERENCE_SAMPLES,
         .progress = tell,
         .progress_user = prices,
         .log = log,

@@ -196,11 +196,11 @@ void scenes_answer(struct view *view, bool allow)
     uint32_t count = 0;
     memcpy(view->answered, view->status.refused, sizeof view->answered);
     view->dirty = true;
-    while (count < SETTING_FOLDERS_MOST && view->settings.allowed[count][0])
+    while (count < SETTING_FOLDERS_MAX && view->settings.allowed[count][0])
         ++count;
-    if (allow && count == SETTING_FOLDERS_MOST)
-        view_say(view, "%d folders are the most that can be allowed", SETTING_FOLDERS_MOST);
-    if (!allow || count == SETTING_FOLDERS_MOST)
+    if (allow && count == SETTING_FOLDERS_MAX)
+        view_say(view, "%d folders are the most that can be allowed", SETTING_FOLDERS_MAX);
+    if (!allow || count == SETTING_FOLDERS_MAX)
         return;
     memcpy(view->settings.allowed[count], view->answered, sizeof view->answered);
     scenes_read_again(view);

@@ -37,7 +37,7 @@ static void tell(struct session_progress *progress, enum session_stage stage)
 static whit_result load(struct session *session, const whit_log *log)
 {
     const struct settings *settings = &session->settings;
-    const char *allowed[SETTING_FOLDERS_MOST];
+    const char *allowed[SETTING_FOLDERS_MAX];
     whit_refused refused = {0};
     whit_load_params params = settings_load(settings, allowed);
     params.cancel = &session->cancel;

@@ -147,7 +147,7 @@ static json_t *panels_json(bool all)
 static json_t *prices_json(const struct view *view, bool measured)
 {
     json_t *object = json_object();
-    for (uint32_t i = 0; i < EFFECTS_MOST && whit_effect_name(i); ++i) {
+    for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i); ++i) {
         struct effect_price price = {0};
         if (!measured)
             price = view->panels.prices[i];
@@ -189,14 +189,14 @@ static json_t *probe_json(const struct engine_probe *probe)
     return object;
 }
 
-/* {"count":3,"median":..,"p95":..,"most":..} */
+/* {"count":3,"median":..,"p95":..,"max":..} */
 static json_t *figures_json(struct view_figures *figures)
 {
     json_t *object = json_object();
     put_count(object, "count", figures->count);
     put_number(object, "median", figures_quantile(figures, 0.5));
     put_number(object, "p95", figures_quantile(figures, 0.95));
-    put_number(object, "most", figures_quantile(figures, 1.0));
+    put_number(object, "max", figures_quantile(figures, 1.0));
     return object;
 }
 
@@ -210,7 +210,7 @@ static json_t *measure_json(struct view_measure *measure)
     put_number(object, "cpu_ms", clock_cpu_ms() - measure->cpu_ms);
     put_count(object, "drawn", measure->drawn);
     uint32_t slow = 0;
-    for (uint32_t i = 0; i < measure->gap.count && i < FIGURES_MOST; ++i)
+    for (uint32_t i = 0; i < measure->gap.count && i < FIGURES_MAX; ++i)
         slow += measure->gap.values[i] > 100.0;
     put_count(object, "gaps_over_100_ms", slow);
     json_object_set_new(object, "whole_ms", figures_json(&measure->whole));

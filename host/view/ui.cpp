@@ -79,7 +79,7 @@ static void give(void *memory, void *)
 
 // ---- Failures of the backend ----
 
-enum { IMAGES_LEAST = 2 }; // the backend has no fewer
+enum { IMAGES_MIN = 2 }; // the backend has no fewer
 
 // It goes on after a call that failed, with what that call did not make: this stops it there.
 struct failed_call {
@@ -99,7 +99,7 @@ static whit_result say_failure(const struct ui *ui, const failed_call &failure)
 
 // ---- Where panels are ----
 
-enum { PANELS_MOST = 24, ITEMS_MOST = 96, AGAIN_MOST = 8 };
+enum { PANELS_MAX = 24, ITEMS_MAX = 96, AGAIN_MAX = 8 };
 
 struct panel {
     char title[32];
@@ -110,9 +110,9 @@ struct panel {
 
 // Of this frame those that were ended are obstacles for the next ones.
 static struct {
-    panel panels[PANELS_MOST];
+    panel panels[PANELS_MAX];
     int count, frame, current;
-    int obstacles[PANELS_MOST], obstacle_count;
+    int obstacles[PANELS_MAX], obstacle_count;
     bool changed, wraps;
     int again;
 } layout;
@@ -120,7 +120,7 @@ static struct {
 static struct {
     char label[48];
     ImVec2 middle;
-} items[ITEMS_MOST];
+} items[ITEMS_MAX];
 static uint32_t item_count;
 
 static int find_panel(const char *title)
@@ -132,7 +132,7 @@ static int find_panel(const char *title)
         if (layout.panels[i].frame < layout.panels[oldest].frame)
             oldest = i;
     }
-    int at = layout.count < PANELS_MOST ? layout.count++ : oldest;
+    int at = layout.count < PANELS_MAX ? layout.count++ : oldest;
     layout.panels[at] = panel();
     std::snprintf(layout.panels[at].title, sizeof layout.panels[at].title, "%s", title);
     return at;
@@ -171,7 +171,7 @@ static const ImVec2 NOWHERE(-1e5f, -1e5f);
 static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &otherwise)
 {
     float height = ImGui::GetIO().DisplaySize.y;
-    for (int turn = 0; turn < PANELS_MOST && y != 0.5f; ++turn) {
+    for (int turn = 0; turn < PANELS_MAX && y != 0.5f; ++turn) {
         const panel *other = obstacle_of(at, size);
         if (!other)
             break;
@@ -191,8 +191,8 @@ static float room_below(const ImVec2 &at, float width)
         if (!beside && p.at.y >= at.y && p.at.y - gap() < end)
             end = p.at.y - gap();
     }
-    float least = 70.0f * line_scale;
-    return end - at.y > least ? end - at.y : least;
+    float min = 70.0f * line_scale;
+    return end - at.y > min ? end - at.y : min;
 }
 
 static void note_panel(int index)
@@ -205,13 +205,13 @@ static void note_panel(int index)
     p.at = at;
     p.cut = ImGui::GetScrollMaxX() > 0.0f;
     p.frame = layout.frame;
-    if (layout.obstacle_count < PANELS_MOST && at.x > NOWHERE.x)
+    if (layout.obstacle_count < PANELS_MAX && at.x > NOWHERE.x)
         layout.obstacles[layout.obstacle_count++] = index;
 }
 
 void note_item(const char *label)
 {
-    if (item_count == ITEMS_MOST)
+    if (item_count == ITEMS_MAX)
         return;
     const char *end = std::strstr(label, "##");
     int length = end ? (int)(end - label) : (int)std::strlen(label);
@@ -275,7 +275,7 @@ static void start_backend(struct ui *ui)
     info.Queue = static_cast<VkQueue>(handles.queue);
     info.PipelineCache = (VkPipelineCache)handles.pipeline_cache;
     info.DescriptorPool = ui->descriptors;
-    info.MinImageCount = ui->images = IMAGES_LEAST;
+    info.MinImageCount = ui->images = IMAGES_MIN;
     info.ImageCount = handles.image_count;
     info.CheckVkResultFn = check_call;
     ui->backend = true; // also where it gets half way: it knows what it has
@@ -316,7 +316,7 @@ static bool give_back(struct ui *ui)
     if (ui->vertices <= VERTICES_KEPT || count > ui->vertices / 4)
         return false;
     ui->vertices = count;
-    ui->images = ui->images == IMAGES_LEAST ? IMAGES_LEAST + 1 : IMAGES_LEAST;
+    ui->images = ui->images == IMAGES_MIN ? IMAGES_MIN + 1 : IMAGES_MIN;
     shrink(ImGui::GetBackgroundDrawList()->VtxBuffer);
     shrink(ImGui::GetBackgroundDrawList()->IdxBuffer);
     try {
@@ -446,7 +446,7 @@ bool ui_end(struct ui *ui)
 // Not for ever: numbers may change their width from frame to frame.
 bool ui_wants_again(const struct ui *)
 {
-    return layout.again > 0 && layout.again < AGAIN_MOST;
+    return layout.again > 0 && layout.again < AGAIN_MAX;
 }
 
 float ui_scale(const struct ui *ui)

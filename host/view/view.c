@@ -71,13 +71,13 @@ double view_aspect(const struct view *view)
 static void count_picture(struct view *view)
 {
     struct view_rate *rate = &view->rate;
-    const uint32_t most = sizeof rate->shown_ms / sizeof *rate->shown_ms;
+    const uint32_t max = sizeof rate->shown_ms / sizeof *rate->shown_ms;
     double now_ms = view_now_ms(view);
-    if (rate->count > 0 && now_ms - rate->shown_ms[(rate->count - 1) % most] > REST_MS)
+    if (rate->count > 0 && now_ms - rate->shown_ms[(rate->count - 1) % max] > REST_MS)
         rate->count = 0;
-    rate->shown_ms[rate->count++ % most] = now_ms;
-    uint32_t n = rate->count < most ? rate->count : most;
-    double first_ms = rate->shown_ms[(rate->count - n) % most];
+    rate->shown_ms[rate->count++ % max] = now_ms;
+    uint32_t n = rate->count < max ? rate->count : max;
+    double first_ms = rate->shown_ms[(rate->count - n) % max];
     rate->fps = n > 1 && now_ms > first_ms ? 1e3 * (n - 1) / (now_ms - first_ms) : 0.0;
 }
 
@@ -382,7 +382,7 @@ static void close_all(struct view *view, uint32_t *validation)
     replay_close(view);
     prices_stop(view->prices);
     prices_stop(view->panels.measured);
-    for (uint32_t i = 0; i < LEAVING_MOST; ++i)
+    for (uint32_t i = 0; i < LEAVING_MAX; ++i)
         prices_stop(view->leaving[i]);
     wish_finish(view);
     *validation = engine_destroy(view->engine);

@@ -12,11 +12,11 @@
 #include "view/wish.h"
 
 enum view_hud { HUD_OFF, HUD_SMALL, HUD_FULL, HUD_COUNT };
-enum { TOAST_BYTES = 256, KEYS_MOST = 320, LEAVING_MOST = 4 };
+enum { TOAST_BYTES = 256, KEYS_MAX = 320, LEAVING_MAX = 4 };
 
 /* What keys that are held, and the mouse, are at. */
 struct view_input {
-    bool down[KEYS_MOST];
+    bool down[KEYS_MAX];
     bool buttons[3];
     double x, y, press_x, press_y; /* of the mouse; where its button went down */
     bool dragged;                  /* since the button went down */
@@ -39,10 +39,10 @@ struct view_rate {
 };
 
 /* Some figures, the first of many. */
-enum { FIGURES_MOST = 4096 };
+enum { FIGURES_MAX = 4096 };
 struct view_figures {
     uint32_t count;
-    double values[FIGURES_MOST];
+    double values[FIGURES_MAX];
 };
 
 /* What the user waited for since the last `state`. */
@@ -93,8 +93,8 @@ struct view {
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
 
-    struct prices *prices;                /* NULL: none are asked for */
-    struct prices *leaving[LEAVING_MOST]; /* stopped, and not at their end as yet */
+    struct prices *prices;               /* NULL: none are asked for */
+    struct prices *leaving[LEAVING_MAX]; /* stopped, and not at their end as yet */
     struct wish wish;
     bool prices_open;
     int prices_drawn; /* draws of its table */

@@ -6,7 +6,7 @@
 #include "view/view_private.h"
 
 static const double SPEND_S = 20.0;
-enum { TRIES_MOST = 3 };
+enum { TRIES_MAX = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu;
 
 const char *wish_stage_name(enum wish_stage stage)
@@ -123,7 +123,7 @@ static void try_choice(struct view *view)
     wish->stage = WISH_CHOSEN;
     view->dirty = true;
     bool fits = took_ms <= budget_ms && took_ms >= COST_TOO_LITTLE * wish->predicted_ms;
-    if (budget_ms <= 0.0 || fits || wish->tries == TRIES_MOST || wish_is_left(view))
+    if (budget_ms <= 0.0 || fits || wish->tries == TRIES_MAX || wish_is_left(view))
         return;
     wish->slower *= took_ms / wish->predicted_ms;
     prices_get_state(wish->prices, &state);

@@ -10,7 +10,7 @@
 #define BIND_INSTANCES        4
 #define BIND_INSTANCE_TEXELS  5
 #define BIND_STATUS           6
-#define BIND_WAITING          7
+#define BIND_DEFERRED          7
 #define BIND_NODE8_TEXELS     8
 
 /* The ray batch kernel. */

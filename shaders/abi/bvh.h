@@ -118,7 +118,7 @@ GPU_ASSERT_AT(gpu_hit, instance, 16)
 /* What the traversals of one kind of ray cost: for a pixel, a ray of a batch, or summed up. */
 struct gpu_cost {
     gpu_uint rays;
-    gpu_uint pairs;     /* inner nodes opened: box tests are twice that */
+    gpu_uint inner_nodes; /* inner nodes opened: box tests are twice that */
     gpu_uint leaves;    /* leaves of mesh trees entered */
     gpu_uint instances; /* instances entered */
     gpu_uint triangles; /* triangle tests */
@@ -141,7 +141,7 @@ GPU_ASSERT_AT(gpu_cost, triangles, 16)
 struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
-    gpu_uint waiting; /* 1: of the rays on the waiting list */
+    gpu_uint deferred; /* 1: of the rays on the list of deferred rays */
     gpu_uint root8;   /* of eight children a node, for SPEC_PACKETS */
 };
 
@@ -166,7 +166,7 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MOST media */
 /* No reason but to draw the tile in smaller ones: a queue between stages was full. */
 #define STATUS_QUEUE_FULL 128u
-/* Of one ray, never in the word: without SPEC_LOOKS floats leave it open, and nothing else counts. */
-#define STATUS_RAY_WAITS 64u
+/* Of one ray, never in the word: without SPEC_SETTLES floats leave it open, and nothing else counts. */
+#define STATUS_RAY_DEFERRED 64u
 
 #endif

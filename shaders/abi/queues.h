@@ -14,7 +14,7 @@
 
 /* Of a queued ray: its steps, and above them the slot of its pixel. */
 #define STATE_SLOT_SHIFT  16u
-#define QUEUED_SLOTS_MOST 65536u
+#define QUEUED_SLOTS_MAX 65536u
 
 /* Of the buffer of gpu_tally and gpu_generation. */
 #define TALLY_ROWS      2u
@@ -38,7 +38,7 @@
 #define LIST_LIT       3u /* that lights are asked for */
 #define LIST_LIGHTS    4u /* of these those that a light may reach, light by light */
 #define LISTS_COUNT    12u
-#define CLASSES_MOST   2u /* of materials, CLASS_* */
+#define CLASSES_MAX   2u /* of materials, CLASS_* */
 #define LIGHT_LISTS    8u /* with more lights than that the first list is of all */
 
 /* The arguments of an indirect dispatch, and the items that it is for. Lists have two segments where

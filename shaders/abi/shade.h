@@ -163,7 +163,7 @@ GPU_ASSERT_AT(gpu_frame, ambient, 112)
 /* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
    priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
    one for each ray. */
-#define MEDIA_MOST 8u
+#define MEDIA_MAX 8u
 struct gpu_media {
     gpu_uint words0, words1, words2, words3;
 };
@@ -184,7 +184,7 @@ struct gpu_chunk {
     gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
                          distance of the focus */
     gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
-    gpu_uint waiting; /* 1: of what is on the waiting list */
+    gpu_uint deferred; /* 1: of what is on the list of deferred rays */
     gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty */
     gpu_uint generation;                 /* of rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
@@ -198,7 +198,7 @@ GPU_ASSERT_SIZE(gpu_chunk, 96)
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 
-#define PROBE_RAYS_MOST 16383u /* records; as a number: none */
+#define PROBE_RAYS_MAX 16383u /* records; as a number: none */
 
 /* In front of the records. */
 struct gpu_probe {
@@ -215,7 +215,7 @@ GPU_ASSERT_SIZE(gpu_probe, 16)
 #define PROBE_CATCHER   32u /* as the device leaves it: `added` is what a shadow catcher shows */
 
 /* gpu_probe_ray.end */
-#define PROBE_WAITS    0u /* not known yet */
+#define PROBE_DEFERRED    0u /* not known yet */
 #define PROBE_MISSED   1u
 #define PROBE_ABSORBED 2u /* it leaves the scene in a medium of which too little comes back */
 #define PROBE_HIT      3u

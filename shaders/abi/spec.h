@@ -58,7 +58,7 @@
 #define LIT_HAS_ABSORPTION 4u /* of the media around */
 
 /* SPEC_PACKET_STACK at most. */
-#define PACKET_STACK_MOST 32u
+#define PACKET_STACK_MAX 32u
 
 /* Which point all rays of a packet share. */
 #define BEAM_NONE   0u
@@ -115,7 +115,7 @@
     X(35, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
     X(36, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
     X(37, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
-    X(38, SPEC_LOOKS, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */    \
+    X(38, SPEC_SETTLES, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */    \
     X(39, SPEC_PACKETS, 0)            /* the rays of a subgroup of 8 lanes walk together */        \
     X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes, and are slow to add them up */    \
     X(41, SPEC_PACKET_RAYS, 1)        /* rays of a lane */                                         \

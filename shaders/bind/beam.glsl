@@ -53,14 +53,14 @@ void bound_beam()
         beam_inv_dir[r] = turn_dominant(beam.dominant, packet_rays[r].inv_dir);
         beam_origin[r] = turn_dominant(beam.dominant, packet_rays[r].origin);
         packet_reach[r] = abs(beam_origin[r].z - beam.eye.z);
-        vec2 inverse = lesser2(packet_unit[r] * abs(beam_inv_dir[r].xy), vec2(BOX_INVERSE_MOST));
+        vec2 inverse = lesser2(packet_unit[r] * abs(beam_inv_dir[r].xy), vec2(BOX_INVERSE_MAX));
         lo = lesser2(beam_walks[r] ? inverse : vec2(INFINITE), lo);
         hi = lesser2(beam_walks[r] ? -inverse : vec2(INFINITE), hi);
         beam_inverse[r] = inverse;
         end_ray(!beam_walks[r], r);
     }
-    beam.inverse_lo = least_of_lanes2(lo);
-    beam.inverse_hi = -least_of_lanes2(hi);
+    beam.inverse_lo = min_of_lanes2(lo);
+    beam.inverse_hi = -min_of_lanes2(hi);
 }
 
 // Takes one group of the rays that are left; the others are done until it has walked. False: none is left.
@@ -68,7 +68,7 @@ bool begin_beam(vec3 eye)
 {
     uint own = GROUP_NONE;
     EACH_RAY own = beam_left[r] ? min(own, group_of(packet_rays[r])) : own;
-    uint group = uint(least_of_lanes(int(own)));
+    uint group = uint(min_of_lanes(int(own)));
     beam.dominant = bvec2((group & 3u) == 1u, (group & 3u) == 2u);
     bvec3 negative = notEqual(uvec3(group) & uvec3(4u, 8u, 16u), uvec3(0u));
     vec3 way = mix(vec3(1.0), vec3(-1.0), negative);

@@ -8,7 +8,7 @@
 #include "surface.glsl"
 
 // Surfaces that may be crossed at one place.
-const uint CROSSED_MOST = 4u;
+const uint CROSSED_MAX = 4u;
 
 struct Crossing {
     uvec4 before, after; // media on both sides, struct gpu_media
@@ -66,8 +66,8 @@ struct Crossed {
 // Which of the crossed surfaces is the last one of the same body; CROSSED_MOST: none.
 uint find_crossed(Crossed crossed, uint entry, uint instance)
 {
-    uint found = CROSSED_MOST;
-    for (uint i = 0u; i < CROSSED_MOST; i++)
+    uint found = CROSSED_MAX;
+    for (uint i = 0u; i < CROSSED_MAX; i++)
         found = i < crossed.count && crossed.entries[i] == entry &&
                         crossed.instances[i] == instance
                     ? i
@@ -133,8 +133,8 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
             bool leaves = face_ray(other, ray.dir);
             uint same = find_crossed(crossed, other.material + 1u, hit.instance);
             bool left = (crossed.leaving >> same & 1u) != 0u;
-            bool again = same != CROSSED_MOST && left == leaves;
-            more = more && (again || same == CROSSED_MOST || hit.t <= near);
+            bool again = same != CROSSED_MAX && left == leaves;
+            more = more && (again || same == CROSSED_MAX || hit.t <= near);
             if (more && !again) {
                 crossed.entries[crossed.count] = other.material + 1u;
                 crossed.instances[crossed.count] = hit.instance;
@@ -153,7 +153,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
                     s = other;
                     inside = leaves;
                 }
-                more = crossed.count < CROSSED_MOST;
+                more = crossed.count < CROSSED_MAX;
             }
         }
     } while (more);

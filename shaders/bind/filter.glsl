@@ -14,12 +14,12 @@
 // Open meshes: who enters and never leaves is absorbed up to the light, as seen by the eye, whose ray
 // stays in the medium; who leaves without having entered comes out below 0, which counts as 0.
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
-const float DEPTH_MOST = 1073741824.0;        // 2^30; sums wrap around, and back
+const float DEPTH_MAX = 1073741824.0;        // 2^30; sums wrap around, and back
 
 ivec3 absorption_depth(vec3 absorption, float way)
 {
     vec3 depth = absorption * (way * DEPTH_OF_ABSORPTION);
-    return ivec3(floor(clamp(depth, vec3(-DEPTH_MOST), vec3(DEPTH_MOST)) + 0.5));
+    return ivec3(floor(clamp(depth, vec3(-DEPTH_MAX), vec3(DEPTH_MAX)) + 0.5));
 }
 
 // Of all media that a place is in. Where they overlap each of them absorbs; for the eye only the one

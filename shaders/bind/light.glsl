@@ -34,10 +34,10 @@ vec3 environment_radiance(vec3 dir)
     return mix(frame.horizon, dir.y >= 0.0 ? frame.zenith : frame.ground, min(abs(dir.y), 1.0));
 }
 
-const float LIGHT_MOST = 1e24; // so that sums of what arrives cannot overflow
+const float LIGHT_MAX = 1e24; // so that sums of what arrives cannot overflow
 
 // One turn of the loop over lights: a light, or one point of a flat emitter.
-struct LightTurn {
+struct LightSample {
     vec3 to_light; // unit
     float distance;
     vec3 arriving;  // irradiance over pi, facing the light, before shadows
@@ -92,7 +92,7 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
 }
 
 // Turn `index` of a light towards `p`. False: nothing arrives.
-bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
+bool light_at(gpu_light light, uint index, vec3 p, out LightSample turn)
 {
     bool flat_emitter = is_flat(light);
     turn.arriving = light.color;
@@ -126,10 +126,10 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightTurn turn)
     if ((SPEC_LIGHTS & (1u << LIGHT_AREA_SAMPLE)) != 0u && light.kind == LIGHT_AREA_SAMPLE)
         turn.arriving *= cos_emitter;
     if (flat_emitter) {
-        turn.strength = min(cos_emitter / square, LIGHT_MOST);
+        turn.strength = min(cos_emitter / square, LIGHT_MAX);
         turn.arriving = light.color * (light.area_share * turn.strength);
     }
-    turn.arriving = min(turn.arriving, vec3(LIGHT_MOST));
+    turn.arriving = min(turn.arriving, vec3(LIGHT_MAX));
     if (turn.distance > light.range)
         return false;
     // What lies in one plane with an emitter, as a ceiling may, casts no shadow of its light.

@@ -134,7 +134,7 @@ uint reaching_lights(Lit lit)
     uint reaching = 0u, i = 0u;
     do {
         gpu_light light = fetch_light(i);
-        LightTurn at;
+        LightSample at;
         bool arrives = light_at(light, 0u, lit.p, at) && dot(at.to_light, lit.ns) > 0.0 &&
                        (dot(at.to_light, lit.ng) > 0.0 || (lit.flags & LIT_LIFTED) != 0u);
         reaching |= uint(arrives || is_flat(light)) << i;

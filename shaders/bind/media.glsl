@@ -56,7 +56,7 @@ uvec4 pack_media(uvec4 even, uvec4 odd)
 uvec4 media_with(uvec4 media, uint entry, inout uint status)
 {
     uint count = media_count(media);
-    if (count == MEDIA_MOST)
+    if (count == MEDIA_MAX)
         status |= STATUS_MEDIUM_STACK_OVERFLOW;
     uint priority = medium_priority(entry);
     uint at = count;

@@ -32,7 +32,7 @@ struct PacketBounds {
     vec3 last;           // 1 / least component of rays that all go one way; else infinite
     bvec3 up;            // that way
     float size;          // what margins are relative to, beside the distance of a box
-    float t_most;
+    float t_max;
 };
 PacketBounds packet_bounds;
 
@@ -62,10 +62,10 @@ void make_packet_bounds(const uint mode)
         }
     }
     PacketBounds b;
-    b.origin_lo = least_of_lanes3(o_lo);
-    b.origin_hi = -least_of_lanes3(o_hi);
-    d_lo = least_of_lanes3(d_lo);
-    d_hi = -least_of_lanes3(d_hi);
+    b.origin_lo = min_of_lanes3(o_lo);
+    b.origin_hi = -min_of_lanes3(o_hi);
+    d_lo = min_of_lanes3(d_lo);
+    d_hi = -min_of_lanes3(d_hi);
     b.to_up = inverse_or_infinite(d_hi);
     b.to_down = inverse_or_infinite(-d_lo);
     b.up = greaterThan(d_lo, vec3(0.0));
@@ -75,7 +75,7 @@ void make_packet_bounds(const uint mode)
     if (backwards)
         size += max(abs(d_lo), abs(d_hi));
     b.size = max(size.x, max(size.y, size.z));
-    b.t_most = backwards ? 1.0 + BOUNDS_MARGIN : INFINITE;
+    b.t_max = backwards ? 1.0 + BOUNDS_MARGIN : INFINITE;
     packet_bounds = b;
 }
 
@@ -86,7 +86,7 @@ void make_box_rays(const uint mode)
         RaySetup ray = packet_rays[r];
         vec3 size = abs(ray.dir);
         packet_unit[r] = max(size.x, max(size.y, size.z));
-        size = min(abs(packet_unit[r] * ray.inv_dir), vec3(BOX_INVERSE_MOST));
+        size = min(abs(packet_unit[r] * ray.inv_dir), vec3(BOX_INVERSE_MAX));
         packet_box_rays[r] = BoxRay(ray.origin, mix(size, -size, ray.negative), size);
         end_ray(false, r);
     }
@@ -108,7 +108,7 @@ bool may_be_met(vec3 box_lo, vec3 box_hi)
     vec3 near = mix(vec3(0.0), ahead, apart);
     vec3 far = max(mix(-lo, hi, b.up), vec3(0.0)) * b.last; // a box behind is too far by `near`
     float start = max(near.x, max(near.y, near.z));
-    float end = b.t_most;
+    float end = b.t_max;
     end = far.x < end ? far.x : end; // false for NaN
     end = far.y < end ? far.y : end;
     end = far.z < end ? far.z : end;
@@ -183,7 +183,7 @@ int enter_children(vec3 lo, vec3 hi, bool wanted)
         vec3 child_a = from_lane(a, child), child_b = from_lane(b, child);
         int first = SPEC_BEAM != BEAM_NONE ? enter_beam_box(child_a, child_b)
                                              : enter_box(child_a, child_b);
-        first = least_of_lanes(first);
+        first = min_of_lanes(first);
         own = left != 0u && lane == child ? first : own;
         left &= left - 1u;
     } while (left != 0u);
@@ -255,10 +255,10 @@ uint next_packet_ref(const uint mode, uint ref, uint base)
 // Goes on through a mesh tree at `ref` until REF_DONE, or until a record waits for some ray. Only packets
 // of one ray a lane have records that wait.
 void walk_packet(const uint mode, float t_min, uint instance, uint base, inout uint ref,
-                 out bool own_waits, out bool waits)
+                 out bool own_deferred, out bool deferred)
 {
-    own_waits = false;
-    waits = false;
+    own_deferred = false;
+    deferred = false;
     do {
         do {
             if (is_inner(ref))
@@ -271,22 +271,22 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
                 EACH_RAY {
                     bool done = test_rows(mode, packet_ray(r), t_min, record, rows, instance,
                                           packet_skip[r].x, packet_skip[r].y, packet_hits[r],
-                                          own_waits);
+                                          own_deferred);
                     end_ray(done, r);
                 }
-                if (has_looks(mode))
-                    waits = any_lane(own_waits);
-                if (!waits)
+                if (settles(mode))
+                    deferred = any_lane(own_deferred);
+                if (!deferred)
                     ref = next_packet_ref(mode, ref, base);
             }
-        } while (is_leaf(ref) && !waits);
-    } while (another_turn(ref != REF_DONE && !waits));
-    if (ref != REF_DONE && !waits)
+        } while (is_leaf(ref) && !deferred);
+    } while (another_iteration(ref != REF_DONE && !deferred));
+    if (ref != REF_DONE && !deferred)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
 // Looks at the record at `ref` for the rays that wait, and goes on to the next.
-void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base, bool own_waits,
+void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base, bool own_deferred,
                          inout uint ref)
 {
     uint record = ref & BVH_FIRST_MASK;
@@ -294,9 +294,9 @@ void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base,
     Hit looked = packet_hits[0]; // all lanes look: what is fetched for all is fetched by some
     bool over = look_at_rows(mode, packet_rays[0], packet_origin[0], packet_dir[0], t_min, record,
                              rows, instance, packet_skip[0].x, packet_skip[0].y, looked);
-    if (own_waits)
+    if (own_deferred)
         packet_hits[0] = looked;
-    end_ray(own_waits && over, 0u);
+    end_ray(own_deferred && over, 0u);
     ref = next_packet_ref(mode, ref, base);
 }
 
@@ -304,11 +304,11 @@ void packet_mesh(const uint mode, float t_min, uint root)
 {
     uint ref = root;
     do {
-        bool own_waits, waits;
-        walk_packet(mode, t_min, 0u, 0u, ref, own_waits, waits);
-        if (has_looks(mode) && waits)
-            look_at_packet_leaf(mode, t_min, 0u, 0u, own_waits, ref);
-    } while (has_looks(mode) && another_turn(ref != REF_DONE));
+        bool own_deferred, deferred;
+        walk_packet(mode, t_min, 0u, 0u, ref, own_deferred, deferred);
+        if (settles(mode) && deferred)
+            look_at_packet_leaf(mode, t_min, 0u, 0u, own_deferred, ref);
+    } while (settles(mode) && another_iteration(ref != REF_DONE));
     if (ref != REF_DONE)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -323,7 +323,7 @@ void packet_instances(const uint mode, float t_min, uint root)
 {
     PacketBounds bounds = packet_bounds;
     uint ref = root, mesh_ref = REF_DONE, base = 0u;
-    bool inside = false, own_waits = false, waits = false;
+    bool inside = false, own_deferred = false, deferred = false;
     float world_size = packet_size, world_unit[SPEC_PACKET_RAYS];
     EACH_RAY {
         world_unit[r] = packet_unit[r];
@@ -344,12 +344,12 @@ void packet_instances(const uint mode, float t_min, uint root)
                     push_packet(REF_DONE, true);
                     base = packet_height;
                 }
-                walk_packet(mode, t_min, instance, base, mesh_ref, own_waits, waits);
+                walk_packet(mode, t_min, instance, base, mesh_ref, own_deferred, deferred);
                 bool going = false;
                 EACH_RAY going = going || packet_hits[r].t >= 0.0;
                 bool ends = SPEC_NUMERICS == NUMERICS_EXACT || !finds_closest(mode);
                 bool over = ends && !any_lane(going);
-                if (!waits) {
+                if (!deferred) {
                     ref = pop_packet(true, ref, 0u);
                     ref = over ? REF_DONE : ref;
                     EACH_RAY {
@@ -363,14 +363,14 @@ void packet_instances(const uint mode, float t_min, uint root)
                 }
                 inside = false;
             }
-        } while (another_turn(ref != REF_DONE && !waits));
-        if (ref != REF_DONE && !waits)
+        } while (another_iteration(ref != REF_DONE && !deferred));
+        if (ref != REF_DONE && !deferred)
             packet_status |= STATUS_UNFINISHED_TRAVERSAL;
-        inside = has_looks(mode);
-        if (has_looks(mode) && waits)
-            look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, own_waits, mesh_ref);
-        waits = false;
-    } while (has_looks(mode) && another_turn(ref != REF_DONE));
+        inside = settles(mode);
+        if (settles(mode) && deferred)
+            look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, own_deferred, mesh_ref);
+        deferred = false;
+    } while (settles(mode) && another_iteration(ref != REF_DONE));
     if (ref != REF_DONE)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -387,7 +387,7 @@ void packet_beams(const uint mode, float t_min, uint root, vec3 eye)
         packet_top = REF_DONE;
         packet_mesh(mode, t_min, some ? root : REF_DONE);
         more = end_beam();
-    } while (another_turn(more));
+    } while (another_iteration(more));
     if (more)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }

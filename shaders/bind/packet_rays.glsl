@@ -27,13 +27,13 @@ float packet_unit[SPEC_PACKET_RAYS];    // the largest component of the directio
 float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: from there to the ray's start, in the same units
 float packet_size; // largest coordinate of an origin, and what clipped triangles take
 
-const float BOX_INVERSE_MOST = 16777216.0; // 2^24
+const float BOX_INVERSE_MAX = 16777216.0; // 2^24
 #define INFINITE uintBitsToFloat(0x7f800000u)
 // Far more than the roundings of a ray, its bounds and the test of a box, each a few 2^-24 of the distances
 // from the ray's ends; and than the slack of that test (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
 const float BOUNDS_MARGIN = 1.0 / 131072.0;
 
-int least_of_lanes(int value)
+int min_of_lanes(int value)
 {
     value = min(value, subgroupShuffleXor(value, 1u));
     value = min(value, subgroupShuffleXor(value, 2u));
@@ -46,7 +46,7 @@ float lesser(float a, float b)
     return a < b ? a : b;
 }
 
-float least_of_lanes(float value)
+float min_of_lanes(float value)
 {
     value = lesser(value, subgroupShuffleXor(value, 1u));
     value = lesser(value, subgroupShuffleXor(value, 2u));
@@ -63,14 +63,14 @@ vec3 lesser3(vec3 a, vec3 b)
     return vec3(lesser2(a.xy, b.xy), lesser(a.z, b.z));
 }
 
-vec2 least_of_lanes2(vec2 value)
+vec2 min_of_lanes2(vec2 value)
 {
-    return vec2(least_of_lanes(value.x), least_of_lanes(value.y));
+    return vec2(min_of_lanes(value.x), min_of_lanes(value.y));
 }
 
-vec3 least_of_lanes3(vec3 value)
+vec3 min_of_lanes3(vec3 value)
 {
-    return vec3(least_of_lanes2(value.xy), least_of_lanes(value.z));
+    return vec3(min_of_lanes2(value.xy), min_of_lanes(value.z));
 }
 
 float largest_size(vec3 value)
@@ -121,7 +121,7 @@ void size_rays(vec3 eye)
             own += (packet_rays[r].above.x - packet_rays[r].origin.x) / BOUNDS_MARGIN;
         least = lesser(packet_alive[r] ? -own : 0.0, least);
     }
-    packet_size = -least_of_lanes(least);
+    packet_size = -min_of_lanes(least);
 }
 
 // Boxes are widened by more than all roundings of their tests, of transforms to instances and of the tests

@@ -56,7 +56,7 @@ void add_cost(uint slot, uint kind)
         return;
     uint at = slot * RAY_KIND_COUNT + kind; // rays of a pixel may end at the same time
     atomicAdd(costs[at].rays, traversal_cost.rays);
-    atomicAdd(costs[at].pairs, traversal_cost.pairs);
+    atomicAdd(costs[at].inner_nodes, traversal_cost.inner_nodes);
     atomicAdd(costs[at].leaves, traversal_cost.leaves);
     atomicAdd(costs[at].instances, traversal_cost.instances);
     atomicAdd(costs[at].triangles, traversal_cost.triangles);

@@ -4,8 +4,8 @@
 #define BIND_PRIMITIVE_GLSL
 
 #include "../lib/exact.glsl"
-#include "../lib/pairs.glsl"
-#include "../lib/pairs_sphere.glsl"
+#include "../lib/ff_triangle.glsl"
+#include "../lib/ff_sphere.glsl"
 #include "../lib/intersect.glsl"
 #include "../lib/moller.glsl"
 #include "trees.glsl"
@@ -108,7 +108,7 @@ Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint s
 }
 
 // Where a ray meets a primitive.
-struct Meeting {
+struct Candidate {
     bool met;
     float t, u, v;
     bool front; // met from outside
@@ -119,10 +119,10 @@ struct Meeting {
     bool sure, rounded;
 };
 
-Meeting bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
+Candidate bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
 {
     ExactBounds bounds = exact_filter(ray, a, b, c);
-    Meeting m;
+    Candidate m;
     m.met = !bounds.outside && !(bounds.hi < t_min);
     m.t = bounds.t > t_min ? bounds.t : t_min;
     m.u = bounds.u;
@@ -136,9 +136,9 @@ Meeting bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
     return m;
 }
 
-Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
+Candidate meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
 {
-    Meeting m;
+    Candidate m;
     if (SPEC_NUMERICS == NUMERICS_FAST) {
         m.met = intersect_moller(ray.origin, ray.dir, row_vec3(r0), row_vec3(r1), row_vec3(r2),
                                  t_min, m.t, m.u, m.v, m.front);
@@ -179,7 +179,7 @@ Meeting meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
 // What floats tell of one end of a chord. Where they do not tell if the near end counts, it may be the
 // far one that does.
 void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool own,
-               inout Meeting m)
+               inout Candidate m)
 {
     bool known = at_exit || bounds.near_lo >= t_min;
     m.lo = at_exit ? bounds.far_lo : bounds.near_lo;
@@ -191,9 +191,9 @@ void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool
 
 // Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
 // end is there to be met, and only on the way inwards. No distance needs to be small for that.
-Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
+Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
 {
-    Meeting m;
+    Candidate m;
     float at = at_exit ? chord.t_far : chord.t_near;
     // False for NaN.
     m.met = chord.met && at >= t_min && (!own || chord.inward);
@@ -209,15 +209,15 @@ Meeting meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool o
 }
 
 // Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
-Meeting meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
+Candidate meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
 {
-    Meeting m;
+    Candidate m;
     if (SPEC_SPHERES != SPHERES_ONLY) {
         m = meet_triangle(ray, t_min, p.r0, p.r1, p.r2);
         m.met = m.met && !p.own;
     }
     if (SPEC_SPHERES != SPHERES_NONE) {
-        Meeting on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
+        Candidate on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
         on_sphere.met = on_sphere.met && !(p.known && hit_before_at_exit);
         if (SPEC_SPHERES == SPHERES_ONLY)
             m = on_sphere;

@@ -15,7 +15,7 @@ layout(set = 0, binding = BIND_PROBE, std430) buffer ProbeBuffer
 
 bool is_recorded(uint id)
 {
-    return SPEC_PROBE != 0u && chunk.sample_index == 0u && id < PROBE_RAYS_MOST;
+    return SPEC_PROBE != 0u && chunk.sample_index == 0u && id < PROBE_RAYS_MAX;
 }
 
 gpu_probe_ray make_probe_ray(uint kind, uint end, uint parent, vec3 origin, vec3 dir, float t_max,
@@ -76,7 +76,7 @@ void probe_traced(uint id, vec3 origin, vec3 dir, uvec2 skip, vec3 weight, vec3 
     if (!is_recorded(id))
         return;
     uint kind = is_primary() ? RAY_PRIMARY : probe_rays[id].kind;
-    uint parent = is_primary() ? PROBE_RAYS_MOST : probe_rays[id].parent;
+    uint parent = is_primary() ? PROBE_RAYS_MAX : probe_rays[id].parent;
     bool lost = max(after.r, max(after.g, after.b)) < frame.bailout &&
                 max(weight.r, max(weight.g, weight.b)) >= frame.bailout;
     uint end = hit.primitive != HIT_NONE ? PROBE_HIT : lost ? PROBE_ABSORBED : PROBE_MISSED;
@@ -102,8 +102,8 @@ void probe_other(gpu_probe_ray ray)
     if (!is_recorded(0u))
         return;
     uint at = atomicAdd(probe.others, 1u);
-    if (at < PROBE_RAYS_MOST && ray.parent < PROBE_RAYS_MOST)
-        probe_rays[PROBE_RAYS_MOST + at] = ray;
+    if (at < PROBE_RAYS_MAX && ray.parent < PROBE_RAYS_MAX)
+        probe_rays[PROBE_RAYS_MAX + at] = ray;
 }
 
 void probe_cut_ray(uint id, uint kind, uint end, vec3 dir, vec3 weight)

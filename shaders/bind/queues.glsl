@@ -311,11 +311,11 @@ uint own_item(uint r, uint capacity)
     return is_back ? capacity - 1u - at : at;
 }
 
-// Item of the waiting list, where items are rays, or nothing is appended.
-uint waiting_item(uint r)
+// Item of the list of deferred rays, where items are rays, or nothing is appended.
+uint deferred_item(uint r)
 {
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
-    uint item = at < waiting.count && r == 0u ? waiting_items[at] : ITEM_NONE;
+    uint item = at < deferred.count && r == 0u ? deferred_items[at] : ITEM_NONE;
     is_back = SPEC_SEGMENTS == 2u && item != ITEM_NONE && item >= middle_id();
     return item;
 }
@@ -379,7 +379,7 @@ uint append_segment(uint generation, uint list, uint wanted, uint each, bool bac
 // items of a workgroup that works on the list.
 uint append_items(uint generation, uint list, uint wanted, uint each)
 {
-    if (SPEC_SEGMENTS == 2u && SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u) {
+    if (SPEC_SEGMENTS == 2u && SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u) {
         // What has waited is of both segments.
         uint front = append_segment(generation, list, is_back ? 0u : wanted, each, false);
         uint back = append_segment(generation, list, is_back ? wanted : 0u, each, true);
@@ -436,7 +436,7 @@ uint reserve_rays(uint wanted, inout uint status)
 }
 
 // Of the invocations of the subgroup, which all must be here.
-uint most_of_lanes(uint value)
+uint max_of_lanes(uint value)
 {
     if (SPEC_EIGHT_LANES == 0u)
         return subgroupMax(value);

@@ -6,7 +6,7 @@
 #include "primitive.glsl"
 
 // Where a record's triangle is met, exactly; of one that is met anyway (`hit`) for the key alone.
-// Without SPEC_LOOKS there are no integers, and what pairs do not tell waits.
+// Without SPEC_SETTLES there are no integers, and what pairs do not tell waits.
 ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
@@ -14,11 +14,11 @@ ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, 
     vec3 v2 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u));
     ExactMeeting m;
     bool key_known, finished = true;
-    bool known = pair_meet(origin, dir, v0, v1, v2, m, key_known);
+    bool known = ff_meet(origin, dir, v0, v1, v2, m, key_known);
     known = hit ? key_known : known;
-    if (SPEC_LOOKS == 0u && !known)
-        status |= STATUS_RAY_WAITS;
-    if (SPEC_LOOKS != 0u && !known)
+    if (SPEC_SETTLES == 0u && !known)
+        status |= STATUS_RAY_DEFERRED;
+    if (SPEC_SETTLES != 0u && !known)
         m = exact_meet(origin, dir, v0, v1, v2, finished);
     if (!finished)
         status |= STATUS_UNFINISHED_TRAVERSAL;
@@ -38,13 +38,13 @@ ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, i
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
     vec3 center = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
     float radius = uintBitsToFloat(r1.x);
-    SphereMeeting on_sphere;
+    SphereCandidate on_sphere;
     bool finished = true;
-    bool known = pair_meet_sphere(origin, dir, center, radius, ends.only_far, ends.t_min,
+    bool known = ff_meet_sphere(origin, dir, center, radius, ends.only_far, ends.t_min,
                                   on_sphere);
-    if (SPEC_LOOKS == 0u && !known)
-        status |= STATUS_RAY_WAITS;
-    if (SPEC_LOOKS != 0u && !known)
+    if (SPEC_SETTLES == 0u && !known)
+        status |= STATUS_RAY_DEFERRED;
+    if (SPEC_SETTLES != 0u && !known)
         on_sphere = exact_meet_sphere(origin, dir, center, radius, ends.only_far, ends.t_min,
                                       finished);
     if (!finished)
@@ -76,8 +76,8 @@ ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends
     return m;
 }
 
-// Replaces the bounds of a meeting by what is exact.
-void settle_meeting(float t_min, ExactMeeting exact, inout Meeting m)
+// Replaces the bounds of a candidate by what is exact.
+void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
 {
     m.met = m.met && exact.met && exact.key >= t_min;
     m.front = exact.front;
@@ -89,7 +89,7 @@ void settle_meeting(float t_min, ExactMeeting exact, inout Meeting m)
 }
 
 // Of a triangle, what shading and filters want to know besides.
-void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Meeting m)
+void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Candidate m)
 {
     precise vec3 a = row_vec3(p.r0) - ray.origin;
     precise vec3 b = row_vec3(p.r1) - ray.origin;
@@ -113,11 +113,11 @@ void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
     }
 }
 
-// NUMERICS_EXACT: the key of a meeting, and of the hit so far where it is needed to tell which of both
-// comes first. `origin`, `dir`: of the ray in world space. `at_exit`, of a sphere: which end the meeting
+// NUMERICS_EXACT: the key of a candidate, and of the hit so far where it is needed to tell which of both
+// comes first. `origin`, `dir`: of the ray in world space. `at_exit`, of a sphere: which end the candidate
 // was, then is.
 void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
-            inout bool at_exit, inout Meeting m, inout Hit hit)
+            inout bool at_exit, inout Candidate m, inout Hit hit)
 {
     vec3 from = ray.origin, along = ray.dir;
     Ends ends = Ends(t_min, at_exit, p.own);
@@ -127,7 +127,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
         again = false;
         if (first) {
             m.rounded = m.rounded && (!p.is_sphere || exact.front != at_exit);
-            settle_meeting(t_min, exact, m);
+            settle_candidate(t_min, exact, m);
             at_exit = p.is_sphere && !exact.front;
             if (!p.is_sphere)
                 settle_sides(ray, p, exact, m);
@@ -142,7 +142,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
             hit.hi = exact.key;
         }
         first = false;
-    } while (another_turn(again));
+    } while (another_iteration(again));
     if (again) // the driver has ended the loop
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }

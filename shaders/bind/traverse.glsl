@@ -6,7 +6,7 @@
 #define BIND_TRAVERSE_GLSL
 
 #include "settle.glsl"
-#include "waiting.glsl"
+#include "deferred.glsl"
 
 // Defined by the kernel: whether a cut-out primitive is solid at a point. `u` and `v` of a sphere are
 // its texture coordinates (sphere_uv), here and below.
@@ -213,7 +213,7 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
         b_wanted = second_first(ray, a1.w);
     if (SPEC_COUNT != 0u) {
         stack.level++;
-        traversal_cost.pairs++;
+        traversal_cost.inner_nodes++;
         traversal_cost.depth = max(traversal_cost.depth, stack.level);
     }
     bool b_first = hit_b && (!hit_a || b_wanted);
@@ -223,7 +223,7 @@ uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout Nod
 
 bool has_integers()
 {
-    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u;
+    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u;
 }
 
 // Filters that need not be looked at: what they add is told by the record, or by it and the distance.
@@ -245,7 +245,7 @@ bool goes_through(const uint mode)
 }
 
 // At NUMERICS_EXACT: or may be, unless all keys are known.
-bool is_nearer(Meeting m, uint instance, uint primitive, Hit hit)
+bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
 {
     float t = SPEC_NUMERICS == NUMERICS_EXACT ? m.lo : m.t;
     return m.met && (t < farthest(hit) ||
@@ -254,7 +254,7 @@ bool is_nearer(Meeting m, uint instance, uint primitive, Hit hit)
 }
 
 // What is met, nearer, and there for rays of this kind at all.
-bool is_reached(const uint mode, Meeting m, uint flags, uint instance, uint primitive,
+bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint primitive,
                 uint skip_instance, uint skip_primitive, Hit hit)
 {
     bool reached = is_nearer(m, instance, primitive, hit);
@@ -269,7 +269,7 @@ bool is_reached(const uint mode, Meeting m, uint flags, uint instance, uint prim
     return reached;
 }
 
-void add_filter(Meeting m, vec2 uv, uint flags, uint shadow, uint instance, uint primitive,
+void add_filter(Candidate m, vec2 uv, uint flags, uint shadow, uint instance, uint primitive,
                 inout Hit hit)
 {
     ivec3 depth = ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
@@ -282,7 +282,7 @@ void add_filter(Meeting m, vec2 uv, uint flags, uint shadow, uint instance, uint
 
 // What is reached, unless something about it says no; filters add up and are not hits. `uv`: where
 // textures are read. `refused`: the ray goes on through the point.
-bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow, uint instance,
+bool accept_candidate(const uint mode, Candidate m, vec2 uv, uint flags, uint shadow, uint instance,
                     uint primitive, uint skip_instance, uint skip_primitive, inout Hit hit,
                     out bool refused)
 {
@@ -299,7 +299,7 @@ bool accept_meeting(const uint mode, Meeting m, vec2 uv, uint flags, uint shadow
     return accepted;
 }
 
-void keep_hit(Meeting m, bool at_exit, uint record, Primitive p, inout Hit hit)
+void keep_hit(Candidate m, bool at_exit, uint record, Primitive p, inout Hit hit)
 {
     hit.at_exit = at_exit;
     hit.t = m.t;
@@ -315,13 +315,13 @@ void keep_hit(Meeting m, bool at_exit, uint record, Primitive p, inout Hit hit)
 
 // NUMERICS_EXACT: whether floats leave open if something that may be nearer is met, or which of two hits
 // comes first.
-bool is_unsure(const uint mode, Meeting m, Hit hit)
+bool is_unsure(const uint mode, Candidate m, Hit hit)
 {
     return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);
 }
 
 // Whether some record may have to be looked at before it counts: see look_at_record.
-bool has_looks(const uint mode)
+bool settles(const uint mode)
 {
     return has_integers() || SPEC_CUTOUTS != 0u ||
            looks_at_filters(mode) ||
@@ -334,24 +334,24 @@ bool is_over(const uint mode, bool accepted, Hit hit)
     return (accepted && !finds_closest(mode)) || must_wait(hit.status);
 }
 
-// NUMERICS_EXACT without SPEC_LOOKS: whether the ray waits as floats leave open how it meets this.
-bool leaves_open(const uint mode, bool reached, Meeting m, inout Hit hit)
+// NUMERICS_EXACT without SPEC_SETTLES: whether the ray waits as floats leave open how it meets this.
+bool leaves_open(const uint mode, bool reached, Candidate m, inout Hit hit)
 {
-    bool open = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS == 0u && reached &&
+    bool open = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES == 0u && reached &&
                 is_unsure(mode, m, hit);
-    hit.status |= open ? STATUS_RAY_WAITS : 0u;
+    hit.status |= open ? STATUS_RAY_DEFERRED : 0u;
     return open;
 }
 
 // A filter that is met, at both its ends where it is a sphere. False: it is none.
-bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit, Meeting m,
+bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit, Candidate m,
                  inout Hit hit)
 {
     if ((p.flags & TRIANGLE_FILTER) == 0u)
         return false;
     add_filter(m, vec2(0.0), p.flags, p.r2.w, p.instance, p.index, hit);
     if (SPEC_SPHERES != SPHERES_NONE && p.is_sphere && !at_exit) {
-        Meeting far = meet_sphere(ray, chord, t_min, true, p.own);
+        Candidate far = meet_sphere(ray, chord, t_min, true, p.own);
         bool reached = is_reached(TRAVERSE_SHADOW, far, p.flags, p.instance, p.index, HIT_NONE,
                                   HIT_NONE, hit);
         if (reached && !leaves_open(TRAVERSE_SHADOW, reached, far, hit))
@@ -364,26 +364,26 @@ bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_ex
 // may end. `waits`: it is met, but has to be looked at first.
 bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRows rows,
                uint instance, uint skip_instance, uint skip_primitive, inout Hit hit,
-               out bool waits)
+               out bool deferred)
 {
     if (SPEC_COUNT != 0u)
         traversal_cost.triangles++;
     Primitive p = make_primitive(mode, rows, instance, skip_instance, skip_primitive);
     Chord chord = chord_of(ray, t_min, p);
     bool at_exit = starts_at_exit(mode, p, chord, t_min);
-    Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
+    Candidate m = meet_primitive(ray, t_min, p, chord, at_exit);
     bool accepted = is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
                                skip_primitive, hit);
-    waits = false;
-    if (has_looks(mode)) {
+    deferred = false;
+    if (settles(mode)) {
         bool marked = (SPEC_CUTOUTS != 0u && (p.flags & TRIANGLE_CUTOUT) != 0u) ||
                       (looks_at_filters(mode) && (p.flags & TRIANGLE_FILTER) != 0u);
-        waits = accepted && marked;
+        deferred = accepted && marked;
         if (SPEC_SPHERES != SPHERES_NONE && goes_through(mode))
-            waits = waits || (p.is_sphere && chord.met);
+            deferred = deferred || (p.is_sphere && chord.met);
         if (has_integers())
-            waits = waits || (accepted && is_unsure(mode, m, hit));
-        accepted = accepted && !waits;
+            deferred = deferred || (accepted && is_unsure(mode, m, hit));
+        accepted = accepted && !deferred;
     }
     if (leaves_open(mode, accepted, m, hit))
         return true;
@@ -395,17 +395,17 @@ bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRo
 }
 
 bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
-                 uint skip_instance, uint skip_primitive, inout Hit hit, out bool waits)
+                 uint skip_instance, uint skip_primitive, inout Hit hit, out bool deferred)
 {
     return test_rows(mode, ray, t_min, record, fetch_record(record), instance, skip_instance,
-                     skip_primitive, hit, waits);
+                     skip_primitive, hit, deferred);
 }
 
-// Whether a loop has another turn: in a packet for all lanes alike. There lavapipe 22.3 added a filter twice
+// Whether a loop has another iteration: in a packet for all lanes alike. There lavapipe 22.3 added a filter twice
 // in lanes that had left the loop before others.
 bool goes_on(bool again)
 {
-    return another_turn(SPEC_PACKETS != 0u ? any_lane(again) : again);
+    return another_iteration(SPEC_PACKETS != 0u ? any_lane(again) : again);
 }
 
 // Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
@@ -421,15 +421,15 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
     do {
         bool own_turn = again;
         again = false;
-        Meeting m = meet_primitive(ray, t_min, p, chord, at_exit);
+        Candidate m = meet_primitive(ray, t_min, p, chord, at_exit);
         bool open = SPEC_NUMERICS == NUMERICS_EXACT &&
                     is_reached(mode, m, p.flags, p.instance, p.index, skip_instance,
                                skip_primitive, hit) && is_unsure(mode, m, hit);
         if (has_integers() && open)
             settle(ray, origin, dir, t_min, record, p, at_exit, m, hit);
-        if (SPEC_LOOKS == 0u && open)
-            hit.status |= STATUS_RAY_WAITS;
-        if (SPEC_LOOKS == 0u && open)
+        if (SPEC_SETTLES == 0u && open)
+            hit.status |= STATUS_RAY_DEFERRED;
+        if (SPEC_SETTLES == 0u && open)
             break;
         vec2 uv = vec2(m.u, m.v);
         if (SPEC_SPHERES != SPHERES_NONE && (SPEC_CUTOUTS != 0u || SPEC_FILTER_DETAIL != 0u) &&
@@ -437,7 +437,7 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
             uv = sphere_uv(dir_from_square(uv));
         bool refused;
         if (own_turn) {
-            accepted = accept_meeting(mode, m, uv, p.flags, p.r2.w, p.instance, p.index,
+            accepted = accept_candidate(mode, m, uv, p.flags, p.r2.w, p.instance, p.index,
                                       skip_instance, skip_primitive, hit, refused);
             if (accepted)
                 keep_hit(m, at_exit, record, p, hit);
@@ -470,9 +470,9 @@ uint next_ref(uint ref, bool done, inout NodeStack stack)
 // Goes on through a mesh tree at `ref` until REF_DONE, or until a record waits.
 void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint skip_instance,
                uint skip_primitive, inout uint ref, inout NodeStack stack, inout Hit hit,
-               out bool waits)
+               out bool deferred)
 {
-    waits = false;
+    deferred = false;
     do {
         do {
             if (is_inner(ref) && has_room(stack))
@@ -481,15 +481,15 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
         do {
             if (is_leaf(ref)) {
                 bool done = test_record(mode, ray, t_min, ref & BVH_FIRST_MASK, instance,
-                                        skip_instance, skip_primitive, hit, waits);
-                if (!waits)
+                                        skip_instance, skip_primitive, hit, deferred);
+                if (!deferred)
                     ref = next_ref(ref, done, stack);
             }
-        } while (is_leaf(ref) && !waits);
+        } while (is_leaf(ref) && !deferred);
         ref = refill_stack(ref, stack, hit.status);
-    } while (another_turn(ref != REF_DONE && !waits));
-    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
-    if (ref != REF_DONE && !waits)
+    } while (another_iteration(ref != REF_DONE && !deferred));
+    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
+    if (ref != REF_DONE && !deferred)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
@@ -513,13 +513,13 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
     NodeStack stack = make_stack(0u, 0u);
     uint ref = root;
     do {
-        bool waits;
-        walk_mesh(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit, waits);
-        if (has_looks(mode) && waits)
+        bool deferred;
+        walk_mesh(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit, deferred);
+        if (settles(mode) && deferred)
             look_at_leaf(mode, ray, ray.origin, ray.dir, t_min, 0u, skip_instance, skip_primitive,
                          ref, stack, hit);
-    } while (has_looks(mode) && another_turn(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
+    } while (settles(mode) && another_iteration(ref != REF_DONE));
+    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -539,9 +539,9 @@ RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
 void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min,
                     uint skip_instance, uint skip_primitive, inout uint ref,
                     inout NodeStack stack, inout RaySetup local, inout uint mesh_ref,
-                    inout NodeStack mesh_stack, bool inside, inout Hit hit, out bool waits)
+                    inout NodeStack mesh_stack, bool inside, inout Hit hit, out bool deferred)
 {
-    waits = false;
+    deferred = false;
     do {
         do {
             if (is_inner(ref) && has_room(stack) && !inside)
@@ -557,15 +557,15 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
                     traversal_cost.instances++;
             }
             walk_mesh(mode, local, t_min, instance, skip_instance, skip_primitive, mesh_ref,
-                      mesh_stack, hit, waits);
+                      mesh_stack, hit, deferred);
             bool done = is_over(mode, hit.primitive != HIT_NONE, hit);
-            if (!waits)
+            if (!deferred)
                 ref = done ? REF_DONE : pop_ref(true, ref, stack);
             inside = false;
         }
         ref = refill_stack(ref, stack, hit.status);
-    } while (another_turn(ref != REF_DONE && !waits));
-    if (ref != REF_DONE && !waits)
+    } while (another_iteration(ref != REF_DONE && !deferred));
+    if (ref != REF_DONE && !deferred)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
@@ -578,15 +578,15 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
     uint ref = root, mesh_ref = REF_DONE;
     bool inside = false;
     do {
-        bool waits;
+        bool deferred;
         walk_instances(mode, ray, origin, dir, t_min, skip_instance, skip_primitive, ref, stack,
-                       local, mesh_ref, mesh_stack, inside, hit, waits);
-        inside = has_looks(mode); // of those that wait
-        if (has_looks(mode) && waits)
+                       local, mesh_ref, mesh_stack, inside, hit, deferred);
+        inside = settles(mode); // of those that wait
+        if (settles(mode) && deferred)
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
                          skip_primitive, mesh_ref, mesh_stack, hit);
-    } while (has_looks(mode) && another_turn(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: 65,535 turns a subgroup) leaves work behind.
+    } while (settles(mode) && another_iteration(ref != REF_DONE));
+    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -599,7 +599,7 @@ bool is_usable(vec3 origin, vec3 dir)
 
 gpu_cost add_up(gpu_cost a, gpu_cost b)
 {
-    return gpu_cost(a.rays + b.rays, a.pairs + b.pairs, a.leaves + b.leaves,
+    return gpu_cost(a.rays + b.rays, a.inner_nodes + b.inner_nodes, a.leaves + b.leaves,
                     a.instances + b.instances, a.triangles + b.triangles, max(a.stack, b.stack),
                     max(a.depth, b.depth), 0u);
 }

@@ -22,7 +22,7 @@ layout(set = 0, binding = BIND_INSTANCE_TEXELS) uniform usamplerBuffer instance_
 layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
 {
     uint status_word;
-    uint status_waits; // items listed by list_waiting() so far
+    uint status_waits; // items listed by list_deferred() so far
 };
 
 uvec4 fetch_node_row(uint row)

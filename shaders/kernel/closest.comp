@@ -29,8 +29,8 @@ vec3 ray_weight[SPEC_PACKET_RAYS];
 // The ray's id; ITEM_NONE: there is none.
 uint own_ray(uint r)
 {
-    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u)
-        return waiting_item(r);
+    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u)
+        return deferred_item(r);
     if (is_primary())
         return camera_item(r);
     uint item = own_item(r, chunk.ray_capacity);
@@ -79,10 +79,10 @@ bool leave_ray(uint r, bool alive)
     bool primary = is_primary();
     if (alive)
         add_cost(ray_slot[r], ray_kind[r]);
-    bool waits = alive && must_wait(hit.status);
-    if (waits)
-        list_waiting(ray_id[r]);
-    alive = alive && !waits;
+    bool deferred = alive && must_wait(hit.status);
+    if (deferred)
+        list_deferred(ray_id[r]);
+    alive = alive && !deferred;
     bool met = alive && hit.primitive != HIT_NONE;
     if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
         uvec2 at = slot_pixel(ray_slot[r]);

@@ -66,7 +66,7 @@ void add_cuts(bool alive, uint slot, uint pixel)
             cut += cut_sums[pixel];
         cut_sums[pixel] = cut;
     }
-    uint depth = most_of_lanes(floatBitsToUint(cut.x)), bailout = most_of_lanes(floatBitsToUint(cut.y));
+    uint depth = max_of_lanes(floatBitsToUint(cut.x)), bailout = max_of_lanes(floatBitsToUint(cut.y));
     if (subgroupElect() && depth != 0u)
         atomicMax(tally.cut_depth_weight, depth);
     if (subgroupElect() && bailout != 0u)

@@ -58,7 +58,7 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
 {
     Calls calls;
     calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
-    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_WAITS;
+    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_DEFERRED;
     calls.cut = 0.0;
     calls.cuts = 0u;
     calls.lost = false;
@@ -90,7 +90,7 @@ Calls call_through(Ray ray, inout uint status)
 {
     Calls calls;
     calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
-    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_WAITS;
+    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_DEFERRED;
     calls.cut = 0.0;
     calls.cuts = 0u;
     calls.lost = false;
@@ -170,7 +170,7 @@ void probe_calls(uint id, Ray ray, Calls calls, uint has, bool through)
     uint kinds[3] = uint[3](RAY_REFRACTED | (through ? PROBE_THROUGH : 0u), ray.kind | PROBE_STRAIGHT,
                             RAY_REFLECTED);
     for (uint i = 0u; i < 3u; i++) {
-        if (calls.ends[i] != PROBE_WAITS)
+        if (calls.ends[i] != PROBE_DEFERRED)
             probe_cut_ray(id, kinds[i], calls.ends[i], calls.dir[i], calls.weight[i]);
         if (sent[i] != HIT_NONE)
             probe_sent(id, sent[i], kinds[i]);
@@ -223,8 +223,8 @@ void ask_lights(bool alive, uint id, uint record, Ray ray, Surface s, Optics o, 
 void main()
 {
     load_frame();
-    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
-    uint item = waited ? waiting_item(0u) : own_item(0u, hit_capacity());
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
+    uint item = waited ? deferred_item(0u) : own_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     item = alive ? item : 0u;
     uint id = waited ? item : fetch_listed_hit(item);
@@ -239,7 +239,7 @@ void main()
     bool inside = face_ray(s, ray.dir);
     Crossing c = cross_surface(alive ? slot : HIT_NONE, ray, hit, s, m, inside, status);
     if (alive && must_wait(status))
-        list_waiting(id);
+        list_deferred(id);
     alive = alive && !must_wait(status);
     Optics o = surface_optics(s, m, ray.dir, c.eta);
     if (dot(s.ns, ray.dir) > 0.0)

@@ -18,11 +18,11 @@
 layout(local_size_x_id = 0) in;
 
 Lit lit_of[SPEC_PACKET_RAYS];
-LightTurn turn_of[SPEC_PACKET_RAYS];
+LightSample turn_of[SPEC_PACKET_RAYS];
 
 // A shadow ray from `lit`, of packet ray `r`. What is lifted off the triangle may be met by light from
 // below the triangle's plane, which then must pass beside the triangle itself.
-void ask_light(uint r, bool wanted, Lit lit, LightTurn light, bool above)
+void ask_light(uint r, bool wanted, Lit lit, LightSample light, bool above)
 {
     vec3 to_light = light.to_light;
     float distance = light.distance;
@@ -78,7 +78,7 @@ vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
         return open;
     float factor = emitter_form_factor(light, lit.p, vec3(lit.error), lit.ns);
     float sampled = light.area_share * sum.weight;
-    vec3 radiance = min(light.color, vec3(LIGHT_MOST));
+    vec3 radiance = min(light.color, vec3(LIGHT_MAX));
     vec3 diffuse = lit.diffuse * (factor * (sum.visible / sum.weight));
     vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
     open = radiance * (lit.diffuse * factor);
@@ -96,7 +96,7 @@ Arrival arrival_of[SPEC_PACKET_RAYS];
 void face_light(uint r, bool alive, gpu_light light, uint point)
 {
     Lit lit = lit_of[r];
-    LightTurn at;
+    LightSample at;
     bool arrives = light_at(light, point, lit.p, at);
     Arrival a;
     a.cos_light = dot(at.to_light, lit.ns);
@@ -151,10 +151,10 @@ void add_arrival(uint r, gpu_light light, uint point)
 // Adds what has come to the sums of the ray; gives the shadow rays that took.
 uint leave_lit(uint r, bool alive, uint item, gpu_light light)
 {
-    bool waits = alive && must_wait(status_of[r]);
-    if (waits)
-        list_waiting(item);
-    if (waits || !alive)
+    bool deferred = alive && must_wait(status_of[r]);
+    if (deferred)
+        list_deferred(item);
+    if (deferred || !alive)
         return 0u;
     vec3 sum = sum_of[r], open = open_of[r];
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
@@ -174,11 +174,11 @@ uint leave_lit(uint r, bool alive, uint item, gpu_light light)
 void main()
 {
     load_frame();
-    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_LOOKS != 0u && chunk.waiting != 0u;
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
     bool alive[SPEC_PACKET_RAYS];
     uint item[SPEC_PACKET_RAYS];
     EACH_RAY {
-        item[r] = waited ? waiting_item(r) : own_item(r, chunk.lit_capacity);
+        item[r] = waited ? deferred_item(r) : own_item(r, chunk.lit_capacity);
         alive[r] = item[r] != ITEM_NONE;
         item[r] = alive[r] ? item[r] : 0u;
         uint lit = fetch_listed_lit(item[r]);
@@ -200,7 +200,7 @@ void main()
         EACH_RAY add_arrival(r, light, point);
         point++;
         more = flats && point < points;
-    } while (another_turn(more));
+    } while (another_iteration(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
     uint rays = 0u, status = 0u;

@@ -125,13 +125,13 @@ void list_packet(bool wanted, uint index[SPEC_PACKET_RAYS], bool alive[SPEC_PACK
     const uint rays_each = 8u * SPEC_PACKET_RAYS;
     uint at = 0u, lane = gl_SubgroupInvocationID;
     if (wanted && lane == 0u) {
-        at = atomicAdd(waiting.count, rays_each);
-        atomicMax(waiting.groups_x, (at + rays_each - 1u) / SPEC_GROUP_SIZE + 1u);
+        at = atomicAdd(deferred.count, rays_each);
+        atomicMax(deferred.groups_x, (at + rays_each - 1u) / SPEC_GROUP_SIZE + 1u);
     }
     at = subgroupShuffle(at, 0u);
     EACH_RAY {
         if (wanted)
-            waiting_items[at + r * 8u + lane] = alive[r] ? index[r] : HIT_NONE;
+            deferred_items[at + r * 8u + lane] = alive[r] ? index[r] : HIT_NONE;
     }
 }
 
@@ -176,19 +176,19 @@ void trace_beam()
 void trace_ray()
 {
     uint index = gl_GlobalInvocationID.x;
-    bool waited = batch.waiting != 0u;
-    if (index >= (waited ? waiting.count : batch.ray_count))
+    bool waited = batch.deferred != 0u;
+    if (index >= (waited ? deferred.count : batch.ray_count))
         return;
     if (waited)
-        index = waiting_items[index];
+        index = deferred_items[index];
     if (index == HIT_NONE)
         return;
     gpu_ray ray = fetch_ray(index);
     Hit hit = traverse(MODE, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE, HIT_NONE);
     if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(MODE))
         finish_hit(ray.origin, ray.dir, hit);
-    if (SPEC_LOOKS == 0u && must_wait(hit.status)) {
-        list_waiting(index);
+    if (SPEC_SETTLES == 0u && must_wait(hit.status)) {
+        list_deferred(index);
         return;
     }
     report_status(hit.status);

@@ -268,7 +268,7 @@ int compare_product(ivec2 range, uint factor, int shift, out bool finished)
     uint low = factor << bits, f2 = factor >> 16 >> (16u - bits);
     uint f0 = low & 0xffffu, f1 = low >> 16, carry = 0u, d1 = 0u, d2 = 0u;
     int i;
-    for (i = range.x; another_turn(i <= range.y + 3); i++) {
+    for (i = range.x; another_iteration(i <= range.y + 3); i++) {
         uint d0 = digit_at(range, WIDE_D, i);
         uint p0 = f0 * d0, p1 = f1 * d1, p2 = f2 * d2;
         uint sum = (p0 & 0xffffu) + (p1 & 0xffffu) + (p2 & 0xffffu) + carry;
@@ -319,7 +319,7 @@ struct ExactMeeting {
     bvec3 on_edge; // which edge functions are 0
 };
 
-// Not `finished`: the driver has ended a loop (lavapipe: after 65,535 turns a subgroup).
+// Not `finished`: the driver has ended a loop (lavapipe: after 65,535 iterations a subgroup).
 ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bool finished)
 {
     decode_point(POINT_DIR, dir);

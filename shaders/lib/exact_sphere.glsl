@@ -180,7 +180,7 @@ int product_digit(int last, int i)
 // On which side of the middle between the float of these bits and the next one an end of the chord
 // is: 1 beyond it. The middle is mantissa 2^power, so the signs of the polynomial and of half its slope
 // there, P t - S, tell. Both are multiplied by a power of two where power < 0. Not `finished`: the
-// driver has ended a loop (lavapipe: after 65,535 turns a subgroup), here or before.
+// driver has ended a loop (lavapipe: after 65,535 iterations a subgroup), here or before.
 int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finished)
 {
     uint exponent = bits >> 23;
@@ -211,7 +211,7 @@ int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finish
     int twice_digits = 2 * down / BALL_BITS, twice_bits = 2 * down % BALL_BITS;
     int end = max(last + up_digits + 2, ball_last + twice_digits) + 1, i;
     carry = 0;
-    for (i = 0; another_turn(i < end); i++) { // t (P t - 2 S) + Q
+    for (i = 0; another_iteration(i < end); i++) { // t (P t - 2 S) + Q
         int at = i - up_digits;
         carry += factor.x * product_digit(last, at) + factor.y * product_digit(last, at - 1) +
                  factor.z * product_digit(last, at - 2) +
@@ -231,7 +231,7 @@ uint bits_within(float x)
     return x > 0.0 ? floatBitsToUint(x) : 0u;
 }
 
-struct SphereMeeting {
+struct SphereCandidate {
     bool met;     // at t >= 0; false where the key exceeds the largest float
     bool at_exit; // at the far end
     bool inward;  // where it is met: from the ray's origin the centre is ahead
@@ -241,7 +241,7 @@ struct SphereMeeting {
 // The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none. The
 // key is the least float, within its bounds, that t is not beyond; the first turn of the loop asks that
 // of the float before t_min, to choose the end.
-SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far,
+SphereCandidate exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far,
                                 float t_min, out bool finished)
 {
     SphereBounds bounds = bound_sphere(make_ray_setup(origin, dir), center, radius);
@@ -269,9 +269,9 @@ SphereMeeting exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius
             most = beyond ? most : middle;
         }
         choose = false;
-    } while (another_turn(least < most && finished));
+    } while (another_iteration(least < most && finished));
     finished = finished && least >= most;
-    SphereMeeting m;
+    SphereCandidate m;
     m.key = uintBitsToFloat(least);
     m.at_exit = at_exit;
     m.inward = signs[BALL_S] > 0;

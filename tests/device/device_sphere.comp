@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-/* lib/exact_sphere.glsl and lib/pairs_sphere.glsl on every input. */
-#include "../../shaders/lib/pairs_sphere.glsl"
+/* lib/exact_sphere.glsl and lib/ff_sphere.glsl on every input. */
+#include "../../shaders/lib/ff_sphere.glsl"
 layout(local_size_x = 64) in;
 struct Case {
     vec3 origin;
@@ -39,10 +39,10 @@ void main()
     Case c = cases[i];
     SphereBounds bounds = bound_sphere(make_ray_setup(c.origin, c.dir), c.center, c.radius);
     bool finished;
-    SphereMeeting exact = exact_meet_sphere(c.origin, c.dir, c.center, c.radius, c.only_far != 0u,
+    SphereCandidate exact = exact_meet_sphere(c.origin, c.dir, c.center, c.radius, c.only_far != 0u,
                                             c.t_min, finished);
-    SphereMeeting pairs;
-    bool sure = pair_meet_sphere(c.origin, c.dir, c.center, c.radius, c.only_far != 0u, c.t_min,
+    SphereCandidate pairs;
+    bool sure = ff_meet_sphere(c.origin, c.dir, c.center, c.radius, c.only_far != 0u, c.t_min,
                                  pairs);
     Answer a;
     a.near_lo = bounds.near_lo;

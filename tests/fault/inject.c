@@ -37,10 +37,10 @@ struct range {
     uintptr_t begin, end;
 };
 
-enum { RANGES_MOST = 16, BLOCKS_MOST = 1 << 18 };
+enum { RANGES_MAX = 16, BLOCKS_MAX = 1 << 18 };
 static const int64_t start_ns = 1000000000000, hour_ns = 3600000000000;
 static struct fault_shared *shared;
-static struct range ranges[RANGES_MOST]; /* The first one is the program. */
+static struct range ranges[RANGES_MAX]; /* The first one is the program. */
 static uint32_t range_count;
 static pid_t program;          /* Its children inherit this library. */
 static void *_Atomic lost;     /* what the handles of a lost device have in common; NULL: none is */
@@ -76,7 +76,7 @@ static int add_range(struct dl_phdr_info *info, size_t bytes, void *user)
         range.begin = begin < range.begin ? begin : range.begin;
         range.end = end > range.end ? end : range.end;
     }
-    if (wanted && range_count < RANGES_MOST)
+    if (wanted && range_count < RANGES_MAX)
         ranges[range_count++] = range;
     return 0;
 }
@@ -204,7 +204,7 @@ static int64_t block_count;
 #ifndef FAULT_NO_ALLOC
 
 /* Open addressing; 0: free, 1: was taken. A lock of its own, so that it may be taken in malloc. */
-static uintptr_t blocks[BLOCKS_MOST];
+static uintptr_t blocks[BLOCKS_MAX];
 static bool blocks_over;
 static atomic_flag blocks_lock = ATOMIC_FLAG_INIT;
 
@@ -214,11 +214,11 @@ static void *note_block(void *block, uintptr_t caller)
         return block;
     while (atomic_flag_test_and_set(&blocks_lock))
         ;
-    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MOST;
+    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MAX;
     while (blocks[at] > 1)
-        at = (at + 1) % BLOCKS_MOST;
+        at = (at + 1) % BLOCKS_MAX;
     blocks[at] = (uintptr_t)block;
-    blocks_over = blocks_over || ++block_count > BLOCKS_MOST / 2;
+    blocks_over = blocks_over || ++block_count > BLOCKS_MAX / 2;
     atomic_flag_clear(&blocks_lock);
     return block;
 }
@@ -229,9 +229,8 @@ static void forget_block(void *block)
         return;
     while (atomic_flag_test_and_set(&blocks_lock))
         ;
-    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MOST;
-    for (size_t tries = 0; blocks[at] && tries < BLOCKS_MOST;
-         ++tries, at = (at + 1) % BLOCKS_MOST) {
+    size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MAX;
+    for (size_t tries = 0; blocks[at] && tries < BLOCKS_MAX; ++tries, at = (at + 1) % BLOCKS_MAX) {
         if (blocks[at] != (uintptr_t)block)
             continue;
         blocks[at] = 1;

@@ -35,7 +35,7 @@
 
 #include "fault.h"
 
-enum { OUTPUTS_MOST = 4, FAULTS_MOST = 8, TEXT_MOST = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
+enum { OUTPUTS_MAX = 4, FAULTS_MAX = 8, TEXT_MAX = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
 /* An interrupted program ends within that time, by its timer if not by itself. */
 enum { GRACE_MS = 200 };
 static const char old_text[] = "old\n";
@@ -85,8 +85,8 @@ struct sweep {
     struct fault_shared *shared;
     int shared_fd;
     const char *inject, *say;
-    const char *outputs[OUTPUTS_MOST];
-    struct content whole[OUTPUTS_MOST]; /* of the run without a fault */
+    const char *outputs[OUTPUTS_MAX];
+    struct content whole[OUTPUTS_MAX]; /* of the run without a fault */
     uint32_t output_count;
     bool same_stdout;      /* what is printed is an output too */
     bool pictures;         /* it prints states of the viewer: see judge_states */
@@ -94,9 +94,9 @@ struct sweep {
     bool may_leak, validated;
     bool cold; /* Each run has a cache folder of its own, which is empty at first. */
     struct content printed;
-    const struct fault *faults[FAULTS_MOST], *fault; /* fault: of this run */
+    const struct fault *faults[FAULTS_MAX], *fault; /* fault: of this run */
     uint32_t fault_count;
-    uint32_t most_runs, every, shown, most_submits;
+    uint32_t max_runs, every, shown, max_submits;
     char **command;
     uint32_t runs, fired, failed, fine, said, defects; /* said: fine, but a picture is missing */
     uint32_t kept;    /* reports of what was measured before the end */
@@ -128,11 +128,11 @@ static struct content read_whole(const char *path)
     FILE *stream = fopen(path, "rb");
     size_t capacity = 0, got = 1;
     while (stream && got > 0) {
-        if (content.bytes + TEXT_MOST > capacity)
-            content.data = realloc(content.data, capacity += 4 * TEXT_MOST);
+        if (content.bytes + TEXT_MAX > capacity)
+            content.data = realloc(content.data, capacity += 4 * TEXT_MAX);
         if (!content.data)
             stop(path);
-        got = fread(content.data + content.bytes, 1, TEXT_MOST - 1, stream);
+        got = fread(content.data + content.bytes, 1, TEXT_MAX - 1, stream);
         content.bytes += got;
         content.data[content.bytes] = '\0';
     }
@@ -297,7 +297,7 @@ static const char *judge(const struct sweep *sweep, int status, const char *erro
         snprintf(text, sizeof text, "%lld blocks were not given back", (long long)shared->live);
     else if (is_signal && (shared->timer_ms == 0 || shared->timer_ms > GRACE_MS) && !sweep->reports)
         snprintf(text, sizeof text, "it has %u ms to end by itself", shared->timer_ms);
-    else if (submits > sweep->most_submits)
+    else if (submits > sweep->max_submits)
         snprintf(text, sizeof text, "it went on for %u submissions", submits);
     else
         return NULL;
@@ -566,7 +566,7 @@ static void check_some(struct sweep *sweep, uint32_t calls)
 {
     const char *value = getenv("WHIT_TEST_OFFSET");
     uint32_t offset = value ? (uint32_t)strtoul(value, NULL, 10) : 0;
-    uint32_t stride = (calls + sweep->most_runs - 1) / sweep->most_runs;
+    uint32_t stride = (calls + sweep->max_runs - 1) / sweep->max_runs;
     stride = stride ? stride : 1;
     printf("%u calls: each %u-th from the %u-th on; the same again: WHIT_TEST_OFFSET=%u\n", calls,
            stride, offset % stride + 1, offset);
@@ -634,7 +634,7 @@ static void read_faults(struct sweep *sweep, const char *names)
         while (i < count &&
                (strlen(faults[i].name) != length || strncmp(faults[i].name, names, length) != 0))
             ++i;
-        if (i == count || sweep->fault_count == FAULTS_MOST ||
+        if (i == count || sweep->fault_count == FAULTS_MAX ||
             (sweep->fault_count > 0 && faults[i].calls != sweep->faults[0]->calls)) {
             fprintf(stderr, "fault_sweep: the faults `%s`?\n", names);
             exit(2);
@@ -649,10 +649,10 @@ static bool read_number(struct sweep *sweep, const char *name, const char *value
     const struct {
         const char *name;
         uint32_t *to;
-    } numbers[] = {{"--runs", &sweep->most_runs},
+    } numbers[] = {{"--runs", &sweep->max_runs},
                    {"--every", &sweep->every},
                    {"--show", &sweep->shown},
-                   {"--submits", &sweep->most_submits}};
+                   {"--submits", &sweep->max_submits}};
     for (uint32_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
         if (strcmp(name, numbers[i].name) != 0)
             continue;
@@ -664,7 +664,7 @@ static bool read_number(struct sweep *sweep, const char *name, const char *value
 
 static bool read_option(struct sweep *sweep, const char *name, const char *value)
 {
-    if (strcmp(name, "--output") == 0 && sweep->output_count < OUTPUTS_MOST)
+    if (strcmp(name, "--output") == 0 && sweep->output_count < OUTPUTS_MAX)
         sweep->outputs[sweep->output_count++] = value;
     else if (strcmp(name, "--from") == 0)
         snprintf(sweep->shared->from, sizeof sweep->shared->from, "%s", value);
@@ -724,7 +724,7 @@ int main(int argc, char **argv)
         return 2;
     }
     struct sweep sweep = {
-        .inject = argv[1], .most_runs = 1 << 20, .most_submits = UINT32_MAX, .shown = SHOWN};
+        .inject = argv[1], .max_runs = 1 << 20, .max_submits = UINT32_MAX, .shown = SHOWN};
     share(&sweep);
     sweep.shared->step_ns = 1000000;
     read_faults(&sweep, argv[2]);

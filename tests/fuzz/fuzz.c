@@ -47,11 +47,11 @@ void fuzz_check(bool good, const char *format, ...)
 
 /* --- files ---------------------------------------------------------------------------------- */
 
-enum { FILES_MOST = 8, PATH_BYTES = 96 };
+enum { FILES_MAX = 8, PATH_BYTES = 96 };
 
 static struct {
     char folder[PATH_BYTES];
-    char paths[FILES_MOST][PATH_BYTES];
+    char paths[FILES_MAX][PATH_BYTES];
     int count;
 } files;
 
@@ -85,7 +85,7 @@ static const char *path_of(const char *name)
     for (int i = 0; i < files.count; i++)
         if (strcmp(files.paths[i], path) == 0)
             return files.paths[i];
-    fuzz_check(files.count < FILES_MOST, "too many files");
+    fuzz_check(files.count < FILES_MAX, "too many files");
     return strcpy(files.paths[files.count++], path);
 }
 
@@ -143,11 +143,11 @@ void fuzz_check_errors(whit_result result, const char *path)
 
 void fuzz_check_trees(const struct scene *scene)
 {
-    enum { PRIMITIVES_MOST = 4096, INSTANCES_MOST = 4096 };
+    enum { PRIMITIVES_MAX = 4096, INSTANCES_MAX = 4096 };
     uint64_t primitives = 0;
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         primitives += scene_mesh_primitives(&scene->meshes[i]);
-    if (primitives > PRIMITIVES_MOST || scene->instance_count > INSTANCES_MOST)
+    if (primitives > PRIMITIVES_MAX || scene->instance_count > INSTANCES_MAX)
         return;
     struct accel_params params = {.validate = true};
     params.mesh.thread_count = params.instances.thread_count = 1;
@@ -241,9 +241,9 @@ static void memory_begin(void)
 static void memory_end(size_t size_bytes)
 {
     memory.watching = false;
-    uint64_t most = fuzz_target.memory_bytes + 10 * (uint64_t)size_bytes;
-    fuzz_check(memory.peak_bytes <= most, "%zu bytes of input took %llu bytes of memory, over %llu",
-               size_bytes, (unsigned long long)memory.peak_bytes, (unsigned long long)most);
+    uint64_t max = fuzz_target.memory_bytes + 10 * (uint64_t)size_bytes;
+    fuzz_check(memory.peak_bytes <= max, "%zu bytes of input took %llu bytes of memory, over %llu",
+               size_bytes, (unsigned long long)memory.peak_bytes, (unsigned long long)max);
 }
 #else
 static void memory_begin(void) {}

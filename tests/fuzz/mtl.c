@@ -9,9 +9,9 @@
 
 static void make_materials(struct scene *scene, const struct mtl_library *library)
 {
-    enum { MATERIALS_MOST = 64 };
+    enum { MATERIALS_MAX = 64 };
     bool ambient_known = mtl_has_ambient(library);
-    for (uint32_t i = 0; i < library->count && i < MATERIALS_MOST; i++) {
+    for (uint32_t i = 0; i < library->count && i < MATERIALS_MAX; i++) {
         struct scene_material material = {0};
         const struct mtl_entry *entry = &library->entries[i];
         fuzz_check(mtl_find(library, entry->name), "`%s` is not found", entry->name);

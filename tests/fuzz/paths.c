@@ -12,7 +12,7 @@
 #include "base/roots.h"
 #include "load/picture.h"
 
-enum { PATH_BYTES = 4096, NAME_MOST = 600 };
+enum { PATH_BYTES = 4096, NAME_BYTES = 600 };
 
 static char base[PATH_BYTES], model[PATH_BYTES];
 static struct roots roots;
@@ -90,8 +90,8 @@ static enum reach try_to_open(const char *path)
 
 static void run(const uint8_t *data, size_t size_bytes)
 {
-    char name[NAME_MOST + 1];
-    size_t length = size_bytes < NAME_MOST ? size_bytes : NAME_MOST;
+    char name[NAME_BYTES + 1];
+    size_t length = size_bytes < NAME_BYTES ? size_bytes : NAME_BYTES;
     memcpy(name, data, length);
     name[length] = 0;
     char *joined = roots_join(model, name), *found = joined ? picture_find(&roots, joined) : NULL;

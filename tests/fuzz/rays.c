@@ -9,7 +9,7 @@
 #include "app/ray_file.h"
 #include "trees.h"
 
-enum { KIND_COUNT = FUZZ_SCENE_COUNT, BUILD_COUNT = 2, RAYS_MOST = 64, HITS_MOST = 64 };
+enum { KIND_COUNT = FUZZ_SCENE_COUNT, BUILD_COUNT = 2, RAYS_MAX = 64, HITS_MAX = 64 };
 
 static struct accel *accels[KIND_COUNT][BUILD_COUNT + 1];
 
@@ -34,7 +34,7 @@ static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
     struct gpu_hit hit, before;
     uint32_t status = 0;
     traverse_next_float(accel, ray, NULL, &hit, &status);
-    for (int i = 0; i < HITS_MOST && hit.primitive != HIT_NONE; i++) {
+    for (int i = 0; i < HITS_MAX && hit.primitive != HIT_NONE; i++) {
         before = hit;
         traverse_next_float(accel, ray, &before, &hit, &status);
         fuzz_check(hit.primitive == HIT_NONE || hit.t >= before.t, "%a behind %a", (double)hit.t,
@@ -46,14 +46,14 @@ static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
 }
 
 /* All rays of the file or one error. */
-static uint64_t read_rays(const uint8_t *data, size_t size_bytes, whit_ray rays[RAYS_MOST])
+static uint64_t read_rays(const uint8_t *data, size_t size_bytes, whit_ray rays[RAYS_MAX])
 {
     enum { PIECE = 5 };
     struct ray_file file;
     uint64_t count = 1, sum = 0;
     fuzz_log_clear();
     whit_result result = ray_file_open(fuzz_file("rays.bin", data, size_bytes), &file);
-    while (result == WHIT_OK && count > 0 && sum + PIECE <= RAYS_MOST) {
+    while (result == WHIT_OK && count > 0 && sum + PIECE <= RAYS_MAX) {
         result = ray_file_read(&file, rays + sum, PIECE, &count);
         sum += count;
     }
@@ -71,7 +71,7 @@ static void run(const uint8_t *data, size_t size_bytes)
     if (size_bytes == 0)
         return;
     const struct accel *accel = accels[data[0] % KIND_COUNT][data[0] / KIND_COUNT % 3];
-    whit_ray rays[RAYS_MOST];
+    whit_ray rays[RAYS_MAX];
     uint64_t count = read_rays(data + 1, size_bytes - 1, rays);
     for (uint64_t i = 0; i < count; i++) {
         struct gpu_ray ray;

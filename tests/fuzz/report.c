@@ -25,7 +25,7 @@ static void run(const uint8_t *data, size_t size_bytes)
     const char *path = fuzz_file("report.json", data, size_bytes);
     bool good = cost_load_json(path, &report, &scene);
     fuzz_check_errors(good ? WHIT_OK : WHIT_ERROR_INPUT, path);
-    fuzz_check(!good || (report.row_count > 0 && report.row_count <= COST_ROWS_MOST), "%u rows",
+    fuzz_check(!good || (report.row_count > 0 && report.row_count <= COST_ROWS_MAX), "%u rows",
                report.row_count);
     if (good)
         choose(&report);

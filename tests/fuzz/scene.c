@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <string.h>
 
-enum { STEPS_MOST = 48, LEVEL_MOST = 2, COPIES_MOST = 512 };
+enum { STEPS_MAX = 48, LEVEL_MAX = 2, COPIES_MAX = 512 };
 
 /* Of how many copies `value` and all in it would be, at most; above COPIES_MOST also for a shape of
    many triangles. */
@@ -15,9 +15,9 @@ static double copies_in(const json_t *value, const char *key, double copies)
     json_t *child;
     size_t i;
     double number = json_number_value(value), sum = copies;
-    if (json_is_number(value) && number > (strcmp(key, "level") == 0 ? LEVEL_MOST : STEPS_MOST) &&
+    if (json_is_number(value) && number > (strcmp(key, "level") == 0 ? LEVEL_MAX : STEPS_MAX) &&
         (strstr("level steps segments rings sides bays", key) && key[0]))
-        return COPIES_MOST + 1.0;
+        return COPIES_MAX + 1.0;
     if (json_is_number(value) && strcmp(key, "count") == 0)
         return number > 1.0 ? number * copies : copies;
     if (json_is_array(value) && strcmp(key, "count") == 0) {
@@ -46,7 +46,7 @@ static void prepare(void)
 static void run(const uint8_t *data, size_t size_bytes)
 {
     json_t *root = json_loadb((const char *)data, size_bytes, 0, NULL);
-    bool small = copies_in(root, "", 1.0) <= COPIES_MOST;
+    bool small = copies_in(root, "", 1.0) <= COPIES_MAX;
     json_decref(root);
     if (small)
         fuzz_load(fuzz_file("scene.json", data, size_bytes));

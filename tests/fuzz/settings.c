@@ -57,11 +57,11 @@ static void put_part(void *user, const char *part)
 
 static void check_word(const uint8_t *data, size_t size_bytes)
 {
-    enum { WORD_MOST = SETTING_TEXT_BYTES - 1, A_BYTE = 16, HEAD = 16 };
+    enum { WORD_MAX = SETTING_TEXT_BYTES - 1, A_BYTE = 16, HEAD = 16 };
     struct settings settings;
-    char word[WORD_MOST + 1], buffer[HEAD + A_BYTE * WORD_MOST], said[256];
+    char word[WORD_MAX + 1], buffer[HEAD + A_BYTE * WORD_MAX], said[256];
     struct line line = {.text = buffer, .room = sizeof buffer};
-    size_t length = size_bytes < WORD_MOST ? size_bytes : WORD_MOST;
+    size_t length = size_bytes < WORD_MAX ? size_bytes : WORD_MAX;
     memcpy(word, data, length);
     word[length] = 0;
     put_part(&line, "--camera=");

@@ -14,8 +14,8 @@ static void decode(const uint8_t *data, size_t size_bytes)
     fuzz_check(result == WHIT_OK || (result == WHIT_ERROR_INPUT && reason && *reason),
                "the result is %d", (int)result);
     /* No format makes more of its bytes than PNG can. */
-    uint64_t most = ((uint64_t)1 << 16) + (uint64_t)8 * 1032 * size_bytes;
-    fuzz_check((uint64_t)picture.width * picture.height <= most, "%u x %u pixels out of %zu bytes",
+    uint64_t max = ((uint64_t)1 << 16) + (uint64_t)8 * 1032 * size_bytes;
+    fuzz_check((uint64_t)picture.width * picture.height <= max, "%u x %u pixels out of %zu bytes",
                picture.width, picture.height, size_bytes);
     if (result == WHIT_OK && picture.width <= 256 && picture.height <= 256)
         fuzz_check(picture_shrink(&picture, 4), "a picture that cannot be halved");

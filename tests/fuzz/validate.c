@@ -6,7 +6,7 @@
 
 #include "trees.h"
 
-enum { BUILD_COUNT = 6, FLAT = 2, PATCH_BYTES = 7, PATCHES_MOST = 64 };
+enum { BUILD_COUNT = 6, FLAT = 2, PATCH_BYTES = 7, PATCHES_MAX = 64 };
 
 static struct accel *accels[FUZZ_SCENE_COUNT][BUILD_COUNT][FLAT];
 
@@ -96,7 +96,7 @@ static void run(const uint8_t *data, size_t size_bytes)
     struct kept kept = {keep(accel->nodes, node_bytes), keep(accel->triangles, triangle_bytes),
                         keep(accel->meshes, mesh_bytes), keep(accel->instances, instance_bytes)};
     size_t patches = (size_bytes - 2) / PATCH_BYTES;
-    for (size_t i = 0; i < patches && i < PATCHES_MOST; i++)
+    for (size_t i = 0; i < patches && i < PATCHES_MAX; i++)
         patch(accel, data + 2 + i * PATCH_BYTES);
     fuzz_log_clear();
     whit_result result = accel_validate(accel);

@@ -41,7 +41,7 @@ mutation(edge_crossed_twice render_media RED edges_are_crossed_once)
 change(shaders/bind/crossing.glsl [[media_have(ray.media, s.material + 1u) != inside;]] [[false;]])
 
 mutation(edge_entered_twice render_media RED edges_are_crossed_once)
-change(shaders/bind/crossing.glsl [[same != CROSSED_MOST && left == leaves;]] [[false;]])
+change(shaders/bind/crossing.glsl [[same != CROSSED_MAX && left == leaves;]] [[false;]])
 
 mutation(averted_normals_kept render_shading RED averted_normals_give_way)
 change(shaders/bind/crossing.glsl [[if (dot(s.ns, dir) > 0.0)]] [[if (false)]])
@@ -281,13 +281,13 @@ change(host/accel/exact.c round_quotient [[up \?]] [[up && mantissa == 0 ?]])
 change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
 
 mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
-change(shaders/lib/pair_numbers.glsl [[vec2 both = pair_sum(first, second);]]
-  [[vec2 both = pair_sum(first, 0.0);]])
+change(shaders/lib/ff_numbers.glsl [[vec2 both = ff_sum(first, second);]]
+  [[vec2 both = ff_sum(first, 0.0);]])
 
-mutation(pairs_without_bound hard_pairs RED what_is_sure_is_so)
-change(host/accel/pairs.c triple [[PAIR_RELATIVE]] [[PAIR_RELATIVE / 128.0f]])
-change(shaders/lib/pairs.glsl [[size * PAIR_RELATIVE + PAIR_ABSOLUTE]]
-  [[size * PAIR_RELATIVE / 128.0 + PAIR_ABSOLUTE]])
+mutation(pairs_without_bound hard_ff RED what_is_sure_is_so)
+change(host/accel/ff_triangle.c triple [[FF_RELATIVE]] [[FF_RELATIVE / 128.0f]])
+change(shaders/lib/ff_triangle.glsl [[size * FF_RELATIVE + FF_ABSOLUTE]]
+  [[size * FF_RELATIVE / 128.0 + FF_ABSOLUTE]])
 
 mutation(spheres_with_half_their_bound hard_sphere RED spheres_are_met_as_fractions_say)
 change(host/accel/exact_sphere.c bound_sphere [[82\.0f]] [[41.0f]])
@@ -304,19 +304,19 @@ mutation(sphere_ties_round_down_in_kernels device_sphere RED spheres_are_met_as_
 change(shaders/lib/exact_sphere.glsl [[(side == 0 && (middle & 1u) != 0u)]] [[false]])
 
 mutation(sphere_pairs_without_bound hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/pairs_sphere.c [[PAIR_RELATIVE + PAIR_ABSOLUTE]]
-  [[PAIR_RELATIVE / 1024.0f + PAIR_ABSOLUTE]])
+change(host/accel/ff_sphere.c [[FF_RELATIVE + FF_ABSOLUTE]]
+  [[FF_RELATIVE / 1024.0f + FF_ABSOLUTE]])
 
 mutation(far_ends_taken_for_near_in_kernels render_numerics RED spheres)
 change(shaders/bind/traverse.glsl [[hit.at_exit = at_exit;]] [[hit.at_exit = false;]])
 
-mutation(waiting_rays_forgotten render_waiting RED batches_are_those_of_looks_in_place)
-change(shaders/kernel/trace.comp [[list_waiting(index);]] [[;]])
+mutation(waiting_rays_forgotten render_deferred RED batches_are_those_of_looks_in_place)
+change(shaders/kernel/trace.comp [[list_deferred(index);]] [[;]])
 
-mutation(waiting_pixels_forgotten render_waiting RED pictures_are_those_of_looks_in_place)
-change(shaders/kernel/closest.comp [[list_waiting(ray_id[r]);]] [[;]])
+mutation(waiting_pixels_forgotten render_deferred RED pictures_are_those_of_looks_in_place)
+change(shaders/kernel/closest.comp [[list_deferred(ray_id[r]);]] [[;]])
 
-mutation(waiting_rays_leave_children render_waiting RED pictures_are_those_of_looks_in_place)
+mutation(waiting_rays_leave_children render_deferred RED pictures_are_those_of_looks_in_place)
 change(shaders/kernel/shade.comp [[alive = alive && !must_wait(status);]] [[;]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)

@@ -9,7 +9,7 @@
 #include "accel/accel.h"
 #include "base/array.h"
 
-enum { THREADS_MOST = 4 };
+enum { THREADS_MAX = 4 };
 
 /* From some 2,000 on a tree is built by several threads. */
 static const uint32_t counts[] = {1, 2, 3, 40, 300, 2200, 2500, 4500};
@@ -91,7 +91,7 @@ static bool check(const struct mesh *mesh, const struct bvh_params *builder)
     params.triangles = &mesh->triangles;
     params.thread_count = 1;
     bool good = bvh_build(&to_stderr, mesh->boxes, mesh->count, &params, &one) == WHIT_OK;
-    for (params.thread_count = 2; good && params.thread_count <= THREADS_MOST;
+    for (params.thread_count = 2; good && params.thread_count <= THREADS_MAX;
          params.thread_count *= 2) {
         good = bvh_build(&to_stderr, mesh->boxes, mesh->count, &params, &other) == WHIT_OK &&
                trees_equal(&one, &other);

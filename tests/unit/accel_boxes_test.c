@@ -6,7 +6,7 @@
 
 struct seen {
     struct accel_box boxes[4096];
-    uint32_t count, most;
+    uint32_t count, max;
 };
 
 static bool see(void *user, const struct accel_box *box)
@@ -14,7 +14,7 @@ static bool see(void *user, const struct accel_box *box)
     struct seen *seen = user;
     assert_in_range(seen->count, 0, 4095);
     seen->boxes[seen->count++] = *box;
-    return seen->count < seen->most;
+    return seen->count < seen->max;
 }
 
 static struct scene *placed_spheres(void)
@@ -42,7 +42,7 @@ static struct world open_world(bool flatten)
     struct world w = {.scene = placed_spheres(), .seen = calloc(1, sizeof *w.seen)};
     const struct accel_params params = {.flatten = flatten};
     assert_non_null(w.seen);
-    w.seen->most = UINT32_MAX;
+    w.seen->max = UINT32_MAX;
     assert_int_equal(accel_create(&fixture_log, w.scene, &params, &w.accel), WHIT_OK);
     assert_int_equal(scene_pose_init(w.scene, 0.0, &w.pose), WHIT_OK);
     return w;
@@ -134,7 +134,7 @@ static void who_asks_can_stop(void **state)
 {
     (void)state;
     struct world w = open_world(false);
-    w.seen->most = 3;
+    w.seen->max = 3;
     accel_boxes(w.accel, &w.pose, false, 4, see, w.seen);
     assert_int_equal(w.seen->count, 3);
     close_world(&w);

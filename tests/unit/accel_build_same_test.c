@@ -146,16 +146,16 @@ static double split_cost(const struct bvh_box *boxes, const uint32_t *primitives
 }
 
 /* The least cost of all splits of three axes, each summed up anew: quadratic. */
-static double least_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count)
+static double min_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count)
 {
-    double least = INFINITY;
+    double min = INFINITY;
     for (uint32_t axis = 0; axis < 3; ++axis) {
         for (uint32_t i = 0; i < count; ++i) {
             float plane = centroid_of(&boxes[primitives[i]], axis);
-            least = fmin(least, split_cost(boxes, primitives, count, axis, plane));
+            min = fmin(min, split_cost(boxes, primitives, count, axis, plane));
         }
     }
-    return least;
+    return min;
 }
 
 /* Inner nodes whose split was compared. */
@@ -173,12 +173,12 @@ static uint32_t check_splits(const struct bvh *bvh, const struct bvh_box *boxes,
         cost += area(&pair[side]) * counts[side];
     }
     gather(bvh, node, primitives);
-    double least = least_cost(boxes, primitives, counts[0] + counts[1]);
+    double min = min_cost(boxes, primitives, counts[0] + counts[1]);
     free(primitives);
     /* The builder's costs are floats; equal centroids on all axes are halved by their order. */
-    if (least < INFINITY)
-        assert_true(cost <= least * (1.0 + 1e-5));
-    return (least < INFINITY) + check_splits(bvh, boxes, &pair[0]) +
+    if (min < INFINITY)
+        assert_true(cost <= min * (1.0 + 1e-5));
+    return (min < INFINITY) + check_splits(bvh, boxes, &pair[0]) +
            check_splits(bvh, boxes, &pair[1]);
 }
 

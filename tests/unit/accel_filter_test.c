@@ -6,7 +6,7 @@
 #include "accel/exact_sphere.h"
 #include "fraction_fixture.h"
 
-enum { VERTICES = 3, STEPS_MOST = 5 };
+enum { VERTICES = 3, STEPS_MAX = 5 };
 
 /* `steps`: of the three quotients of a ray, in floats, where 2.5 ulp let them go so far. */
 struct subject {
@@ -153,12 +153,12 @@ static double score_of(const struct subject *s, enum aim aim)
         double half = 0.5 * ((double)view.bounds.hi - (double)view.bounds.lo);
         return view.bounds.inside ? fabs((double)view.bounds.t - truth.t) / half : -INFINITY;
     }
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (int i = 0; i < VERTICES; ++i) {
         double error = fabs((double)view.edge[i] - truth.edge[i]);
-        most = fmax(most, aim == EDGE_ERROR ? error : error - fabs(truth.edge[i]));
+        max = fmax(max, aim == EDGE_ERROR ? error : error - fabs(truth.edge[i]));
     }
-    return most / (double)view.bounds.edge_error;
+    return max / (double)view.bounds.edge_error;
 }
 
 static float either_sign(float x)
@@ -191,7 +191,7 @@ static void start_across(struct subject *s)
         s->at[6 + k] = sign * (k < 2 ? away + size : away);
         s->at[9 + k] = sign * (k < 2 ? away - size : away);
         s->at[12 + k] = sign * (k < 2 ? away + random_within(size) : away);
-        s->steps[k] = random_below(&random_state, 2) ? STEPS_MOST : -STEPS_MOST;
+        s->steps[k] = random_below(&random_state, 2) ? STEPS_MAX : -STEPS_MAX;
     }
 }
 
@@ -207,7 +207,7 @@ static void start_at_sphere(struct subject *s)
         s->at[k] = either_sign(ldexpf(1.0f + random_float(&random_state), -24));
         s->at[3 + k] = sign;
         s->at[6 + k] = sign * away + aside;
-        s->steps[k] = random_below(&random_state, 2) ? STEPS_MOST : -STEPS_MOST;
+        s->steps[k] = random_below(&random_state, 2) ? STEPS_MAX : -STEPS_MAX;
     }
     for (int i = 9; i < 15; ++i) {
         int smaller = (int)random_below(&random_state, 4);
@@ -220,7 +220,7 @@ static void start_anywhere(struct subject *s)
     for (int i = 0; i < 15; ++i)
         s->at[i] = coordinate();
     for (int k = 0; k < 3; ++k)
-        s->steps[k] = (int)random_below(&random_state, 2 * STEPS_MOST + 1) - STEPS_MOST;
+        s->steps[k] = (int)random_below(&random_state, 2 * STEPS_MAX + 1) - STEPS_MAX;
     if (random_below(&random_state, 2)) /* at the middle of the triangle */
         for (int k = 0; k < 3; ++k)
             s->at[3 + k] = (s->at[6 + k] + s->at[9 + k] + s->at[12 + k]) / 3.0f - s->at[k];
@@ -256,7 +256,7 @@ static struct subject changed(const struct subject *s, bool ieee)
         if (i < 15)
             change_number(&other, (int)i);
         else if (!ieee)
-            other.steps[i - 15] = (int)random_below(&random_state, 2 * STEPS_MOST + 1) - STEPS_MOST;
+            other.steps[i - 15] = (int)random_below(&random_state, 2 * STEPS_MAX + 1) - STEPS_MAX;
     }
     return other;
 }
@@ -302,16 +302,16 @@ static void edges_in_fractions(const struct view *view, mpq_t edge[VERTICES])
 static double worst_edge(const struct view *view)
 {
     mpq_t edge[VERTICES], computed;
-    double most = 0.0;
+    double max = 0.0;
     mpq_inits(edge[0], edge[1], edge[2], computed, NULL);
     edges_in_fractions(view, edge);
     for (int i = 0; i < VERTICES; ++i) {
         mpq_set_d(computed, (double)view->edge[i]);
         mpq_sub(computed, computed, edge[i]);
-        most = fmax(most, fabs(mpq_get_d(computed)));
+        max = fmax(max, fabs(mpq_get_d(computed)));
     }
     mpq_clears(edge[0], edge[1], edge[2], computed, NULL);
-    return most / (double)view->bounds.edge_error;
+    return max / (double)view->bounds.edge_error;
 }
 
 static bool is_within(bool there, float key, float lo, float hi)
@@ -352,7 +352,7 @@ struct search {
 static void hunt(const struct search *search, struct rational *rational)
 {
     uint32_t wrong = 0, beyond = 0;
-    double most_edge = 0.0, most = 0.0;
+    double max_edge = 0.0, max = 0.0;
     random_state = 1;
     const uint32_t climbs = cases_of(120);
     for (uint32_t i = 0; i < climbs; ++i) {
@@ -369,24 +369,24 @@ static void hunt(const struct search *search, struct rational *rational)
         climb(&s, search->aim, search->ieee, CLIMB_STEPS);
         look_at(&s, &view);
         double edge = worst_edge(&view);
-        most_edge = fmax(most_edge, edge);
-        most = fmax(most, score_of(&s, search->aim));
+        max_edge = fmax(max_edge, edge);
+        max = fmax(max, score_of(&s, search->aim));
         beyond += edge > 1.0;
         wrong += is_wrong(rational, &view);
     }
     print_message(
         "%-36s %u errors beyond their bounds, %u wrong answers at the ends of %u climbs of "
         "%d steps; at most %.3f of the bound, edges %.3f\n",
-        search->name, beyond, wrong, climbs, (int)CLIMB_STEPS, most, most_edge);
+        search->name, beyond, wrong, climbs, (int)CLIMB_STEPS, max, max_edge);
     assert_int_equal(beyond, 0);
     assert_int_equal(wrong, 0);
-    assert_true(most >= search->at_least && most <= 1.0);
+    assert_true(max >= search->at_least && max <= 1.0);
 }
 
 static void hunt_spheres(const struct search *search, struct rational *rational)
 {
     uint32_t wrong = 0;
-    double most = 0.0;
+    double max = 0.0;
     random_state = 2;
     const uint32_t climbs = cases_of(120);
     for (uint32_t i = 0; i < climbs; ++i) {
@@ -402,14 +402,14 @@ static void hunt_spheres(const struct search *search, struct rational *rational)
             climb(&s, ROOM_ERROR, search->ieee, CLIMB_STEPS);
         climb(&s, search->aim, search->ieee, CLIMB_STEPS);
         look_at(&s, &view);
-        most = fmax(most, score_of(&s, search->aim));
+        max = fmax(max, score_of(&s, search->aim));
         wrong += is_wrong_of_sphere(rational, &view);
     }
     print_message("%-36s %u wrong answers at the ends of %u climbs of %d steps; at most %.3f of "
                   "the bound\n",
-                  search->name, wrong, climbs, (int)CLIMB_STEPS, most);
+                  search->name, wrong, climbs, (int)CLIMB_STEPS, max);
     assert_int_equal(wrong, 0);
-    assert_true(most >= search->at_least && most <= 1.0);
+    assert_true(max >= search->at_least && max <= 1.0);
 }
 
 static void errors_of_spheres_stay_within_their_bounds(void **state)

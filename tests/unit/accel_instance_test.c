@@ -88,8 +88,8 @@ static struct gpu_ray aimed_ray(const struct affine *matrix, uint64_t *state)
 }
 
 struct errors {
-    double t_mean, t_most; /* relative */
-    double normal_most;    /* radians */
+    double t_mean, t_max; /* relative */
+    double normal_max;    /* radians */
     uint32_t met;
 };
 
@@ -120,10 +120,10 @@ static struct errors measure(const struct affine *matrix, uint32_t numerics)
         }
         double t = dot(to, normal) / dot(d, normal), off = fabs((double)hit.t - t) / t;
         errors.t_mean += off;
-        errors.t_most = fmax(errors.t_most, off);
+        errors.t_max = fmax(errors.t_max, off);
         cross(ng, normal, across);
         double angle = atan2(sqrt(dot(across, across)), dot(ng, normal));
-        errors.normal_most = fmax(errors.normal_most, angle);
+        errors.normal_max = fmax(errors.normal_max, angle);
         ++errors.met;
     }
     errors.t_mean /= errors.met ? errors.met : 1;
@@ -151,10 +151,10 @@ static void far_translations_keep_their_precision(void **state)
         struct affine matrix = turned(at, -at, 0.5 * at, 1, 1, 1);
         struct errors errors = measure(&matrix, levels[i % 2]);
         print_message("  %s, at %g: t off by %.2g on average, %.2g at most, of %u hits\n",
-                      level_names[levels[i % 2]], at, errors.t_mean, errors.t_most, errors.met);
+                      level_names[levels[i % 2]], at, errors.t_mean, errors.t_max, errors.met);
         assert_true(errors.met > RAYS * 9 / 10);
         assert_true(errors.t_mean <= 2e-7);
-        assert_true(errors.t_most <= 1e-4);
+        assert_true(errors.t_max <= 1e-4);
     }
 }
 
@@ -163,10 +163,10 @@ static void assert_scale(const char *what, const struct affine *matrix, double s
     for (int l = 0; l < 2; ++l) {
         struct errors errors = measure(matrix, levels[l]);
         print_message("  %s, %s: t off by %.2g on average, %.2g at most, of %u hits\n",
-                      level_names[levels[l]], what, errors.t_mean, errors.t_most, errors.met);
+                      level_names[levels[l]], what, errors.t_mean, errors.t_max, errors.met);
         assert_true(errors.met > RAYS * 9 / 10);
         assert_true(errors.t_mean <= 2e-7 * stretch);
-        assert_true(errors.t_most <= fmin(1e-4 * stretch, 4.0 * 0x1p-24 * stretch + 1e-4));
+        assert_true(errors.t_max <= fmin(1e-4 * stretch, 4.0 * 0x1p-24 * stretch + 1e-4));
     }
 }
 
@@ -203,9 +203,9 @@ static void normals_go_by_the_inverse_transpose(void **state)
     for (size_t i = 0; i < 4; ++i) {
         struct errors errors = measure(&all[i / 2], levels[i % 2]);
         print_message("  %s: normals off by %.2g rad at most, of %u hits\n",
-                      level_names[levels[i % 2]], errors.normal_most, errors.met);
+                      level_names[levels[i % 2]], errors.normal_max, errors.met);
         assert_true(errors.met > RAYS * 9 / 10);
-        assert_true(errors.normal_most < 1e-6);
+        assert_true(errors.normal_max < 1e-6);
     }
 }
 

@@ -9,14 +9,14 @@
 
 /* ---- Fractions, as the definition in rational.h is written ---- */
 
-struct fraction_meeting {
+struct fraction_candidate {
     mpq_t t;
     bool met;
     uint32_t edges;
 };
 
 static void meet_in_fractions(struct vec3 origin, struct vec3 dir, const struct vec3 v[3],
-                              struct fraction_meeting *out)
+                              struct fraction_candidate *out)
 {
     mpq_t number[6][3], *o = number[0], *d = number[1], *edge = number[5], det;
     mpq_init(det);
@@ -79,14 +79,14 @@ static bool is_beyond_floats(const mpq_t t)
            (mpq_get_d(t) >= 0x1.ffffffp127 || mpq_get_d(t) <= -0x1.ffffffp127);
 }
 
-struct meeting_tally {
+struct candidate_tally {
     uint32_t cases, met, on_edge, on_vertex, wrong;
 };
 
-static void compare_meeting(struct rational *rational, struct vec3 origin, struct vec3 dir,
-                            const struct vec3 v[3], struct meeting_tally *tally)
+static void compare_candidate(struct rational *rational, struct vec3 origin, struct vec3 dir,
+                              const struct vec3 v[3], struct candidate_tally *tally)
 {
-    struct fraction_meeting wanted;
+    struct fraction_candidate wanted;
     float key = NAN;
     uint32_t edges = 3;
     mpq_init(wanted.t);
@@ -204,11 +204,11 @@ static void triangles_are_met_as_fractions_say(void **state)
     uint32_t wrong = 0;
     assert_non_null(rational);
     for (size_t i = 0; i < KINDS; ++i) {
-        struct meeting_tally tally = {0};
+        struct candidate_tally tally = {0};
         random_state = 100 + i;
         for (int k = 0; k < CASES; ++k) {
             struct subject s = make_case(&kinds[i]);
-            compare_meeting(rational, s.origin, s.dir, s.v, &tally);
+            compare_candidate(rational, s.origin, s.dir, s.v, &tally);
         }
         print_message("%-18s %u wrong of %u: met %u, on an edge %u, at a vertex %u\n",
                       kinds[i].name, tally.wrong, tally.cases, tally.met, tally.on_edge,
@@ -253,8 +253,8 @@ static void ties_round_to_even(void **state)
     assert_int_equal(wrong, 0);
     wrong = 0;
     for (int i = 0; i < CASES; ++i) { /* t = i 2^-150 */
-        float key = 0.0f, most = ldexpf((float)i, -100);
-        bool met = key_of(rational, most, 0.0f, 0x1p50f, &key);
+        float key = 0.0f, max = ldexpf((float)i, -100);
+        bool met = key_of(rational, max, 0.0f, 0x1p50f, &key);
         int even = i / 2 + (i % 4 == 3);
         wrong += !met || key != ldexpf((float)even, -149);
     }

@@ -327,8 +327,8 @@ static void doubles_leave_out_what_misses(void **state)
 }
 
 /* The least radius with which the line meets a sphere there: by halves of what floats' bits are. */
-static float least_radius(struct rational *rational, struct vec3 origin, struct vec3 dir,
-                          struct vec3 center)
+static float min_radius(struct rational *rational, struct vec3 origin, struct vec3 dir,
+                        struct vec3 center)
 {
     uint32_t missed = 0, met = 0x7f7fffffu;
     float radius;
@@ -375,7 +375,7 @@ static void doubles_leave_out_nothing_that_is_hit(void **state)
         vec3_store(ray.dir, vec3_sub(vec3_add(center, aside), vec3_load(ray.origin)));
         if (vec3_dot(vec3_sub(center, vec3_load(ray.origin)), vec3_load(ray.dir)) < 0.1f)
             continue; /* perhaps behind */
-        sphere->v1[0] = least_radius(rational, vec3_load(ray.origin), vec3_load(ray.dir), center);
+        sphere->v1[0] = min_radius(rational, vec3_load(ray.origin), vec3_load(ray.dir), center);
         ++asked;
         rational_trace(rational, &ray, NULL, &hit);
         missed += hit.primitive == HIT_NONE;

@@ -188,7 +188,7 @@ static void overlap_by_hand(void **state)
     assert_near(report.epo, 0.25, 1e-12);
     /* Half areas: of the root 3 x 2, of the children 2 x 2 each, of what they share 1 x 2. */
     assert_near(report.overlap, 2.0 / 6.0, 1e-12);
-    assert_near(report.predicted_pairs, 1.0, 1e-12);
+    assert_near(report.predicted_inner_nodes, 1.0, 1e-12);
     assert_near(report.predicted_triangles, 8.0 / 6.0, 1e-12);
     assert_near(report.sah_cost, 1.0 + 8.0 / 6.0, 1e-12);
     assert_int_equal(report.measured_rays, 0);
@@ -277,7 +277,7 @@ static void nothing_hit_is_visited_as_predicted(void **state)
         struct accel_report report;
         assert_int_equal(accel_report(accel, 40000, &report), WHIT_OK);
         assert_int_equal(report.measured_rays, 40000);
-        assert_near(report.measured_pairs / report.predicted_pairs, 1.0, 0.02);
+        assert_near(report.measured_inner_nodes / report.predicted_inner_nodes, 1.0, 0.02);
         assert_near(report.measured_triangles / report.predicted_triangles, 1.0, 0.02);
         accel_destroy(accel);
     }
@@ -292,8 +292,8 @@ static void hits_save_visits(void **state)
     struct accel *accel = build(scene, &builds[0]);
     struct accel_report report;
     assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
-    assert_true(report.measured_pairs < 0.9 * report.predicted_pairs);
-    assert_true(report.measured_pairs > 0.3 * report.predicted_pairs);
+    assert_true(report.measured_inner_nodes < 0.9 * report.predicted_inner_nodes);
+    assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
     accel_destroy(accel);
     scene_destroy(scene);
 }
@@ -335,8 +335,8 @@ static void meshes_are_weighed_by_area(void **state)
         leaves -= report.leaves_at_depth[i];
     assert_int_equal(leaves, 0);
     assert_near(report.sah_cost, cost / area, 1e-5 * cost / area);
-    assert_true(report.measured_pairs > 0.3 * report.predicted_pairs);
-    assert_true(report.measured_pairs < report.predicted_pairs);
+    assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
+    assert_true(report.measured_inner_nodes < report.predicted_inner_nodes);
     accel_destroy(accel);
     scene_destroy(scene);
 }

@@ -127,7 +127,7 @@ static void compare(const struct accel *accel, const struct gpu_ray *ray, struct
 }
 
 static void check_double(const char *label, double spread, double radius, double away, bool placed,
-                         double unsure_most)
+                         double unsure_max)
 {
     const uint32_t rays = cases_of(40000);
     struct scene *scene = sphere_scene(scattered_spheres(20, spread, radius), placed);
@@ -144,7 +144,7 @@ static void check_double(const char *label, double spread, double radius, double
     assert_int_equal(tally.wrong, 0);
     assert_int_equal(tally.off, 0);
     assert_true(tally.hits > rays / 4);
-    assert_true(tally.unsure < unsure_most * rays);
+    assert_true(tally.unsure < unsure_max * rays);
     accel_destroy(accel);
     scene_destroy(scene);
 }

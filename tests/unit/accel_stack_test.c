@@ -114,14 +114,14 @@ static void costs_are_those_of_the_chain(void **state)
        when it was pushed. */
     traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
     assert_int_equal(cost.rays, 1);
-    assert_int_equal(cost.pairs, DEPTH);
+    assert_int_equal(cost.inner_nodes, DEPTH);
     assert_int_equal(cost.leaves, DEPTH + 1);
     assert_int_equal(cost.triangles, DEPTH + 1);
     assert_int_equal(cost.instances, 0);
     /* Added on top; stack and depth are the largest. */
     traverse_float(accel, ORDER_DISTANCE, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
     assert_int_equal(cost.rays, 2);
-    assert_int_equal(cost.pairs, 2 * DEPTH);
+    assert_int_equal(cost.inner_nodes, 2 * DEPTH);
     assert_int_equal(cost.leaves, DEPTH + 2);
     assert_int_equal(cost.triangles, DEPTH + 2);
     assert_int_equal(cost.stack, DEPTH);
@@ -130,7 +130,7 @@ static void costs_are_those_of_the_chain(void **state)
     ray = caterpillar_ray(DEPTH, false);
     cost = (struct gpu_cost){0};
     traverse_float(accel, ORDER_SIGN, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
-    assert_int_equal(cost.pairs, 1);
+    assert_int_equal(cost.inner_nodes, 1);
     assert_int_equal(cost.leaves, 1);
     assert_int_equal(cost.triangles, 1);
     assert_int_equal(cost.stack, 1);
@@ -152,7 +152,7 @@ static void levels_come_back_with_their_nodes(void **state)
     accel->nodes[3].first = 8;
     accel->nodes[3].count = 0;
     traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
-    assert_int_equal(cost.pairs, 5);
+    assert_int_equal(cost.inner_nodes, 5);
     assert_int_equal(cost.depth, 4);
     accel_destroy(accel);
 }

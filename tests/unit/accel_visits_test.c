@@ -65,8 +65,8 @@ static void one_giant_costs_little(void **state)
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         struct gpu_cost cost = cost_of(scene, &others[i], ORDER_DISTANCE);
-        print_message("  %u pairs, sweep %u\n", cost.pairs, sweep.pairs);
-        assert_true(cost.pairs <= 2 * sweep.pairs);
+        print_message("  %u pairs, sweep %u\n", cost.inner_nodes, sweep.inner_nodes);
+        assert_true(cost.inner_nodes <= 2 * sweep.inner_nodes);
         assert_true(cost.triangles <= 2 * sweep.triangles);
     }
     scene_destroy(scene);
@@ -83,10 +83,10 @@ static void orders_save_visits(void **state)
     struct gpu_cost basic = cost_of(scene, &binned, ORDER_BASIC);
     struct gpu_cost distance = cost_of(scene, &binned, ORDER_DISTANCE);
     struct gpu_cost sign = cost_of(scene, &binned, ORDER_SIGN);
-    print_message("  basic %u, distance %u, sign %u pairs\n", basic.pairs, distance.pairs,
-                  sign.pairs);
-    assert_true(distance.pairs < basic.pairs);
-    assert_true(sign.pairs < basic.pairs);
+    print_message("  basic %u, distance %u, sign %u pairs\n", basic.inner_nodes,
+                  distance.inner_nodes, sign.inner_nodes);
+    assert_true(distance.inner_nodes < basic.inner_nodes);
+    assert_true(sign.inner_nodes < basic.inner_nodes);
     scene_destroy(scene);
     soup_finish(&soup);
 }

@@ -11,10 +11,10 @@
 
 /* ---- A reader of what pages may hold ---- */
 
-enum { DEPTH_MOST = 64, NAME_MOST = 32 };
+enum { DEPTH_MAX = 64, NAME_BYTES = 32 };
 struct reader {
     const char *at;
-    char open[DEPTH_MOST][NAME_MOST];
+    char open[DEPTH_MAX][NAME_BYTES];
     uint32_t depth, elements;
     const char *fault; /* NULL: well-formed so far */
 };
@@ -29,11 +29,11 @@ static bool is_entity(const char *text)
     return false;
 }
 
-static void take_name(struct reader *reader, char name[NAME_MOST])
+static void take_name(struct reader *reader, char name[NAME_BYTES])
 {
     size_t length = strcspn(reader->at, " \n/>=\"<&");
-    reader->fault = length == 0 || length >= NAME_MOST ? "a name is missing" : reader->fault;
-    length = length < NAME_MOST ? length : NAME_MOST - 1;
+    reader->fault = length == 0 || length >= NAME_BYTES ? "a name is missing" : reader->fault;
+    length = length < NAME_BYTES ? length : NAME_BYTES - 1;
     memcpy(name, reader->at, length);
     name[length] = 0;
     reader->at += length;
@@ -42,7 +42,7 @@ static void take_name(struct reader *reader, char name[NAME_MOST])
 /* Behind the name: attributes, each once, then `>` or `/>`. */
 static bool take_attributes(struct reader *reader)
 {
-    char names[16][NAME_MOST];
+    char names[16][NAME_BYTES];
     uint32_t count = 0;
     while (*reader->at == ' ' && !reader->fault && count < 16) {
         ++reader->at;
@@ -72,7 +72,7 @@ static bool take_attributes(struct reader *reader)
 
 static void take_tag(struct reader *reader)
 {
-    char name[NAME_MOST];
+    char name[NAME_BYTES];
     bool closes = reader->at[1] == '/';
     reader->at += closes ? 2 : 1;
     take_name(reader, name);
@@ -84,8 +84,8 @@ static void take_tag(struct reader *reader)
         return;
     }
     ++reader->elements;
-    if (!empty && reader->depth < DEPTH_MOST)
-        memcpy(reader->open[reader->depth++], name, NAME_MOST);
+    if (!empty && reader->depth < DEPTH_MAX)
+        memcpy(reader->open[reader->depth++], name, NAME_BYTES);
 }
 
 static bool is_valid_utf8(const char *text)
@@ -376,7 +376,7 @@ static void pictures_are_whole(void **state)
 static void assert_ticks(double low, double high, bool is_log, uint32_t wanted, uint32_t count,
                          const double *expected)
 {
-    double ticks[PLOT_TICKS_MOST];
+    double ticks[PLOT_TICKS_MAX];
     assert_int_equal(plot_ticks(low, high, is_log, wanted, ticks), count);
     for (uint32_t i = 0; i < count; ++i)
         assert_true(fabs(ticks[i] - expected[i]) <= 1e-9 * fabs(expected[i]));
@@ -402,7 +402,7 @@ static void ticks_of_any_range(void **state)
     (void)state;
     uint64_t seed = 5;
     for (int trial = 0; trial < 20000; ++trial) {
-        double ticks[PLOT_TICKS_MOST], low, high;
+        double ticks[PLOT_TICKS_MAX], low, high;
         bool is_log = trial % 2;
         low = pow(10.0, (double)random_below(&seed, 24000) * 1e-3 - 12.0);
         high = low * (1.0 + pow(10.0, (double)random_below(&seed, 15000) * 1e-3 - 5.0));

@@ -74,12 +74,12 @@ static size_t printable(const unsigned char *t)
 }
 
 /* Few kinds of bytes, so that whole characters, nearly whole ones and escapes come up often. */
-static void draw(uint64_t *random, char *text, uint32_t most)
+static void draw(uint64_t *random, char *text, uint32_t max)
 {
     static const unsigned char likely[] = {0x1b, 0x7f, 0x80, 0x81, 0x8e, 0x9b, 0xa0, 0xad,
                                            0xae, 0xbf, 0xc2, 0xe2, 0xed, 0xf0, 0xf3, 0xf4,
                                            '\\', 'x',  'u',  '0',  'f',  'a'};
-    uint32_t length = random_below(random, most);
+    uint32_t length = random_below(random, max);
     for (uint32_t i = 0; i < length; ++i) {
         uint32_t any = 1 + random_below(random, 255);
         uint32_t pick = random_below(random, 2 * sizeof likely);

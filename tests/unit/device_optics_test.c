@@ -22,13 +22,13 @@ struct optics_answer {
     float exact, schlick, blinn, ggx;
 };
 
-enum { CASES_MOST = 40000 };
+enum { CASES_MAX = 40000 };
 
 static struct device *device;
 static struct messages messages;
-static struct optics_case cases[CASES_MOST];
-static struct optics_answer answers[CASES_MOST];
-static double angles[CASES_MOST]; /* of incidence, of each case */
+static struct optics_case cases[CASES_MAX];
+static struct optics_answer answers[CASES_MAX];
+static double angles[CASES_MAX]; /* of incidence, of each case */
 static uint32_t count;
 
 static const double indices[] = {1.33, 1.5, 2.42};
@@ -58,7 +58,7 @@ static int begin(void **state)
 /* The case of a ray in the xy plane that falls at `angle` to the normal on a face y = 0. */
 static struct optics_case *add_angle(double angle, double eta)
 {
-    assert_true(count < CASES_MOST);
+    assert_true(count < CASES_MAX);
     struct optics_case *c = &cases[count];
     angles[count++] = angle;
     c->dir[0] = (float)sin(angle);
@@ -103,10 +103,10 @@ static double schlick(double angle, double eta)
     return f0 + (1 - f0) * pow(1 - cosine, 5);
 }
 
-static void assert_within(double value, double expected, double most)
+static void assert_within(double value, double expected, double max)
 {
-    if (!(fabs(value - expected) <= most))
-        fail_msg("%.9g is not %.9g within %g", value, expected, most);
+    if (!(fabs(value - expected) <= max))
+        fail_msg("%.9g is not %.9g within %g", value, expected, max);
 }
 
 /* --- Fresnel -------------------------------------------------------------------------------- */
@@ -182,16 +182,16 @@ static void nothing_is_lost(void **state)
                 add_angle(angle, indices[n]);
         }
     run_cases();
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < count; i++) {
         double in = cos(angles[i]), out = -(double)answers[i].refracted[1];
         double eta = (double)cases[i].eta;
         double s = 2 * eta * in / (eta * in + out), p = 2 * eta * in / (in + eta * out);
         double passed = out / (eta * in) * 0.5 * (s * s + p * p);
-        most = fmax(most, fabs(passed + (double)answers[i].exact - 1));
+        max = fmax(max, fabs(passed + (double)answers[i].exact - 1));
     }
-    print_message("  R + T = 1 within %.2g\n", most);
-    assert_true(most <= 1e-6);
+    print_message("  R + T = 1 within %.2g\n", max);
+    assert_true(max <= 1e-6);
 }
 
 static void grazing_rays_are_reflected(void **state)
@@ -365,10 +365,9 @@ static void blinn_is_a_power(void **state)
     for (uint32_t i = 0; i < count; i++) {
         double x = (double)cases[i].cos_half, y = (double)cases[i].shininess;
         double expected = x > 0 ? pow(x, y) : 0, power = x > 0 ? fabs(y * log2(x)) : 0;
-        double most =
-            log(2) * (y / 2097152.0 + 3 * power / 8388608.0) + (3 + 2 * power) / 8388608.0;
+        double max = log(2) * (y / 2097152.0 + 3 * power / 8388608.0) + (3 + 2 * power) / 8388608.0;
         if (expected > 1e-30)
-            assert_within((double)answers[i].blinn, expected, most * expected);
+            assert_within((double)answers[i].blinn, expected, max * expected);
         else
             assert_within((double)answers[i].blinn, 0, 2e-30);
     }
@@ -395,15 +394,15 @@ static void ggx_keeps_its_tip(void **state)
             c->alpha = alphas[a];
         }
     run_cases();
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct optics_case *c = &cases[i];
         double expected =
             ggx((double)c->cos_half, (double)c->cos_light, (double)c->cos_view, (double)c->alpha);
-        most = fmax(most, fabs((double)answers[i].ggx / expected - 1));
+        max = fmax(max, fabs((double)answers[i].ggx / expected - 1));
     }
-    print_message("  GGX within %.2g of itself\n", most);
-    assert_true(most <= 2e-6);
+    print_message("  GGX within %.2g of itself\n", max);
+    assert_true(max <= 2e-6);
 }
 
 int main(void)

@@ -3,7 +3,7 @@
 #include "hard_sphere_fixture.h"
 
 #include "abi/spec.h"
-#include "accel/pairs_sphere.h"
+#include "accel/ff_sphere.h"
 #include "device_fixture.h"
 
 #include "device_sphere.h"
@@ -34,11 +34,11 @@ static struct sphere_answer answer_of(const struct sphere_case *c)
                 center = vec3_load(c->center);
     struct ray_setup ray = make_ray_setup(origin, dir);
     struct sphere_bounds bounds;
-    struct sphere_meeting exact, pairs;
+    struct sphere_candidate exact, pairs;
     bound_ray_setup(&ray);
     bound_sphere(&ray, center, c->radius, &bounds);
     exact_meet_sphere(origin, dir, center, c->radius, c->only_far, c->t_min, &exact);
-    bool sure = pair_meet_sphere(origin, dir, center, c->radius, c->only_far, c->t_min, &pairs);
+    bool sure = ff_meet_sphere(origin, dir, center, c->radius, c->only_far, c->t_min, &pairs);
     return (struct sphere_answer){
         .near_lo = bounds.near_lo,
         .near_hi = bounds.near_hi,

@@ -534,7 +534,7 @@ static void senseless_rays_cost_nothing(void **state)
     struct scene *scene = soup_scene(&soup);
     struct accel *accel = soup_accel(scene, &params);
     for (int l = 0; l < LEVELS; ++l) {
-        uint32_t rays = 0, hits = 0, most = 0, least = UINT32_MAX;
+        uint32_t rays = 0, hits = 0, max = 0, min = UINT32_MAX;
         random_state = 9;
         for (uint32_t i = 0; i < 300 * SENSELESS; ++i) {
             struct gpu_ray good = ray_from_cube(0.5f, random_point(2.0f));
@@ -544,17 +544,17 @@ static void senseless_rays_cost_nothing(void **state)
             level_trace(&levels[l], accel, i % 3, i % 2, &ray, &hit, &cost);
             ++rays;
             hits += hit.primitive != HIT_NONE;
-            most = cost.pairs > most ? cost.pairs : most;
+            max = cost.inner_nodes > max ? cost.inner_nodes : max;
             level_trace(&levels[l], accel, i % 3, false, &good, &hit, &good_cost);
-            least = good_cost.pairs < least ? good_cost.pairs : least;
+            min = good_cost.inner_nodes < min ? good_cost.inner_nodes : min;
             assert_int_not_equal(hit.primitive, HIT_NONE);
         }
         print_message(
             "%-10s B9, B10 %u hits of %u senseless rays, %u pairs at most; %u and more of "
             "others\n",
-            levels[l].name, hits, rays, most, least);
+            levels[l].name, hits, rays, max, min);
         assert_int_equal(hits, 0);
-        assert_true(most <= 1 && least > 1);
+        assert_true(max <= 1 && min > 1);
     }
     accel_destroy(accel);
     scene_destroy(scene);

@@ -45,7 +45,7 @@ static inline bool level_meets(const struct level *level, const struct gpu_ray *
 {
     struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
     if (level->numerics == NUMERICS_EXACT) {
-        struct exact_meeting exact;
+        struct exact_candidate exact;
         exact_meet(setup.origin, setup.dir, v[0], v[1], v[2], &exact);
         *hit = (struct gpu_hit){.t = exact.key, .u = exact.u, .v = exact.v};
         return exact.met && exact.key >= ray->t_min && exact.key <= ray->t_max;
@@ -73,15 +73,15 @@ static inline void level_trace(const struct level *level, const struct accel *ac
     assert_int_equal(status, 0);
 }
 
-static inline float random_within(float most)
+static inline float random_within(float max)
 {
-    return most * random_float_signed(&random_state);
+    return max * random_float_signed(&random_state);
 }
 
 /* In a cube around the origin. */
-static inline struct vec3 random_point(float most)
+static inline struct vec3 random_point(float max)
 {
-    float x = random_within(most), y = random_within(most), z = random_within(most);
+    float x = random_within(max), y = random_within(max), z = random_within(max);
     return vec3_make(x, y, z);
 }
 
@@ -94,9 +94,9 @@ static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
 }
 
 /* Arguments are evaluated in an order of the compiler's own: the origin is drawn after them. */
-static inline struct gpu_ray ray_from_cube(float most, struct vec3 target)
+static inline struct gpu_ray ray_from_cube(float max, struct vec3 target)
 {
-    return ray_through(random_point(most), target);
+    return ray_through(random_point(max), target);
 }
 
 #endif

@@ -97,7 +97,7 @@ struct leaks {
 
 /* Rays from the small sheet towards the large one, by exact arithmetic and as each level says.
    Those in a corner where it is `least` wide. */
-static void count_leaks(const struct sheets *sheets, float least, struct leaks *leaks)
+static void count_leaks(const struct sheets *sheets, float min, struct leaks *leaks)
 {
     struct rational *rational = rational_create(sheets->hard.accel);
     assert_non_null(rational);
@@ -109,7 +109,7 @@ static void count_leaks(const struct sheets *sheets, float least, struct leaks *
             continue; /* from the other sheet, or the other way */
         float width =
             SLOPE * vec3_dot(vec3_sub(vec3_load(shot.ray.origin), sheets->edge), sheets->away);
-        if (width < least)
+        if (width < min)
             continue; /* of a corner */
         vec3_store(shot.ray.dir, dir);
         const struct rational_hit own = {.primitive = shot.primitive, .instance = shot.instance};

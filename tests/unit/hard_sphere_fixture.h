@@ -120,12 +120,12 @@ struct frame {
 };
 
 /* Of an integer quaternion (Euler, Rodrigues). */
-static inline struct frame integer_frame(int most)
+static inline struct frame integer_frame(int max)
 {
-    int a = 1 + (int)random_below(&random_state, (uint32_t)most),
-        b = (int)random_below(&random_state, (uint32_t)most);
-    int c = (int)random_below(&random_state, (uint32_t)most),
-        d = (int)random_below(&random_state, (uint32_t)most);
+    int a = 1 + (int)random_below(&random_state, (uint32_t)max),
+        b = (int)random_below(&random_state, (uint32_t)max);
+    int c = (int)random_below(&random_state, (uint32_t)max),
+        d = (int)random_below(&random_state, (uint32_t)max);
     return (struct frame){
         .x = vec3_make((float)(a * a + b * b - c * c - d * d), (float)(2 * (b * c + a * d)),
                        (float)(2 * (b * d - a * c))),
@@ -134,9 +134,9 @@ static inline struct frame integer_frame(int most)
         .length = (float)(a * a + b * b + c * c + d * d)};
 }
 
-static inline struct vec3 grid_point(int most)
+static inline struct vec3 grid_point(int max)
 {
-    float range = (float)(2 * most + 1), middle = (float)most;
+    float range = (float)(2 * max + 1), middle = (float)max;
     float x = floorf(random_float(&random_state) * range) - middle,
           y = floorf(random_float(&random_state) * range) - middle;
     return vec3_make(x, y, floorf(random_float(&random_state) * range) - middle);
@@ -211,7 +211,7 @@ enum { SPHERE_KINDS = sizeof sphere_kinds / sizeof *sphere_kinds };
 static inline void set_t_min(struct subject *s)
 {
     s->t_min = 0.0f;
-    struct sphere_meeting m;
+    struct sphere_candidate m;
     uint32_t kind = random_below(&random_state, 4);
     exact_meet_sphere(s->origin, s->dir, s->center, s->radius, random_below(&random_state, 2), 0.0f,
                       &m);

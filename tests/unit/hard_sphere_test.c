@@ -2,7 +2,7 @@
    between; and what the filter says of them. */
 #include "hard_fixture.h"
 
-#include "accel/pairs_sphere.h"
+#include "accel/ff_sphere.h"
 #include "fraction_fixture.h"
 #include "hard_sphere_fixture.h"
 
@@ -127,20 +127,21 @@ struct tally {
     double worst; /* error of the room, of its bound */
 };
 
-static bool is_right(const struct truth *truth, const struct sphere_meeting *m, bool near, bool far)
+static bool is_right(const struct truth *truth, const struct sphere_candidate *m, bool near,
+                     bool far)
 {
     return m->met == (near || far) &&
            (!m->met || (m->at_exit == far && m->inward == (mpq_sgn(truth->s) > 0) &&
                         is_key(truth, m->key, far)));
 }
 
-static void check_meeting(const struct subject *s, const struct truth *truth, struct tally *tally)
+static void check_candidate(const struct subject *s, const struct truth *truth, struct tally *tally)
 {
     for (int only_far = 0; only_far < 2; ++only_far) {
-        struct sphere_meeting m, of_pairs;
+        struct sphere_candidate m, of_pairs;
         exact_meet_sphere(s->origin, s->dir, s->center, s->radius, only_far, s->t_min, &m);
-        bool sure = pair_meet_sphere(s->origin, s->dir, s->center, s->radius, only_far, s->t_min,
-                                     &of_pairs);
+        bool sure =
+            ff_meet_sphere(s->origin, s->dir, s->center, s->radius, only_far, s->t_min, &of_pairs);
         bool near = !only_far && counts(truth, s->t_min, false);
         bool far = !near && counts(truth, s->t_min, true);
         ++tally->rays;
@@ -200,7 +201,7 @@ static void spheres_are_met_as_fractions_say(void **state)
         for (int i = 0; i < SUBJECTS; ++i) {
             struct subject s = make_subject(k);
             find_truth(&s, &truth);
-            check_meeting(&s, &truth, &tally);
+            check_candidate(&s, &truth, &tally);
             check_bounds(&s, &truth, &tally);
         }
         print_message("%-26s %u of %u wrong, %u met, %u at the far end; pairs: %u sure, of which "

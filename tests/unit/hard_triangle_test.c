@@ -339,10 +339,10 @@ static void size_does_not_matter(void **state)
             struct gpu_ray ray, far;
             struct gpu_hit hit = {0}, other = {0};
             bool at_edge = r % 2 == 0, unit = r % 4 < 2;
-            int least = l == LEVELS ? -24 : at_edge ? -36 : -50, most = l == LEVELS ? 36 : 60;
+            int min = l == LEVELS ? -24 : at_edge ? -36 : -50, max = l == LEVELS ? 36 : 60;
             kinds[at_edge ? 2 : 0].make(v, &ray);
-            float scale = ldexpf(
-                1.0f, (int)random_below(&random_state, (uint32_t)(most + 1 - least)) + least);
+            float scale =
+                ldexpf(1.0f, (int)random_below(&random_state, (uint32_t)(max + 1 - min)) + min);
             far = ray;
             for (int k = 0; k < 3; ++k) {
                 scaled[k] = vec3_scale(v[k], scale);

@@ -105,7 +105,7 @@ static int expected(int x, int y, int channel, int channels)
 }
 
 /* Decodes and frees. */
-static void check(struct bytes bytes, int channels, int off_most)
+static void check(struct bytes bytes, int channels, int off_max)
 {
     struct picture picture;
     const char *reason = "";
@@ -117,8 +117,8 @@ static void check(struct bytes bytes, int channels, int off_most)
         int error = abs(picture.rgba[i] - wanted);
         off = error > off ? error : off;
     }
-    print_message("off by at most %d of 255, of %d allowed\n", off, off_most);
-    assert_true(off <= off_most);
+    print_message("off by at most %d of 255, of %d allowed\n", off, off_max);
+    assert_true(off <= off_max);
     picture_finish(&picture);
     free(bytes.data);
 }

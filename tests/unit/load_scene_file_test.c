@@ -276,17 +276,17 @@ static void repeat_places_copies_around(void **state)
         state, "{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
                "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
     struct scene_pose pose;
-    double least_x = 1e9, most_x = -1e9, most_z = -1e9;
+    double min_x = 1e9, max_x = -1e9, max_z = -1e9;
     assert_int_equal(scene->instance_count, 12);
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     for (uint32_t i = 0; i < pose.instance_count; ++i) {
-        least_x = fmin(least_x, pose.instances[i].m[3]);
-        most_x = fmax(most_x, pose.instances[i].m[3]);
-        most_z = fmax(most_z, pose.instances[i].m[11]);
+        min_x = fmin(min_x, pose.instances[i].m[3]);
+        max_x = fmax(max_x, pose.instances[i].m[3]);
+        max_z = fmax(max_z, pose.instances[i].m[11]);
         assert_true(pose.instances[i].m[7] == 7.0);
     }
-    assert_true(least_x == -10.0 && most_x == 10.0 && most_z == 2.0);
+    assert_true(min_x == -10.0 && max_x == 10.0 && max_z == 2.0);
     scene_pose_finish(&pose);
     scene_destroy(scene);
 }

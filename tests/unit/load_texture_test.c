@@ -6,17 +6,17 @@
 static uint32_t decoded, file_reads;
 
 whit_result __real_picture_read(const struct log *log, const struct foreign_params *params,
-                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
-                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
-                                uint64_t pixels_most, const uint8_t *data, size_t size_bytes,
+                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES])
 {
     whit_result result =
-        __real_picture_read(log, params, pixels_most, data, size_bytes, out, reason);
+        __real_picture_read(log, params, pixels_max, data, size_bytes, out, reason);
     /* What is only looked at has sides. */
     decoded += result == WHIT_OK || out->width == 0;
     return result;

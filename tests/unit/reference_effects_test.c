@@ -183,13 +183,13 @@ static struct difference compare(const struct image *a, const struct image *b)
 {
     struct difference d = {0};
     for (size_t i = 0; i < (size_t)a->width * a->height; ++i) {
-        double most = 0.0;
+        double max = 0.0;
         for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
             double x = (double)a->pixels[c], y = (double)b->pixels[c];
-            most = fmax(most, fabs(x - y) / fmax(1.0, fabs(y)));
+            max = fmax(max, fabs(x - y) / fmax(1.0, fabs(y)));
         }
-        d.over += most > 1e-3;
-        d.largest = fmax(d.largest, most);
+        d.over += max > 1e-3;
+        d.largest = fmax(d.largest, max);
     }
     return d;
 }

@@ -18,10 +18,10 @@ struct difference {
 
 static double channel_difference(const double a[3], const float *b)
 {
-    double most = 0.0;
+    double max = 0.0;
     for (int c = 0; c < 3; ++c)
-        most = fmax(most, fabs(a[c] - (double)b[c]));
-    return most;
+        max = fmax(max, fabs(a[c] - (double)b[c]));
+    return max;
 }
 
 static void pixel_color(const struct reference *reference, uint32_t x, uint32_t y, double color[3])
@@ -104,12 +104,12 @@ static struct difference compare(const struct moved *moved, const struct image d
     for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
         const float *a = &device[0].pixels[4 * (size_t)i], *b = &reference[0].pixels[4 * (size_t)i];
         const double color[3] = {(double)a[0], (double)a[1], (double)a[2]};
-        double most = channel_difference(color, b);
+        double max = channel_difference(color, b);
         d.other_ids += memcmp(&device[1].words[2 * i], &reference[1].words[2 * i], 8) != 0;
-        d.largest = fmax(d.largest, most);
-        if (!(most <= 1e-3)) {
+        d.largest = fmax(d.largest, max);
+        if (!(max <= 1e-3)) {
             ++d.over;
-            d.edges += is_at_edge(moved, i % WIDTH, i / WIDTH, b, most);
+            d.edges += is_at_edge(moved, i % WIDTH, i / WIDTH, b, max);
         }
     }
     return d;

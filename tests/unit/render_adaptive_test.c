@@ -59,7 +59,7 @@ static bool differs(const float *pixels, int x, int y, float contrast)
 struct expected {
     float pixels[PIXELS][4];
     uint64_t by_samples[4], primary;
-    struct render_stats least, most;
+    struct render_stats min, max;
 };
 
 static void add_rays(struct render_stats *sum, const struct render_stats *rays)
@@ -69,9 +69,9 @@ static void add_rays(struct render_stats *sum, const struct render_stats *rays)
     sum->rays_refracted += rays->rays_refracted;
 }
 
-static void check_between(uint64_t least, uint64_t rays, uint64_t most)
+static void check_between(uint64_t min, uint64_t rays, uint64_t max)
 {
-    assert_true(least <= rays && rays <= most);
+    assert_true(min <= rays && rays <= max);
 }
 
 /* From the pictures of 4, 16 and 64 samples. */
@@ -85,7 +85,7 @@ static void expect(const struct picture plain[3], float contrast, struct expecte
         level_of[i] = 0;
         e->primary += 4;
     }
-    e->least = e->most = plain[0].stats;
+    e->min = e->max = plain[0].stats;
     for (uint32_t level = 1; level < 3; ++level) {
         bool some = false;
         for (int i = 0; i < PIXELS; ++i)
@@ -99,7 +99,7 @@ static void expect(const struct picture plain[3], float contrast, struct expecte
             some = true;
         }
         if (some)
-            add_rays(&e->most, &plain[level].stats);
+            add_rays(&e->max, &plain[level].stats);
     }
     for (int i = 0; i < PIXELS; ++i)
         ++e->by_samples[1 + level_of[i]];
@@ -114,9 +114,9 @@ static void check(struct fixture *f, const struct picture *first, const struct e
     assert_memory_equal(p->ids.words, first->ids.words, PIXELS * 8);
     assert_memory_equal(p->stats.pixels_by_samples, e->by_samples, sizeof e->by_samples);
     assert_true(p->stats.rays_primary == e->primary);
-    check_between(e->least.rays_shadow, p->stats.rays_shadow, e->most.rays_shadow);
-    check_between(e->least.rays_reflected, p->stats.rays_reflected, e->most.rays_reflected);
-    check_between(e->least.rays_refracted, p->stats.rays_refracted, e->most.rays_refracted);
+    check_between(e->min.rays_shadow, p->stats.rays_shadow, e->max.rays_shadow);
+    check_between(e->min.rays_reflected, p->stats.rays_reflected, e->max.rays_reflected);
+    check_between(e->min.rays_refracted, p->stats.rays_refracted, e->max.rays_refracted);
     picture_finish(p);
     free(p);
 }

@@ -180,22 +180,22 @@ static void check_refused(struct scene *scene, const char *why)
 
 /* As many primitives, or instances, as are possible, to the last of them: within the turns that a
    driver grants. */
-static void most_are_drawn_and_more_are_refused(void **state)
+static void max_are_drawn_and_more_are_refused(void **state)
 {
     (void)state;
     const struct {
-        uint32_t most;
+        uint32_t max;
         bool apart;
     } stacks[] = {{40000, false}, {10833, true}};
     for (int i = 0; i < 2; ++i) {
-        uint32_t most = stacks[i].most;
-        struct fixture f = fixture_open(stack_scene(most, stacks[i].apart), &no_trees, NULL);
-        assert_int_equal(trace_stack(&f, most), WHIT_OK);
+        uint32_t max = stacks[i].max;
+        struct fixture f = fixture_open(stack_scene(max, stacks[i].apart), &no_trees, NULL);
+        assert_int_equal(trace_stack(&f, max), WHIT_OK);
         fixture_close(&f);
         char why[128];
         snprintf(why, sizeof why,
-                 "stack: without trees every ray tests every primitive, and %u over", most + 1);
-        check_refused(stack_scene(most + 1, stacks[i].apart), why);
+                 "stack: without trees every ray tests every primitive, and %u over", max + 1);
+        check_refused(stack_scene(max + 1, stacks[i].apart), why);
     }
 }
 
@@ -335,7 +335,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_equal_those_of_trees),
-        cmocka_unit_test(most_are_drawn_and_more_are_refused),
+        cmocka_unit_test(max_are_drawn_and_more_are_refused),
         cmocka_unit_test(glass_equals_that_of_trees),
         cmocka_unit_test(scenes_equal_those_of_trees),
         cmocka_unit_test(many_shadows_are_refused),

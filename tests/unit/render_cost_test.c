@@ -53,7 +53,7 @@ static void check_costs(struct fixture *f, uint32_t order, bool any, struct gpu_
                         : memcmp(&twin, &hits[i], sizeof twin) != 0;
         costs_bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
         sum->rays += cost.rays;
-        sum->pairs += cost.pairs;
+        sum->inner_nodes += cost.inner_nodes;
         sum->leaves += cost.leaves;
         sum->instances += cost.instances;
         sum->triangles += cost.triangles;
@@ -79,8 +79,8 @@ static void check_scene(struct scene *(*make)(void), bool instanced)
         const struct gpu_cost *c = &closest[order];
         print_message("  %-8s %u rays: %u pairs (any: %u), %u leaves, %u instances, %u triangles; "
                       "stack %u, depth %u\n",
-                      order_names[order], c->rays, c->pairs, any[order].pairs, c->leaves,
-                      c->instances, c->triangles, c->stack, c->depth);
+                      order_names[order], c->rays, c->inner_nodes, any[order].inner_nodes,
+                      c->leaves, c->instances, c->triangles, c->stack, c->depth);
         assert_int_equal(c->rays, RAYS);
         assert_true((c->instances > 0) == instanced);
         assert_true(c->leaves > 0 && c->leaves <= c->triangles);
@@ -89,8 +89,8 @@ static void check_scene(struct scene *(*make)(void), bool instanced)
         assert_true(c->depth <= f.accel->mesh_depth + (instanced ? f.accel->instance_depth : 0));
         fixture_close(&f);
     }
-    assert_true(closest[ORDER_DISTANCE].pairs < closest[ORDER_BASIC].pairs);
-    assert_true(closest[ORDER_SIGN].pairs < closest[ORDER_BASIC].pairs);
+    assert_true(closest[ORDER_DISTANCE].inner_nodes < closest[ORDER_BASIC].inner_nodes);
+    assert_true(closest[ORDER_SIGN].inner_nodes < closest[ORDER_BASIC].inner_nodes);
 }
 
 static void one_mesh_costs_the_same(void **state)
@@ -121,7 +121,7 @@ static void clipped_trees_cost_the_same(void **state)
         assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
                          WHIT_OK);
         check_costs(&f, ORDER_DISTANCE, false, &clipped);
-        assert_true(clipped.pairs > plain.pairs);
+        assert_true(clipped.inner_nodes > plain.inner_nodes);
         fixture_close(&f);
     }
 }
@@ -367,11 +367,11 @@ static void check_sums(const struct picture *picture)
         uint32_t depth = 0;
         for (uint32_t i = 0; i < picture->color.width * picture->color.height; ++i) {
             rays += costs[i].rays;
-            pairs += costs[i].pairs;
+            pairs += costs[i].inner_nodes;
             triangles += costs[i].triangles;
             depth = costs[i].depth > depth ? costs[i].depth : depth;
         }
-        assert_true(rays == stats->costs[k].rays && pairs == stats->costs[k].pairs);
+        assert_true(rays == stats->costs[k].rays && pairs == stats->costs[k].inner_nodes);
         assert_true(triangles == stats->costs[k].triangles && depth == stats->costs[k].depth);
         assert_true(pairs > 0);
     }

@@ -196,7 +196,7 @@ static void check_eye(struct scene *scene, const uint32_t *expected, uint32_t co
     const struct gpu_frame *frame = &f.renderer->frame;
     const uint32_t words[] = {frame->eye_media0, frame->eye_media1, frame->eye_media2,
                               frame->eye_media3};
-    for (uint32_t i = 0; i < MEDIA_MOST; ++i)
+    for (uint32_t i = 0; i < MEDIA_MAX; ++i)
         assert_int_equal(words[i / 2] >> 16 * (i % 2) & 0xffff, i < count ? expected[i] + 1 : 0);
     fixture_close(&f);
 }

@@ -394,7 +394,7 @@ static void packets_are_chosen_where_they_pay(void **state)
         const struct render_params params = {.width = cases[i].side,
                                              .height = cases[i].side,
                                              .depth = 1,
-                                             .compile_beside = cases[i].beside,
+                                             .compile_async = cases[i].beside,
                                              .many_pictures = cases[i].many};
         struct scene *scene = dark_scene((double[]){0, 9, 9}, (double[]){0, 0, 0});
         add_object(scene, mesh_terrain(8, 1, cases[i].steps, 1), material_plain("ground"), 0, 0, 0);
@@ -464,7 +464,7 @@ static void many_lights_are_drawn(void **state)
 }
 
 /* In one tile, whose first submission takes some of its lights. */
-static void many_lights_keep_no_one_waiting(void **state)
+static void many_lights_defer_no_one(void **state)
 {
     (void)state;
     bool cancel = false;
@@ -519,7 +519,7 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
                          WHIT_OK);
     renderer_get_stats(f.renderer, &stats);
     picture.sum = stats.costs[RAY_REFRACTED];
-    picture.was_full = f.renderer->picture.stages.blocks_most > 0;
+    picture.was_full = f.renderer->picture.stages.blocks_max > 0;
     fixture_close(&f);
     return picture;
 }
@@ -696,7 +696,7 @@ int main(void)
         cmocka_unit_test(packets_are_chosen_where_they_pay),
         cmocka_unit_test(cut_loops_are_reported),
         cmocka_unit_test(many_lights_are_drawn),
-        cmocka_unit_test(many_lights_keep_no_one_waiting),
+        cmocka_unit_test(many_lights_defer_no_one),
         cmocka_unit_test(shares_are_those_of_hits),
         cmocka_unit_test(shares_are_the_same_by_one_segment_and_by_two),
         cmocka_unit_test(full_queues_end_in_smaller_tiles),

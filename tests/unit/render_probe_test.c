@@ -95,7 +95,7 @@ static void assert_ray(const struct probe_ray *rays, uint32_t i)
                  kind_of(ray), ray->traced.end, (double)ray->traced.t, ray->traced.instance,
                  ray->traced.primitive, (double)ray->twin.t, ray->twin.instance,
                  ray->twin.primitive);
-    assert_int_not_equal(ray->traced.end, PROBE_WAITS);
+    assert_int_not_equal(ray->traced.end, PROBE_DEFERRED);
     if (ray->traced.end == PROBE_HIT)
         assert_true(isfinite(ray->traced.t) && ray->traced.material != HIT_NONE);
     if (ray->traced.end == PROBE_MISSED)
@@ -407,11 +407,11 @@ static void rays_without_room_are_counted(void **state)
     assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, 0, &whole), WHIT_OK);
     assert_int_equal(whole.dropped, 0);
     assert_true(all > 10);
-    for (uint32_t most = 1; most < all; most += 4) {
-        assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, most, &part),
+    for (uint32_t max = 1; max < all; max += 4) {
+        assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, max, &part),
                          WHIT_OK);
-        assert_int_equal(part.ray_count, most);
-        assert_int_equal(part.dropped, all - most);
+        assert_int_equal(part.ray_count, max);
+        assert_int_equal(part.dropped, all - max);
         assert_report(&part);
         assert_memory_equal(part.color, whole.color, sizeof part.color);
         probe_report_finish(&part);

@@ -110,10 +110,10 @@ static void full_queues_do_not_matter(void **state)
     (void)state;
     static float smaller[FLOATS];
     draw(0, SAMPLES, 0, whole);
-    assert_int_equal(f.renderer->picture.stages.blocks_most, 0);
+    assert_int_equal(f.renderer->picture.stages.blocks_max, 0);
     f.renderer->picture.buffers.queues.ray_capacity = 640;
     draw(0, SAMPLES, 0, smaller);
-    assert_true(f.renderer->picture.stages.blocks_most > 0);
+    assert_true(f.renderer->picture.stages.blocks_max > 0);
     assert_memory_equal(smaller, whole, sizeof whole);
 }
 
@@ -148,8 +148,8 @@ static void other_samples_are_refused(void **state)
         struct render_params params = wrong[i];
         assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);
     }
-    for (uint32_t n = 1; n <= WHIT_SAMPLES_MOST; n *= 4) {
-        struct render_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MOST - n};
+    for (uint32_t n = 1; n <= WHIT_SAMPLES_MAX; n *= 4) {
+        struct render_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MAX - n};
         assert_int_equal(params_check(&silent, &params), WHIT_OK);
     }
 }

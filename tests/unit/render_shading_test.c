@@ -25,13 +25,13 @@ static void assert_even(struct scene *scene, double expected, double relative)
 }
 
 /* No pixel is other than a number between 0 and `most`. */
-static void assert_sane(struct scene *scene, double most)
+static void assert_sane(struct scene *scene, double max)
 {
     struct fixture f = fixture_open(scene, NULL, &all_params);
     struct image image = render(&f);
     for (int i = 0; i < SIDE * SIDE; ++i)
         for (int c = 0; c < 3; ++c)
-            assert_true(image.pixels[4 * i + c] >= 0.0f && (double)image.pixels[4 * i + c] <= most);
+            assert_true(image.pixels[4 * i + c] >= 0.0f && (double)image.pixels[4 * i + c] <= max);
     image_finish(&image);
     fixture_close(&f);
 }
@@ -261,9 +261,9 @@ static struct scene_mesh square_across(const double n[3])
 {
     struct scene_mesh mesh = mesh_plane(10);
     double aside[3], up[3];
-    int least = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2)
-                                        : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
-    const double axis[3] = {least == 0, least == 1, least == 2};
+    int min = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2)
+                                      : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
+    const double axis[3] = {min == 0, min == 1, min == 2};
     cross_of(n, axis, aside);
     double length = sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
     for (int k = 0; k < 3; ++k)

@@ -414,8 +414,8 @@ static void cut_traversals_are_reported(void **state)
     assert_int_equal(twin.primitive, HIT_NONE);
     assert_int_equal(counts.triangles, count); /* the case is as hard as it should be */
     whit_result result = renderer_trace(f.renderer, rays, 8, false, hits, NULL);
-    print_message("  %u pairs and %u triangles for one ray: %s\n", counts.pairs, counts.triangles,
-                  whit_result_name(result));
+    print_message("  %u pairs and %u triangles for one ray: %s\n", counts.inner_nodes,
+                  counts.triangles, whit_result_name(result));
     if (device_get_info(f.device)->loop_limited) {
         assert_int_equal(result, WHIT_ERROR_STATUS);
     } else {

@@ -94,13 +94,13 @@ static void assert_indices(const struct scene_mesh *mesh)
         assert_true(mesh->indices[i] < mesh->vertex_count);
 }
 
-static void check_closed(struct scene_mesh *mesh, uint32_t triangles, double least, double most)
+static void check_closed(struct scene_mesh *mesh, uint32_t triangles, double min, double max)
 {
     assert_int_equal(mesh->triangle_count, triangles);
     assert_indices(mesh);
     assert_closed(mesh);
     assert_normals_agree(mesh);
-    assert_true(volume(mesh) > least && volume(mesh) <= most);
+    assert_true(volume(mesh) > min && volume(mesh) <= max);
     scene_mesh_finish(mesh);
 }
 

@@ -14,14 +14,14 @@ static inline double sphere_random(void)
 
 /* Centres within a cube of half side `spread`; radii from `most` down to a thousandth of it. Every
    tenth sphere is its neighbour again: ties. */
-static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double most)
+static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double max)
 {
     double *spheres = malloc(4 * sizeof(double) * count);
     assert_non_null(spheres);
     for (uint32_t i = 0; i < count; ++i) {
         for (size_t k = 0; k < 3; ++k)
             spheres[4 * (size_t)i + k] = spread * sphere_random();
-        spheres[4 * (size_t)i + 3] = most * pow(10.0, -3.0 * (double)random_float(&random_state));
+        spheres[4 * (size_t)i + 3] = max * pow(10.0, -3.0 * (double)random_float(&random_state));
         if (i % 10 == 9)
             memcpy(&spheres[4 * (size_t)i], &spheres[4 * (size_t)i - 4], 4 * sizeof(double));
     }

@@ -12,7 +12,7 @@
 static void the_same_differ_in_nothing(void **state)
 {
     (void)state;
-    struct choice_change changes[CHOICE_CHANGES_MOST];
+    struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = {.scene = "a.json"}, b = a;
     assert_int_equal(choice_changes(&a, &b, changes), 0);
 }
@@ -20,7 +20,7 @@ static void the_same_differ_in_nothing(void **state)
 static void each_choice_is_told_by_its_name(void **state)
 {
     (void)state;
-    struct choice_change changes[CHOICE_CHANGES_MOST];
+    struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = settings_usual();
     uint32_t told = 0;
     for (const struct setting *row = choice_next(NULL); row; row = choice_next(row), ++told) {
@@ -35,7 +35,7 @@ static void each_choice_is_told_by_its_name(void **state)
         choice_turn(&b, row, -1);
         assert_int_equal(choice_changes(&a, &b, changes), 0);
     }
-    assert_in_range(told, 10, CHOICE_CHANGES_MOST);
+    assert_in_range(told, 10, CHOICE_CHANGES_MAX);
 }
 
 static void numbers_end_where_their_options_do(void **state)
@@ -55,7 +55,7 @@ static void numbers_end_where_their_options_do(void **state)
 static void scenes_are_told_by_their_files(void **state)
 {
     (void)state;
-    struct choice_change changes[CHOICE_CHANGES_MOST];
+    struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = {.scene = "some/where/a.json"};
     struct settings b = {.scene = "b.obj", .effects = "-textures"};
     assert_int_equal(choice_changes(&a, &b, changes), 2);

@@ -27,7 +27,7 @@
 
 #include "api/whit.h"
 
-enum { CHUNK = 4096, STREAM = 256, THREADS_MOST = 64, LINE = 4200 };
+enum { CHUNK = 4096, STREAM = 256, THREADS_MAX = 64, LINE = 4200 };
 enum way { WAY_SINGLE, WAY_PACKETS, WAY_STREAM, WAYS };
 static const char *const ways[WAYS] = {"single", "packets", "stream"};
 
@@ -253,7 +253,7 @@ static void *work(void *user)
 
 static void trace(struct peer *peer, enum way way, bool back, bool coherent)
 {
-    pthread_t threads[THREADS_MOST];
+    pthread_t threads[THREADS_MAX];
     static const enum RTCDeviceProperty needs[WAYS] = {
         [WAY_PACKETS] = RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
         [WAY_STREAM] = RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED};
@@ -316,7 +316,7 @@ int main(int argc, char **argv)
     if (argc != 2)
         fail("usage: whit-embree TRIANGLES, see `whit bench rays --help`");
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    peer.threads = cores < 1 ? 1 : cores > THREADS_MOST ? THREADS_MOST : (int)cores;
+    peer.threads = cores < 1 ? 1 : cores > THREADS_MAX ? THREADS_MAX : (int)cores;
     peer.triangles = read_records(argv[1], sizeof *peer.triangles, &peer.triangle_count);
     if (peer.triangle_count == 0 || peer.triangle_count > UINT32_MAX / 3)
         fail("%s: no triangles, or too many", argv[1]);

@@ -24,9 +24,9 @@ void figures_begin(struct figures *figures, struct bench *bench, const char *nam
                    const char *const *heads, uint32_t steps)
 {
     static const char *const last[] = {"figure", "must", "aim", "verdict"};
-    const char *all[TABLE_COLUMNS_MOST + 1] = {0};
+    const char *all[TABLE_COLUMNS_MAX + 1] = {0};
     uint32_t count = 0;
-    while (heads[count] && count + 4 < TABLE_COLUMNS_MOST) {
+    while (heads[count] && count + 4 < TABLE_COLUMNS_MAX) {
         all[count] = heads[count];
         ++count;
     }
@@ -73,7 +73,7 @@ void figures_row(struct figures *figures, const struct figure *figure, json_t *r
     document_flag(row, "more_is_better", goal->more);
     document_text(row, "verdict", goal->must > 0.0 ? verdict : NULL);
     document_append(figures->section.rows, row);
-    if (figures->count < TABLE_ROWS_MOST)
+    if (figures->count < TABLE_ROWS_MAX)
         figures->list[figures->count++] = *figure;
 }
 

@@ -19,7 +19,7 @@ struct figure {
 /* One table whose rows end in a verdict. */
 struct figures {
     struct section section;
-    struct figure list[TABLE_ROWS_MOST];
+    struct figure list[TABLE_ROWS_MAX];
     uint32_t count;
     json_t *left_out;
 };

@@ -42,7 +42,7 @@ static void put_text(struct page *page, double x, double y, const char *anchor, 
 
 static void put_axis(struct page *page, const struct axis *axis, double bottom)
 {
-    double ticks[PLOT_TICKS_MOST];
+    double ticks[PLOT_TICKS_MAX];
     uint32_t count = plot_ticks(axis->low, axis->high, true, 6, ticks);
     for (uint32_t i = 0; i < count; ++i) {
         char text[32];

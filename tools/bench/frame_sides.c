@@ -314,14 +314,14 @@ static whit_result device_bytes(const struct frame *frame, const whit_renderer_p
 whit_result frame_memory(const struct frame *frame, double *megabytes)
 {
     const whit_renderer_params whole = params_of(frame);
-    whit_renderer_params least = whole;
+    whit_renderer_params min = whole;
     uint64_t with = 0, without = 0;
-    least.width = least.height = 16;
-    least.depth = 0;
-    least.shadows = WHIT_SHADOWS_NONE;
+    min.width = min.height = 16;
+    min.depth = 0;
+    min.shadows = WHIT_SHADOWS_NONE;
     whit_result result = device_bytes(frame, &whole, &with);
     if (result == WHIT_OK)
-        result = device_bytes(frame, &least, &without);
+        result = device_bytes(frame, &min, &without);
     /* Of a pixel its colour and its two ids. */
     double pixels = 24.0 * ((double)frame->width * frame->height - 256.0);
     *megabytes = ((double)with - (double)without - pixels) * 1e-6;

@@ -11,9 +11,9 @@
 
 #include "whit.h"
 
-#define CLOSE     (2.0 / 255.0)
-#define SHARE     0.99
-#define SIDE_MOST 4096u
+#define CLOSE    (2.0 / 255.0)
+#define SHARE    0.99
+#define SIDE_MAX 4096u
 
 struct picture {
     unsigned width, height;
@@ -35,8 +35,8 @@ static void on_message(void *user, whit_log_level level, const char *message)
 
 static int alloc_picture(struct picture *picture)
 {
-    if (picture->width == 0 || picture->height == 0 || picture->width > SIDE_MOST ||
-        picture->height > SIDE_MOST)
+    if (picture->width == 0 || picture->height == 0 || picture->width > SIDE_MAX ||
+        picture->height > SIDE_MAX)
         return 0;
     picture->rgb = malloc((size_t)picture->width * picture->height * 3 * sizeof *picture->rgb);
     return picture->rgb != NULL;
@@ -77,11 +77,11 @@ static int read_head_number(FILE *file, unsigned *out)
 static int load_ppm(const char *path, struct picture *picture)
 {
     FILE *file = fopen(path, "rb");
-    unsigned most = 0;
+    unsigned max = 0;
     int good = file && getc(file) == 'P' && getc(file) == '6' &&
                read_head_number(file, &picture->width) &&
-               read_head_number(file, &picture->height) && read_head_number(file, &most) &&
-               most == 65535 && isspace(getc(file)) && alloc_picture(picture);
+               read_head_number(file, &picture->height) && read_head_number(file, &max) &&
+               max == 65535 && isspace(getc(file)) && alloc_picture(picture);
     size_t count = (size_t)picture->width * picture->height * 3;
     for (size_t i = 0; good && i < count; ++i) {
         int high = getc(file), low = getc(file);
@@ -97,10 +97,10 @@ static int load_ppm(const char *path, struct picture *picture)
 
 static double difference(const struct picture *a, size_t i, const struct picture *b, size_t j)
 {
-    double most = 0.0;
+    double max = 0.0;
     for (size_t c = 0; c < 3; ++c)
-        most = fmax(most, fabs(a->rgb[3 * i + c] - b->rgb[3 * j + c]));
-    return most;
+        max = fmax(max, fabs(a->rgb[3 * i + c] - b->rgb[3 * j + c]));
+    return max;
 }
 
 /* Pixels of `a` whose colour is not in `b`, at the same place or next to it. */

@@ -7,31 +7,32 @@
 
 /* In the space of a tree. Boxes grow by `growth` times the largest coordinate of their corners
    relative to the origin, and by `margin`. */
-struct wide_ray {
+struct conservative_ray {
     double origin[3], dir[3];
     double t_min, t_max;
     double growth, margin;
 };
 
-struct wide_walk {
+struct conservative_walk {
     const struct accel *accel;
-    bool brute;          /* every record of every instance, no boxes */
-    bool done;           /* set by visit: nothing more is wanted */
-    double limit;        /* what lies behind it does not matter; visit may lower it */
-    struct wide_ray ray; /* of the tree in hand */
+    bool brute;                  /* every record of every instance, no boxes */
+    bool done;                   /* set by visit: nothing more is wanted */
+    double limit;                /* what lies behind it does not matter; visit may lower it */
+    struct conservative_ray ray; /* of the tree in hand */
     /* Sets walk->ray, which is the world's, to what it is in an instance's mesh; false: the ray
        meets nothing of it. Not called where rays meet the only tree as they are. */
-    bool (*enter)(struct wide_walk *walk, uint32_t instance);
+    bool (*enter)(struct conservative_walk *walk, uint32_t instance);
     /* Records of trees that split triangles come more than once. */
-    void (*visit)(struct wide_walk *walk, uint32_t record, uint32_t instance);
+    void (*visit)(struct conservative_walk *walk, uint32_t record, uint32_t instance);
 };
 
 /* All of it, or until `done`. `walk->ray` is the ray in the world. Trees too deep for the stack are
    walked as `brute`, and so is what has no trees. */
-void wide_walk_run(struct wide_walk *walk);
+void conservative_walk_run(struct conservative_walk *walk);
 
 /* Where walk->ray enters the grown box; INFINITY: not within [t_min, t_max] and the limit. Both
    ends give way by 2^-18 and a denormal, more than rounding to float. */
-double wide_entry(const struct wide_walk *walk, const float lo[3], const float hi[3]);
+double conservative_entry(const struct conservative_walk *walk, const float lo[3],
+                          const float hi[3]);
 
 #endif

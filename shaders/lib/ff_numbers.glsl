@@ -1,16 +1,16 @@
 // Pairs of floats. A pair is its sum, the second float being a rounding error of the first (Dekker
 // 1971, "A floating-point technique for extending the available precision"). Products of pairs are off
-// by 2^-45 of themselves, sums by 2^-46 of their terms. accel/pair_numbers.h is this file in C.
-#ifndef LIB_PAIR_NUMBERS_GLSL
-#define LIB_PAIR_NUMBERS_GLSL
+// by 2^-45 of themselves, sums by 2^-46 of their terms. accel/ff_numbers.h is this file in C.
+#ifndef LIB_FF_NUMBERS_GLSL
+#define LIB_FF_NUMBERS_GLSL
 
 #include "exact.glsl"
 
-const float PAIR_RELATIVE = 1.0 / 2199023255552.0; // 2^-41
-const float PAIR_ABSOLUTE = 1.0 / 1208925819614629174706176.0; // 2^-80
-const float PAIR_LEAST = 1.0 / 1099511627776.0; // 2^-40
+const float FF_RELATIVE = 1.0 / 2199023255552.0; // 2^-41
+const float FF_ABSOLUTE = 1.0 / 1208925819614629174706176.0; // 2^-80
+const float PAIR_MIN = 1.0 / 1099511627776.0; // 2^-40
 
-vec2 pair_sum(float a, float b) // exact (Knuth's two-sum)
+vec2 ff_sum(float a, float b) // exact (Knuth's two-sum)
 {
     precise float s = a + b;
     precise float from_b = s - a;
@@ -18,7 +18,7 @@ vec2 pair_sum(float a, float b) // exact (Knuth's two-sum)
     return vec2(s, error);
 }
 
-vec2 pair_split(float a)
+vec2 ff_split(float a)
 {
     precise float c = 4097.0 * a;
     precise float high = c - (c - a);
@@ -26,35 +26,35 @@ vec2 pair_split(float a)
     return vec2(high, low);
 }
 
-vec2 pair_product(float a, float b) // exact, but for underflow
+vec2 ff_product(float a, float b) // exact, but for underflow
 {
-    vec2 as = pair_split(a), bs = pair_split(b);
+    vec2 as = ff_split(a), bs = ff_split(b);
     precise float p = a * b;
     precise float error = ((as.x * bs.x - p) + as.x * bs.y + as.y * bs.x) + as.y * bs.y;
     return vec2(p, error);
 }
 
-vec2 pair_times(vec2 a, vec2 b)
+vec2 ff_times(vec2 a, vec2 b)
 {
-    vec2 p = pair_product(a.x, b.x);
+    vec2 p = ff_product(a.x, b.x);
     precise float low = p.y + (a.x * b.y + a.y * b.x);
-    return pair_sum(p.x, low);
+    return ff_sum(p.x, low);
 }
 
-vec2 pair_plus(vec2 a, vec2 b)
+vec2 ff_plus(vec2 a, vec2 b)
 {
-    vec2 s = pair_sum(a.x, b.x);
+    vec2 s = ff_sum(a.x, b.x);
     precise float low = s.y + (a.y + b.y);
-    return pair_sum(s.x, low);
+    return ff_sum(s.x, low);
 }
 
 struct PairVector {
     vec2 x, y, z;
 };
 
-PairVector pair_difference(vec3 a, vec3 b) // exact
+PairVector ff_difference(vec3 a, vec3 b) // exact
 {
-    return PairVector(pair_sum(a.x, -b.x), pair_sum(a.y, -b.y), pair_sum(a.z, -b.z));
+    return PairVector(ff_sum(a.x, -b.x), ff_sum(a.y, -b.y), ff_sum(a.z, -b.z));
 }
 
 vec3 magnitudes(PairVector v)
@@ -62,19 +62,19 @@ vec3 magnitudes(PairVector v)
     return abs(vec3(v.x.x, v.y.x, v.z.x));
 }
 
-PairVector pair_cross(PairVector a, PairVector b)
+PairVector ff_cross(PairVector a, PairVector b)
 {
     PairVector n;
-    n.x = pair_plus(pair_times(a.y, b.z), -pair_times(a.z, b.y));
-    n.y = pair_plus(pair_times(a.z, b.x), -pair_times(a.x, b.z));
-    n.z = pair_plus(pair_times(a.x, b.y), -pair_times(a.y, b.x));
+    n.x = ff_plus(ff_times(a.y, b.z), -ff_times(a.z, b.y));
+    n.y = ff_plus(ff_times(a.z, b.x), -ff_times(a.x, b.z));
+    n.z = ff_plus(ff_times(a.x, b.y), -ff_times(a.y, b.x));
     return n;
 }
 
-vec2 pair_dot(PairVector a, PairVector b)
+vec2 ff_dot(PairVector a, PairVector b)
 {
-    return pair_plus(pair_plus(pair_times(a.x, b.x), pair_times(a.y, b.y)),
-                     pair_times(a.z, b.z));
+    return ff_plus(ff_plus(ff_times(a.x, b.x), ff_times(a.y, b.y)),
+                     ff_times(a.z, b.z));
 }
 
 // The power of two that takes a finite length to 1..2, but for the very large and the very small.
@@ -88,7 +88,7 @@ float power_of_two(int exponent) // -126..127
     return uintBitsToFloat(uint(exponent + 127) << 23);
 }
 
-PairVector pair_scaled(PairVector v, float power)
+PairVector ff_scaled(PairVector v, float power)
 {
     return PairVector(v.x * power, v.y * power, v.z * power);
 }
@@ -98,18 +98,18 @@ PairVector pair_scaled(PairVector v, float power)
 bool round_ratio(vec2 top, vec2 bottom, float top_error, float bottom_error, out float t)
 {
     precise float first = top.x / bottom.x;
-    vec2 back = pair_product(first, bottom.x);
+    vec2 back = ff_product(first, bottom.x);
     precise float rest = ((top.x - back.x) - back.y) + (top.y - first * bottom.y);
     precise float second = rest / bottom.x;
-    vec2 both = pair_sum(first, second);
+    vec2 both = ff_sum(first, second);
     precise float error = top_error / abs(bottom.x) +
-                          abs(both.x) * (bottom_error / abs(bottom.x) + PAIR_RELATIVE);
+                          abs(both.x) * (bottom_error / abs(bottom.x) + FF_RELATIVE);
     uint bits = floatBitsToUint(both.x);
     float next = uintBitsToFloat(both.y > 0.0 ? bits + 1u : bits - 1u); // t > 0
     precise float to_middle = 0.5 * abs(next - both.x);
     precise float off = abs(both.y) + error;
     t = both.x;
-    return t > PAIR_LEAST && abs(bottom.x) > PAIR_LEAST && off < to_middle;
+    return t > PAIR_MIN && abs(bottom.x) > PAIR_MIN && off < to_middle;
 }
 
 bool is_fit(float largest)

@@ -131,16 +131,16 @@ static void both_kernels_draw_the_same(void **state)
                                        .camera = cameras[i],
                                        .packets = RENDER_PACKETS_OFF,
                                        .classes = RENDER_CLASSES_MANY,
-                                       .compile_beside = true};
+                                       .compile_async = true};
         params.effects_removed = i == 0 ? 0 : removed;
         struct fixture f = fixture_open(make[i](), NULL, &params);
         struct render_stats begun = stats_of(f.renderer);
         assert_true(begun.general);
         struct image first = render_general(&f), second = render_specialised(&f);
         struct render_stats done = stats_of(f.renderer);
-        assert_null(f.renderer->beside.job);
+        assert_null(f.renderer->async.job);
         assert_true(done.kernel_instructions < begun.kernel_instructions);
-        params.compile_beside = false;
+        params.compile_async = false;
         renew(&f, &params);
         assert_false(stats_of(f.renderer).general);
         struct image at_once = render(&f);
@@ -165,7 +165,7 @@ static void removed_effects_stay_removed(void **state)
                                    .no_shadows = true,
                                    .effects_removed = removed | UINT64_C(1)
                                                                     << SCENE_EFFECT_REFLECTION,
-                                   .compile_beside = true};
+                                   .compile_async = true};
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image first = render_general(&f), second = render_specialised(&f);
     assert_same(&first, &second);
@@ -181,12 +181,12 @@ static void all_effects_need_no_thread(void **state)
 {
     (void)state;
     struct render_params params = {
-        .width = 8, .height = 8, .effects_removed = removed, .compile_beside = true};
+        .width = 8, .height = 8, .effects_removed = removed, .compile_async = true};
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
     renew(&f, &params);
     struct image image = render(&f);
-    assert_null(f.renderer->beside.job);
+    assert_null(f.renderer->async.job);
     image_finish(&image);
     fixture_close(&f);
 }
@@ -203,7 +203,7 @@ static void anything_may_come_in_between(void **state)
                                    .camera = "0,6,9,0,0,0,0,1,0,40",
                                    .cancel = &cancel,
                                    .effects_removed = removed,
-                                   .compile_beside = true};
+                                   .compile_async = true};
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     /* Destroyed without a picture: before the thread begins, while it is at work, when it has
      * ended. */

@@ -2,17 +2,17 @@
    sure. */
 #include "hard_fixture.h"
 
-#include "accel/pairs.h"
+#include "accel/ff_triangle.h"
 
 typedef void (*make_fn)(struct vec3 v[3], struct gpu_ray *ray);
 
-static struct vec3 random_grid_point(int most)
+static struct vec3 random_grid_point(int max)
 {
-    int span = 2 * most + 1;
+    int span = 2 * max + 1;
     struct vec3 p;
-    p.x = (float)((int)(random_float(&random_state) * (float)span) - most);
-    p.y = (float)((int)(random_float(&random_state) * (float)span) - most);
-    p.z = (float)((int)(random_float(&random_state) * (float)span) - most);
+    p.x = (float)((int)(random_float(&random_state) * (float)span) - max);
+    p.y = (float)((int)(random_float(&random_state) * (float)span) - max);
+    p.z = (float)((int)(random_float(&random_state) * (float)span) - max);
     return p;
 }
 
@@ -104,11 +104,11 @@ static void compare(struct rational *rational, const struct vec3 v[3], const str
                     struct tally *tally)
 {
     struct vec3 origin = vec3_load(ray->origin), dir = vec3_load(ray->dir);
-    struct exact_meeting m;
+    struct exact_candidate m;
     bool key_known;
     float key = NAN;
     bool met = rational_meet(rational, origin, dir, v, &key, NULL);
-    bool sure = pair_meet(origin, dir, v[0], v[1], v[2], &m, &key_known);
+    bool sure = ff_meet(origin, dir, v[0], v[1], v[2], &m, &key_known);
     ++tally->rays;
     tally->met += met;
     tally->sure += sure;
@@ -124,7 +124,7 @@ static void what_is_sure_is_so(void **state)
     static const struct {
         const char *name;
         make_fn make;
-        double sure_least, sure_most; /* share of rays */
+        double sure_min, sure_max; /* share of rays */
     } kinds[] = {
         {"ordinary", make_ordinary, 0.999, 1.0},
         {"from far away", make_far, 0.99, 1.0},
@@ -151,7 +151,7 @@ static void what_is_sure_is_so(void **state)
                       kinds[k].name, tally.sure, tally.rays, tally.wrong, tally.met,
                       tally.keys_known, tally.wrong_keys);
         assert_int_equal(tally.wrong + tally.wrong_keys, 0);
-        assert_true(share >= kinds[k].sure_least && share <= kinds[k].sure_most);
+        assert_true(share >= kinds[k].sure_min && share <= kinds[k].sure_max);
     }
     rational_destroy(rational);
 }

@@ -1,10 +1,10 @@
 // What exact_sphere.glsl's integers tell, in pairs of floats: nearly always enough, for a small part of
 // their price. accel/pairs_sphere.c is this file in C.
-#ifndef LIB_PAIRS_SPHERE_GLSL
-#define LIB_PAIRS_SPHERE_GLSL
+#ifndef LIB_FF_SPHERE_GLSL
+#define LIB_FF_SPHERE_GLSL
 
 #include "exact_sphere.glsl"
-#include "pair_numbers.glsl"
+#include "ff_numbers.glsl"
 
 // And how far it may be off.
 struct BoundedPair {
@@ -12,9 +12,9 @@ struct BoundedPair {
     float error;
 };
 
-BoundedPair bounded_pair(vec2 value, float size)
+BoundedPair bounded_ff(vec2 value, float size)
 {
-    precise float error = size * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    precise float error = size * FF_RELATIVE + FF_ABSOLUTE;
     return BoundedPair(value, error);
 }
 
@@ -27,25 +27,25 @@ struct Quadratic {
 Quadratic find_quadratic(PairVector m, PairVector d, vec2 rr)
 {
     vec3 sm = magnitudes(m), sd = magnitudes(d);
-    vec2 mm = pair_dot(m, m), p = pair_dot(d, d);
+    vec2 mm = ff_dot(m, m), p = ff_dot(d, d);
     precise float ms = (sm.x * sd.x + sm.y * sd.y) + sm.z * sd.z;
     precise float qs = mm.x + rr.x;
-    return Quadratic(bounded_pair(p, p.x), bounded_pair(pair_dot(m, d), ms),
-                     bounded_pair(pair_plus(mm, -rr), qs));
+    return Quadratic(bounded_ff(p, p.x), bounded_ff(ff_dot(m, d), ms),
+                     bounded_ff(ff_plus(mm, -rr), qs));
 }
 
 // S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): its terms are of the sphere's size, however far it is.
 BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
 {
     vec3 sm = magnitudes(m), sd = magnitudes(d);
-    PairVector x = pair_cross(m, d);
+    PairVector x = ff_cross(m, d);
     vec3 sx = magnitudes(x);
-    precise vec3 e = (sm.yzx * sd.zxy + sm.zxy * sd.yzx) * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    precise vec3 e = (sm.yzx * sd.zxy + sm.zxy * sd.yzx) * FF_RELATIVE + FF_ABSOLUTE;
     precise vec3 each = (2.0 * sx + e) * e;
     precise float of_x = (each.x + each.y) + each.z;
-    vec2 rp = pair_times(rr, p.value), xx = pair_dot(x, x);
+    vec2 rp = ff_times(rr, p.value), xx = ff_dot(x, x);
     precise float size = rp.x + xx.x;
-    BoundedPair room = bounded_pair(pair_plus(rp, -xx), size);
+    BoundedPair room = bounded_ff(ff_plus(rp, -xx), size);
     precise float error = room.error + (of_x + rr.x * p.error) * 1.0625;
     room.error = error;
     return room;
@@ -56,11 +56,11 @@ BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
 BoundedPair root_of(BoundedPair x)
 {
     precise float first = sqrt(x.value.x);
-    vec2 square = pair_product(first, first);
+    vec2 square = ff_product(first, first);
     precise float rest = ((x.value.x - square.x) - square.y) + x.value.y;
     precise float second = rest / (2.0 * first);
-    precise float error = x.error / first + first * (2.0 * PAIR_RELATIVE);
-    return BoundedPair(pair_sum(first, second), error);
+    precise float error = x.error / first + first * (2.0 * FF_RELATIVE);
+    return BoundedPair(ff_sum(first, second), error);
 }
 
 int sign_known(BoundedPair x)
@@ -69,25 +69,25 @@ int sign_known(BoundedPair x)
 }
 
 // What exact_meet_sphere() says, if it is sure.
-bool pair_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far, float t_min,
-                      out SphereMeeting meeting)
+bool ff_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far, float t_min,
+                      out SphereCandidate candidate)
 {
-    PairVector m = pair_difference(center, origin);
+    PairVector m = ff_difference(center, origin);
     PairVector d = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
     float way = larger(largest_magnitude(magnitudes(m)), radius), speed = largest_magnitude(dir);
     int way_exponent = length_exponent(way), speed_exponent = length_exponent(speed);
-    m = pair_scaled(m, power_of_two(-way_exponent));
-    d = pair_scaled(d, power_of_two(-speed_exponent));
+    m = ff_scaled(m, power_of_two(-way_exponent));
+    d = ff_scaled(d, power_of_two(-speed_exponent));
     float scaled = radius * power_of_two(-way_exponent);
-    vec2 rr = pair_product(scaled, scaled);
+    vec2 rr = ff_product(scaled, scaled);
     Quadratic f = find_quadratic(m, d, rr);
     BoundedPair room = discriminant(m, d, rr, f.p);
     int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
     // |S| + root: no digits cancel out in it. The other end is Q over that.
     BoundedPair root = root_of(room);
-    vec2 sum = pair_plus(s < 0 ? -f.s.value : f.s.value, root.value);
+    vec2 sum = ff_plus(s < 0 ? -f.s.value : f.s.value, root.value);
     vec2 past = s < 0 ? -f.q.value : f.q.value;
-    precise float sum_error = (f.s.error + root.error) + sum.x * PAIR_RELATIVE;
+    precise float sum_error = (f.s.error + root.error) + sum.x * FF_RELATIVE;
     float to_t = power_of_two(way_exponent - speed_exponent), near, far;
     bool near_known, far_known;
     for (int end = 0; end < 2; end++) {
@@ -104,10 +104,10 @@ bool pair_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool onl
     bool near_some = s > 0 && q > 0 && near_known, near_none = s < 0 || q < 0;
     bool far_some = (s > 0 || (s < 0 && q < 0)) && far_known, far_none = s < 0 && q > 0;
     bool at_exit = only_far || !(near_some && near >= t_min);
-    meeting.at_exit = at_exit;
-    meeting.inward = s > 0;
-    meeting.key = at_exit ? far : near;
-    meeting.met = side > 0 && (at_exit ? far_some && far >= t_min : near_some);
+    candidate.at_exit = at_exit;
+    candidate.inward = s > 0;
+    candidate.key = at_exit ? far : near;
+    candidate.met = side > 0 && (at_exit ? far_some && far >= t_min : near_some);
     bool end_known = at_exit ? (only_far || near_some || near_none) && (far_some || far_none)
                              : near_some;
     return is_fit(way) && is_fit(speed) && (side < 0 || (side > 0 && end_known));

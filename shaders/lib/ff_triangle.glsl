@@ -1,20 +1,20 @@
 // What exact.glsl's integers tell, in pairs of floats: nearly always enough, for a small part of their
-// price. accel/pairs.c is this file in C.
-#ifndef LIB_PAIRS_GLSL
-#define LIB_PAIRS_GLSL
+// price. accel/ff_triangle.c is this file in C.
+#ifndef LIB_FF_TRIANGLE_GLSL
+#define LIB_FF_TRIANGLE_GLSL
 
-#include "pair_numbers.glsl"
+#include "ff_numbers.glsl"
 
 // d.(a x b) of vectors up to 2, and in `error` how far it may be off: by the sizes of what it is the sum
-// of, with room for five times what the operations add up to; and by what underflows, see pair_meet.
-vec2 pair_triple(PairVector d, PairVector a, PairVector b, out float error)
+// of, with room for five times what the operations add up to; and by what underflows, see ff_meet.
+vec2 ff_triple(PairVector d, PairVector a, PairVector b, out float error)
 {
     vec3 ma = magnitudes(a), mb = magnitudes(b), md = magnitudes(d);
     precise vec3 terms = ma.yzx * mb.zxy + ma.zxy * mb.yzx;
     precise float size = (md.x * terms.x + md.y * terms.y) + md.z * terms.z;
-    precise float most = size * PAIR_RELATIVE + PAIR_ABSOLUTE;
+    precise float most = size * FF_RELATIVE + FF_ABSOLUTE;
     error = most;
-    return pair_dot(d, pair_cross(a, b));
+    return ff_dot(d, ff_cross(a, b));
 }
 
 // Vectors between a ray's origin and a triangle's vertices, and the direction; each scaled to lengths up
@@ -28,14 +28,14 @@ struct PairTriangle {
     bool fit; // to be scaled
 };
 
-PairTriangle pair_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
+PairTriangle ff_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
 {
     PairTriangle p;
-    p.a = pair_difference(v0, origin);
-    p.b = pair_difference(v1, origin);
-    p.ab = pair_difference(v1, v0);
-    p.ac = pair_difference(v2, v0);
-    p.bc = pair_difference(v2, v1);
+    p.a = ff_difference(v0, origin);
+    p.b = ff_difference(v1, origin);
+    p.ab = ff_difference(v1, v0);
+    p.ac = ff_difference(v2, v0);
+    p.bc = ff_difference(v2, v1);
     p.along = PairVector(vec2(dir.x, 0.0), vec2(dir.y, 0.0), vec2(dir.z, 0.0));
     float way = larger(largest_magnitude(magnitudes(p.a)), largest_magnitude(magnitudes(p.b)));
     float size = larger(largest_magnitude(magnitudes(p.ab)), largest_magnitude(magnitudes(p.ac)));
@@ -45,12 +45,12 @@ PairTriangle pair_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
     p.way = length_exponent(way);
     p.size = length_exponent(size);
     p.speed = length_exponent(speed);
-    p.a = pair_scaled(p.a, power_of_two(-p.way));
-    p.b = pair_scaled(p.b, power_of_two(-p.way));
-    p.ab = pair_scaled(p.ab, power_of_two(-p.size));
-    p.ac = pair_scaled(p.ac, power_of_two(-p.size));
-    p.bc = pair_scaled(p.bc, power_of_two(-p.size));
-    p.along = pair_scaled(p.along, power_of_two(-p.speed));
+    p.a = ff_scaled(p.a, power_of_two(-p.way));
+    p.b = ff_scaled(p.b, power_of_two(-p.way));
+    p.ab = ff_scaled(p.ab, power_of_two(-p.size));
+    p.ac = ff_scaled(p.ac, power_of_two(-p.size));
+    p.bc = ff_scaled(p.bc, power_of_two(-p.size));
+    p.along = ff_scaled(p.along, power_of_two(-p.speed));
     return p;
 }
 
@@ -62,14 +62,14 @@ struct PairEdges {
     float top_off, bottom_off;
 };
 
-PairEdges pair_edges(PairTriangle p)
+PairEdges ff_edges(PairTriangle p)
 {
     PairEdges e;
     for (int n = 0; n < 5; n++) { // a loop, for less code to compile
         PairVector x = n == 0 ? p.b : n == 1 ? p.ac : n == 2 ? p.a : p.ab;
         PairVector y = n == 0 ? p.bc : n == 1 ? p.a : n == 2 ? p.ab : p.ac;
         float error;
-        vec2 value = pair_triple(n == 3 ? p.a : p.along, x, y, error);
+        vec2 value = ff_triple(n == 3 ? p.a : p.along, x, y, error);
         e.edges = vec3(n == 0 ? value.x : e.edges.x, n == 1 ? value.x : e.edges.y,
                        n == 2 ? value.x : e.edges.z);
         e.off = vec3(n == 0 ? error : e.off.x, n == 1 ? error : e.off.y, n == 2 ? error : e.off.z);
@@ -82,11 +82,11 @@ PairEdges pair_edges(PairTriangle p)
 }
 
 // What exact_meet() says, if it is sure. `key_known`: if the triangle is met, m.key is the key.
-bool pair_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting m,
+bool ff_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting m,
                out bool key_known)
 {
-    PairTriangle p = pair_triangle(origin, dir, v0, v1, v2);
-    PairEdges e = pair_edges(p);
+    PairTriangle p = ff_triangle(origin, dir, v0, v1, v2);
+    PairEdges e = ff_edges(p);
     bvec3 below = lessThan(e.edges, -e.off), above = greaterThan(e.edges, e.off);
     bool sided = p.fit && abs(e.bottom.x) > e.bottom_off;
     bool outside = p.fit && any(below) && any(above);

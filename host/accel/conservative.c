@@ -1,4 +1,4 @@
-#include "accel/wide.h"
+#include "accel/conservative.h"
 
 #include <math.h>
 
@@ -21,15 +21,16 @@ static double larger(double a, double b)
 }
 
 /* Whether what begins at `start` may still matter. */
-static bool begins_in_time(const struct wide_walk *walk, double start)
+static bool begins_in_time(const struct conservative_walk *walk, double start)
 {
     return start - INTERVAL_GROWTH * fabs(start) - DENORMAL <=
            smaller(walk->limit, walk->ray.t_max);
 }
 
-double wide_entry(const struct wide_walk *walk, const float box_lo[3], const float box_hi[3])
+double conservative_entry(const struct conservative_walk *walk, const float box_lo[3],
+                          const float box_hi[3])
 {
-    const struct wide_ray *ray = &walk->ray;
+    const struct conservative_ray *ray = &walk->ray;
     double lo[3], hi[3], far = 0.0;
     for (int i = 0; i < 3; ++i) {
         lo[i] = (double)box_lo[i] - ray->origin[i];
@@ -53,7 +54,8 @@ double wide_entry(const struct wide_walk *walk, const float box_lo[3], const flo
     return reached ? start : INFINITY;
 }
 
-typedef void (*leaf_fn)(struct wide_walk *walk, const struct gpu_bvh_node *leaf, uint32_t instance);
+typedef void (*leaf_fn)(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
+                        uint32_t instance);
 
 /* A node whose box is entered, and where. */
 struct entered {
@@ -61,13 +63,14 @@ struct entered {
     double entry;
 };
 
-static struct entered enter_node(const struct wide_walk *walk, uint32_t index)
+static struct entered enter_node(const struct conservative_walk *walk, uint32_t index)
 {
     const struct gpu_bvh_node *node = &walk->accel->nodes[index];
-    return (struct entered){index, wide_entry(walk, node->lo, node->hi)};
+    return (struct entered){index, conservative_entry(walk, node->lo, node->hi)};
 }
 
-static void walk_tree(struct wide_walk *walk, uint32_t root, leaf_fn leaf, uint32_t instance)
+static void walk_tree(struct conservative_walk *walk, uint32_t root, leaf_fn leaf,
+                      uint32_t instance)
 {
     struct entered stack[STACK_SIZE];
     uint32_t top = 0;
@@ -88,7 +91,8 @@ static void walk_tree(struct wide_walk *walk, uint32_t root, leaf_fn leaf, uint3
     }
 }
 
-static void visit_records(struct wide_walk *walk, uint32_t first, uint32_t count, uint32_t instance)
+static void visit_records(struct conservative_walk *walk, uint32_t first, uint32_t count,
+                          uint32_t instance)
 {
     for (uint32_t i = 0; i < count && !walk->done; ++i) {
         bool flat = walk->accel->flat;
@@ -97,13 +101,14 @@ static void visit_records(struct wide_walk *walk, uint32_t first, uint32_t count
     }
 }
 
-static void visit_mesh_leaf(struct wide_walk *walk, const struct gpu_bvh_node *leaf,
+static void visit_mesh_leaf(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
                             uint32_t instance)
 {
     visit_records(walk, leaf->first, bvh_count(leaf), instance);
 }
 
-static void visit_mesh(struct wide_walk *walk, const struct accel_mesh *mesh, uint32_t instance)
+static void visit_mesh(struct conservative_walk *walk, const struct accel_mesh *mesh,
+                       uint32_t instance)
 {
     if (walk->brute)
         visit_records(walk, mesh->first_triangle, mesh->record_count, instance);
@@ -111,10 +116,10 @@ static void visit_mesh(struct wide_walk *walk, const struct accel_mesh *mesh, ui
         walk_tree(walk, mesh->first_node, visit_mesh_leaf, instance);
 }
 
-static void visit_instance(struct wide_walk *walk, uint32_t index)
+static void visit_instance(struct conservative_walk *walk, uint32_t index)
 {
     const struct gpu_instance *instance = &walk->accel->instances[index];
-    struct wide_ray world = walk->ray;
+    struct conservative_ray world = walk->ray;
     if (instance->root == BVH_EMPTY_REF)
         return;
     if (walk->accel->single_identity || walk->enter(walk, index))
@@ -122,14 +127,14 @@ static void visit_instance(struct wide_walk *walk, uint32_t index)
     walk->ray = world;
 }
 
-static void visit_instance_leaf(struct wide_walk *walk, const struct gpu_bvh_node *leaf,
+static void visit_instance_leaf(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
                                 uint32_t instance)
 {
     (void)instance;
     visit_instance(walk, leaf->first);
 }
 
-void wide_walk_run(struct wide_walk *walk)
+void conservative_walk_run(struct conservative_walk *walk)
 {
     const struct accel *accel = walk->accel;
     walk->brute |= accel->mesh_depth + 2 > STACK_SIZE || accel->instance_depth + 2 > STACK_SIZE;

@@ -8,7 +8,7 @@
 #include "base/threads.h"
 #include "render/renderer.h"
 
-struct beside_job {
+struct async_job {
     struct device *device;
     struct stages_job stages;
     struct thread *thread;
@@ -18,13 +18,13 @@ struct beside_job {
 
 static void compile_job(void *context)
 {
-    struct beside_job *job = context;
+    struct async_job *job = context;
     if (stages_job_run(job->device, &job->stages, &job->set) != WHIT_OK)
         job->set = (struct stage_set){0};
     atomic_store(&job->done, true);
 }
 
-static void job_destroy(struct beside_job *job)
+static void job_destroy(struct async_job *job)
 {
     if (!job)
         return;
@@ -34,9 +34,9 @@ static void job_destroy(struct beside_job *job)
 }
 
 /* NULL when memory or threads run out: then the general kernels stay until the next picture. */
-static struct beside_job *job_start(const struct renderer *renderer, const struct gpu_spec *spec)
+static struct async_job *job_start(const struct renderer *renderer, const struct gpu_spec *spec)
 {
-    struct beside_job *job = calloc(1, sizeof *job);
+    struct async_job *job = calloc(1, sizeof *job);
     if (!job)
         return NULL;
     job->device = renderer->device;
@@ -56,30 +56,30 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
     whit_result result = stages_job_run(renderer->device, &job, &set);
     if (result == WHIT_OK)
         result = stages_take(&renderer->picture, &set);
-    renderer->beside.general = result == WHIT_OK;
+    renderer->async.general = result == WHIT_OK;
     return result;
 }
 
 /* The job is done: its kernels in place of the general ones. */
 static whit_result take_over(struct renderer *renderer)
 {
-    struct beside_job *job = renderer->beside.job;
+    struct async_job *job = renderer->async.job;
     if (!stage_set_is_made(&job->set))
         return WHIT_OK;
     whit_result result = stages_take(&renderer->picture, &job->set);
     if (result != WHIT_OK)
         return result;
-    renderer->beside.general = false;
+    renderer->async.general = false;
     job_destroy(job);
-    renderer->beside.job = NULL;
+    renderer->async.job = NULL;
     return WHIT_OK;
 }
 
-whit_result beside_prepare(struct renderer *renderer)
+whit_result async_prepare(struct renderer *renderer)
 {
-    struct beside_state *beside = &renderer->beside;
+    struct async_state *beside = &renderer->async;
     struct gpu_spec own = variant_spec(&renderer->picture),
-                    general = variant_beside_spec(&renderer->picture);
+                    general = variant_async_spec(&renderer->picture);
     if (stages_are_made(&renderer->picture) && !beside->general)
         return stages_bind(&renderer->picture);
     /* Another time may ask for other constants than those that are being compiled. */
@@ -98,8 +98,8 @@ whit_result beside_prepare(struct renderer *renderer)
                                                : create_general(renderer, &general);
 }
 
-void beside_finish(struct renderer *renderer)
+void async_finish(struct renderer *renderer)
 {
-    job_destroy(renderer->beside.job);
-    renderer->beside = (struct beside_state){0};
+    job_destroy(renderer->async.job);
+    renderer->async = (struct async_state){0};
 }

@@ -29,7 +29,7 @@ static void renew(struct fixture *f, const struct render_params *params)
 
 static void check_batches(struct scene *scene)
 {
-    const struct render_params counted = exact_params(true), waiting = exact_params(false);
+    const struct render_params counted = exact_params(true), deferred = exact_params(false);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
     assert_true(rays && hits);
@@ -38,17 +38,17 @@ static void check_batches(struct scene *scene)
     for (int any = 0; any < 2; ++any)
         assert_int_equal(renderer_trace(f.renderer, rays, RAYS, any, hits + any * RAYS, NULL),
                          WHIT_OK);
-    assert_int_equal(f.renderer->trace.waits, 0);
-    renew(&f, &waiting);
+    assert_int_equal(f.renderer->trace.deferred_count, 0);
+    renew(&f, &deferred);
     for (int any = 0; any < 2; ++any) {
         struct gpu_hit *own = hits + (2 + any) * RAYS;
         assert_int_equal(renderer_trace(f.renderer, rays, RAYS, any, own, NULL), WHIT_OK);
-        uint32_t differ = 0, waits = f.renderer->trace.waits;
+        uint32_t differ = 0, count = f.renderer->trace.deferred_count;
         for (uint32_t i = 0; i < RAYS; ++i)
             differ += memcmp(&own[i], &hits[any * RAYS + (int)i], sizeof *own) != 0;
-        print_message("  %s hits: %u of %u rays waited, %u differ\n", any ? "any" : "closest",
-                      waits, RAYS, differ);
-        assert_true(waits > RAYS / 20 && waits < RAYS);
+        print_message("  %s hits: %u of %u rays deferred, %u differ\n", any ? "any" : "closest",
+                      count, RAYS, differ);
+        assert_true(count > RAYS / 20 && count < RAYS);
         assert_int_equal(differ, 0);
     }
     fixture_close(&f);
@@ -56,7 +56,7 @@ static void check_batches(struct scene *scene)
     free(hits);
 }
 
-static void batches_are_those_of_looks_in_place(void **state)
+static void batches_are_those_of_settling_in_place(void **state)
 {
     (void)state;
     check_batches(ring_scene());
@@ -65,29 +65,29 @@ static void batches_are_those_of_looks_in_place(void **state)
 /* ---- Pictures ---- */
 
 static void check_picture(const char *name, struct scene *scene, const char *camera,
-                          uint32_t waits_least)
+                          uint32_t deferred_min)
 {
-    struct render_params counted = exact_params(true), waiting = exact_params(false);
-    counted.camera = waiting.camera = camera;
+    struct render_params counted = exact_params(true), deferred = exact_params(false);
+    counted.camera = deferred.camera = camera;
     struct fixture f = fixture_open(scene, NULL, &counted);
     struct image color[2] = {{0}}, ids[2] = {{0}};
-    uint32_t waits[2], differ = 0, others = 0;
+    uint32_t counts[2], differ = 0, others = 0;
     for (int i = 0; i < 2; ++i) {
         if (i == 1)
-            renew(&f, &waiting);
+            renew(&f, &deferred);
         assert_int_equal(renderer_render(f.renderer), WHIT_OK);
         assert_int_equal(renderer_read_color(f.renderer, &color[i]), WHIT_OK);
         assert_int_equal(renderer_read_ids(f.renderer, &ids[i]), WHIT_OK);
-        waits[i] = f.renderer->picture.stats.waits;
+        counts[i] = f.renderer->picture.stats.deferred;
     }
     for (size_t i = 0; i < (size_t)SIDE * SIDE; ++i) {
         differ += memcmp(color[0].pixels + 4 * i, color[1].pixels + 4 * i, 16) != 0;
         others += memcmp(ids[0].words + 2 * i, ids[1].words + 2 * i, 8) != 0;
     }
-    print_message("  %s: %u waited; of %u pixels %u differ, %u by their ids\n", name, waits[1],
+    print_message("  %s: %u deferred; of %u pixels %u differ, %u by their ids\n", name, counts[1],
                   SIDE * SIDE, differ, others);
-    assert_int_equal(waits[0], 0);
-    assert_true(waits[1] >= waits_least);
+    assert_int_equal(counts[0], 0);
+    assert_true(counts[1] >= deferred_min);
     assert_int_equal(differ + others, 0);
     for (int i = 0; i < 2; ++i) {
         image_finish(&color[i]);
@@ -98,7 +98,7 @@ static void check_picture(const char *name, struct scene *scene, const char *cam
 
 /* Looked at from straight above a corner of the grid of the ground: whole rows and columns of
    pixels are seen along edges. */
-static void pictures_are_those_of_looks_in_place(void **state)
+static void pictures_are_those_of_settling_in_place(void **state)
 {
     (void)state;
     check_picture("ground", glass_scene_of(20, 12), "3,1000,3,3,0,3,0,0,-1,1", 100);
@@ -108,8 +108,8 @@ static void pictures_are_those_of_looks_in_place(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(batches_are_those_of_looks_in_place),
-        cmocka_unit_test(pictures_are_those_of_looks_in_place),
+        cmocka_unit_test(batches_are_those_of_settling_in_place),
+        cmocka_unit_test(pictures_are_those_of_settling_in_place),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

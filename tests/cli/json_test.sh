@@ -1,0 +1,58 @@
+#!/bin/sh
+# The promise of docs/cli.md: keys of JSON are added, never renamed or removed. json_keys.txt has those
+# of every document, and grows with them.
+. "$(dirname "$0")/common.sh"
+needs jq
+KEYS=$(cd "$(dirname "$0")" && pwd)/json_keys.txt
+cd "$OUT" || exit 1
+SMALL="--size 16x12 --quiet"
+
+# keys NAME FILE: the paths of its keys, without places in lists, into $OUT/keys.
+keys() {
+    jq -r --arg name "$1" '[paths | map(select(type == "string")) | join(".")] | unique[] |
+        select(. != "") | "\($name) \(.)"' "$2" >>"$OUT/found" || FAILED=1
+}
+# made NAME ARGUMENT...: of what whit prints.
+made() {
+    name=$1
+    shift
+    expect 0 "$name" "$@"
+    keys "$name" "$OUT/stdout"
+}
+# saved NAME ARGUMENT...: of what it writes by --json.
+saved() {
+    name=$1
+    shift
+    rm -f made.json
+    expect 0 "$name" "$@" --json made.json
+    keys "$name" made.json
+    check "$name: format 2" jq -e '.format == 2 and (.whit | test("^[0-9.]+$"))' made.json
+}
+
+: >found
+# shellcheck disable=SC2086
+{
+    made render render "$SCENES/glass-of-water.json" -o p.png $SMALL --stats json --counters
+    made render render "$CUBE" -o p.png $SMALL --stats json --aa adaptive:0.05
+    grep -a -o '{"width":[^}]*}' p.png >options && keys whit:options options
+    grep -a -o '{"rays":{[^}]*}[^}]*}' p.png >counters && keys whit:counters counters
+    made frames render "$SCENES/spin.json" -o p.##.png --frames 0-1 $SMALL --stats json
+    made scene scene "$SCENES/default.json" --json
+    made effects scene "$CUBE" --effects --json --size 16x12 --quiet
+    made kernels scene "$CUBE" --kernels --json --size 16x12 --quiet
+    saved probe probe "$SCENES/glass-of-water.json" --pixel 8,6 $SMALL
+    made bvh bvh "$CUBE" --json --runs 1 --rays 500 --build binned --threads 1 --quiet
+    saved hard hard --case sphere --quick --quiet
+    saved compare compare p.png p.png
+    saved cost cost "$CUBE" $SMALL --spend 0.2 --rays 100 --knobs traversal --within 1e6
+    made devices devices --json
+}
+# Names that are not whit's own: kernels' figures by the driver, effects of a scene.
+sort -u found | grep -v '^kernels kernels\.driver\.' >have
+awk '!/^#/ { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
+    for (i = 3; i <= NF; ++i) print $1, at $i }' "$KEYS" | sort -u >want
+comm -13 have want >gone
+comm -23 have want >new
+check "no key is gone: $(tr '\n' ',' <gone)" test ! -s gone
+check "every key is in json_keys.txt, new: $(head -20 new | tr '\n' ',')" test ! -s new
+finish
