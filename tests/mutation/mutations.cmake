@@ -371,7 +371,7 @@ change(shaders/kernel/resolve.comp [[carry = chunk.summed; (carry & 1u) != 0u; c
   [[carry = min(chunk.summed, 1u); carry != 0u; carry = 0u, row -= chunk.sums_step]])
 
 mutation(sums_of_parts_mixed render_samples RED full_queues_do_not_matter)
-change(host/render/stages.c [[part.first_block += most, part.sums_row += most * RENDER_BLOCK_PIXELS]]
+change(host/render/stages.c [[part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS]]
   [[part.first_block += most]])
 
 mutation(points_unturned_in_kernels device_sequence RED points_are_those_of_the_host)

@@ -1,7 +1,7 @@
-# The table of mutations in docs/numerics.md is that of mutations.cmake, and what they change is there:
+# The table of mutations in docs/numerics-evidence.md is that of mutations.cmake, and what they change is there:
 #     cmake -DROOT=<repository> -P table.cmake
 cmake_minimum_required(VERSION 3.25)
-file(STRINGS ${ROOT}/docs/numerics.md rows ENCODING UTF-8 REGEX "^\\| `[a-z_]+` \\|.*\\| `[a-z_]+`")
+file(STRINGS ${ROOT}/docs/numerics-evidence.md rows ENCODING UTF-8 REGEX "^\\| `[a-z_]+` \\|.*\\| `[a-z_]+`")
 list(LENGTH rows row_count)
 set(count 0)
 
@@ -11,7 +11,7 @@ function(mutation name test)
   set(count ${count} PARENT_SCOPE)
   set(mutated ${name} PARENT_SCOPE)
   if(NOT rows MATCHES "\\| `${name}` \\|[^|]*\\| `${test}`")
-    message(SEND_ERROR "docs/numerics.md has no row | `${name}` | ... | `${test}` ... |")
+    message(SEND_ERROR "docs/numerics-evidence.md has no row | `${name}` | ... | `${test}` ... |")
   endif()
 endfunction()
 
@@ -36,6 +36,6 @@ endfunction()
 
 include(${CMAKE_CURRENT_LIST_DIR}/mutations.cmake)
 if(NOT row_count EQUAL count)
-  message(SEND_ERROR "docs/numerics.md has ${row_count} rows of mutations, mutations.cmake ${count}")
+  message(SEND_ERROR "docs/numerics-evidence.md has ${row_count} rows of mutations, mutations.cmake ${count}")
 endif()
 message(STATUS "${count} mutations are in the table")
