@@ -64,9 +64,9 @@ check "twelve of them" has "^  of size  1: 12$"
 
 # shellcheck disable=SC2086
 expect 0 "--json" bvh "$BALL" $SMALL --json --build sweep --threads 1,3
-for key in whit scene device runs rays builders builder file build_ms threads median least most \
+for key in whit scene device runs rays builders builder file build_ms threads median min max \
     nodes leaves triangles references bytes depth instance_depth leaves_at_depth leaves_of_size \
-    sah_cost epo overlap predicted measured measured_lines pairs mrays_per_s primary shadow \
+    sah_cost epo overlap predicted measured measured_lines inner_nodes mrays_per_s primary shadow \
     diffuse valid hits compared; do
     check "--json has $key" jq -e "any(.. | objects; has(\"$key\"))" stdout
 done

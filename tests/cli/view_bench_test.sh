@@ -30,7 +30,7 @@ for key in first_ms idle_share; do
     every "with $key" "has(\"$key\")"
 done
 for key in whole_ms quick_ms gap_ms latency_ms present_ms; do
-    every "with $key" ".moving.$key | has(\"count\") and has(\"median\") and has(\"p95\") and has(\"most\")"
+    every "with $key" ".moving.$key | has(\"count\") and has(\"median\") and has(\"p95\") and has(\"max\")"
 done
 every "with gaps_over_100_ms" '.moving | has("gaps_over_100_ms")'
 every "a first picture, whole ones" \

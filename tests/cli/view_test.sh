@@ -25,10 +25,10 @@ done
 most() { sort -g "$OUT/$1.txt" | tail -1 | awk '{ print $1 + 0 }'; }
 sum() { awk '{ s += $1 } END { printf "%.6g", s }' "$OUT/$1.txt"; }
 check "the picture's deepest level is that of --stats" \
-    test "$(most depth)" = "$(figure most.depth)"
-check "its fullest stack too" test "$(most stack)" = "$(figure most.stack)"
-check "its most box tests too" test "$(most boxes)" = "$(figure most.boxes)"
-check "its most triangle tests too" test "$(most tris)" = "$(figure most.triangles)"
+    test "$(most depth)" = "$(figure max.depth)"
+check "its fullest stack too" test "$(most stack)" = "$(figure max.stack)"
+check "its most box tests too" test "$(most boxes)" = "$(figure max.boxes)"
+check "its most triangle tests too" test "$(most tris)" = "$(figure max.triangles)"
 rays=$(figure rays)
 check "one camera ray a pixel ($rays)" test "$rays" = 6144
 for pair in boxes:boxes tris:triangles depth:depth stack:stack; do
@@ -37,7 +37,7 @@ for pair in boxes:boxes tris:triangles depth:depth stack:stack; do
         d = sum / 6144 - mean; print (mean > 0 && d * d < 1e-8 * mean * mean) }')
     check "mean ${pair%:*} of the picture and of --stats ($mean)" test "$same" = 1
 done
-visits=$(for name in pairs leaves instances; do figure mean.$name; done |
+visits=$(for name in inner_nodes leaves instances; do figure mean.$name; done |
     awk -v sum="$(sum visits)" '{ v += $1 } END { d = sum / 6144 - v; print (d * d < 1e-8 * v * v) }')
 check "visits are pairs, leaves and instances" test "$visits" = 1
 
