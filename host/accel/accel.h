@@ -70,10 +70,10 @@ static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
     return node->count & BVH_COUNT_MASK;
 }
 
-/* Of finished nodes: the axis bits of every pair, sah_cost, leaf_count, leaf_largest, depth
-   (bvh_complete.c). Every builder ends with it. */
+/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
+   and depth (bvh_complete.c). Every builder ends with it. */
 void bvh_complete(struct bvh *bvh, double traversal_cost);
-/* The axis bits alone, of the pair at `first`. */
+/* Sets only the axis bits of the pair of sibling nodes at `first`. */
 void bvh_set_axis(struct gpu_bvh_node *first);
 
 /* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
@@ -105,8 +105,8 @@ struct accel_mesh {
 
 enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
-/* With BVH_NONE: primitives over all instances; and turns of loops of one ray, of which lavapipe
-   grants an invocation 65,535. */
+/* The most primitives over all instances with BVH_NONE, and the most loop iterations of one ray:
+   lavapipe grants an invocation 65,535. */
 enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
 
 struct accel_params {
@@ -153,7 +153,7 @@ struct accel {
                       world; accel_pose builds it anew. Instances say mesh and shade_base of the
                       scene's meshes, but root, centre and reach of the world */
     bool no_trees; /* BVH_NONE: rays that meet the box of everything test every primitive */
-    uint32_t turns; /* of loops that a ray takes at most then: ACCEL_TURNS_MOST */
+    uint32_t turns; /* of loops that a ray takes at most then: ACCEL_TURNS_MAX */
     double build_ms, instance_build_ms;
     struct accel_bvh8 bvh8;      /* after accel_widen */
     struct accel_posing *posing; /* buffers of accel_pose */
@@ -242,7 +242,7 @@ struct oracle_hit {
     double edge_margin, second_t, t_error;
 };
 
-/* By tree (boxes widened so that nothing is lost), or by brute force. */
+/* Searches the tree (boxes widened so that no hit is lost), or all primitives (`brute`). */
 void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
                   struct oracle_hit *hit);
 

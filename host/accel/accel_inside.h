@@ -132,13 +132,13 @@ static inline uint32_t accel_flat_vertices(const struct scene_mesh *mesh)
 /* Whether spheres under it are spheres that are not turned (flat_choice.c). */
 bool accel_flat_keeps_spheres(const struct affine *forward);
 
-/* Instead of mesh trees; the tree over all triangles comes with the first pose. */
+/* Prepares one tree over all triangles instead of mesh trees; it is built with the first pose. */
 WHIT_CHECK whit_result accel_flat_create(struct accel *accel);
-/* That tree, as accel->meshes[0]; the one that there is where nothing has moved. Changes nothing
-   unless all goes well. */
+/* Builds that tree for `pose` as accel->meshes[0]; keeps the present one where no instance has
+   moved. Changes nothing on failure. */
 WHIT_CHECK whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose);
 void accel_flat_destroy(struct accel_flat *flat);
-/* Of the scene: only triangle_count and shade_base are set. */
+/* The meshes of the scene; only triangle_count and shade_base are set. */
 const struct accel_mesh *accel_flat_meshes(const struct accel_flat *flat);
 /* Number of an instance's primitive 0 among all triangles. */
 uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance);
@@ -146,9 +146,9 @@ uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance);
 /* pose.c */
 void accel_posing_destroy(struct accel_posing *posing);
 
-/* Of a tree that is known to be one: whether points all over each primitive are in the leaves that
-   hold it, and its records are alike (bvh_validate_parts.c). `primitive` numbers the record in a
-   slot of `triangles`. */
+/* Checks a tree of valid structure: sample points all over each primitive must lie in the leaves
+   that hold it, and all its records must be equal (bvh_validate_parts.c). `primitive` gives the
+   primitive of the record in a slot of `triangles`. */
 WHIT_CHECK whit_result accel_validate_parts(const struct log *log, const char *name,
                                             const struct gpu_bvh_node *nodes, uint32_t node_count,
                                             const struct gpu_triangle *triangles,

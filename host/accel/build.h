@@ -50,7 +50,7 @@ enum build_choice {
     BUILD_STOP,  /* the caller does not want the tree any more */
 };
 
-/* From here on nodes are halved: 28 levels more for 2^28 primitives. */
+/* The depth from which nodes are split at the median: 28 more levels for 2^28 primitives. */
 enum { BUILD_DEPTH_OF_MEDIANS = 96 };
 
 /* ---- Top-down building (topdown.c) ---- */

@@ -46,7 +46,7 @@ static void node_tally(const struct gpu_bvh_node *node, struct tally *tally)
         tally->leaf_largest = count;
 }
 
-/* Of the subtree below `node`, by recursion: at most BVH_DEPTH_MAX deep. */
+/* The depth of the subtree below `node`, 0 for a leaf. Recurses at most BVH_DEPTH_MAX deep. */
 static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node)
 {
     if (bvh_count(&nodes[node]) > 0)

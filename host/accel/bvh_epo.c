@@ -84,8 +84,8 @@ double epo_clipped_area(const float a[3], const float b[3], const float c[3],
     return polygon_area(&polygon);
 }
 
-/* Of a sphere, from points that are spread evenly over it: turns of the golden angle on circles of
-   equal area. To a few percent. */
+/* The area of a sphere inside the box, to a few percent: the share of points inside, out of points
+   spread evenly over the sphere (a spiral by the golden angle, with equal area per point). */
 static double epo_sphere_area(const float center[3], float radius, const struct bvh_box *box)
 {
     enum { POINTS = 256 };

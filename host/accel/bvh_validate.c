@@ -169,7 +169,7 @@ static bool is_first_of_pair(const struct view *view, uint32_t index)
     return local >= 2 && local % 2 == 0;
 }
 
-/* Beside the number of primitives, `count` holds the axis of a pair, and that in its first node. */
+/* `count` may hold only the number of primitives and, in the first node of a pair, its axis. */
 static bool check_count(const struct view *view, uint32_t index)
 {
     uint32_t allowed = BVH_COUNT_MASK;

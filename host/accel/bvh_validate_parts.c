@@ -9,7 +9,7 @@
 /* Corners, middles of edges and inside, in sixths: one bit each. */
 enum { STEPS = 6, POINTS = (STEPS + 1) * (STEPS + 2) / 2 };
 
-/* Within the triangle's own box, where rounding would leave it. */
+/* A coordinate of sample point (i, j), clamped to the triangle's box against rounding. */
 static double point_along(const struct gpu_triangle *t, int i, int j, int axis)
 {
     double a = (double)t->v0[axis], b = (double)t->v1[axis], c = (double)t->v2[axis];
@@ -44,12 +44,12 @@ static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh
     return inside;
 }
 
-/* Of a primitive: the points that its leaves hold, and one past the slot that was met first. */
+/* For one primitive: a bit per sample point inside its leaves; 1 + its first slot, 0: none yet. */
 struct seen {
     uint32_t points, slot;
 };
 
-/* Else its hit would be that of the record that the ray happens to meet. */
+/* All records of a primitive must be equal: else a hit would depend on which one a ray meets. */
 static bool is_same_record(const struct log *log, const char *name,
                            const struct gpu_triangle *triangles, struct seen *seen, uint32_t slot)
 {

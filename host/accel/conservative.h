@@ -1,12 +1,12 @@
 /* A walk in double over every record that a ray may meet: boxes are grown, so that roundings lose
    nothing. For answers that are surer than floats (oracle.c, rational.c). */
-#ifndef ACCEL_WIDE_H
-#define ACCEL_WIDE_H
+#ifndef ACCEL_CONSERVATIVE_H
+#define ACCEL_CONSERVATIVE_H
 
 #include "accel/accel.h"
 
-/* In the space of a tree. Boxes grow by `growth` times the largest coordinate of their corners
-   relative to the origin, and by `margin`. */
+/* A ray in the space of a tree. Boxes grow by `growth` times the largest coordinate of their
+   corners relative to the ray's origin, and by `margin`. */
 struct conservative_ray {
     double origin[3], dir[3];
     double t_min, t_max;
@@ -26,12 +26,12 @@ struct conservative_walk {
     void (*visit)(struct conservative_walk *walk, uint32_t record, uint32_t instance);
 };
 
-/* All of it, or until `done`. `walk->ray` is the ray in the world. Trees too deep for the stack are
-   walked as `brute`, and so is what has no trees. */
+/* Runs the walk to its end, or until `done`. `walk->ray` is the ray in the world. Trees too deep
+   for the stack, and scenes without trees, are walked as `brute`. */
 void conservative_walk_run(struct conservative_walk *walk);
 
-/* Where walk->ray enters the grown box; INFINITY: not within [t_min, t_max] and the limit. Both
-   ends give way by 2^-18 and a denormal, more than rounding to float. */
+/* The t at which walk->ray enters the grown box; INFINITY: not within [t_min, t_max] and the limit.
+   Both ends are relaxed by 2^-18 (relative) and a denormal, more than rounding to float. */
 double conservative_entry(const struct conservative_walk *walk, const float lo[3],
                           const float hi[3]);
 

@@ -75,7 +75,7 @@ static void decode_point(struct wide *w, int at, struct vec3 p)
     }
 }
 
-/* Between which exponents the values that are not 0 lie. */
+/* Finds the range of digits that nonzero values need, by exponents; clears the digits. */
 static void find_range(struct wide *w)
 {
     int32_t lo = 254, hi = 1, dir_lo = 254, dir_hi = 1;
@@ -97,7 +97,7 @@ static void find_range(struct wide *w)
     }
 }
 
-/* p.i q.j r.k, or less it. */
+/* Adds the product p.i q.j r.k to the target, or subtracts it. */
 static void add_product(struct wide *w, int target, const int points[3], int i, int j, int k,
                         bool negative)
 {
@@ -189,7 +189,7 @@ static void carry_digits(struct wide *w)
         w->sign[k] = sign_of(carry[k], some[k]);
 }
 
-/* What is negative is negated. The first digits that are not 0: *top_d, *top_n. */
+/* Negates negative numbers. *top_d, *top_n: the highest nonzero digits of D and N. */
 static void make_positive(struct wide *w, int32_t *top_d, int32_t *top_n)
 {
     bool flip = w->sign[WIDE_D] < 0, flip_n = w->sign[WIDE_N] < 0;

@@ -29,7 +29,7 @@ struct exact_candidate {
     float key, u, v;
 };
 
-/* All finite. */
+/* Decides exactly whether the ray meets the triangle. All coordinates must be finite. */
 void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
                 struct exact_candidate *out);
 

@@ -89,7 +89,7 @@ static void decode_values(struct ball *w, const float values[VALUES])
     w->unit = min[1] - min[0];
 }
 
-/* Twice the product of two values, or once; or less it. */
+/* Adds the product of two values (or `twice` the product) to the target, or subtracts it. */
 static void add_product(struct ball *w, int target, int a, int b, bool twice, bool negative)
 {
     uint32_t p = w->mantissa[a], q = w->mantissa[b];
@@ -143,7 +143,7 @@ static void carry_digits(struct ball *w, int32_t sign[WIDE_COUNT])
     }
 }
 
-/* Of S^2 - P Q. */
+/* The sign of the discriminant S^2 - P Q. */
 static int32_t sign_of_discriminant(const struct ball *w)
 {
     int32_t carry = 0, some = 0;

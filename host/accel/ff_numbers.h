@@ -111,7 +111,7 @@ static inline void ff_scale(struct ff_vector *v, float power)
                             {v->z.high * power, v->z.low * power}};
 }
 
-/* And how far it may be off. */
+/* A float-float number and a bound of its error. */
 struct bounded_ff {
     struct ff value;
     float error;

@@ -2,8 +2,8 @@
 
 #include "accel/ff_numbers.h"
 
-/* Of f(t) = P t^2 - 2 S t + Q, the roots of which are the ends; all in units in which the direction
-   and the larger of the way to the centre and the radius are 1 to 2 long. */
+/* The coefficients of f(t) = P t^2 - 2 S t + Q, whose roots are the ends of the chord; in units in
+   which the direction, and the larger of the way to the centre and the radius, are 1 to 2 long. */
 struct quadratic {
     struct bounded_ff p, s, q;
 };
@@ -42,7 +42,7 @@ static struct bounded_ff discriminant(const struct ff_vector *m, const struct ff
     return room;
 }
 
-/* Of what is beyond its own error. */
+/* The square root of a value that is larger than its own error bound. */
 static struct bounded_ff root_of(struct bounded_ff x)
 {
     float first = sqrtf(x.value.high);

@@ -5,7 +5,7 @@
 
 #include "accel/exact_sphere.h"
 
-/* As exact_meet_sphere(). False: pairs do not tell, and *out says nothing. */
+/* As exact_meet_sphere(). False: pairs of floats cannot decide, and *out is meaningless. */
 bool ff_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
                     bool only_far, float t_min, struct sphere_candidate *out);
 

@@ -7,8 +7,8 @@
 
 #include "accel/exact.h"
 
-/* All finite. False: pairs do not tell, and *out says nothing, but for `*key_known`: if the
-   triangle is met, out->key is the key. */
+/* All coordinates must be finite. False: pairs of floats cannot decide, and *out is meaningless,
+   except with `*key_known`: if the triangle is met, out->key is the key. */
 bool ff_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
              struct exact_candidate *out, bool *key_known);
 

@@ -185,7 +185,7 @@ static void place_vertices(void *user, uint32_t index)
     }
 }
 
-/* In world space. */
+/* The sphere's radius in world space. */
 static float placed_radius(const struct flattening *f, uint32_t instance, uint32_t sphere)
 {
     double radius = (double)mesh_of(f, instance)->spheres[4 * (size_t)sphere + 3];

@@ -7,8 +7,8 @@
 #include "base/array.h"
 #include "scene/afford.h"
 
-/* Of an object's coordinates in the world, in its longest sides. Placed vertices are then off by at
-   most 2^-16 of it: a sixtieth of a pixel where it fills a thousand of them. */
+/* The largest world coordinate of an object, in multiples of its longest side. Placed vertices are
+   then off by at most 2^-16 of that side: 1/60 of a pixel where the side fills 1000 pixels. */
 static const double FARTHEST = 256.0;
 
 bool accel_flat_keeps_spheres(const struct affine *forward)
@@ -18,7 +18,7 @@ bool accel_flat_keeps_spheres(const struct affine *forward)
            m[4] == 0.0 && m[6] == 0.0 && m[8] == 0.0 && m[9] == 0.0;
 }
 
-/* Where an instance is at the place of its mesh nothing is rounded. */
+/* Whether placing the instance's vertices loses little precision; the identity loses none. */
 static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *forward)
 {
     struct bvh_box box;

@@ -116,7 +116,7 @@ struct hard_ray hard_ray_make(const struct hard_scene *hard, enum hard_rays rays
 
 /* ---- What surfaces are like (hard_topology.c) ---- */
 
-/* Of all meshes together, vertices with equal coordinates being one. */
+/* Edges and triangles of all meshes together; vertices with equal coordinates count as one. */
 struct hard_topology {
     uint64_t triangles, edges;
     uint64_t open_edges;    /* of one triangle */
@@ -172,10 +172,10 @@ double hard_ulps_between(float a, float b);
 bool hard_goes_far(const struct gpu_ray *ray, float t);
 /* Rays whose hits differ by a bit. */
 uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, uint64_t count);
-/* Of the identities of exact hits, chained by `value`. */
+/* Hashes the (instance, primitive) pairs of exact hits; `value` is the hash to continue from. */
 uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t count);
 
-/* Of what `numerics` promises, whether all is kept; `promised`: that there are no leaks. */
+/* Whether all promises of the level `numerics` are kept; `promised`: no leaks is one of them. */
 bool hard_promise_kept(uint32_t numerics, bool promised, const struct hard_tally *tally);
 
 #endif

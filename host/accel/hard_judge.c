@@ -104,8 +104,8 @@ whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
 
 /* ---- One ray ---- */
 
-/* Beside of it, by more than floats are off: the shear and the edge functions of a level round
-   coordinates relative to the origin some 8 times, 2^-24 each. */
+/* The relative offset of rays beside a ray, larger than float errors: the shear and the edge
+   functions of a level round coordinates relative to the origin some 8 times, 2^-24 each. */
 #define BESIDE 0x1p-19
 
 /* Two axes across the direction. */
@@ -152,7 +152,7 @@ static bool touches_open_edge(const struct hard_judgement *j, const struct ratio
            j->topology->open[j->topology->first[mesh] + hit->primitive];
 }
 
-/* Where the ray starts on the surface it may be to either side of its beginning. */
+/* Whether the hit is so near the ray's origin that rounding may put it on either side of it. */
 static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ray, float t)
 {
     double size = 0.0, dir = 0.0;
@@ -228,7 +228,8 @@ bool hard_goes_far(const struct gpu_ray *ray, float t)
     return t * dir > 0x1p-20f * origin;
 }
 
-/* Next along the ray, and as near as roundings take apart; exactly by four times as much. */
+/* Hits whose t differ by at most this share are at the same place, but for rounding; exact hits are
+   at different places when they differ by more than four times as much. */
 #define TOGETHER 0x1p-18f
 
 static bool is_together(float t, float next, float share)
@@ -236,7 +237,8 @@ static bool is_together(float t, float next, float share)
     return fabsf(next - t) <= share * fabsf(t);
 }
 
-/* By the C twin: the device has the same bits, which is checked beside this. */
+/* Whether a second primitive, where exactly there is none, is hit at the same place. Traced by the
+   C twin, whose bits are compared with the device elsewhere. */
 static bool is_double(const struct hard_judgement *j, struct rational *rational, uint64_t i,
                       uint32_t *status)
 {

@@ -85,7 +85,7 @@ static uint32_t lattice_bits(const int p[3])
 
 enum { STEPS = 16 };
 
-/* Of the octahedron |x| + |y| + |z| = STEPS, in the mesh's space. */
+/* Maps a point of the octahedron |x| + |y| + |z| = STEPS to the mesh's space. */
 static void place_lattice(const struct maker *maker, const int p[3], double out[3])
 {
     double length = 1.0, factor[3] = {1.0, 1.0, 1.0};
@@ -480,7 +480,7 @@ const struct hard_variant *hard_variants(uint32_t *count)
     return variants;
 }
 
-/* By thirds, which no float holds. */
+/* The variant's transform; the rotation's entries are thirds, which no float represents. */
 static struct affine place_variant(const struct hard_variant *variant)
 {
     static const double turn[3][3] = {{2, -1, 2}, {2, 2, -1}, {-1, 2, 2}};

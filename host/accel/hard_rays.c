@@ -135,7 +135,7 @@ static void set_dir(struct hard_ray *out, const double dir[3])
         out->ray.dir[k] = (float)dir[k];
 }
 
-/* From the origin as it was rounded. */
+/* Points the ray from its origin, already rounded to float, at `at`. */
 static void aim(struct hard_ray *out, const double at[3])
 {
     for (int k = 0; k < 3; ++k)
@@ -205,7 +205,7 @@ static void make_axial(const struct hard_scene *hard, uint64_t *state, struct ha
     set_dir(out, dir);
 }
 
-/* Within the landscape, at its squares' quarters. */
+/* A vertical ray through the landscape at a multiple of a quarter of its squares. */
 static void make_lattice(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     double dir[3], origin[3];
@@ -237,8 +237,8 @@ static void make_cross(const struct hard_scene *hard, uint64_t *state, struct ha
     set_dir(out, dir);
 }
 
-/* In the triangle's plane, at halves of its edges, which are exact where edges are: up to `halves`
-   of them from its first corner. */
+/* A point in the triangle's plane, up to `halves` half edges away from its first corner; half edges
+   are exact where edges are. */
 static void draw_in_plane(struct target *target, uint32_t halves, uint64_t *state, double out[3])
 {
     double v = 0.5 * draw_whole(state, halves), u = 0.5 * draw_whole(state, halves);

@@ -205,7 +205,7 @@ static bool is_below(const struct optimizer *o, uint32_t node, uint32_t above)
     return node == above;
 }
 
-/* What the cost falls by. */
+/* Makes the move if it lowers the cost. Gives by how much the cost falls, else 0. */
 static double move_make(struct optimizer *o, const struct move *move)
 {
     uint32_t from = move->from, to = move->to, above = o->parents[from / 2];
@@ -229,7 +229,7 @@ static int larger_gain_first(const void *a, const void *b)
     return x->from < y->from ? -1 : x->from > y->from;
 }
 
-/* What the cost falls by. */
+/* Runs one round of moves. Gives by how much the cost falls. */
 static double round_run(struct optimizer *o)
 {
     uint32_t count = o->node_count - 2, kept = 0;

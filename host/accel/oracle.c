@@ -101,7 +101,7 @@ static struct probe probe_world(const struct gpu_ray *ray, double growth)
     return p;
 }
 
-/* By the floats of the instance, so that only roundings differ from the float twin. */
+/* The ray in instance space, by the float matrix: only rounding differs from the float twin. */
 static struct probe probe_local(const struct probe *world, const struct gpu_instance *in)
 {
     const float *rows[3] = {in->inverse0, in->inverse1, in->inverse2};
@@ -207,7 +207,7 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
 
 /* ---- Spheres ---- */
 
-/* What is computed from a ray and a centre, along the dominant axis. */
+/* The chord of a ray's line through a sphere, measured along the dominant axis. */
 struct chord {
     double room, room_error; /* squared radius less squared distance of the line */
     struct number length_squared, middle, half, begin, end;
@@ -283,7 +283,7 @@ static void chord_ends(const struct number c[3], double radius, struct chord *ou
     out->end = middle < 0.0 ? nearer : farther;
 }
 
-/* In units of the ray's direction. */
+/* Converts a distance along the dominant axis to the ray parameter t. */
 static struct number chord_t(const struct probe *p, struct number along)
 {
     double dz = fabs(p->dir[p->z]);
@@ -293,7 +293,7 @@ static struct number chord_t(const struct probe *p, struct number along)
     return t;
 }
 
-/* Of the normal, as square_from_dir has it. */
+/* Maps the normal to (u, v) as square_from_dir in shaders/lib/sphere.glsl does. */
 static void chord_square(const struct probe *p, const double normal[3], double *u, double *v)
 {
     double n[3];
@@ -307,7 +307,7 @@ static void chord_square(const struct probe *p, const double normal[3], double *
     *v = 0.5 + 0.5 * (below ? copysign(1.0 - fabs(x), z) : z);
 }
 
-/* Of the two ends the first one that is not before t_min. */
+/* Tests a sphere; the hit is the first end of the chord that is not before t_min. */
 static struct verdict probe_sphere(const struct probe *p, const struct gpu_triangle *sphere)
 {
     const int axes[3] = {p->x, p->y, p->z};

@@ -10,7 +10,7 @@
 #include "accel/accel_inside.h"
 #include "accel/conservative.h"
 
-/* Of the walk's own doubles: some 2^-50. */
+/* Relative growth of boxes, more than the rounding errors of the walk's doubles (about 2^-50). */
 #define BOX_GROWTH 0x1p-40
 
 enum { VERTICES = 3, AXES = 3 };
@@ -26,7 +26,7 @@ struct rational {
     const struct accel *accel;
     double instance_growth, instance_scale; /* see instance_spread */
     struct rational_work work;
-    /* Of rational_meet. */
+    /* Scratch numbers of rational_meet. */
     mpz_t dir[AXES], vertex[VERTICES][AXES]; /* vertices relative to the origin */
     mpz_t cross[AXES], edge[VERTICES], volume, det, rest;
     struct quadratic sphere; /* of rational_meet_sphere, besides `dir`, `vertex` and `rest` */
@@ -72,8 +72,8 @@ static int lowest_of(struct vec3 v, int lowest)
     return lowest;
 }
 
-/* In units of 2^power, of which they are multiples. A float has 24 bits wherever they are, so that
-   a double holds what mpz_set_d takes. */
+/* Sets integers to the coordinates in units of 2^power, which must divide them. A float has 24 bits
+   at any exponent, so the double given to mpz_set_d is exact. */
 static void set_scaled(mpz_t out[AXES], struct vec3 v, int power)
 {
     mpz_set_d(out[0], ldexp((double)v.x, -power));

@@ -6,16 +6,16 @@
 
 enum { REPORT_DEPTH_BINS = BVH_DEPTH_MAX + 2, REPORT_LEAF_BINS = BVH_LEAF_MAX + 1 };
 
-/* Of all mesh trees together, a mesh with several instances once. Means over meshes are weighted by
-   the area of their boxes, for that is how often a random line meets them. */
+/* Figures of all mesh trees together; a mesh with several instances counts once. Means over meshes
+   are weighted by the area of their boxes, for that is how often a random line meets them. */
 struct accel_report {
     uint64_t leaves_at_depth[REPORT_DEPTH_BINS]; /* the root is depth 0; the last: and below */
     uint64_t leaves_of_size[REPORT_LEAF_BINS];
     double sah_cost; /* predicted_inner_nodes times the traversal cost, and predicted_triangles */
     double epo;      /* end-point overlap, relative to the area of all triangles */
     double overlap;  /* area shared by siblings, relative to that of all parents */
-    /* Of a random line that meets a root box: by ratios of areas, as if nothing stopped it; and by
-       closest-hit traversal, which stops looking behind a hit. */
+    /* Counts for a random line that meets a root box: predicted by ratios of areas, as if nothing
+       stopped it; measured by closest-hit traversal, which does not look behind a hit. */
     double predicted_inner_nodes, predicted_triangles;
     double measured_inner_nodes, measured_triangles;
     uint64_t measured_rays;
@@ -35,7 +35,7 @@ struct bvh_epo {
 };
 WHIT_CHECK whit_result accel_mesh_epo(const struct accel *accel, uint32_t mesh,
                                       struct bvh_epo *epo);
-/* Of triangle abc inside the closed box: its area. */
+/* The area of the part of triangle abc that is inside the closed box. */
 double epo_clipped_area(const float a[3], const float b[3], const float c[3],
                         const struct bvh_box *box);
 

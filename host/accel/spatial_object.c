@@ -40,7 +40,7 @@ static void few_load(const struct build_record *records, uint32_t count, struct 
     }
 }
 
-/* By centroid, equal ones by primitive, of which there are no two. */
+/* Sorts by centroid, and equal centroids by primitive, which are all different. */
 static void few_sort(const struct build_record *records, uint32_t count, uint32_t axis,
                      struct few *few)
 {

@@ -15,7 +15,7 @@ struct sweep {
     const struct bvh_params *params;
     struct build_record *records; /* by primitive */
     uint32_t *list[3];            /* primitives by centroid, equal ones by primitive */
-    /* Of each primitive: whether it goes left; in a small subtree its number there. */
+    /* For each primitive: 1 if it goes left, else 0; in a small subtree, its index there. */
     uint8_t *mark;
 };
 

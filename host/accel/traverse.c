@@ -177,7 +177,7 @@ static bool accept_candidate(struct walk *walk, const struct candidate *m, uint3
 
 static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
 
-/* Where a triangle is met, exactly; of one that is met anyway (`hit`) for the key alone. */
+/* Finds exactly where a triangle is met. `hit`: it is met, and only the key is wanted. */
 static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
                          struct exact_candidate *out)
 {
@@ -216,7 +216,7 @@ static void settle_hit(struct walk *walk)
     walk->hit->t = m.key;
 }
 
-/* With a key known. */
+/* Whether a hit with a known key is nearer than the hit so far, whose key is settled if needed. */
 static bool is_nearer_key(struct walk *walk, float key, uint32_t instance, uint32_t primitive)
 {
     if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)

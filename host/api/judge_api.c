@@ -135,7 +135,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of 1000 the one at `rank`. */
+/* The `rank`/1000 quantile of the sorted values; 0 when there are none. */
 static double at_share(const float *sorted, uint64_t count, uint64_t rank)
 {
     uint64_t at = (count * rank + 999) / 1000;

@@ -58,7 +58,7 @@ typedef struct whit_hard_report {
     uint64_t hash_met;   /* of the device's at WHIT_NUMERICS_EXACT; 0 when not traced */
     uint32_t broken;     /* rows that did not keep a promise */
     uint32_t unanswered; /* rows without an answer of the device */
-    /* Of a user's scene, vertices with equal coordinates being one. */
+    /* Counts for a user's scene; vertices with equal coordinates count as one. */
     uint64_t triangles, edges, open_edges, crowded_edges, flipped_edges, duplicates;
 } whit_hard_report;
 
@@ -106,7 +106,7 @@ WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_jud
 void whit_judge_destroy(whit_judge *judge);
 const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
 
-/* Of `rays`. */
+/* How hits compare with the exact ones, over all of a judge's rays. */
 typedef struct whit_judgement {
     uint64_t rays, hits; /* hits: exactly */
     uint64_t misses, false_hits, other_ids;

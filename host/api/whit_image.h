@@ -17,7 +17,7 @@ void whit_image_get_info(const whit_image *image, whit_image_info *info);
 const float *whit_image_floats(const whit_image *image);
 const uint32_t *whit_image_words(const whit_image *image);
 
-/* Of a picture of floats what its .png holds: RGBA, width * height * 4 bytes. */
+/* Writes what the .png of a picture of floats holds: RGBA, width * height * 4 bytes. */
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba);
 
 typedef struct whit_text {
@@ -28,7 +28,7 @@ typedef struct whit_text {
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
-/* Of `params`, which may be NULL, what is about code that reads foreign files. */
+/* Loads a picture. `params` (may be NULL): only those about foreign files are used. */
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_image **out);
 /* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.

@@ -48,7 +48,7 @@ typedef struct whit_probe_ray {
     bool exact_equal; /* ids (shadow rays: blocked or not), at WHIT_NUMERICS_EXACT t as well */
     uint32_t passed;  /* cut-outs, and one-sided surfaces from behind, that it went through; shadow
                          rays: also filters, and what casts no shadow */
-    /* Of what it met; WHIT_NONE: nothing. */
+    /* The material of the surface that it met; WHIT_NONE: it met nothing. */
     uint32_t material;
     float point[3], normal[3];    /* unit, interpolated, to the ray's side; without bump maps */
     bool inside;                  /* met from inside */

@@ -45,7 +45,7 @@ typedef struct whit_renderer_params {
     const char *camera;     /* name or index of a camera of the scene, or
                                "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
     double time_s;          /* of the animation */
-    uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MOST; 0: 1 */
+    uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
     uint32_t depth;         /* most bounces; 0: what the camera ray sees, with its shadows */
     double bailout;         /* rays that can add less than this to a pixel are not traced;
                                0: all are */
@@ -133,7 +133,7 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
                                                 whit_kernel_info *info);
 
 /* Makes the kernels of a picture with these params one after the other, and no picture: takes no
-   memory of the device. `kernels`: room for WHIT_KERNELS_MOST; `params` may be NULL.
+   memory of the device. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL.
    WHIT_ERROR_USAGE for params that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a
    kernel cannot be made. */
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
@@ -201,7 +201,7 @@ typedef struct whit_share {
 } whit_share;
 #define WHIT_SHARES 24
 
-/* Numbers of samples that a pixel may have: 1, 4, 16, ... WHIT_SAMPLES_MOST. */
+/* Numbers of samples that a pixel may have: 1, 4, 16, ... WHIT_SAMPLES_MAX. */
 enum { WHIT_SAMPLE_LEVELS = 7 };
 
 typedef struct whit_stats {

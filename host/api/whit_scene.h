@@ -13,7 +13,7 @@ typedef struct whit_load_params {
     double import_limit_s; /* of the processor; 0: 8, and 4 for each 10 MB, at most 60 */
     double time_limit_s;   /* by the clock; 0: ten times that */
     bool require_sandbox;  /* WHIT_ERROR_USAGE where these cannot be locked in; else a warning */
-    /* Of the scene on host and device together, estimated before it is asked for: what would take
+    /* Memory for the scene on host and device together, estimated before it is allocated: taking
        more is an error. A foreign importer gets half of it. 0: half of what the machine has. */
     uint64_t memory_limit_bytes;
     uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */

@@ -84,7 +84,7 @@ WHIT_CHECK whit_result bench_render(struct bench *bench, struct bench_case *case
 WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count);
 void bench_case_finish(struct bench_case *cases, uint32_t count);
 
-void bench_add(struct bench_times *times, double ms); /* the first BENCH_RUNS_MOST count */
+void bench_add(struct bench_times *times, double ms); /* the first BENCH_RUNS_MAX count */
 /* The value below which `share` of the times are, between neighbours by a straight line. */
 double bench_quantile(const struct bench_times *times, double share);
 double bench_median(const struct bench_times *times);

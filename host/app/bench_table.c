@@ -45,7 +45,7 @@ void table_ms(struct table *table, const struct bench_times *times)
                bench_spread(times));
 }
 
-/* Of UTF-8. */
+/* The number of characters in a UTF-8 text. */
 static size_t count_letters(const char *text)
 {
     size_t count = 0;

@@ -31,7 +31,8 @@ static uint64_t file_hash(const char *path)
     return cost_hash(text);
 }
 
-/* Of files of a folder, or of a file alone; sums, for folders have no order. */
+/* A hash of the .json files in a folder, or of a single file. The hashes of files are added up,
+   for folders have no order. */
 static uint64_t manifests_hash(const char *path)
 {
     uint64_t sum = file_hash(path);

@@ -32,7 +32,7 @@ struct cli_command {
     uint32_t settings;                        /* a bit of enum settings_command; 0: it takes none */
     void (*usual)(struct settings *settings); /* sets defaults of its own; NULL: none */
     bool takes_two;                           /* arguments that are no options; else one */
-    bool takes_many;                          /* after the first one: CLI_OTHERS_MOST */
+    bool takes_many;                          /* after the first one: CLI_OTHERS_MAX */
     int (*run)(const struct cli_command *command, int argc, char **argv);
     /* Word `index` of what an option takes beside its values; NULL: no more. May be NULL. */
     const char *(*word)(const char *option, uint32_t index);

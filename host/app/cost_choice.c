@@ -11,7 +11,7 @@ enum { KEPT_VERSION = 3, KEPT_NAME = 32, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
 /* What takes less tells more of who else had the processor. */
 static const double TRIAL_MS_MIN = 20.0;
 
-/* Of the figures. */
+/* The name under which the figures of this scene, size, time, camera and device are kept. */
 static void kept_name(const struct job *job, char name[KEPT_NAME])
 {
     char key[1024 + SETTING_TEXT_BYTES];

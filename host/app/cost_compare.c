@@ -15,7 +15,7 @@ static const struct cost_row *find(const struct cost_report *report, const struc
     return NULL;
 }
 
-/* Of the usual picture, which is no ratio. */
+/* The time of the usual picture in ms; the other rows have ratios to it instead. */
 static struct sample_median full_time(const struct cost_report *report, const struct cost_row *row)
 {
     return (struct sample_median){.median = row->ms[report->clock],

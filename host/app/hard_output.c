@@ -12,7 +12,7 @@ static unsigned long long whole(uint64_t value)
     return (unsigned long long)value;
 }
 
-/* Of the first two columns. */
+/* The widths of the first two columns, in characters. */
 struct widths {
     int name, place;
 };

@@ -30,7 +30,7 @@ whit_result job_build(struct job *job);
 whit_result job_open_device(struct job *job);
 /* Whether nobody has stopped the program, and its time limit has not passed. */
 whit_result job_still_wanted(void);
-/* Of the scene: warnings, and with `all` what was added as well. */
+/* Prints the notes of the scene: warnings, and with `all` what was added as well. */
 void job_print_notes(const struct job *job, bool all);
 /* A renderer's params for the settings, within what is left of the time limit; borrows them. */
 whit_renderer_params job_picture(const struct job *job);

@@ -5,7 +5,7 @@
 #include "app/page.h"
 
 /* Where 1, 2 or 5 times a power of ten lie from `low` to `high` (low < high), about `wanted` of
-   them, at most PLOT_TICKS_MOST; on a logarithmic axis (low > 0) powers of ten, with 2 and 5 times
+   them, at most PLOT_TICKS_MAX; on a logarithmic axis (low > 0) powers of ten, with 2 and 5 times
    them where it has few. Gives their number. */
 enum { PLOT_TICKS_MAX = 24 };
 uint32_t plot_ticks(double low, double high, bool is_log, uint32_t wanted,

@@ -5,12 +5,12 @@
 #include "app/bench.h"
 #include "app/commands.h"
 
-/* Of one effect. */
+/* What the receipt says of one effect. */
 struct receipt_row {
     const char *name, *reason; /* "" when not called for */
     bool called, compiled;
     bool priced; /* what follows was measured */
-    /* Of one frame, pair by pair: with the effect less without it. */
+    /* Per pair of runs: the time of a frame with the effect less that of one without it. */
     struct bench_times cost;
     /* What the picture has by it: pixels with any difference, largest one of a channel. */
     uint64_t pixels;

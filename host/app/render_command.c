@@ -251,7 +251,8 @@ static whit_result render_one(struct job *job, const struct render_request *requ
     return result;
 }
 
-/* Of a sequence that ends too early; interrupts say it themselves. */
+/* Says how many frames were written when a sequence ends too early. After an interrupt its handler
+   says so. */
 static void say_written(const struct job *job, const struct frames_progress *progress,
                         const struct sequence *sequence)
 {

@@ -4,7 +4,7 @@
 
 #include "app/commands.h"
 
-/* Of a picture of costs, which a picture of colours does not have. */
+/* Whether a setting belongs to pictures of costs, and means nothing for pictures of colours. */
 static bool is_of_costs(const struct setting *row)
 {
     return strncmp(row->name, "view", 4) == 0;

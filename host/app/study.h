@@ -8,7 +8,7 @@
 enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
 enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
 
-/* Of the runs. */
+/* The median, the least and the greatest figure of the runs. */
 struct study_spread {
     double median, min, max;
 };

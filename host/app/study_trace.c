@@ -53,7 +53,7 @@ static whit_result trace(struct tracing *tracing, uint32_t row, uint32_t kind, w
     return result == WHIT_OK ? study_step(tracing->study) : result;
 }
 
-/* Of any-hit rays only whether there is a hit means something. */
+/* Whether two hits are the same. Any-hit (shadow) rays only tell whether there is a hit. */
 static bool same_hit(uint32_t kind, const whit_hit *a, const whit_hit *b)
 {
     if (kind == STUDY_SHADOW)

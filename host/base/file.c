@@ -38,7 +38,7 @@ static int slot_take(const char *path)
     return 0;
 }
 
-/* With begin_lock held. */
+/* Frees the slot of an unfinished file. The caller holds begin_lock. */
 static void slot_free(int slot)
 {
     if (slot > 0)
@@ -305,8 +305,8 @@ whit_result file_write_begin(const struct log *log, const char *path, struct fil
     return reason == ENOMEM ? WHIT_ERROR_MEMORY : WHIT_ERROR_OUTPUT;
 }
 
-/* Of a stream where something was not written earlier: what is wrong, as another byte tells, for
-   nobody looked then. The file is lost anyway. */
+/* The errno for a stream that failed to write earlier, when errno was not kept: found by writing
+   another byte (EIO if that works). The file is lost anyway. */
 static int reason_again(FILE *stream)
 {
     clearerr(stream);

@@ -14,7 +14,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 
-/* In front of what is kept. */
+/* The header at the start of each cache file. */
 struct header {
     char magic[8];
     uint64_t data_bytes;
@@ -118,8 +118,8 @@ char *store_folder(const struct log *log)
 
 /* ---- Reading ---- */
 
-/* Without a name once another process has replaced it, and with one at most: what has more is
-   somebody's elsewhere. */
+/* Whether it is a plain file that only this user can write. It has no link once another process has
+   replaced it, else one: with more links it is also somebody's file elsewhere. */
 static bool is_own_file(const struct stat *info)
 {
     return S_ISREG(info->st_mode) && info->st_uid == geteuid() && info->st_nlink <= 1 &&
@@ -208,7 +208,7 @@ static bool write_all(int fd, const void *data, size_t size_bytes)
     return true;
 }
 
-/* Of ".NAME.PID.tmp" and ".NAME.PID.COUNT.tmp", whose process is no more. */
+/* Whether it is ".NAME.PID.tmp" or ".NAME.PID.COUNT.tmp" of a process that no longer exists. */
 static bool is_leftover(const char *name)
 {
     size_t length = strlen(name);
@@ -230,7 +230,7 @@ struct tally {
     char oldest[256]; /* "": there is none that may go */
 };
 
-/* Of what lies in the folder; leftovers are swept. */
+/* Adds up the files in the folder and finds the oldest; removes leftover temporary files. */
 static struct tally count(int folder)
 {
     struct tally tally = {0};
@@ -267,8 +267,8 @@ static void make_room(int folder)
            unlinkat(folder, tally.oldest, 0) == 0);
 }
 
-/* Beside it and renamed over it, which replaces a link and not what it leads to. Not forced to the
-   disk: what a power cut leaves of it is damaged, and is seen to be. */
+/* Writes a temporary file and renames it over `name`, which replaces a link and not its target. Not
+   synced to the disk: damage by a power cut is detected by the hash. */
 static bool replace(int folder, const char *name, const void *data, size_t size_bytes)
 {
     static atomic_uint counter;

@@ -13,7 +13,7 @@ struct table_slot {
     uint32_t value;
 };
 
-/* Of hash_bytes alone the lower bits hardly tell numbered names apart. */
+/* Mixes the bits of a hash: the lower bits of hash_bytes alone hardly tell numbered names apart. */
 static uint64_t spread(uint64_t hash)
 {
     hash = (hash ^ hash >> 33) * UINT64_C(0xff51afd7ed558ccd);

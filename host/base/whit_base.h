@@ -96,7 +96,7 @@ typedef struct whit_kernel {
    A backslash stays as it is, and with it what was shown before: showing it again changes nothing,
    so that it is done wherever text leaves the program, and nowhere else. */
 
-/* With the 0 at its end. */
+/* The most bytes of one shown character, with the 0 at its end. */
 #define WHIT_SHOWN_BYTES 13
 /* The first character of `text`, as it is shown. Gives how many bytes of `text` it takes: 0 at its
    end. */

@@ -27,14 +27,15 @@ static bool is_ranked(const struct cost_row *row)
     return row->measured && !row->broken && !row->hits[COST_CAMERA].unanswered;
 }
 
-/* What cannot be told from the usual picture's time counts as that. */
+/* The row's time; the usual picture's time where the two cannot be distinguished. */
 static double rank_ms(const struct cost_report *report, const struct cost_row *row)
 {
     const struct cost_row *usual = &report->rows[0];
     return row == usual || row->price.verdict ? row->ms[report->clock] : usual->ms[report->clock];
 }
 
-/* Of two that are equal in both the one above in the table is taken. */
+/* Whether row a dominates row b: not slower and not less right (within 1 %), and better in one of
+   the two. Of two equal rows the one above in the table dominates. */
 static bool beats(const struct cost_report *report, enum cost_metric metric,
                   const struct cost_row *a, const struct cost_row *b)
 {
@@ -55,7 +56,7 @@ void cost_mark_best(struct cost_report *report, enum cost_metric metric)
     }
 }
 
-/* Without what samples do, where that is known. */
+/* The setting's own error without the sampling error, where that is known; else the whole error. */
 static double own_error(const struct cost_row *row, enum cost_metric metric)
 {
     return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
@@ -125,9 +126,9 @@ static double samples_of(const struct search *search, const struct cost_row *row
                        : value; /* adaptive ones: up to as many */
 }
 
-/* As many samples as the reference has are the same ones: what they get wrong is not in its
-   figures. Four times as many halve the error at the least, where they are no rarer than by
-   chance; so half of that of a quarter. */
+/* The error by sampling. With as many samples as the reference they are the same ones, so the
+   measured error does not hold it: then it is at least half the error of a quarter of the samples,
+   since four times as many random samples halve the error. */
 static double sampled_error(const struct search *search, const struct cost_row *row)
 {
     const struct cost_report *report = search->report;
@@ -171,7 +172,8 @@ static void collect(struct search *search)
     }
 }
 
-/* Of knobs that change nothing: the fastest. A tree has to earn its building in one picture. */
+/* Takes the fastest setting of each knob that does not change the picture. A tree must save its
+   building time within one picture. */
 static void take_free(struct search *search)
 {
     const struct cost_report *report = search->report;

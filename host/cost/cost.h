@@ -145,16 +145,16 @@ struct cost_request {
    there is nothing. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
-/* Of a picture that tells how fast the device is at this moment. */
+/* The size of a small picture whose time tells how fast the device is at this moment. */
 void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height);
-/* Of a text (FNV-1a), for names of what is kept. */
+/* The FNV-1a hash of a text, for names of cached files. */
 uint64_t cost_hash(const char *text);
 
 /* ---- Answers (choose.c) ---- */
 
-/* Of a time or an error that is asked for, as much may be taken by prediction, which is of some
-   other minute; and what takes less than the second part of what was predicted leaves room for
-   better. */
+/* A prediction may use up this share of the time or error asked for, since it was measured at
+   another time; a picture that takes less than the second share of its predicted time leaves room
+   for better settings. */
 #define COST_ROOM       0.9
 #define COST_TOO_LITTLE 0.6
 

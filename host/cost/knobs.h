@@ -31,7 +31,7 @@ struct knob {
 
 /* The table, always the same. */
 const struct knob *knob_table(uint32_t *count);
-/* Its index, or WHIT_NONE. */
+/* The index of the knob of that name in the table, or WHIT_NONE. */
 uint32_t knob_find(const char *name);
 const char *knob_setting_name(const struct knob *knob, uint32_t setting);
 /* SETTING_COST: ids and pixels are the same bytes, and anything else is a defect. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
-/* Of the time, for references with what is judged by them, and for the usual settings. */
+/* Shares of the requested time: for references and their judging; for the usual settings. */
 static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
 
 whit_result measure_still_wanted(const struct measure *measure)

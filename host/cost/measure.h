@@ -26,8 +26,8 @@ struct measure {
 };
 
 whit_result measure_still_wanted(const struct measure *measure);
-/* Of the time limit, which renderers and references count from when they begin; 0: there is none.
- */
+/* Seconds left of the time limit, to be the limit of renderers and references, which count from
+   their own start; 0: there is none. */
 double measure_left_s(const struct measure *measure);
 /* Tells `what` is being done. */
 void measure_say(const struct measure *measure, const char *what);

@@ -256,7 +256,7 @@ static whit_result find_out(struct measure *measure, const struct settings *targ
 
 /* ---- In double ---- */
 
-/* Its price, at the size that fits. */
+/* The price of the reference in double, at the size that fits the time. */
 static whit_result price_double(struct measure *measure, const struct settings *target,
                                 double seconds, double ratio, struct cost_row *row)
 {
@@ -333,7 +333,7 @@ whit_result measure_row(struct measure *measure, const struct settings *target,
 
 /* ---- The usual settings ---- */
 
-/* Times of the full picture, within `seconds` or FULL_LEAST times. */
+/* Times of the full picture, within `seconds` or FULL_MIN times. */
 static whit_result time_full(struct measure *measure, double seconds)
 {
     struct cost_report *report = measure->report;

@@ -26,14 +26,14 @@ double sample_quantile(const double *sorted, uint32_t count, double share)
     return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
 }
 
-/* That exactly `heads` of `count` tosses of a coin come up heads. */
+/* The probability that exactly `heads` of `count` tosses of a coin come up heads. */
 static double chance_of(uint32_t heads, uint32_t count)
 {
     double n = count, k = heads;
     return exp(lgamma(n + 1.0) - lgamma(k + 1.0) - lgamma(n - k + 1.0) - n * log(2.0));
 }
 
-/* From 0: as far from the ends as the coverage allows. */
+/* The index of the interval's low end: as far from 0 as the coverage of at least 95 % allows. */
 static uint32_t rank_of_low(uint32_t count, double *coverage)
 {
     uint32_t rank = 0;

@@ -22,14 +22,14 @@ struct sample_median {
 /* Sorts `values`. All 0 when there are none. */
 struct sample_median sample_median_of(double *values, uint32_t count);
 
-/* Of two things measured in turns, a[i] beside b[i]: 1 when `a` is larger, -1 when `b` is, 0 when
-   they cannot be distinguished, because the interval of the median of a[i] - b[i] holds 0 (the sign
-   test at 5 %) or there are fewer than 6 pairs. What slows both down for a while does not count.
-   `differences` has room for `count` values; *median, or NULL, is theirs. */
+/* Compares two things measured in turns, a[i] beside b[i]: 1 when `a` is larger, -1 when `b` is, 0
+   when they cannot be distinguished, because the interval of the median of a[i] - b[i] holds 0 (the
+   sign test at 5 %) or there are fewer than 6 pairs. What slows both down for a while does not
+   count. `differences` has room for `count` values; *median (may be NULL) is theirs. */
 int sample_compare(const double *a, const double *b, uint32_t count, double *differences,
                    struct sample_median *median);
-/* Of things that were not measured in turns, and of which only this is left: 0 where the intervals
-   touch or one of them covers less than 95 %. That asks for more than sample_compare does. */
+/* Compares likewise, by their medians alone, two things not measured in turns: 0 where the
+   intervals touch or one of them covers less than 95 %. This is stricter than sample_compare. */
 int sample_compare_apart(const struct sample_median *a, const struct sample_median *b);
 
 /* Calls run(user, way, round) for each of `ways` ways in each of `rounds` rounds, from the first

@@ -9,8 +9,8 @@
 #include "base/hash.h"
 #include "base/store.h"
 
-/* Under which name: of the driver, and of its vector width, which it may have settled in what it
-   keeps. free() it. */
+/* The name of the kept pipelines in the cache, by driver and its subgroup size, which kept
+   pipelines may depend on. free() it. */
 static char *kept_name(const struct device *device)
 {
     char uuid[2 * VK_UUID_SIZE + 1];

@@ -134,7 +134,7 @@ WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipel
 void pipeline_destroy(struct pipeline *pipeline);
 void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info);
 /* Reads the numbers that the driver keeps of a pipeline made with asks_statistics: subgroup size,
-   registers and the like, under the driver's names. `statistics`: room for WHIT_STATISTICS_MOST;
+   registers and the like, under the driver's names. `statistics`: room for WHIT_STATISTICS_MAX;
    more are left out. *count is 0 where the driver has no VK_KHR_pipeline_executable_properties. */
 WHIT_CHECK whit_result pipeline_get_statistics(const struct pipeline *pipeline,
                                                whit_statistic *statistics, uint32_t *count);

@@ -131,7 +131,7 @@ static bool fold(const struct evaluation *e, uint32_t op, uint32_t type, const u
     return spirv_fold(op, values, count, value);
 }
 
-/* Of a bool or 32-bit constant that the caller sets, with its default otherwise. */
+/* The value of a bool or 32-bit specialization constant: what the caller set, else its default. */
 static uint32_t spec_value(const struct evaluation *e, const uint32_t *instruction,
                            const uint32_t *values)
 {
@@ -301,7 +301,7 @@ static void branch_either(struct evaluation *e, struct instance *in, const uint3
     enter(e, at[3]);
 }
 
-/* From which of the blocks that a phi names there is a way to it. */
+/* Whether control can come to the current block from `from`, a block that a phi names. */
 static bool arrives(const struct evaluation *e, const struct instance *in, uint32_t from)
 {
     const struct source_id *block = &e->source[from];
@@ -372,7 +372,7 @@ static void take_back_wrap(struct evaluation *e, const struct instance *in)
     e->results[in->wrap_label].same_as = in->label_before;
 }
 
-/* Behind the last block of a call: what it returned. */
+/* Ends an inlined call behind its last block. Gives the id of the returned value, or 0. */
 static uint32_t end_call(struct evaluation *e, struct instance *in)
 {
     if (e->failed || in->returns == 0) {
@@ -448,7 +448,7 @@ static void walk_return(struct evaluation *e, struct instance *in, const uint32_
 
 /* ---- Instructions ---- */
 
-/* Where one known operand decides. True: done. */
+/* Folds a logical and, or, or select that one known operand decides. True: it was folded. */
 static bool decide(struct evaluation *e, const uint32_t *at)
 {
     uint32_t op = spirv_op(at);

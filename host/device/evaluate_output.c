@@ -6,7 +6,7 @@
 
 #include "base/array.h"
 
-/* All that an instruction names. True: something is live that was not. */
+/* Marks as live all ids that an instruction names. True: one of them was not live before. */
 static bool use(struct evaluation *e, const uint32_t *at)
 {
     struct spirv_shape shape = spirv_shape(spirv_op(at));
@@ -55,8 +55,8 @@ static bool mark_body(struct evaluation *e)
     return fine;
 }
 
-/* Of what a type, a constant or a global variable is made. Decorated with BuiltIn, constants count
-   whether named or not. */
+/* Marks as live what live types, constants and global variables are made of. Constants decorated
+   with BuiltIn are always live: mark_roots marks them. */
 static void mark_globals(struct evaluation *e)
 {
     uint32_t *at = NULL, count = 0, capacity = 0;
@@ -92,7 +92,7 @@ static void put(struct evaluation *e, struct word_list *out, const uint32_t *wor
         evaluate_push(e, out, words[i]);
 }
 
-/* With the variables that are left. */
+/* Writes the entry point with only those interface variables that are live. */
 static void put_entry_point(struct evaluation *e, struct word_list *out, const uint32_t *at)
 {
     uint32_t begin = out->count, i = 3, length = spirv_length(at);

@@ -1,7 +1,7 @@
 /* Where everything is in a module, and that it is whole: all else goes by what is found here. */
 #include "device/evaluate.h"
 
-/* That are looked at by their place. */
+/* The number of words of an instruction that are read at fixed positions, at the least. */
 static uint32_t min_words(uint32_t op)
 {
     return op == OP_SELECT                                                 ? 6

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* Before the first instance with validation. */
+/* Turns the locking on; call it before the first instance with validation is created. */
 void layers_expect(void);
 /* Whether there was something to lock, for layers_leave. Not recursive. */
 bool layers_enter(void);

@@ -2,7 +2,7 @@
 
 static const struct spirv_shape unknown;
 
-/* With a result and nothing but ids behind it. */
+/* Whether an instruction has a result, only ids as operands, and no other effect. */
 static bool is_plain(uint32_t op)
 {
     return op == OP_UNDEF || op == OP_ACCESS_CHAIN || op == OP_COMPOSITE_CONSTRUCT ||

@@ -124,8 +124,8 @@ static inline uint32_t spirv_head(enum spirv_op op, uint32_t words)
     return words << 16 | (uint32_t)op;
 }
 
-/* Of instructions that stand in functions. `ids`: bit i: word i behind the head is an id; beyond
-   the 30th word they repeat by twos. */
+/* The operands of an instruction within a function. `ids`: bit i is set if word i behind the head
+   is an id; from word 30 on, even words use bit 30 and odd ones bit 31. */
 struct spirv_shape {
     bool known;
     bool result;  /* has a type and an id */
@@ -140,7 +140,7 @@ static inline bool spirv_operand_is_id(struct spirv_shape shape, uint32_t i)
     return shape.ids >> (i < 30 ? i : 30 + i % 2) & 1;
 }
 
-/* Of bools (0 or 1) and 32-bit integers. False: not one of those that are worth it here. */
+/* Computes an operation on bools (0 or 1) or 32-bit integers. False: it is not handled here. */
 bool spirv_fold(uint32_t op, const uint32_t *values, uint32_t count, uint32_t *out);
 
 #endif

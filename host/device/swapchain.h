@@ -14,8 +14,8 @@ struct swapchain_params {
     bool blit;  /* never write into the window's images directly: for tests of the other way */
 };
 
-/* Of a format without sRGB conversion, as pictures come converted. WHIT_ERROR_NO_DEVICE, logged,
-   where the window takes none that is known. Nothing is shown before swapchain_resize. */
+/* Chooses a format without sRGB conversion, as pictures are already in sRGB. WHIT_ERROR_NO_DEVICE,
+   logged, where the window supports no known format. Nothing is shown before swapchain_resize. */
 WHIT_CHECK whit_result swapchain_create(struct device *device,
                                         const struct swapchain_params *params,
                                         struct swapchain **out);

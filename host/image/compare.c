@@ -43,7 +43,7 @@ static bool is_finite(const float rgba[4])
     return isfinite(rgba[0]) && isfinite(rgba[1]) && isfinite(rgba[2]) && isfinite(rgba[3]);
 }
 
-/* Of pixel `i`. Alpha is not encoded. */
+/* Whether a channel of pixel `i` differs by over 1/255; colours are compared in sRGB. */
 static bool is_over_1_255(const struct image *image_a, const struct image *image_b, size_t i)
 {
     float a[4], b[4];

@@ -21,7 +21,7 @@ struct flip_summary {
    *map has one channel, 0 (looks the same) to 1; 1 is reached by green beside blue, black beside
    white is 0.9674. Swapping the pictures changes nothing. WHIT_ERROR_USAGE when sizes differ, for
    integers, and for `pixels_per_degree` (0: FLIP_PIXELS_PER_DEGREE) outside 1 to
-   FLIP_PIXELS_PER_DEGREE_MOST. Takes about 52 bytes a pixel meanwhile. */
+   FLIP_PIXELS_PER_DEGREE_MAX. Takes about 52 bytes a pixel meanwhile. */
 WHIT_CHECK whit_result image_flip(const struct image *a, const struct image *b,
                                   double pixels_per_degree, struct image *map,
                                   struct flip_summary *summary);

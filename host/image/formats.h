@@ -35,7 +35,7 @@ struct text_list {
     uint32_t count, capacity;
 };
 
-/* Of a file in memory, by whatever decodes it, in this process. Errors are logged. */
+/* Decode a file in memory by its format's decoder, in this process. Errors are logged. */
 WHIT_CHECK whit_result image_decode(const struct image_source *source, struct image *image);
 WHIT_CHECK whit_result image_decode_texts(const struct image_source *source,
                                           struct text_list *list);

@@ -162,12 +162,13 @@ static void put_heat(const struct painter *painter, float value, float *to)
         to[c] = painter->ramp.linear[codes[c]];
 }
 
-/* Of three channels the one farthest from 0, with its sign. */
+/* The value of the channel that is farthest from 0, out of three, with its sign; NaN where any is.
+ */
 static float farthest(const float *pixel)
 {
     float value = pixel[0];
     for (int c = 1; c < 3; ++c)
-        value = !(fabsf(value) >= fabsf(pixel[c])) || isnan(pixel[c]) ? pixel[c] : value;
+        value = isnan(value) || fabsf(value) >= fabsf(pixel[c]) ? value : pixel[c];
     return value;
 }
 

@@ -207,7 +207,7 @@ whit_result image_encode_png(const struct log *log, const struct image *image,
     return result;
 }
 
-/* By content: names lie. */
+/* The format by the content: file names may be wrong. */
 static enum format format_of_data(const uint8_t *data, size_t size_bytes)
 {
     static const uint8_t png[4] = {0x89, 'P', 'N', 'G'}, exr[4] = {0x76, 0x2f, 0x31, 0x01};

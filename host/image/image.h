@@ -15,8 +15,8 @@ struct image {
     uint32_t width, height, channels;
     float *pixels;   /* width * height * channels, or NULL */
     uint32_t *words; /* the same for integers, or NULL; exactly one of the two is set */
-    /* Of light: what is displayed (PNG, window, FLIP, over_1_255) are the floats times this, 0: as
-       they are; files of floats keep them. */
+    /* For pictures of light: what is displayed (PNG, window, FLIP, over_1_255) is the floats times
+       this; 0: the floats as they are. Files of floats keep them unscaled. */
     float display_scale;
 };
 

@@ -11,7 +11,7 @@
 #include "base/array.h"
 #include "base/platform.h"
 
-/* Of a progressive file each scan is work for all of the picture, however few bytes it has. */
+/* The most scans of a progressive file: each is work for the whole picture, however small. */
 enum { SCANS_MAX = 64 };
 
 /* libjpeg leaves its functions by longjmp. Whatever must survive that lives in here, outside the

@@ -9,8 +9,8 @@
 #include "scene/scene.h"
 
 struct load_params {
-    /* Of the scene on host and device together, and twice that of a foreign importer; 0: half of
-       what the machine has. */
+    /* Memory for the scene on host and device together; a foreign importer gets half of it. 0: half
+       of what the machine has. */
     uint64_t memory_limit_bytes;
     struct foreign_params foreign; /* for what is not whit's own: importers, decoders of pictures */
     uint32_t texture_limit;        /* longest side of a texture, larger ones are halved; 0: 4096 */

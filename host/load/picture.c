@@ -79,7 +79,7 @@ const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_byt
     return pixels > pixels_max(size_bytes) ? "its header tells of more than there is in it" : NULL;
 }
 
-/* Of a PNG chunk that it does not know stb_image repeats the name, whatever its bytes. */
+/* The reason that stb_image gives; "damaged" if it repeats unprintable bytes of the file. */
 static const char *failure_reason(void)
 {
     const char *reason = stbi_failure_reason();

@@ -173,7 +173,7 @@ static uint64_t balls_of(const struct shape_sizes *s)
     return count;
 }
 
-/* At most; an atrium has about as many. */
+/* The most triangles that a shape has; for an atrium, about as many. */
 static uint64_t triangles_of(enum shape shape, const struct shape_sizes *s)
 {
     uint64_t level = s->level, segments = s->segments;

@@ -139,7 +139,8 @@ bool surface_face(struct surface *s, struct dvec3 dir);
 /* From an instance's object space, by the inverse transpose; not unit. */
 struct dvec3 surface_place_normal(const struct reference *reference, uint32_t instance,
                                   struct dvec3 n);
-/* Of corner 0..2, world, unit; 0 where the mesh is flat. */
+/* The vertex normal at corner 0..2 in world space, unit; 0 for spheres and where the mesh is
+   flat. */
 struct dvec3 surface_vertex_normal(const struct reference *reference, const struct surface *s,
                                    uint32_t corner);
 /* What identifies the place for textures, without the rest: mesh, material, u, v, colours. */

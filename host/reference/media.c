@@ -105,7 +105,7 @@ struct crossed {
     uint32_t count;
 };
 
-/* The last one of the same body; CROSSED_MOST: none. */
+/* The last one of the same body; CROSSED_MAX: none. */
 static uint32_t find_crossed(const struct crossed *crossed, uint32_t entry, uint32_t instance)
 {
     for (uint32_t i = crossed->count; i > 0; --i) {

@@ -2,7 +2,8 @@
 #include "reference/inside.h"
 
 #define PI   3.14159265358979323846
-/* Of the coordinates that a point comes from: more than what it is off by. */
+/* By how much rays start off a surface, relative to the coordinates that the point is computed
+   from: more than its rounding error. */
 #define ROOM 0x1p-45
 
 static struct dvec3 to_world(const struct reference *reference, uint32_t instance, struct dvec3 p,

@@ -49,7 +49,7 @@ static struct body *body_of(struct bodies *bodies, uint32_t first, uint32_t mate
     return &bodies->all[bodies->count - 1];
 }
 
-/* Of a mesh, in object space, behind those that are listed. */
+/* Appends the bodies of a mesh, in object space. False: memory ran out. */
 static bool list_mesh(const struct scene *scene, const struct scene_mesh *mesh,
                       struct bodies *bodies)
 {
@@ -371,7 +371,8 @@ static int by_low_x(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of all pairs of different bodies that a triangle is part of, the least distance up to `gap`. */
+/* The least distance between surfaces of two different bodies, not both spheres, and at most `gap`;
+   0 where there are more than PAIRS_MAX pairs to look at. */
 static double sweep_surfaces(const struct bodies *bodies, const struct surfaces *surfaces,
                              double gap)
 {
@@ -405,7 +406,8 @@ static int by_lo(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The same of spheres; of other bodies only which come near to which. */
+/* The same for pairs of spheres. For other pairs of bodies it only finds which come near to each
+   other. */
 static double sweep_bodies(const struct scene *scene, const struct scene_pose *pose,
                            const struct bodies *bodies, struct ranked *ranked, double gap,
                            struct near *nears, bool *any)

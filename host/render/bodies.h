@@ -27,7 +27,7 @@ struct bodies {
 bool bodies_bounded_by(const struct scene_material *m);
 /* All of the scene, unless they are there already for this pose. False: memory ran out. */
 bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struct bodies *bodies);
-/* Whether surfaces of two bodies may come nearer than `distance_most`, in world units; also where
+/* Whether surfaces of two bodies may come nearer than `distance_max`, in world units; also where
    it takes too long to tell, or memory runs out. */
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
                         struct bodies *bodies, double distance_max);

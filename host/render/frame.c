@@ -14,7 +14,7 @@ whit_result frame_fill(struct renderer *renderer)
                      renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
-    /* Of all cameras only the one that is drawn counts. */
+    /* Only the kind of the camera in use is called for, whatever others the scene has. */
     renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
     renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;
     renderer->effects.called[SCENE_EFFECT_PANORAMA] = kind == CAMERA_PANORAMA;

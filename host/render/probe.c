@@ -195,14 +195,15 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 
 /* ---- The tree ---- */
 
-/* Of each record, while the tree is put in order. */
+/* What is known of each record while the ray tree is put in order. */
 struct branch {
-    uint32_t first, count; /* of those that it left, which are next to each other */
+    uint32_t first, count; /* its child rays, whose records are next to each other */
     uint32_t place;        /* in the tree */
     uint32_t waiting;      /* a stack of records: what the ray stack was on the device */
 };
 
-/* Its shadow rays first, then what was on top of the ray stack: the last of the others. */
+/* Pushes the child rays of a record so that its shadow rays are popped first, in their order, and
+   then the others, the last one first, as from the ray stack on the device. */
 static uint32_t push_branches(const struct gpu_probe_ray *records, uint32_t first, uint32_t count,
                               struct branch *branches, uint32_t top)
 {

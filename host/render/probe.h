@@ -29,8 +29,8 @@ struct probe_report {
     uint32_t samples;       /* that `color` is of; with params.adaptive the 4 of the first pass */
     uint32_t light_samples; /* turns of each light: see gpu_probe_ray.turn */
     float color[4];         /* of the pixel, as in the picture */
-    /* Of the first sample, as they were traced: a ray is followed by its shadow rays, then by what
-       the surface reflects and lets through, each with all that comes of it. */
+    /* The rays of the first sample, as they were traced: a ray is followed by its shadow rays,
+       then by what the surface reflects and lets through, each with all that comes of it. */
     struct probe_ray *rays;
     uint32_t ray_count;
     uint32_t dropped;   /* rays that had no room; what is recorded of their tree is its front */
@@ -38,7 +38,7 @@ struct probe_report {
 };
 
 /* Traces pixel (x, y) from the upper left once more, and nothing else of the picture; what was
-   rendered stays. The first call compiles a kernel. `most`: rays that are recorded; 0: as many as
+   rendered stays. The first call compiles a kernel. `max`: rays that are recorded; 0: as many as
    there is room for. WHIT_ERROR_USAGE outside of the picture; WHIT_ERROR_STATUS as renderer_render.
    On failure *out is empty. */
 WHIT_CHECK whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y,

@@ -21,7 +21,7 @@ struct render_params {
     uint32_t width, height; /* 0: 640 x 480 */
     const char *camera;     /* name, index, or ten numbers; NULL: the first */
     double time_s;
-    uint32_t samples;      /* a power of 4 up to WHIT_SAMPLES_MOST; 0: 1 */
+    uint32_t samples;      /* a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
     uint32_t first_sample; /* a multiple of `samples`; ids are of sample 0 alone */
     uint32_t depth;        /* most bounces */
     double bailout; /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
@@ -122,7 +122,7 @@ WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct sc
                                           const char *camera, uint32_t width, uint32_t height,
                                           struct gpu_ray *rays);
 
-/* The same of the picture that was set last, or of a smaller one of at most `most` pixels whose
+/* The same of the picture that was set last, or of a smaller one of at most `max` pixels whose
    sides are that of it over a whole number. *rays: free(). */
 WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
                                             struct gpu_ray **rays, uint64_t *count);
@@ -144,7 +144,7 @@ WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer,
                                            struct render_kernel_info *info);
 
 /* Makes the kernels of a picture one after the other, and nothing else: no memory of the device is
-   taken. `kernels`: WHIT_KERNELS_MOST. */
+   taken. `kernels`: WHIT_KERNELS_MAX. */
 WHIT_CHECK whit_result render_list_kernels(const struct log *log, struct device *device,
                                            struct accel *accel, const struct render_params *params,
                                            whit_kernel *kernels, uint32_t *count);
@@ -180,8 +180,8 @@ uint64_t renderer_trace_together(const struct renderer *renderer);
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
 WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
 
-/* Of *frame the camera, the media that it is in, whether media meet, and `contact`; the rest is 0.
- *kind: CAMERA_*. `accel` has the pose. */
+/* Fills in the camera of *frame, the media that it is in, whether media meet, and `contact`; the
+   rest is 0. `kind` gets CAMERA_*. `accel` has the pose. */
 WHIT_CHECK whit_result render_view(const struct log *log, struct accel *accel,
                                    const struct scene_pose *pose, const char *camera,
                                    uint32_t width, uint32_t height, struct gpu_frame *frame,
@@ -189,7 +189,7 @@ WHIT_CHECK whit_result render_view(const struct log *log, struct accel *accel,
 
 /* ---- sequence.c: where samples are ---- */
 
-enum { SEQUENCE_BITS = 12 }; /* of the index of a sample, below WHIT_SAMPLES_MOST */
+enum { SEQUENCE_BITS = 12 }; /* of the index of a sample, below WHIT_SAMPLES_MAX */
 
 /* Point `index` of the sequence, in the unit square, in 2^-32. */
 void sequence_point(uint32_t index, uint32_t xy[2]);

@@ -80,7 +80,7 @@ struct stage_set {
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
 };
 
-/* Of the tile in hand, see stage_times.c. */
+/* How long each stage of the tile being drawn takes, see stage_times.c. */
 struct stage_times {
     uint32_t tiles; /* so far */
     bool on;        /* the tile is timed */
@@ -257,12 +257,12 @@ void material_records_finish(struct material_records *records);
 WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 /* Bits 1 << LIGHT_* of the kinds in `pose`. */
 uint32_t lights_kinds(const struct scene_pose *pose);
-/* Of a flat emitter; 1 where the pose has none. */
+/* The number of points sampled on each flat emitter; 1 where the pose has none. */
 uint32_t lights_samples(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
-/* media.c: of renderer->frame the media that the camera is in, and whether media meet, for the pose
-   and the camera that it is filled with. WHIT_ERROR_USAGE for more materials than can be told
+/* media.c: fills in the media of renderer->frame that the camera is in, and whether media meet, for
+   the pose and the camera that it has. WHIT_ERROR_USAGE for more materials than can be told
    apart, WHIT_ERROR_STATUS where the camera is in too many media. */
 WHIT_CHECK whit_result media_frame(struct renderer *renderer);
 /* Whether surfaces of two bodies may be at one place, for the frame that was filled in; of a scene

@@ -164,7 +164,8 @@ static uint32_t count_bits(uint64_t bits)
     return count;
 }
 
-/* Of all kernels of a set: instructions added up, bindings of any. */
+/* Counts all kernels of a set: the sum of their instructions, the bindings that any of them uses,
+   and the instructions of the largest one. False: a kernel cannot be specialized. */
 static bool count_set(const struct stages_job *job, struct pipeline_info *sum, uint32_t *largest)
 {
     *sum = (struct pipeline_info){0};

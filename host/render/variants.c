@@ -102,7 +102,7 @@ static uint32_t added_lights(const struct renderer *renderer)
     return spec.SPEC_LIGHTS;
 }
 
-/* Of textures what the worn materials of `which` call for. */
+/* Restricts texture slots and sampling to what the materials of `which` in use call for. */
 static void narrow_textures(const struct renderer *renderer, enum scene_materials which,
                             struct gpu_spec *spec)
 {
@@ -287,7 +287,7 @@ static whit_result create_pipelines(struct device *device, const struct pipeline
     return pipeline_create(device, &deferred, &pass->deferred);
 }
 
-/* Of both pipelines. */
+/* Creates the binding sets of both pipelines of a pass. */
 static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count)
 {
     whit_result result = binding_set_create(pass->pipeline, bindings->buffers, count, &pass->set);

@@ -5,8 +5,8 @@
 
 #include "scene/scene.h"
 
-/* Of the trees over primitives and over instances, and of the device's records, on the host and on
-   the device; while trees are built. */
+/* Bytes for the trees over primitives and over instances and for the device's records, on host and
+   device together, while trees are built. */
 enum {
     SCENE_TREE_TRIANGLE_BYTES = 190,
     SCENE_TREE_SPHERE_BYTES = 350,

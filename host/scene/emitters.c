@@ -9,9 +9,9 @@
 #include "scene/freeze.h"
 
 #define SAMPLES_MAX   16
-/* Of these at most are flat lights: each costs every lit point as many shadow rays as it has
-   points, 16 by default. */
-#define FLAT_MOST     8
+/* The most flat lights: each costs every lit point as many shadow rays as it has points, 16 by
+   default. */
+#define FLAT_MAX      8
 /* How far the corners of two triangles may be off those of a parallelogram, per length of a side.
  */
 #define CORNER_SLACK  1e-5
@@ -53,7 +53,7 @@ static void triangle_corners(const struct scene_mesh *mesh, uint32_t triangle,
     }
 }
 
-/* Twice the area, and the normal that long. */
+/* Gives twice the area of the triangle; *out is its normal of that length. */
 static double normal_of(double corners[3][3], double out[3])
 {
     double a[3], b[3];
@@ -298,7 +298,7 @@ static bool merge_flats(struct flat *a, const struct flat *b)
     return false;
 }
 
-/* False: there are more than FLAT_MOST. */
+/* False: there are more than FLAT_MAX. */
 static bool gather_flats(const struct scene *scene, const struct emitter_list *list,
                          struct flat *flats, uint32_t *count)
 {
@@ -310,12 +310,12 @@ static bool gather_flats(const struct scene *scene, const struct emitter_list *l
         for (uint32_t k = 0; !merged && k < *count; ++k)
             merged = merge_flats(&flats[k], &flat);
         /* Twice as many on the way: their other halves may follow. */
-        if (!merged && *count == 2 * FLAT_MOST)
+        if (!merged && *count == 2 * FLAT_MAX)
             return false;
         if (!merged)
             flats[(*count)++] = flat;
     }
-    return *count <= FLAT_MOST;
+    return *count <= FLAT_MAX;
 }
 
 static bool add_flats(struct scene *scene, const struct flat *flats, uint32_t count)
@@ -370,7 +370,7 @@ whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose 
     if (!list.count || !power_suffices(&list, pose))
         goto done;
     qsort(list.items, list.count, sizeof *list.items, compare_emitters);
-    struct flat flats[2 * FLAT_MOST];
+    struct flat flats[2 * FLAT_MAX];
     uint32_t flat_count;
     bool flat = gather_flats(scene, &list, flats, &flat_count);
     if (flat ? !add_flats(scene, flats, flat_count) : !sample_all(scene, &list))

@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "base/text.h"
 
-/* That of shaders/bind/light.glsl, which takes no more of what arrives. */
+/* The same limit as in shaders/bind/light.glsl, which cuts off arriving light beyond it. */
 #define LIGHT_MAX 1e24f
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)

@@ -108,7 +108,7 @@ static whit_result moments_init(const struct scene *scene, const struct scene_po
     return WHIT_OK;
 }
 
-/* Of -SOUP_CELLS/2 to SOUP_CELLS/2; of what is no number the first one. */
+/* The cell of a coordinate from -SOUP_CELLS/2 to SOUP_CELLS/2; that of NaN is the first one. */
 static uint32_t cell_of(float place)
 {
     return (uint32_t)fminf(fmaxf(place + 0.5f * SOUP_CELLS, 0.0f), SOUP_CELLS - 1);

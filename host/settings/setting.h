@@ -7,7 +7,7 @@
 #include "settings/values.h"
 
 enum { SETTING_TEXT_BYTES = 384, SETTING_PATH_BYTES = 1024, SETTING_FOLDERS_MAX = 8 };
-/* Of what setting_write gives, and of why setting_read refuses. */
+/* The sizes of the text that setting_write gives, and of the reason why setting_read refuses. */
 enum { SETTING_VALUE_BYTES = SETTING_PATH_BYTES, SETTING_WHY_BYTES = 1400 };
 
 enum setting_kind {
@@ -19,7 +19,7 @@ enum setting_kind {
     SETTING_BYTES,   /* uint64_t: more than 0; a whole number, or one with K, M or G behind it */
     SETTING_SIZE,    /* uint32_t[2]: WxH */
     SETTING_TEXT,    /* char[SETTING_TEXT_BYTES]; "": not given */
-    SETTING_FOLDERS, /* char[SETTING_FOLDERS_MOST][SETTING_PATH_BYTES]: the option adds one */
+    SETTING_FOLDERS, /* char[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]: the option adds one */
     SETTING_NAME,    /* const char *, of the command line; NULL: not given */
     SETTING_OWN,     /* by `read` and `write` */
     SETTING_GONE, /* none: the option is refused with `help`, which says what stands in its place */
@@ -53,21 +53,21 @@ struct setting {
     size_t offset; /* of the value in its record */
     const struct setting_value *values;
     double min, max;
-    /* Of SETTING_OWN. Why a text is refused goes behind "--NAME". False from `write`: there is
-       nothing to say. */
+    /* Used by SETTING_OWN alone. `why` is the reason for a refusal, printed behind "--NAME".
+       False from `write`: there is nothing to say. */
     bool (*read)(const struct setting *setting, const char *text, void *record,
                  char why[SETTING_WHY_BYTES]);
     bool (*write)(const void *record, char text[SETTING_VALUE_BYTES]);
     bool developer; /* for those who work on whit: --help-all alone lists it */
 
-    /* Of the table of settings (settings.h) alone. */
+    /* Used by the table of settings (settings.h) alone. */
     uint32_t commands; /* bits of enum settings_command */
     enum setting_change change;
     enum setting_need need;
     const char *json; /* its key; NULL: `name` with _ for - */
     bool always;      /* recipes and JSON name it though it is at its default */
     bool trusted;     /* says what files may reach: no file of settings may */
-    /* In the viewer. */
+    /* Used by the viewer. */
     const char *title;                      /* in the panel of settings; NULL: not there */
     const struct setting_value *steps;      /* of keys and panel; NULL: `values`, or numbers */
     const struct setting_value *more_steps; /* behind those; or NULL */

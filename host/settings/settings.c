@@ -210,7 +210,8 @@ bool settings_same(const struct settings *a, const struct settings *b)
 
 /* ---- Writing ---- */
 
-/* Of a picture of costs trees and traversals decide the pixels too. */
+/* Whether a setting is written. In a picture of costs trees and traversals decide the pixels
+   too. */
 static bool is_written(const struct setting *row, const struct settings *settings,
                        enum settings_words which)
 {

@@ -7,7 +7,7 @@
 
 /* The row behind `row`, or with NULL the first; NULL: there is none. */
 const struct setting *choice_next(const struct setting *row);
-/* The steps in words, CHOICE_WORDS_MOST at most; 0: it is a number. */
+/* The steps in words, CHOICE_WORDS_MAX at most; 0: it is a number. */
 enum { CHOICE_WORDS_MAX = 16 };
 uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MAX]);
 /* Which of them it is at; -1: none of them. */

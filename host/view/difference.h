@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Of a picture: `channels` linear floats a pixel (1, or 4 of which alpha does not count) and two
-   words of hit identity. Either may be NULL. */
+/* One of two pictures that are compared: `channels` linear floats a pixel (1, or 4 of which alpha
+   does not count) and two words of hit identity a pixel. Either may be NULL. */
 struct difference_side {
     const float *color;
     const uint32_t *ids;

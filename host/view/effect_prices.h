@@ -8,7 +8,7 @@
 
 enum { EFFECTS_MAX = 64 };
 
-/* Of one switch: the pictures before and after it. */
+/* What switching one effect changes: the pictures before and after it. */
 struct effect_price {
     bool known, added;
     double before_ms, after_ms;
@@ -23,7 +23,7 @@ struct effect_work {
     whit_accel *accel;
     const volatile bool *cancel;
     const whit_log *log;
-    /* Of each effect that can be left out, once it is priced. */
+    /* Called for each effect that can be left out, once it is priced. */
     void (*found)(void *user, uint32_t effect, const struct effect_price *price);
     void (*say)(void *user, double done, const char *what); /* 0..1 */
     void *user;

@@ -43,8 +43,8 @@ static void session_message(void *user, whit_log_level level, const char *messag
     pthread_mutex_unlock(&engine->lock);
 }
 
-/* Of a scene, which outlives the session that it was loaded for: trees of other sessions speak
-   through it as well, while they are built. */
+/* The log of a scene. A scene outlives the session that it was loaded for, so trees of other
+   sessions log here as well while they are built. */
 static void scene_message(void *user, whit_log_level level, const char *message)
 {
     struct engine *engine = user;

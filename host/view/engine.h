@@ -48,7 +48,7 @@ struct engine_frame {
     double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */
     double draw_ms;                  /* by the clock: all of it, with reading it back */
     double scale;                    /* of a heat map */
-    whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MOST */
+    whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MAX */
     uint64_t boxes_total;            /* that there are */
     whit_stats stats;
     double visits;        /* nodes opened, of a camera ray on average; < 0: not known */
@@ -59,7 +59,7 @@ struct engine_frame {
     uint64_t effects; /* a bit for each that is compiled, in the order of whit_effect_name */
 };
 void engine_frame_finish(struct engine_frame *frame);
-/* Of drawing: on the device where that is measured, present apart. */
+/* The time of drawing in ms, without presenting: on the device where that is measured. */
 double engine_drawn_ms(const whit_stats *stats);
 
 /* What another kernel, tree or setting changed, from the last whole picture before to the first one

@@ -248,7 +248,7 @@ static void draw_help(struct view *view)
     ui_panel_end();
 }
 
-/* Of what takes long: a session in the making, or a picture. */
+/* Draws the panel of what takes long: a session being made, or a picture being drawn. */
 static void draw_work(const struct view *view)
 {
     const struct engine_status *status = &view->status;
@@ -329,7 +329,7 @@ static void draw_boxes(const struct view *view)
     ui_panel_end();
 }
 
-/* Of the window's picture, and of B's where that stands beside it. */
+/* Draws the legend of the window's picture, and of picture B where that stands beside it. */
 static void draw_legends(const struct view *view)
 {
     const struct compare *compare = &view->compare;

@@ -59,7 +59,7 @@ static void next_cost_view(struct view *view)
     view->settings.paint = next < PAINT_COUNT ? next : PAINT_DEPTH;
 }
 
-/* Of the difference, where that is shown; else of costs. */
+/* Multiplies the scale of the difference, where that is shown, else that of costs. */
 static void scale_by(struct view *view, double factor)
 {
     struct compare *compare = &view->compare;
@@ -487,7 +487,7 @@ static const struct key_binding bindings[] = {
 
 enum { SETTING_KEYS_MAX = 32, KEY_NAME = 8 };
 
-/* Of the settings that have keys, and then the others. */
+/* All keys: those of settings that have keys, and then the others. */
 static struct key_binding all[SETTING_KEYS_MAX + sizeof bindings / sizeof *bindings];
 static uint32_t all_count;
 

@@ -207,7 +207,8 @@ static void draw_price(const struct effect_price *price)
             (unsigned long long)price->pixels);
 }
 
-/* Of the switch that was made, else as it is measured beside. */
+/* Draws the price of an effect: measured by the switch that was made, else in the background
+   (`measured`). */
 static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
 {
     struct panels *panels = &view->panels;

@@ -50,7 +50,8 @@ static void look_at(struct view *view, const whit_probe_ray *ray)
     view_moved(view);
 }
 
-/* Of a panel that was closed: it holds its scene, which may be a large one that was left. */
+/* Frees the probe of a panel that was closed: it holds its scene, which may be a large one that was
+   left. */
 static void let_go(struct view *view)
 {
     struct engine_probe nothing = {.number = view->probe.number};

@@ -36,7 +36,7 @@ struct prices_state {
 /* Whether there is more to see than at the last call. */
 bool prices_have_news(struct prices *prices);
 bool prices_are_still(struct prices *prices); /* finished; NULL is fine */
-/* Of an effect, as far as they are measured. */
+/* Gives the price of an effect; its `known` is false until it is measured. */
 void prices_get_effect(struct prices *prices, uint32_t effect, struct effect_price *price);
 void prices_get_state(struct prices *prices, struct prices_state *state);
 

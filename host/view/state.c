@@ -126,7 +126,7 @@ static json_t *items_json(void)
     return object;
 }
 
-/* Of all, or of those that are cut. */
+/* Where panels are, by title: all of them, or those alone of which a part is cut off. */
 static json_t *panels_json(bool all)
 {
     json_t *object = json_object();

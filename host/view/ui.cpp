@@ -108,7 +108,7 @@ struct panel {
     bool cut;        // some of it is beyond its right side
 };
 
-// Of this frame those that were ended are obstacles for the next ones.
+// All panels. Those that have ended in this frame are obstacles for the next ones.
 static struct {
     panel panels[PANELS_MAX];
     int count, frame, current;

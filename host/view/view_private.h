@@ -79,7 +79,7 @@ struct view {
     struct engine *engine;
 
     struct settings settings; /* wanted */
-    /* Of the last picture, or what it began with: where a switch fails, it goes back. */
+    /* Those of the last picture, or of the start: a switch that fails goes back to them. */
     struct settings fallback;
     struct view_camera camera; /* of settings.camera, as numbers */
     bool camera_known;         /* else the scene's first camera, not read as yet */

@@ -163,10 +163,11 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 #define STATUS_RAY_STACK_OVERFLOW   4u
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
-#define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MOST media */
-/* No reason but to draw the tile in smaller ones: a queue between stages was full. */
+#define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MAX media */
+/* A queue between stages was full. That voids no result: the tile is drawn again in smaller ones. */
 #define STATUS_QUEUE_FULL 128u
-/* Of one ray, never in the word: without SPEC_SETTLES floats leave it open, and nothing else counts. */
+/* The status of a single ray, never in the status word: a deferred ray, whose hit floats do not decide
+   (without SPEC_SETTLES). The rest of its result is ignored. */
 #define STATUS_RAY_DEFERRED 64u
 
 #endif

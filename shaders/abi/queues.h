@@ -12,16 +12,16 @@
 #define RAY_ROWS 4u /* origin, state; dir, record to skip; weight, its instance; media */
 #define LIT_ROWS 8u /* at most, see bind/lit.glsl */
 
-/* Of a queued ray: its steps, and above them the slot of its pixel. */
+/* The state of a queued ray: its steps in the low bits, and above them the slot of its pixel. */
 #define STATE_SLOT_SHIFT  16u
 #define QUEUED_SLOTS_MAX 65536u
 
-/* Of the buffer of gpu_tally and gpu_generation. */
+/* The sizes in rows of gpu_tally, gpu_generation and gpu_items. */
 #define TALLY_ROWS      2u
 #define GENERATION_ROWS 25u
 #define ITEMS_ROWS      2u
 
-/* Bit of the record of a hit: NUMERICS_EXACT, it is the far end of a sphere. */
+/* A bit in the word of a hit's record: at NUMERICS_EXACT, the hit is the far end of a sphere. */
 #define HIT_AT_EXIT 0x80000000u
 
 /* sums[].w of a ray, as bits: which rays it calls for, whose ids follow each other in this order, and the
@@ -32,11 +32,11 @@
 #define SUM_REFLECTED  0x40000000u
 #define SUM_IS_CATCHER 0x80000000u /* its light, unweighted; without shadows in the first row of its hit */
 
-/* What is waiting in a generation, list by list. */
+/* The lists of a generation: what waits for each stage. */
 #define LIST_RAYS      0u
 #define LIST_HITS      1u /* to be shaded, class by class */
-#define LIST_LIT       3u /* that lights are asked for */
-#define LIST_LIGHTS    4u /* of these those that a light may reach, light by light */
+#define LIST_LIT       3u /* hits that lights may reach, to be lit */
+#define LIST_LIGHTS    4u /* the lit hits that a light may reach, one list a light */
 #define LISTS_COUNT    12u
 #define CLASSES_MAX   2u /* of materials, CLASS_* */
 #define LIGHT_LISTS    8u /* with more lights than that the first list is of all */
@@ -62,7 +62,7 @@ struct gpu_generation {
 };
 GPU_ASSERT_SIZE(gpu_generation, 400)
 
-/* Of all rays of the tile so far. */
+/* Counters over all rays of the tile so far. */
 struct gpu_tally {
     gpu_uint reflected, refracted;
     gpu_uint cut_depth, cut_bailout;

@@ -169,7 +169,7 @@ struct gpu_media {
 };
 GPU_ASSERT_SIZE(gpu_media, 16)
 
-/* Of the steps of a ray: surfaces passed unseen, and above them bounces so far. */
+/* The steps of a ray: surfaces passed unseen in the low bits, and above them bounces so far. */
 #define STATE_BOUNCES_SHIFT 8u
 
 /* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows. */
@@ -231,7 +231,7 @@ struct gpu_probe_ray {
     gpu_vec3 dir; /* unit */
     gpu_uint end;
     gpu_vec3 weight; /* of what it brings; shadow rays: of the surface that they start from */
-    gpu_uint parent; /* record of the ray it comes from; PROBE_RAYS_MOST: none, a camera ray */
+    gpu_uint parent; /* record of the ray it comes from; PROBE_RAYS_MAX: none, a camera ray */
     gpu_vec3 added;  /* radiance, to the sample; shadow rays: the share of the light that passes */
     gpu_float t_max;
     gpu_vec3 point; /* where it met `primitive`, world */

@@ -63,7 +63,7 @@ struct Crossed {
     uint count;
 };
 
-// Which of the crossed surfaces is the last one of the same body; CROSSED_MOST: none.
+// Which of the crossed surfaces is the last one of the same body; CROSSED_MAX: none.
 uint find_crossed(Crossed crossed, uint entry, uint instance)
 {
     uint found = CROSSED_MAX;

@@ -1,6 +1,6 @@
-// NUMERICS_EXACT: the items of a dispatch whose rays floats leave open. A dispatch without SPEC_SETTLES
-// lists them and does nothing else for them; one with SPEC_SETTLES behind it takes them from the list. So
-// what hardly any ray needs is in a kernel of its own, which only those rays pay for.
+// NUMERICS_EXACT: the items of a dispatch whose rays are deferred, for floats do not decide their hits. A
+// dispatch without SPEC_SETTLES lists them and does nothing else for them; one with SPEC_SETTLES behind it
+// takes them from the list. So what hardly any ray needs is in a kernel of its own, which only they pay for.
 #ifndef BIND_DEFERRED_GLSL
 #define BIND_DEFERRED_GLSL
 

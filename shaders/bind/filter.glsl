@@ -7,12 +7,12 @@
 #include "media.glsl"
 #include "surface.glsl"
 
-// Absorption is told from where the shadow ray ends, at the light, or for suns at 0: a surface that enters a body adds what the body would absorb from there on to
-// the end, one that leaves it takes that away again, and where the ray starts in a body it starts
-// with all of it (surrounding_absorption). So what remains is the path inside, wherever the ray's
-// ends are. No sun is inside anything, so the end may lie at 0, before the ray.
-// Open meshes: who enters and never leaves is absorbed up to the light, as seen by the eye, whose ray
-// stays in the medium; who leaves without having entered comes out below 0, which counts as 0.
+// Absorption is counted up to where the shadow ray ends: at the light, or for suns at t = 0. A surface where
+// the ray enters a body adds what the body would absorb from there to the end, one where it leaves takes that
+// away again, and a ray that starts in a body starts with all of it (surrounding_absorption). So what remains
+// is the path inside, wherever the ray's ends are. No sun is inside anything, so the end may lie at 0.
+// Open meshes: a ray that enters and never leaves is absorbed up to the light, as is a camera ray, which
+// stays in the medium; one that leaves without having entered gets a sum below 0, which counts as 0.
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
 const float DEPTH_MAX = 1073741824.0;        // 2^30; sums wrap around, and back
 
@@ -22,8 +22,8 @@ ivec3 absorption_depth(vec3 absorption, float way)
     return ivec3(floor(clamp(depth, vec3(-DEPTH_MAX), vec3(DEPTH_MAX)) + 0.5));
 }
 
-// Of all media that a place is in. Where they overlap each of them absorbs; for the eye only the one
-// of the highest priority does.
+// The sum of the absorption of all media that a place is in. Where they overlap each of them absorbs light
+// on its way here; for rays that the eye sees only the medium of the highest priority does.
 vec3 surrounding_absorption(uvec4 media)
 {
     vec3 sum = vec3(0.0);
@@ -38,14 +38,15 @@ vec3 surrounding_absorption(uvec4 media)
     return sum;
 }
 
-// 1/64 stops of what is kept; what keeps nothing keeps nothing.
+// The optical depth, in 1/64 stops, of what lets the share `kept` pass; for a share of 0 nothing passes.
 ivec3 filter_depth(vec3 kept)
 {
     vec3 depth = floor(-64.0 * log2(max(kept, vec3(1e-30))) + 0.5);
     return ivec3(mix(max(depth, vec3(0.0)), vec3(65535.0), lessThanEqual(kept, vec3(0.0))));
 }
 
-// As surface_optics has it for the straight and the refracted ray, without Fresnel.
+// The optical depth of a filter at a point (see traverse.glsl). What passes is as in surface_optics, for the
+// straight and the refracted ray, without Fresnel.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front, ivec3 own)
 {
     if (SPEC_FILTER_DETAIL == 0u)

@@ -1,4 +1,4 @@
-// A hit that lights are asked for: what of its surface that takes.
+// A lit hit: what the shadow kernel needs to know of its surface to add the light that reaches it.
 #ifndef BIND_LIT_GLSL
 #define BIND_LIT_GLSL
 
@@ -52,7 +52,8 @@ bool lit_has(uint part)
     return (SPEC_LIT_PARTS & part) != 0u;
 }
 
-// Of each, after the four that all have: normals of triangles, highlights, absorption.
+// Where the optional rows of a lit hit are, behind the four that each has: the normal of the triangle, the
+// highlight, the absorption.
 uint lit_highlight_row()
 {
     return 4u + uint(lit_has(LIT_HAS_NG));
@@ -63,7 +64,7 @@ uint lit_absorption_row()
     return lit_highlight_row() + uint(lit_has(LIT_HAS_HIGHLIGHT));
 }
 
-// In pairs.
+// The number of rows of a lit hit, rounded up to an even number.
 uint lit_rows_each()
 {
     return (lit_absorption_row() + uint(lit_has(LIT_HAS_ABSORPTION)) + 1u) & ~1u;
@@ -119,7 +120,7 @@ void store_lit(uint index, Lit lit)
                    floatBitsToUint(vec4(lit.origin, lit.gloss)));
     store_lit_rows(row + 2u, floatBitsToUint(vec4(lit.ns, lit.error)),
                    uvec4(floatBitsToUint(lit.diffuse), lit.record));
-    // Whichever of them there are.
+    // The optional rows that this kernel has, without gaps.
     uvec4 fourth = lit_has(LIT_HAS_NG) ? ng : lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
     uvec4 fifth = lit_has(LIT_HAS_NG) && lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
     if (SPEC_LIT_PARTS != 0u)
@@ -143,7 +144,7 @@ uint reaching_lights(Lit lit)
     return reaching;
 }
 
-// Leaves it to the lights that may reach it.
+// Stores a lit hit, and appends it to the list of each light that may reach it.
 void list_lit(bool wanted, Lit lit, inout uint status)
 {
     uint g = chunk.generation, lists = list_of_light(frame.light_count - 1u) + 1u, i = 0u;

@@ -13,7 +13,7 @@ layout(set = 0, binding = BIND_NODE8_TEXELS) uniform usamplerBuffer node8_texels
 RaySetup packet_world[SPEC_PACKET_RAYS]; // packet_rays in the space of the tree over instances
 
 // The same rays as boxes are tested with: t in units of the largest component of the direction, so that
-// `inverse` is at least 1; and at most BOX_INVERSE_MOST, see box_margin.
+// `inverse` is at least 1; and at most BOX_INVERSE_MAX, see box_margin.
 struct BoxRay {
     vec3 origin, inverse, size; // size: |inverse|
 };
@@ -79,7 +79,7 @@ void make_packet_bounds(const uint mode)
     packet_bounds = b;
 }
 
-// Of packet_rays, which are those of a tree now.
+// Makes the box rays and the bounds of packet_rays, which are in the space of the tree to traverse.
 void make_box_rays(const uint mode)
 {
     EACH_RAY {
@@ -115,8 +115,8 @@ bool may_be_met(vec3 box_lo, vec3 box_hi)
     return start <= end * (1.0 + BOUNDS_MARGIN);
 }
 
-// Whether there is anything in an entry. Lane 0 by a name that compilers do not know it by (see turn.glsl):
-// of a lane that they know lavapipe makes a scalar, and a jump of every selection by it.
+// Whether a stack entry holds a ref, by its lane 0. Compilers do not know gl_WorkGroupID.y to be 0 (see
+// turn.glsl): of a lane that they know lavapipe makes a scalar, and a jump of every selection by it.
 bool is_filled(uint entry)
 {
     return subgroupShuffle(entry, gl_WorkGroupID.y) != REF_DONE;
@@ -134,7 +134,7 @@ void push_packet(uint entry, bool some)
     packet_top = some ? entry : packet_top;
 }
 
-// `ref` itself where nothing is `wanted`; REF_DONE where nothing is left above `base`.
+// Pops the nearest ref; `ref` itself where not `wanted`, REF_DONE where nothing is left above `base`.
 uint pop_packet(bool wanted, uint ref, uint base)
 {
     bool empty = wanted && !is_filled(packet_top) && packet_height > base;
@@ -148,7 +148,7 @@ uint pop_packet(bool wanted, uint ref, uint base)
     return wanted ? first : ref;
 }
 
-// When the first ray of this lane enters the box, which is widened.
+// The least t, as bits, at which a ray of this lane enters the widened box; NEVER where none does.
 int enter_box(vec3 middle, vec3 half_size)
 {
     int first = NEVER;
@@ -164,7 +164,8 @@ int enter_box(vec3 middle, vec3 half_size)
     return first;
 }
 
-// Of child `lane`, its first entry.
+// Each lane gives the box of one child, and gets the least t, as bits, at which a ray of the packet enters
+// it; NEVER where none does.
 int enter_children(vec3 lo, vec3 hi, bool wanted)
 {
     uint lane = gl_SubgroupInvocationID;
@@ -241,7 +242,7 @@ RaySetup packet_ray(uint r)
     return packet_rays[r];
 }
 
-// The ref behind a leaf's record that was tested.
+// The ref to visit after the record of a leaf at `ref` has been tested.
 uint next_packet_ref(const uint mode, uint ref, uint base)
 {
     ref += 1u - REF_ONE_PRIMITIVE;
@@ -252,8 +253,8 @@ uint next_packet_ref(const uint mode, uint ref, uint base)
     return ends && !any_lane(going) ? REF_DONE : ref;
 }
 
-// Goes on through a mesh tree at `ref` until REF_DONE, or until a record waits for some ray. Only packets
-// of one ray a lane have records that wait.
+// Traverses a mesh tree from `ref` on until REF_DONE, or until the record at `ref` is `deferred` for some
+// ray. Only packets of one ray a lane defer records.
 void walk_packet(const uint mode, float t_min, uint instance, uint base, inout uint ref,
                  out bool own_deferred, out bool deferred)
 {
@@ -285,7 +286,7 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// Looks at the record at `ref` for the rays that wait, and goes on to the next.
+// Tests the record at `ref` in full for the rays that have deferred it, and goes on to the next.
 void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base, bool own_deferred,
                          inout uint ref)
 {

@@ -126,7 +126,7 @@ void size_rays(vec3 eye)
 
 // Boxes are widened by more than all roundings of their tests, of transforms to instances and of the tests
 // of what is inside, each of which is a few 2^-24 of the coordinates that go into it. So wide, a box that a
-// ray runs along is met: with BOX_INVERSE_MOST in place of infinity it is left 2^7 times as far away as it
+// ray runs along is met: with BOX_INVERSE_MAX in place of infinity it is left 2^7 times as far away as it
 // is large.
 float box_margin(vec3 lo, vec3 hi)
 {

@@ -176,8 +176,8 @@ Candidate meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
     return m;
 }
 
-// What floats tell of one end of a chord. Where they do not tell if the near end counts, it may be the
-// far one that does.
+// Sets what float arithmetic tells of a candidate hit at one end of a chord. Where it does not decide
+// whether the near end is at t_min or behind it, the hit may be at the far end.
 void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool own,
                inout Candidate m)
 {
@@ -189,8 +189,8 @@ void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool
     m.sure = m.rounded && m.lo >= t_min && (!own || bounds.inward_known);
 }
 
-// Of one end of a chord. A ray that starts on the sphere (`own`) is inside or leaves: only the far
-// end is there to be met, and only on the way inwards. No distance needs to be small for that.
+// The candidate hit at one end of a chord. A ray that starts on the sphere (`own`) can only meet the far
+// end, and only if it goes inwards. No small distance has to be chosen for that.
 Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
 {
     Candidate m;
@@ -208,7 +208,7 @@ Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool
     return m;
 }
 
-// Where the ray meets it; a sphere at the end of the chord that `at_exit` tells.
+// The candidate hit of a primitive; of a sphere at the far end of the chord if `at_exit`, else the near one.
 Candidate meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit)
 {
     Candidate m;
@@ -248,7 +248,7 @@ Chord chord_of(RaySetup ray, float t_min, Primitive p)
     return chord;
 }
 
-// Whether the near end is not there to be met.
+// Whether the near end of the chord cannot be hit: it is before t_min, or the ray starts on the sphere.
 bool starts_at_exit(const uint mode, Primitive p, Chord chord, float t_min)
 {
     bool before = !(chord.t_near >= t_min);

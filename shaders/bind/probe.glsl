@@ -1,5 +1,5 @@
-// The ray tree of one pixel's first sample: a record for each ray. Those that are traced have the number of
-// their id, the others follow behind. With SPEC_PROBE, and only then in a kernel.
+// The ray tree of one pixel's first sample: a record for each ray. Rays of the queues have the record with
+// the number of their id; shadow rays and rays that are cut follow behind. For kernels with SPEC_PROBE alone.
 #ifndef BIND_PROBE_GLSL
 #define BIND_PROBE_GLSL
 
@@ -10,7 +10,7 @@
 layout(set = 0, binding = BIND_PROBE, std430) buffer ProbeBuffer
 {
     gpu_probe probe;
-    gpu_probe_ray probe_rays[]; // 2 * PROBE_RAYS_MOST
+    gpu_probe_ray probe_rays[]; // 2 * PROBE_RAYS_MAX
 };
 
 bool is_recorded(uint id)
@@ -45,7 +45,7 @@ gpu_probe_ray make_probe_ray(uint kind, uint end, uint parent, vec3 origin, vec3
     return ray;
 }
 
-// What the ray of `from` met; `from` with it.
+// `from` with the hit of its ray filled in.
 gpu_probe_ray with_hit(gpu_probe_ray from, Hit hit)
 {
     if (hit.primitive == HIT_NONE)
@@ -96,7 +96,7 @@ void probe_sent(uint id, uint sent, uint kind)
     probe_rays[sent].parent = id;
 }
 
-// Of a ray that is not traced as those of a picture are.
+// Records a ray that has no id in the queues: a shadow ray, or one that is cut and not traced.
 void probe_other(gpu_probe_ray ray)
 {
     if (!is_recorded(0u))

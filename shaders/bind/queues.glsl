@@ -45,7 +45,7 @@ layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 const bool CALLS_RAYS = SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u || SPEC_CUTOUTS != 0u ||
                         SPEC_CATCHERS != 0u;
 
-// Whole parts, whose sum does not depend on an order.
+// Cut weights are added up as integers, in 1 / CUT_PARTS, so that their sum does not depend on the order.
 const float CUT_PARTS = 16777216.0;
 
 uvec4 fetch_ray_row(uint row)
@@ -90,7 +90,7 @@ uvec2 fetch_record_ids(uint record, uint instance)
     return uvec2(SPEC_INSTANCED != 0u || SPEC_FLAT != 0u ? instance : 0u, fetch_triangle_row(row).w);
 }
 
-// Four words share a row.
+// The word of `item` in its row, which holds those of four items.
 uint word_of_row(uvec4 row, uint item)
 {
     uvec2 pair = (item & 2u) != 0u ? row.zw : row.xy;
@@ -103,7 +103,7 @@ bool is_queue_full()
     return (status_word & STATUS_QUEUE_FULL) != 0u;
 }
 
-// Of a camera ray.
+// The slot of the pixel of a camera ray.
 uint slot_of(uint id)
 {
     return SPEC_LISTED != 0u && chunk.listed != 0u ? listed_slots[min(id, chunk.listed - 1u)] : id;
@@ -114,7 +114,7 @@ uint camera_ray_count()
     return SPEC_LISTED != 0u && chunk.listed != 0u ? chunk.listed : chunk.block_count * BLOCK_PIXELS;
 }
 
-// Ids in front are below that, those at the back are not. Camera rays are all in front.
+// The first id of the back segment; those of the front segment are below. Camera rays are all in front.
 uint middle_id()
 {
     return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
@@ -186,7 +186,7 @@ Ray fetch_ray(uint id, out uint slot)
     return ray;
 }
 
-// For the next generation.
+// Stores a ray of the next generation.
 void store_ray(uint id, Ray ray, uint slot)
 {
     uint place = ray_place(id, chunk.generation + 1u);
@@ -277,14 +277,14 @@ uint hit_capacity()
     return is_primary() ? camera_ray_count() : chunk.ray_capacity;
 }
 
-// Of an item of the dispatch's generation among those of all generations.
+// The place of an item of the dispatch's generation among those of all generations of the tile.
 uint place_in_tile(uint item)
 {
     uvec2 firsts = fetch_firsts(chunk.generation);
     return SPEC_SEGMENTS == 2u && item >= middle_id() ? item - firsts.y : item + firsts.x;
 }
 
-// Ray that met something, of the class that the dispatch works on.
+// The id of a ray with a hit, of the material class that the dispatch works on.
 uint fetch_listed_hit(uint item)
 {
     uint at = (chunk.list - LIST_HITS) * chunk.ray_capacity + place_in_tile(item);
@@ -311,7 +311,7 @@ uint own_item(uint r, uint capacity)
     return is_back ? capacity - 1u - at : at;
 }
 
-// Item of the list of deferred rays, where items are rays, or nothing is appended.
+// The invocation's item of the list of deferred rays, of kernels whose items are rays or that append nothing.
 uint deferred_item(uint r)
 {
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
@@ -320,7 +320,7 @@ uint deferred_item(uint r)
     return item;
 }
 
-// Slot of a camera ray.
+// The id of camera ray `r` of the invocation; ITEM_NONE: none.
 uint camera_item(uint r)
 {
     uint each = SPEC_GROUP_SIZE * SPEC_PACKET_RAYS;
@@ -329,7 +329,7 @@ uint camera_item(uint r)
     return !is_queue_full() && at < camera_ray_count() ? at : ITEM_NONE;
 }
 
-// How many of `wanted` the invocations of the subgroup before this one have, and all of it. All
+// The sum of `wanted` over the invocations of the subgroup before this one; `all`: over all of them. All
 // invocations must be here.
 uint count_before(uint wanted, out uint all)
 {
@@ -355,7 +355,8 @@ uint from_first(uint value)
     return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
 }
 
-// Room for `all` items of the subgroup. `back` is the same for all its invocations.
+// Reserves room for `all` items of the subgroup in a segment of a list: the place of the first. `back` is
+// the same for all its invocations.
 uint extend_segment(uint generation, uint list, uint all, uint each, bool back)
 {
     uint at = 0u;
@@ -375,12 +376,12 @@ uint append_segment(uint generation, uint list, uint wanted, uint each, bool bac
     return extend_segment(generation, list, all, each, back) + before;
 }
 
-// Room for `wanted` items of the invocation in a list of a generation: where in its segment. `each`:
-// items of a workgroup that works on the list.
+// Reserves room for `wanted` items of the invocation in a list of a generation: the place of the first in its
+// segment. `each`: how many items a workgroup that works on the list takes.
 uint append_items(uint generation, uint list, uint wanted, uint each)
 {
     if (SPEC_SEGMENTS == 2u && SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u) {
-        // What has waited is of both segments.
+        // A dispatch over deferred items has invocations of both segments in one subgroup.
         uint front = append_segment(generation, list, is_back ? 0u : wanted, each, false);
         uint back = append_segment(generation, list, is_back ? wanted : 0u, each, true);
         return is_back ? back : front;
@@ -388,13 +389,13 @@ uint append_items(uint generation, uint list, uint wanted, uint each)
     return append_segment(generation, list, wanted, each, is_back);
 }
 
-// Of item `at` of the segment, in a list of that many items.
+// The place in a list of `capacity` items of item `at` of the invocation's segment.
 uint item_place(uint at, uint capacity)
 {
     return is_back ? capacity - 1u - at : at;
 }
 
-// Those of the invocation's rays that met something, class by class: a subgroup's `r` for `r`.
+// Lists the hits of the invocation's rays, class by class; in each list a subgroup's rays `r` follow `r` - 1.
 void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint ids[SPEC_PACKET_RAYS])
 {
     uint before[SPEC_PACKET_RAYS];
@@ -435,7 +436,7 @@ uint reserve_rays(uint wanted, inout uint status)
     return is_back ? chunk.ray_capacity - at - wanted : at;
 }
 
-// Of the invocations of the subgroup, which all must be here.
+// The maximum over the invocations of the subgroup, all of which must be here.
 uint max_of_lanes(uint value)
 {
     if (SPEC_EIGHT_LANES == 0u)
@@ -445,7 +446,7 @@ uint max_of_lanes(uint value)
     return max(value, subgroupShuffleXor(value, 4u));
 }
 
-// Adds to the tally: two numbers below 2^16 a subgroup.
+// The sum over the subgroup, for the tally. `value` may hold two counters whose sums are below 2^16.
 uint add_up_lanes(uint value)
 {
     if (SPEC_EIGHT_LANES == 0u)

@@ -1,12 +1,12 @@
-// NUMERICS_EXACT: what the integers of lib/exact.glsl say of a record, where its floats left it open.
+// NUMERICS_EXACT: settles by integer arithmetic (lib/exact.glsl) what floats do not decide about a record.
 // accel/traverse.c is this in C.
 #ifndef BIND_SETTLE_GLSL
 #define BIND_SETTLE_GLSL
 
 #include "primitive.glsl"
 
-// Where a record's triangle is met, exactly; of one that is met anyway (`hit`) for the key alone.
-// Without SPEC_SETTLES there are no integers, and what pairs do not tell waits.
+// The exact hit of a record's triangle; with `hit` it is known to be met, and only the key is wanted.
+// Without SPEC_SETTLES there is no integer arithmetic: a ray that float-float leaves open is deferred.
 ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
@@ -25,14 +25,14 @@ ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, 
     return m;
 }
 
-// Which ends of a sphere are asked for: from t_min on; the far one alone; that where the ray, which
-// starts on it, goes inwards.
+// Which ends of a chord through a sphere count: those from t_min on; `only_far`: the far one alone; `own`:
+// the ray starts on the sphere, and meets an end only if it goes inwards.
 struct Ends {
     float t_min;
     bool only_far, own;
 };
 
-// And a sphere, likewise.
+// The exact hit of a record's sphere, likewise.
 ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
 {
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
@@ -88,7 +88,7 @@ void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
     m.hi = exact.key;
 }
 
-// Of a triangle, what shading and filters want to know besides.
+// Sets what shading and filters need besides of a hit triangle: `owned`, and in a flat tree `front`.
 void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Candidate m)
 {
     precise vec3 a = row_vec3(p.r0) - ray.origin;
@@ -103,7 +103,7 @@ void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Candidate
         m.front = m.front == ((p.flags & TRIANGLE_MIRRORED) == 0u);
 }
 
-// The ray as the mesh of an instance sees it.
+// Transforms a ray to the object space of an instance.
 void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
 {
     if (SPEC_INSTANCED != 0u) {
@@ -113,9 +113,9 @@ void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
     }
 }
 
-// NUMERICS_EXACT: the key of a candidate, and of the hit so far where it is needed to tell which of both
-// comes first. `origin`, `dir`: of the ray in world space. `at_exit`, of a sphere: which end the candidate
-// was, then is.
+// NUMERICS_EXACT: computes the key of a candidate hit, and that of the hit so far where it takes both to tell
+// which comes first. `origin`, `dir`: the ray in world space. `at_exit`: whether the candidate is the far end
+// of a sphere, before and after.
 void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
             inout bool at_exit, inout Candidate m, inout Hit hit)
 {
@@ -147,8 +147,8 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// NUMERICS_EXACT: makes the t of a hit its key, which nothing may have asked for so far. Not for
-// shading, which does with less and would pay for it on every ray.
+// NUMERICS_EXACT: sets the t of a hit to its key, and computes that where it is not known yet. Shading does
+// not call it: it needs less, and would pay for it on every ray.
 void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
 {
     bool loose = hit.lo < hit.hi;

@@ -13,8 +13,9 @@
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // Defined by the kernel: the optical depth that a filter with TRIANGLE_FILTER_DETAIL adds to a shadow
-// ray that meets it from the front or from behind, in units of 1/64 stop. `way`: from there to the light;
-// for suns to the ray's origin, which is less than 0. `own` is that of its record. What enters and leaves a medium adds with either sign: only the sum need not be negative.
+// ray that meets it from the front or from behind, in units of 1/64 stop. `way`: the distance from there to
+// the light; for suns to the ray's origin, which is less than 0. `own`: the depth in its record. A surface
+// where the ray enters or leaves a medium may add a negative depth; a sum below 0 counts as 0.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
 
@@ -26,8 +27,8 @@ bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint
                                                               primitive > known_primitive)));
 }
 
-// Of the 8 lanes of a packet, which all must be here: shuffles are single instructions on lavapipe, ballots
-// and the like loops over lanes.
+// The bitwise or over the 8 lanes of a packet, which all must be here. Shuffles are single instructions on
+// lavapipe, ballots and the like loops over lanes.
 uint gather_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);
@@ -43,7 +44,7 @@ bool any_lane(bool wanted)
 const uint REF_DONE = 0xffffffffu;
 const uint REF_ONE_PRIMITIVE = 1u << BVH_COUNT_SHIFT;
 
-// What lies behind it does not count.
+// The largest t at which a candidate may still be nearer than the hit so far.
 float farthest(Hit hit)
 {
     return SPEC_NUMERICS == NUMERICS_EXACT ? hit.hi : hit.t;
@@ -110,7 +111,7 @@ uint pop_memory(inout NodeStack stack)
     return node_stack[stack.in_memory];
 }
 
-// Short, the stack must have room: see has_room.
+// Pushes `ref` where `wanted`. A short stack must have room: see has_room.
 void push_ref(bool wanted, uint ref, inout NodeStack stack, inout uint status)
 {
     if (SPEC_SHORT_STACK == 0u) {
@@ -127,7 +128,7 @@ void push_ref(bool wanted, uint ref, inout NodeStack stack, inout uint status)
     stack.in_registers += wanted ? 1u : 0u;
 }
 
-// `ref` itself where nothing is `wanted`.
+// Pops a ref; `ref` itself where not `wanted`.
 uint pop_ref(bool wanted, uint ref, inout NodeStack stack)
 {
     if (SPEC_SHORT_STACK == 0u) {
@@ -244,7 +245,8 @@ bool goes_through(const uint mode)
            mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
 }
 
-// At NUMERICS_EXACT: or may be, unless all keys are known.
+// Whether a candidate is met, and nearer than the hit so far or as near with smaller ids. At NUMERICS_EXACT:
+// whether it may be, unless both keys are known.
 bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
 {
     float t = SPEC_NUMERICS == NUMERICS_EXACT ? m.lo : m.t;
@@ -253,7 +255,7 @@ bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
                                        (instance == hit.instance && primitive < hit.primitive))));
 }
 
-// What is met, nearer, and there for rays of this kind at all.
+// Whether a candidate is met, is nearer than the hit so far, and can be hit by rays of this kind at all.
 bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint primitive,
                 uint skip_instance, uint skip_primitive, Hit hit)
 {
@@ -263,7 +265,7 @@ bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint pr
                                        primitive, skip_instance, skip_primitive);
     if (mode == TRAVERSE_SHADOW)
         reached = reached && (flags & TRIANGLE_NO_SHADOW) == 0u;
-    // Light comes through what the eye sees not.
+    // One-sided surfaces are culled for closest hits alone: they stop light from behind too.
     if (finds_closest(mode) && SPEC_CULLING != 0u)
         reached = reached && (m.front || (flags & TRIANGLE_ONE_SIDED) == 0u);
     return reached;
@@ -280,8 +282,8 @@ void add_filter(Candidate m, vec2 uv, uint flags, uint shadow, uint instance, ui
         hit.filter_depth += depth;
 }
 
-// What is reached, unless something about it says no; filters add up and are not hits. `uv`: where
-// textures are read. `refused`: the ray goes on through the point.
+// Whether a candidate becomes the hit: it is reached, and not cut out there. Filters add up their depth and
+// are not hits. `uv`: where textures are read. `refused`: the ray goes on through the point.
 bool accept_candidate(const uint mode, Candidate m, vec2 uv, uint flags, uint shadow, uint instance,
                     uint primitive, uint skip_instance, uint skip_primitive, inout Hit hit,
                     out bool refused)
@@ -328,13 +330,13 @@ bool settles(const uint mode)
            (SPEC_SPHERES != SPHERES_NONE && goes_through(mode));
 }
 
-// Whether a ray is done with that has just `accepted` a hit, or not.
+// Whether a ray ends here: it needs no nearer hit than the one it has `accepted`, or it is deferred.
 bool is_over(const uint mode, bool accepted, Hit hit)
 {
     return (accepted && !finds_closest(mode)) || must_wait(hit.status);
 }
 
-// NUMERICS_EXACT without SPEC_SETTLES: whether the ray waits as floats leave open how it meets this.
+// NUMERICS_EXACT without SPEC_SETTLES: defers the ray, and gives true, where floats leave a candidate open.
 bool leaves_open(const uint mode, bool reached, Candidate m, inout Hit hit)
 {
     bool open = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES == 0u && reached &&
@@ -343,7 +345,7 @@ bool leaves_open(const uint mode, bool reached, Candidate m, inout Hit hit)
     return open;
 }
 
-// A filter that is met, at both its ends where it is a sphere. False: it is none.
+// Adds the depth of a filter that is met, at both ends of a sphere. False: the primitive is no filter.
 bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit, Candidate m,
                  inout Hit hit)
 {
@@ -361,7 +363,7 @@ bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_ex
 }
 
 // Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal
-// may end. `waits`: it is met, but has to be looked at first.
+// may end. `deferred`: it is met, but look_at_record has to be called for it first.
 bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRows rows,
                uint instance, uint skip_instance, uint skip_primitive, inout Hit hit,
                out bool deferred)
@@ -401,8 +403,8 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
                      skip_primitive, hit, deferred);
 }
 
-// Whether a loop has another iteration: in a packet for all lanes alike. There lavapipe 22.3 added a filter twice
-// in lanes that had left the loop before others.
+// Whether a loop has another iteration: in a packet for all lanes alike, for lavapipe 22.3 added a filter
+// twice there in lanes that had left the loop before others.
 bool goes_on(bool again)
 {
     return another_iteration(SPEC_PACKETS != 0u ? any_lane(again) : again);
@@ -457,7 +459,7 @@ bool look_at_record(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
                         skip_instance, skip_primitive, hit);
 }
 
-// The ref behind a leaf's record that was tested.
+// The ref to visit after the record of a leaf at `ref` has been tested.
 uint next_ref(uint ref, bool done, inout NodeStack stack)
 {
     ref += 1u - REF_ONE_PRIMITIVE;
@@ -467,7 +469,7 @@ uint next_ref(uint ref, bool done, inout NodeStack stack)
     return done ? REF_DONE : ref;
 }
 
-// Goes on through a mesh tree at `ref` until REF_DONE, or until a record waits.
+// Traverses a mesh tree from `ref` on until REF_DONE, or until the record at `ref` is `deferred`.
 void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint skip_instance,
                uint skip_primitive, inout uint ref, inout NodeStack stack, inout Hit hit,
                out bool deferred)
@@ -569,7 +571,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// See traverse_mesh.
+// Traverses the tree over instances, with deferred records as in traverse_mesh.
 void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uint root,
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {

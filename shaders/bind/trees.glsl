@@ -67,8 +67,8 @@ InstanceFrame fetch_instance_frame(uint instance)
     return frame;
 }
 
-// Of the mesh's box, in object space; without SPEC_INSTANCED all instances name that of the only
-// tree.
+// The center of the box of an instance's mesh, in object space; without SPEC_INSTANCED all instances have
+// that of the only tree.
 vec3 fetch_mesh_center(uint instance)
 {
     uint row = instance * INSTANCE_ROWS + 4u;

@@ -1,5 +1,5 @@
-// Adds to each ray of a generation what the rays that it called for have brought, in a fixed order. Of
-// camera rays to the pixel.
+// Adds to the sum of each ray of a generation those of the rays that it called for, in a fixed order. The
+// sums of camera rays go to the pixels.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -28,7 +28,7 @@ vec3 caught_share(vec3 light, vec3 open)
     return mix(vec3(1.0), share, greaterThan(open, vec3(1e-30)));
 }
 
-// Of a ray and those that it called for.
+// The radiance that a ray brings, together with that of the rays it called for.
 vec3 whole_sum(uint id, vec4 own)
 {
     uint has = floatBitsToUint(own.w);
@@ -55,8 +55,8 @@ void resolve_hit(uint item)
         store_sum(id, whole_sum(id, own), 0u);
 }
 
-// What was cut of the sample, for --depth and for --bailout, to what was cut of the pixel; and the largest
-// sums of all pixels.
+// Adds the weights of rays that were cut from the sample, for --depth and for --bailout, to those of the
+// pixel; and keeps the largest sums of all pixels in the tally.
 void add_cuts(bool alive, uint slot, uint pixel)
 {
     vec2 cut = vec2(0.0);

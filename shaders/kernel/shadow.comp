@@ -85,7 +85,7 @@ vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
     return radiance * (diffuse + highlight);
 }
 
-// Of one point of the light, at one lit hit.
+// What arrives from one point of the light at one lit hit.
 struct Arrival {
     bool faces, wanted;
     float cos_light, strength;
@@ -117,7 +117,7 @@ void face_light(uint r, bool alive, gpu_light light, uint point)
                                   : lit.highlight * blinn_highlight(cos_half, lit.gloss);
         a.reflected += a.highlight;
     }
-    // NaN is: it must be seen
+    // NaN is wanted too: it must be seen in the picture.
     a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= 0.0);
     arrival_of[r] = a;
     ask_light(r, a.wanted, lit, at, above);
@@ -148,7 +148,7 @@ void add_arrival(uint r, gpu_light light, uint point)
     }
 }
 
-// Adds what has come to the sums of the ray; gives the shadow rays that took.
+// Adds the light of all points to the sum of the ray; gives how many shadow rays that took.
 uint leave_lit(uint r, bool alive, uint item, gpu_light light)
 {
     bool deferred = alive && must_wait(status_of[r]);

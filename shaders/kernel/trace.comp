@@ -53,7 +53,7 @@ vec3 triangle_normal(uint row)
     return n;
 }
 
-// That of the triangle or the sphere, taken to world space by the inverse transpose.
+// The normal of the hit triangle or sphere, taken to world space by the inverse transpose; not unit.
 vec3 geometric_normal(Hit hit)
 {
     uint row = hit.triangle * TRIANGLE_ROWS;
@@ -80,7 +80,7 @@ gpu_ray fetch_ray(uint index)
     return gpu_ray(row_vec3(r0), uintBitsToFloat(r0.w), row_vec3(r1), uintBitsToFloat(r1.w));
 }
 
-// Of any hit nothing is told but that there is one.
+// Stores the result of a ray; with SPEC_ANY_HIT only whether there is a hit.
 void store_answer(uint index, Hit hit)
 {
     bool met = hit.primitive != HIT_NONE;

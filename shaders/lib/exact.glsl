@@ -38,7 +38,7 @@ float largest_magnitude(vec3 p)
     return larger(size.x, larger(size.y, size.z));
 }
 
-// Vertices relative to the ray's origin, as for intersect_triangle.
+// The bounds of a hit by floats. Vertices are relative to the ray's origin, as in intersect_triangle.
 ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
     vec3 ta = turn_dominant(ray.dominant, a);
@@ -50,7 +50,7 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
     float far = larger(largest_magnitude(a), larger(largest_magnitude(b), largest_magnitude(c)));
     float size = larger(larger(larger(abs(sa.x), abs(sa.y)), larger(abs(sb.x), abs(sb.y))),
                         larger(abs(sc.x), abs(sc.y)));
-    // Of sheared coordinates, then of edge functions.
+    // Bounds of the errors of sheared coordinates (`off`), and of edge functions.
     precise float off = 12.0 * EXACT_UNIT * far + EXACT_TINY;
     precise float edge_error =
         4.125 * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
@@ -128,7 +128,7 @@ void decode_point(int at, vec3 p)
     }
 }
 
-// Between which exponents the values that are not 0 lie: which digits are in use. Clears them.
+// The first and the last digit in use, by the exponents of the values that are not 0. Clears these digits.
 ivec2 find_range()
 {
     int lo = 254, hi = 1, dir_lo = 254, dir_hi = 1;
@@ -147,7 +147,7 @@ ivec2 find_range()
     return range;
 }
 
-// The product of three numbers by index, or less it.
+// Adds the product of three numbers, given by index, to integer `target`; `negative`: subtracts it.
 void add_product(int target, ivec3 at, bool negative)
 {
     uint p = wide_mantissa[at.x], q = wide_mantissa[at.y], r = wide_mantissa[at.z];
@@ -200,8 +200,8 @@ void add_determinants()
     }
 }
 
-// Carries; digits are 0..65535 then, of two's complement, and the first integer is D. Signs of all, and
-// that of e_a.
+// Propagates the carries: then digits are 0..65535, in two's complement, and the first integer is D. Gives
+// the signs of all integers, and that of e_a.
 void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
 {
     ivec4 carry = ivec4(0), some = ivec4(0);
@@ -222,7 +222,8 @@ void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
     signs = mix(ivec4(notEqual(some, ivec4(0))), ivec4(-1), lessThan(carry, ivec4(0)));
 }
 
-// What is negative is negated. The first digits that are not 0, of D and N.
+// Negates D, e_b and e_c where D is negative, and N where N is. Gives the number of the highest digit that is
+// not 0, of D and of N.
 ivec2 make_positive(ivec2 range, ivec4 signs)
 {
     bool flip = signs[WIDE_D] < 0;
@@ -253,7 +254,7 @@ uint leading_bits(ivec2 range, int k, int top, uint shift)
     return bits << shift | digit_at(range, k, top - 2) >> (16u - shift);
 }
 
-// Of 16.
+// The number of leading zeros in the 16 bits of digit `top` of integer `k`.
 uint leading_zeros(ivec2 range, int k, int top)
 {
     return uint(clamp(15 - findMSB(digit_at(range, k, top)), 0, 15));
@@ -285,7 +286,7 @@ int compare_product(ivec2 range, uint factor, int shift, out bool finished)
     return borrow != 0 ? -1 : more != 0 ? 1 : 0;
 }
 
-// N / D, both positive, to nearest, ties to even.
+// The quotient N / D of two positive integers, rounded to nearest, ties to even.
 float round_quotient(ivec2 range, int top_d, int top_n, out bool finished)
 {
     uint zeros_n = leading_zeros(range, WIDE_N, top_n);

@@ -67,7 +67,8 @@ int ball_product[88]; // of t times P
 uint ball_mantissa[BALL_VALUES]; // sign in the top bit
 int ball_exponent[BALL_VALUES];
 
-// Clears the digits, too. The last digit in use; `unit`: exponent of lengths less that of directions.
+// Splits the values into mantissas and exponents, and clears the digits. Gives the last digit in use; `unit`:
+// the exponent of lengths less that of directions.
 int decode_ball(vec3 origin, vec3 dir, vec3 center, float radius, out int unit)
 {
     ivec2 least = ivec2(254), most = ivec2(1); // directions, lengths
@@ -96,7 +97,7 @@ int decode_ball(vec3 origin, vec3 dir, vec3 center, float radius, out int unit)
     return last;
 }
 
-// Twice the product of two values, or once; or less it.
+// Adds the product of two values to integer `target`; `twice`: doubled; `negative`: subtracts it.
 void add_ball_product(int target, int a, int b, bool twice, bool negative)
 {
     uint p = ball_mantissa[a], q = ball_mantissa[b];
@@ -117,7 +118,7 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
     }
 }
 
-// Six products of each axis, and r^2.
+// Adds the products that P, S and Q are sums of: six for each axis, and r^2.
 void add_ball_products()
 {
     for (int n = 0; n < 19; n++) {
@@ -134,7 +135,7 @@ int sign_of(int carry, int some)
     return carry < 0 ? -1 : (carry | some) != 0 ? 1 : 0;
 }
 
-// Digits are 0..4095 then, but for the last. The signs of P, S and Q.
+// Propagates the carries: then all digits but the last are 0..4095. Gives the signs of P, S and Q.
 ivec3 carry_ball(int last)
 {
     ivec3 carry = ivec3(0), some = ivec3(0);
@@ -153,7 +154,7 @@ ivec3 carry_ball(int last)
     return ivec3(sign_of(carry.x, some.x), sign_of(carry.y, some.y), sign_of(carry.z, some.z));
 }
 
-// Of S^2 - P Q.
+// The sign of S^2 - P Q; negative: the ray's line misses the sphere.
 int sign_of_discriminant(int last)
 {
     int carry = 0, some = 0;

@@ -1,12 +1,12 @@
-// What exact_sphere.glsl's integers tell, in pairs of floats: nearly always enough, for a small part of
-// their price. accel/pairs_sphere.c is this file in C.
+// The test of exact_sphere.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a
+// small part of the price of integers. accel/ff_sphere.c is this file in C.
 #ifndef LIB_FF_SPHERE_GLSL
 #define LIB_FF_SPHERE_GLSL
 
 #include "exact_sphere.glsl"
 #include "ff_numbers.glsl"
 
-// And how far it may be off.
+// A float-float number, and how far it may be off.
 struct BoundedPair {
     vec2 value;
     float error;
@@ -18,8 +18,8 @@ BoundedPair bounded_ff(vec2 value, float size)
     return BoundedPair(value, error);
 }
 
-// Of P t^2 - 2 S t + Q, the roots of which are the ends; all in units in which the direction and the
-// larger of the way to the centre and the radius are 1 to 2 long.
+// The coefficients of P t^2 - 2 S t + Q, whose roots are the t of the ends. In units in which the direction,
+// and the larger of the vector to the centre and the radius, are 1 to 2 by their largest component.
 struct Quadratic {
     BoundedPair p, s, q;
 };
@@ -51,8 +51,8 @@ BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
     return room;
 }
 
-// Of what is beyond its own error. The first float is off by 4.5 units in the last place at most; what
-// it leaves gives the second, and 2^-41 is left of that.
+// The square root of a number that is larger than its error. The first float is off by 4.5 units in the last
+// place at most; what it leaves gives the second, and 2^-41 is left of that.
 BoundedPair root_of(BoundedPair x)
 {
     precise float first = sqrt(x.value.x);
@@ -68,7 +68,7 @@ int sign_known(BoundedPair x)
     return x.value.x > x.error ? 1 : x.value.x < -x.error ? -1 : 0;
 }
 
-// What exact_meet_sphere() says, if it is sure.
+// The result of exact_meet_sphere(). False: float-float arithmetic does not decide it.
 bool ff_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far, float t_min,
                       out SphereCandidate candidate)
 {

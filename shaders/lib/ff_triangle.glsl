@@ -1,5 +1,5 @@
-// What exact.glsl's integers tell, in pairs of floats: nearly always enough, for a small part of their
-// price. accel/ff_triangle.c is this file in C.
+// The test of exact.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a small part
+// of the price of integers. accel/ff_triangle.c is this file in C.
 #ifndef LIB_FF_TRIANGLE_GLSL
 #define LIB_FF_TRIANGLE_GLSL
 
@@ -81,7 +81,8 @@ PairEdges ff_edges(PairTriangle p)
     return e;
 }
 
-// What exact_meet() says, if it is sure. `key_known`: if the triangle is met, m.key is the key.
+// The result of exact_meet(). False: float-float arithmetic does not decide it. `key_known`: m.key is the
+// key if the triangle is met.
 bool ff_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting m,
                out bool key_known)
 {

@@ -126,7 +126,7 @@ struct Weights {
     vec3 z;        // distances of the vertices, along the ray
 };
 
-// Of vertices whose last coordinates, turned, are az, bz and cz.
+// `az`, `bz`, `cz`: coordinates of the vertices along the dominant axis, relative to the origin of the ray.
 Weights weigh_triangle(RaySetup ray, float az, float bz, float cz, vec3 edges)
 {
     precise vec3 z = ray.shear.z * vec3(az, bz, cz);
@@ -193,15 +193,17 @@ bool owns_edge(vec2 edge, bool left)
                 : edge.y < 0.0 || (edge.y == 0.0 && edge.x < 0.0);
 }
 
-// By which edge functions are 0, and on which side of its edges the triangle is.
+// Whether the triangle owns the point where it is met, by which edge functions are 0, and on which side of
+// its edges the triangle is.
 bool owns_its_edges(vec2 sa, vec2 sb, vec2 sc, bvec3 on_edge, bool left)
 {
     return (!on_edge.x || owns_edge(sc - sb, left)) && (!on_edge.y || owns_edge(sa - sc, left)) &&
            (!on_edge.z || owns_edge(sb - sa, left));
 }
 
-// Of the triangles around an edge or a vertex that a ray meets exactly, seen from the same side, just
-// one owns the point: the fill rule of rasterizers (Pineda 1988). For what must be counted once.
+// Whether this triangle owns the point where the ray meets it. Of the triangles around an edge or a vertex
+// that a ray meets exactly, seen from the same side, just one does: the fill rule of rasterizers (Pineda
+// 1988). For what must be counted once.
 bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
     vec2 sa, sb, sc;

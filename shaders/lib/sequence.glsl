@@ -2,7 +2,8 @@
 #ifndef LIB_SEQUENCE_GLSL
 #define LIB_SEQUENCE_GLSL
 
-// Of the index, bits from the lowest on, to the digits of the second coordinate.
+// The digits of the second coordinate of point `index`, the lowest bit first; those of the first coordinate
+// are the index itself.
 uint sequence_rows(uint index)
 {
     index ^= (index >> 1) & 0x55555555u;

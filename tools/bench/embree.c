@@ -41,7 +41,7 @@ struct peer {
     uint64_t count;
     bool any, wide; /* wide: packets of 16 */
     int threads;
-    /* Of the trace that is on: */
+    /* The trace that is running: */
     const whit_ray *traced;
     enum way way;
     bool coherent;

@@ -37,7 +37,7 @@ void figures_leave_out(struct figures *figures, const char *name, const char *wh
 WHIT_CHECK whit_result figures_end(struct figures *figures, const char *title, whit_result result);
 
 json_t *figures_times(const struct bench_times *times); /* `median spread runs` */
-/* Of each run of `a` that of `b` at the same turn. */
+/* The ratio a / b of each run of `a` and the run of `b` in the same turn; 0 where b is 0. */
 struct bench_times figures_ratio(const struct bench_times *a, const struct bench_times *b);
 
 /* figures_plot.c: how far each is from what it must, as SVG. */

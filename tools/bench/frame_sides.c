@@ -322,7 +322,7 @@ whit_result frame_memory(const struct frame *frame, double *megabytes)
     whit_result result = device_bytes(frame, &whole, &with);
     if (result == WHIT_OK)
         result = device_bytes(frame, &min, &without);
-    /* Of a pixel its colour and its two ids. */
+    /* A pixel takes 24 bytes, its colour and its two ids; the small picture has 256 pixels. */
     double pixels = 24.0 * ((double)frame->width * frame->height - 256.0);
     *megabytes = ((double)with - (double)without - pixels) * 1e-6;
     return result;

@@ -10,7 +10,7 @@
 
 enum { LARGE = 200000 }; /* triangles: above it the second goal counts */
 
-/* Of small models, and of large ones. */
+/* The goals for each kind of rays: for small models, and for large ones. */
 static const struct goal goals[RAYS_KINDS][2] = {
     [RAYS_CAMERA] = {{2.0, 3.5, true}, {0.8, 1.2, true}},
     [RAYS_SHADOW] = {{1.5, 2.5, true}, {0.6, 1.0, true}},
@@ -107,7 +107,8 @@ static whit_result run_kind(struct model *model, uint32_t kind)
 
 /* ---- Models ---- */
 
-/* Of a path that of the file, in what is a name anywhere. */
+/* Names a model after the file of `path`, without its extension; letters that may be no part of a
+   file name everywhere become `_`. */
 static void name_model(struct model *model, const char *path)
 {
     const char *slash = strrchr(path, '/'), *from = slash ? slash + 1 : path;

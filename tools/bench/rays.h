@@ -34,7 +34,7 @@ struct model {
     bool has_peer, is_cpu;
     struct study_rays camera;
     whit_hit *hits; /* of camera rays: there the others begin */
-    /* Of the batch that is on, with room for as many as there are camera rays: */
+    /* The batch that is being traced; arrays have room for as many rays as the camera has: */
     struct batch *batch;
     whit_ray *rays;
     whit_hit *traced;
