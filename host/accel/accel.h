@@ -1,93 +1,10 @@
-/* Trees over a scene, as flat arrays that go to the device as they are. */
+/* The trees of a scene, as flat arrays that go to the device as they are. */
 #ifndef ACCEL_ACCEL_H
 #define ACCEL_ACCEL_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "abi/bvh.h"
 #include "abi/spec.h"
-#include "base/log.h"
+#include "bvh/bvh.h"
 #include "scene/scene.h"
-
-/* ---- One tree over boxes (bvh.c: the skeleton; split_*.c: how to choose a split) ---- */
-
-struct bvh_box {
-    float lo[3], hi[3];
-};
-
-enum bvh_builder {
-    BVH_BINNED,  /* SAH over equal bins */
-    BVH_MEDIAN,  /* halves */
-    BVH_SWEEP,   /* SAH over every position, sorted once */
-    BVH_SPATIAL, /* SAH over object and spatial splits (SBVH): needs `triangles` */
-    BVH_NONE,    /* no choice: the order of the input, full leaves, every box that of everything */
-};
-
-/* The triangles that the boxes are of. */
-struct bvh_triangles {
-    const float *positions;  /* 3 a vertex */
-    const uint32_t *indices; /* 3 a triangle */
-    const uint8_t *whole;    /* 1: must stay in one leaf; NULL: none must */
-};
-
-struct bvh_params {
-    enum bvh_builder builder;
-    uint32_t bins;         /* BVH_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
-    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
-    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
-    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
-    bool optimize;         /* improve the finished tree by reinsertion */
-    const struct bvh_triangles *triangles; /* BVH_SPATIAL */
-    float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
-                             tried (Stich et al. 2009, 4.5); 0: 1e-5 */
-    float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;
-                             < 0: none */
-};
-
-/* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
-struct bvh {
-    struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
-    uint32_t *order;            /* free() */
-    uint32_t node_count;        /* with the unused one; 0: no primitives */
-    uint32_t primitive_count, leaf_count;
-    uint32_t
-        reference_count; /* length of `order`; beyond primitive_count where triangles were split */
-    uint32_t depth;      /* inner nodes on the longest path: the stack a traversal needs */
-    uint32_t leaf_largest;
-    bool clipped;    /* leaf boxes may hold parts of their triangles only */
-    double sah_cost; /* expected cost of a random ray, relative to the root's area */
-    double build_ms;
-};
-
-/* Boxes must be finite with lo <= hi. Deterministic. */
-WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
-                                 const struct bvh_params *params, struct bvh *out);
-void bvh_finish(struct bvh *bvh);
-
-static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
-{
-    return node->count & BVH_COUNT_MASK;
-}
-
-/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
-   and depth (bvh_complete.c). Every builder ends with it. */
-void bvh_complete(struct bvh *bvh, double traversal_cost);
-/* Sets only the axis bits of the pair of sibling nodes at `first`. */
-void bvh_set_axis(struct gpu_bvh_node *first);
-
-/* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
-   "Parallel reinsertion for bounding volume hierarchy optimization". Keeps leaves as they are; the
-   depth stays within BVH_DEPTH_MAX. Deterministic whatever the thread count. */
-WHIT_CHECK whit_result bvh_optimize(const struct log *log, uint32_t thread_count,
-                                    double traversal_cost, struct bvh *bvh);
-enum { BVH_DEPTH_MAX = 128 };
-
-/* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
-   sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
-   first violation. */
-WHIT_CHECK whit_result bvh_validate(const struct log *log, const struct bvh *bvh,
-                                    const struct bvh_box *boxes, uint32_t leaf_limit);
 
 /* ---- All trees of a scene ---- */
 
@@ -191,59 +108,10 @@ bool accel_filters_patterned(const struct accel *accel);
 /* TRIANGLE_* that the records of a primitive have, but those of its place in a tree. */
 uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uint32_t primitive);
 
-/* ---- Traversal on the CPU ---- */
-
-struct traverse_params {
-    uint32_t order;    /* ORDER_* */
-    uint32_t numerics; /* NUMERICS_* */
-    bool any;          /* any hit will do: then only `primitive` != HIT_NONE counts */
-    bool brute;        /* no tree: every record of every instance */
-    uint32_t skip_instance, skip_primitive; /* not hit; HIT_NONE: none */
-};
-
-/* The twin of shaders/bind/traverse.glsl: same operations in the same order, so the same bits
-   and the same costs on a device whose arithmetic is IEEE. Tests t_min <= t <= t_max; equal t goes
-   to the smaller instance, then primitive. The ray's cost is added to *cost (stack and depth: the
-   larger one), which may be NULL; STATUS_* bits are or-ed into *status. */
-void traverse_ray(const struct accel *accel, const struct traverse_params *params,
-                  const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
-                  uint32_t *status);
-/* The same at NUMERICS_WATERTIGHT. */
-void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
-                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                    struct gpu_cost *cost, uint32_t *status);
-/* All hits of a ray one after the other, in the order of (t, instance, primitive): the first one
-   where `before` is NULL, else the one behind *before, a hit of the same ray. `hit` may be
-   `before`. Only the first one minds what params say is not hit. */
-void traverse_next(const struct accel *accel, const struct traverse_params *params,
-                   const struct gpu_ray *ray, const struct gpu_hit *before, struct gpu_hit *hit,
-                   uint32_t *status);
-/* The same at NUMERICS_WATERTIGHT. */
-void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
-                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status);
-/* The same answer without any tree: every triangle of every instance. */
-void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray,
-                          struct gpu_hit *hit);
-
-/* From a point to the nearest surface, world units, in double; to spheres that a transform
-   stretches it may be less. Infinity in an empty scene. `pose` is the one that `accel` has. */
-double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3]);
-
-/* The double-precision oracle's closest hit, with how sure it is: |edge_margin| is by how many
-   error bounds of the float test the ray keeps away from another answer: losing the hit at an edge
-   or an end of the interval, or a hit on another triangle that is narrowly missed, or as near.
-   Below 1 the float test may decide otherwise. Negative for a miss. Triangles far off do not enter
-   it when traced by tree: then only what is below 1 is exact. `second_t` is the next hit behind on
-   another primitive (infinity: none; equal: a tie). `t_error` bounds the error of the float test's
-   t. */
-struct oracle_hit {
-    double t, u, v;
-    uint32_t primitive, instance;
-    double edge_margin, second_t, t_error;
-};
-
-/* Searches the tree (boxes widened so that no hit is lost), or all primitives (`brute`). */
-void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
-                  struct oracle_hit *hit);
+/* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
+   sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
+   first violation. */
+WHIT_CHECK whit_result bvh_validate(const struct log *log, const struct bvh *bvh,
+                                    const struct bvh_box *boxes, uint32_t leaf_limit);
 
 #endif

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "accel/boxes.h"
-#include "accel/report.h"
 #include "api/handles.h"
 #include "base/array.h"
+#include "twin/report.h"
 
 #ifdef NDEBUG
 #define ALWAYS_VALIDATE false

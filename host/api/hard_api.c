@@ -2,11 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/hard.h"
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/hash.h"
+#include "hard/hard.h"
 
 _Static_assert((uint32_t)WHIT_NUMERICS_WATERTIGHT == NUMERICS_WATERTIGHT &&
                    (uint32_t)WHIT_NUMERICS_FAST == NUMERICS_FAST &&

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "accel/hard.h"
 #include "api/handles.h"
 #include "base/array.h"
+#include "hard/hard.h"
 
 enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
 

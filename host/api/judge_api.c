@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "accel/hard.h"
 #include "api/handles.h"
 #include "base/array.h"
+#include "hard/hard.h"
 
 enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };
 

@@ -4,6 +4,7 @@
 
 #include "api/handles.h"
 #include "base/threads.h"
+#include "twin/traverse.h"
 
 _Static_assert(sizeof(whit_ray) == sizeof(struct gpu_ray), "rays are handed on as they are");
 _Static_assert(sizeof(whit_hit) == sizeof(struct gpu_hit), "hits are handed on as they are");

@@ -3,7 +3,7 @@
    then primitive. */
 #include <string.h>
 
-#include "accel/conservative.h"
+#include "oracle/conservative.h"
 #include "reference/inside.h"
 
 /* Boxes are of floats, and grow by more than their roundings and those of the walk. */

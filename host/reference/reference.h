@@ -3,7 +3,7 @@
    limits is the difference to it.
 
    It shares what the host prepares: the scene and its pose, the trees of accel/ with their walk in
-   double (accel/conservative.h), the camera and the media around it (render_view), the patterns of
+   double (oracle/conservative.h), the camera and the media around it (render_view), the patterns of
    samples. Nothing that decides a colour is shared with the kernels or with their float twins.
 
    What is other than in the kernels, on purpose:

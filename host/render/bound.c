@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "oracle/nearest.h"
 #include "render/renderer.h"
 
 static double largest(const float rgb[3])

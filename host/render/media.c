@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "render/renderer.h"
+#include "twin/traverse.h"
 
 enum { MATERIALS_MAX = 65534, DIRECTIONS = 3, HITS_MAX = 4096 };
 

@@ -16,7 +16,7 @@ struct probe_ray {
     uint32_t passed; /* surfaces that let it through on the way there: cut-outs, one-sided ones from
                         behind; shadow rays: filters, and what casts none */
     bool equal;      /* to the device's answer: ids, and every bit of t, u and v */
-    /* What exact arithmetic says (accel/rational.h). Unknown: not traced, or too many surfaces let
+    /* What exact arithmetic says (oracle/rational.h). Unknown: not traced, or too many surfaces let
        the ray pass. */
     bool exact_known;
     float exact_t; /* a key; infinity: none */

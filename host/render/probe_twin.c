@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "accel/rational.h"
+#include "oracle/rational.h"
 #include "render/probe.h"
 #include "render/renderer.h"
+#include "twin/traverse.h"
 
 /* Surfaces on the way of one ray that exact answers can be told to leave out. */
 enum { PASSED_MAX = 64 };

@@ -8,10 +8,10 @@
 #include "abi/queues.h"
 #include "abi/shade.h"
 #include "accel/accel.h"
-#include "accel/cost.h"
 #include "device/device.h"
 #include "image/image.h"
 #include "scene/scene.h"
+#include "twin/counters.h"
 
 enum render_classes { RENDER_CLASSES_AUTO, RENDER_CLASSES_ONE, RENDER_CLASSES_MANY };
 enum render_packets { RENDER_PACKETS_AUTO, RENDER_PACKETS_ON, RENDER_PACKETS_OFF };

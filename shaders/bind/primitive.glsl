@@ -1,5 +1,5 @@
 // One record and a ray: what a hit is, and where the ray meets the triangle or the sphere of the record.
-// accel/traverse.c is this in C.
+// twin/traverse.c is this in C.
 #ifndef BIND_PRIMITIVE_GLSL
 #define BIND_PRIMITIVE_GLSL
 

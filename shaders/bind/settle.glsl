@@ -1,5 +1,5 @@
 // NUMERICS_EXACT: settles by integer arithmetic (lib/exact.glsl) what floats do not decide about a record.
-// accel/traverse.c is this in C.
+// twin/traverse.c is this in C.
 #ifndef BIND_SETTLE_GLSL
 #define BIND_SETTLE_GLSL
 

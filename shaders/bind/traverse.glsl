@@ -1,6 +1,6 @@
 // Stackful traversal: the one traversal source for every order of children (SPEC_ORDER). Two loops
 // side by side, one over nodes and one over records, both do-while: on lavapipe an `if` costs both
-// its sides and only the end of a loop branches (docs/performance.md). accel/traverse.c is this file
+// its sides and only the end of a loop branches (docs/performance.md). twin/traverse.c is this file
 // in C.
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL

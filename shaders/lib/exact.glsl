@@ -1,7 +1,7 @@
 // Whether a ray meets a triangle, and where, as exact arithmetic says for the given floats:
 // NUMERICS_EXACT. A filter of floats with a proven error bound decides nearly all; what it leaves goes
 // to integers of many digits, which every device computes alike. docs/numerics.md derives the bounds.
-// accel/exact.c is this file in C.
+// twin/exact.c is this file in C.
 #ifndef LIB_EXACT_GLSL
 #define LIB_EXACT_GLSL
 

@@ -1,6 +1,6 @@
 // Whether a ray meets a sphere, and where, as exact arithmetic says for the given floats:
 // NUMERICS_EXACT. As with triangles (exact.glsl) a filter of floats with a proven error bound decides
-// nearly all, and integers the rest. docs/numerics.md derives the bounds. accel/exact_sphere.c is this
+// nearly all, and integers the rest. docs/numerics.md derives the bounds. twin/exact_sphere.c is this
 // file in C.
 #ifndef LIB_EXACT_SPHERE_GLSL
 #define LIB_EXACT_SPHERE_GLSL

@@ -1,6 +1,6 @@
 // Pairs of floats. A pair is its sum, the second float being a rounding error of the first (Dekker
 // 1971, "A floating-point technique for extending the available precision"). Products of pairs are off
-// by 2^-45 of themselves, sums by 2^-46 of their terms. accel/ff_numbers.h is this file in C.
+// by 2^-45 of themselves, sums by 2^-46 of their terms. twin/ff_numbers.h is this file in C.
 #ifndef LIB_FF_NUMBERS_GLSL
 #define LIB_FF_NUMBERS_GLSL
 

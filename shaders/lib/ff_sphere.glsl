@@ -1,5 +1,5 @@
 // The test of exact_sphere.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a
-// small part of the price of integers. accel/ff_sphere.c is this file in C.
+// small part of the price of integers. twin/ff_sphere.c is this file in C.
 #ifndef LIB_FF_SPHERE_GLSL
 #define LIB_FF_SPHERE_GLSL
 

@@ -1,5 +1,5 @@
 // The test of exact.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a small part
-// of the price of integers. accel/ff_triangle.c is this file in C.
+// of the price of integers. twin/ff_triangle.c is this file in C.
 #ifndef LIB_FF_TRIANGLE_GLSL
 #define LIB_FF_TRIANGLE_GLSL
 

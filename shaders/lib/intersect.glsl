@@ -1,6 +1,6 @@
 // Boxes and triangles against a ray. Every product and sum is `precise`: one rounding each, never
 // contracted, so that neighbours decide a shared edge alike and C gives the same bits
-// (docs/numerics.md). accel/intersect.h is this file in C.
+// (docs/numerics.md). twin/intersect.h is this file in C.
 #ifndef LIB_INTERSECT_GLSL
 #define LIB_INTERSECT_GLSL
 

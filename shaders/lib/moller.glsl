@@ -1,6 +1,6 @@
 // Moeller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", without an epsilon on
 // the determinant: NUMERICS_FAST. Neighbours round a shared edge each in its own way, so rays leak.
-// accel/moller.h is this file in C.
+// twin/moller.h is this file in C.
 #ifndef LIB_MOLLER_GLSL
 #define LIB_MOLLER_GLSL
 

@@ -1,5 +1,5 @@
 // Spheres against a ray, and points on them. Every product and sum is `precise`, one rounding each:
-// accel/sphere.h is this file in C, and gives the same bits (docs/numerics.md).
+// twin/sphere.h is this file in C, and gives the same bits (docs/numerics.md).
 #ifndef LIB_SPHERE_GLSL
 #define LIB_SPHERE_GLSL
 

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "accel/accel.h"
+#include "twin/traverse.h"
 
 void __real_traverse_ray(const struct accel *accel, const struct traverse_params *params,
                          const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,

@@ -23,7 +23,7 @@ sources() {
     image) echo host/image/png.c host/image/exr.c host/image/pfm.c host/image/hdr.c ;;
     texture) echo host/load/picture.c host/load/jpeg.c ;;
     reply) echo host/image/image_reply.c host/load/importer.c host/base/foreign.c ;;
-    rays) echo host/app/ray_file.c host/accel/traverse.c ;;
+    rays) echo host/app/ray_file.c host/twin/traverse.c ;;
     validate) echo host/accel/bvh_validate*.c ;;
     store) echo host/base/store.c ;;
     paths) echo host/base/roots.c ;;

@@ -8,6 +8,7 @@
 #include "app/cli.h"
 #include "app/ray_file.h"
 #include "trees.h"
+#include "twin/traverse.h"
 
 enum { KIND_COUNT = FUZZ_SCENE_COUNT, BUILD_COUNT = 2, RAYS_MAX = 64, HITS_MAX = 64 };
 

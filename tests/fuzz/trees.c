@@ -7,6 +7,7 @@
 #include "../unit/random_fixture.h"
 #include "fuzz.h"
 #include "scene/shapes.h"
+#include "twin/traverse.h"
 
 static uint32_t add_mesh(struct scene *scene, whit_result result, struct scene_mesh *mesh)
 {

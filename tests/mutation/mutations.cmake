@@ -113,7 +113,7 @@ change(shaders/kernel/shadow.comp [[(TRAVERSE_SHADOW, 0.0,]] [[(TRAVERSE_SHADOW,
 mutation(contracted_twin peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
 change(host/accel/module.cmake [[LINK whit_base whit_scene PkgConfig::GMP)]]
   [[LINK whit_base whit_scene PkgConfig::GMP)
-set_source_files_properties(accel/traverse.c PROPERTIES COMPILE_OPTIONS
+set_source_files_properties(twin/traverse.c PROPERTIES COMPILE_OPTIONS
   "-ffp-contract=fast;$<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-mfma>")]])
 
 mutation(contracted_kernels spirv RED ".* float operations may be contracted"
@@ -127,15 +127,15 @@ change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
   [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
 
 mutation(fused_edges peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h shear_triangle
+change(host/twin/intersect.h shear_triangle
   [[ea = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ea = fmaf(\1, \2, -(\3));]])
-change(host/accel/intersect.h shear_triangle
+change(host/twin/intersect.h shear_triangle
   [[eb = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[eb = fmaf(\1, \2, -(\3));]])
-change(host/accel/intersect.h shear_triangle
+change(host/twin/intersect.h shear_triangle
   [[ec = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ec = fmaf(\1, \2, -(\3));]])
 
 mutation(t_of_areas_times_lengths hard_triangle RED size_does_not_matter)
-change(host/accel/intersect.h intersect_triangle
+change(host/twin/intersect.h intersect_triangle
   [[\(\(([a-z]+\.)ea \* ([a-z_]+)\) \* ([a-z]+) \+ [^ ]+ \* ([a-z]+)\) \+ [^ ]+ \* ([a-z]+);]] [[((\1ea * \3 + \1eb * \4) + \1ec * \5) * \2;]])
 
 mutation(t_of_areas_times_lengths_in_kernels render_scale RED pictures_do_not_depend_on_the_unit)
@@ -143,21 +143,21 @@ change(shaders/lib/intersect.glsl [[(weight_a * z.x + weight_b * z.y) + weight_c
   [[((edges.x * z.x + edges.y * z.y) + edges.z * z.z) * inv_det;]])
 
 mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h SLAB_FAR_SCALE [[\(1\.0f .*\)]] [[1.0f]])
+change(host/twin/intersect.h SLAB_FAR_SCALE [[\(1\.0f .*\)]] [[1.0f]])
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_factor_gone_in_kernels render_trace RED far_sphere_equals_twin)
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_by_fma peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/intersect.h slab_axis [[slab_axis\(float]] [[slab_axis(float o, float]])
-change(host/accel/intersect.h slab_axis [[= lo \* ([a-z_]+);]] [[= fmaf(lo + o, \1, -(o * \1));]])
-change(host/accel/intersect.h slab_axis [[= hi \* ([a-z_]+);]] [[= fmaf(hi + o, \1, -(o * \1));]])
-change(host/accel/intersect.h slab_interval
+change(host/twin/intersect.h slab_axis [[slab_axis\(float]] [[slab_axis(float o, float]])
+change(host/twin/intersect.h slab_axis [[= lo \* ([a-z_]+);]] [[= fmaf(lo + o, \1, -(o * \1));]])
+change(host/twin/intersect.h slab_axis [[= hi \* ([a-z_]+);]] [[= fmaf(hi + o, \1, -(o * \1));]])
+change(host/twin/intersect.h slab_interval
   [[slab_axis\(([a-z.]+x, [a-z.]+x, )([a-z]+->)]] [[slab_axis(\2origin.x, \1\2]])
-change(host/accel/intersect.h slab_interval
+change(host/twin/intersect.h slab_interval
   [[slab_axis\(([a-z.]+y, [a-z.]+y, )([a-z]+->)]] [[slab_axis(\2origin.y, \1\2]])
-change(host/accel/intersect.h slab_interval
+change(host/twin/intersect.h slab_interval
   [[slab_axis\(([a-z.]+z, [a-z.]+z, )([a-z]+->)]] [[slab_axis(\2origin.z, \1\2]])
 
 mutation(slab_by_fma_in_kernels render_trace RED far_sphere_equals_twin)
@@ -189,7 +189,7 @@ mutation(queues_start_as_they_come cli_render RED "--load-path storage: exit cod
 change(host/render/queues.c [[BUFFER_TEXELS | BUFFER_ZEROED;]] [[BUFFER_TEXELS;]])
 
 mutation(reciprocals_clamped accel_oracle RED borders_are_met_along_the_axes)
-change(host/accel/intersect.h make_ray_setup
+change(host/twin/intersect.h make_ray_setup
   [[vec3_make\(1\.0f / ([a-z]+)\.x, ([^;]+), ([^;]+)\);]]
   [[vec3_make(fmaxf(fminf(1.0f / \1.x, 1e30f), -1e30f), fmaxf(fminf(\2, 1e30f), -1e30f),
       fmaxf(fminf(\3, 1e30f), -1e30f));]])
@@ -199,9 +199,9 @@ mutation(reciprocals_clamped_in_kernels render_trace RED box_equals_twin)
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
 mutation(signs_of_directions accel_oracle RED borders_are_met_along_the_axes)
-change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.x < 0]] [[dir.x < 0]])
-change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.y < 0]] [[dir.y < 0]])
-change(host/accel/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.z < 0]] [[dir.z < 0]])
+change(host/twin/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.x < 0]] [[dir.x < 0]])
+change(host/twin/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.y < 0]] [[dir.y < 0]])
+change(host/twin/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.z < 0]] [[dir.z < 0]])
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
 mutation(signs_of_directions_in_kernels render_trace RED box_equals_twin)
@@ -216,7 +216,7 @@ change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
   [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
 
 mutation(ties_undecided accel_stack RED duplicates_give_the_first)
-change(host/accel/traverse.c is_nearer [[[a-z]+ == farthest]] [[false]])
+change(host/twin/traverse.c is_nearer [[[a-z]+ == farthest]] [[false]])
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
@@ -225,7 +225,7 @@ change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.insta
   [[(false && (instance < hit.instance ||]])
 
 mutation(stack_without_end accel_stack RED too_deep_trees_are_reported)
-change(host/accel/traverse.c push_ref [[[^( ]+ == STACK_SIZE]] [[false]])
+change(host/twin/traverse.c push_ref [[[^( ]+ == STACK_SIZE]] [[false]])
 
 mutation(stack_without_end_in_kernels render_cost RED understated_depth_is_reported)
 change(shaders/bind/traverse.glsl [[if (stack.in_memory < SPEC_STACK_SIZE) {]] [[if (true) {]])
@@ -241,7 +241,7 @@ change(shaders/lib/moller.glsl [[weight_b >= 0.0 && weight_c >= 0.0 && weights <
   [[weight_b >= -1e-6 && weight_c >= -1e-6 && weights <= 1.000001]])
 
 mutation(fast_with_an_epsilon hard_triangle RED size_does_not_matter)
-change(host/accel/moller.h intersect_moller [[([a-z]+) != 0\.0f]] [[fabsf(\1) > 1e-6f]])
+change(host/twin/moller.h intersect_moller [[([a-z]+) != 0\.0f]] [[fabsf(\1) > 1e-6f]])
 change(shaders/lib/moller.glsl [[det != 0.0]] [[abs(det) > 1e-6]])
 
 mutation(fast_with_an_epsilon_in_kernels render_numerics RED split_triangles)
@@ -251,33 +251,33 @@ mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
 change(shaders/bind/camera.glsl [[inverse_square_root(squared)]] [[inversesqrt(squared)]])
 
 mutation(filter_without_bound accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c exact_filter [[4\.125f]] [[0.0f]])
+change(host/twin/exact.c exact_filter [[4\.125f]] [[0.0f]])
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
 
 mutation(filter_with_half_its_bound accel_filter RED errors_stay_within_their_bounds)
-change(host/accel/exact.c exact_filter [[4\.125f]] [[2.0625f]])
+change(host/twin/exact.c exact_filter [[4\.125f]] [[2.0625f]])
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
 
 mutation(filter_with_half_its_bound_in_kernels device_filter RED bounds_are_those_of_c)
 change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
 
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c exact_filter
+change(host/twin/exact.c exact_filter
   [[= ([a-z_]+ \* \([a-z_]+ - [a-z_]+\) \+ [a-z_]+);]] [[= 0.0f * (\1);]])
 change(shaders/lib/exact.glsl [[t_error = weights_error * (z_hi - z_lo) + z_error;]]
   [[t_error = 0.0 * z_error;]])
 
 mutation(keys_unrounded accel_hard RED cases_are_what_they_say)
-change(host/accel/traverse.c traverse_all [[[a-z]+->lo < [a-z]+->hi]] [[false]])
+change(host/twin/traverse.c traverse_all [[[a-z]+->lo < [a-z]+->hi]] [[false]])
 
 mutation(keys_unrounded_in_kernels render_numerics RED one_mesh)
 change(shaders/bind/settle.glsl [[bool loose = hit.lo < hit.hi;]] [[bool loose = false;]])
 
 mutation(keys_cut_off accel_hard RED cases_are_what_they_say)
-change(host/accel/exact.c round_quotient [[up \?]] [[up && mantissa == 0 ?]])
+change(host/twin/exact.c round_quotient [[up \?]] [[up && mantissa == 0 ?]])
 change(shaders/lib/exact.glsl [[bits += up ? 1u : 0u;]] [[bits += up && mantissa == 0u ? 1u : 0u;]])
 
 mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
@@ -285,26 +285,26 @@ change(shaders/lib/ff_numbers.glsl [[vec2 both = ff_sum(first, second);]]
   [[vec2 both = ff_sum(first, 0.0);]])
 
 mutation(pairs_without_bound hard_ff RED what_is_sure_is_so)
-change(host/accel/ff_triangle.c triple [[FF_RELATIVE]] [[FF_RELATIVE / 128.0f]])
+change(host/twin/ff_triangle.c triple [[FF_RELATIVE]] [[FF_RELATIVE / 128.0f]])
 change(shaders/lib/ff_triangle.glsl [[size * FF_RELATIVE + FF_ABSOLUTE]]
   [[size * FF_RELATIVE / 128.0 + FF_ABSOLUTE]])
 
 mutation(spheres_with_half_their_bound hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/exact_sphere.c bound_sphere [[82\.0f]] [[41.0f]])
-change(host/accel/exact_sphere.c bound_sphere [[18500\.0f]] [[9250.0f]])
-change(host/accel/exact_sphere.c bound_sphere [[4\.5f ([^)]*) 2\.5f]] [[2.25f \1 1.25f]])
+change(host/twin/exact_sphere.c bound_sphere [[82\.0f]] [[41.0f]])
+change(host/twin/exact_sphere.c bound_sphere [[18500\.0f]] [[9250.0f]])
+change(host/twin/exact_sphere.c bound_sphere [[4\.5f ([^)]*) 2\.5f]] [[2.25f \1 1.25f]])
 
 mutation(spheres_without_bound_in_kernels device_sphere RED spheres_are_met_as_in_c)
 change(shaders/lib/exact_sphere.glsl [[foot.room > error;]] [[foot.room > 0.0;]])
 
 mutation(sphere_ties_round_down hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/exact_sphere.c is_beyond [[\([a-z]+ == 0 && [^)]*\) != 0\)]] [[false]])
+change(host/twin/exact_sphere.c is_beyond [[\([a-z]+ == 0 && [^)]*\) != 0\)]] [[false]])
 
 mutation(sphere_ties_round_down_in_kernels device_sphere RED spheres_are_met_as_in_c)
 change(shaders/lib/exact_sphere.glsl [[(side == 0 && (middle & 1u) != 0u)]] [[false]])
 
 mutation(sphere_pairs_without_bound hard_sphere RED spheres_are_met_as_fractions_say)
-change(host/accel/ff_sphere.c [[FF_RELATIVE + FF_ABSOLUTE]]
+change(host/twin/ff_sphere.c [[FF_RELATIVE + FF_ABSOLUTE]]
   [[FF_RELATIVE / 1024.0f + FF_ABSOLUTE]])
 
 mutation(far_ends_taken_for_near_in_kernels render_numerics RED spheres)
@@ -320,7 +320,7 @@ mutation(waiting_rays_leave_children render_deferred RED pictures_are_those_of_l
 change(shaders/kernel/shade.comp [[alive = alive && !must_wait(status);]] [[;]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
-change(host/accel/traverse.c is_nearer_key [[if \([^()]*->lo < [^()]*->hi\)]] [[if (false)]])
+change(host/twin/traverse.c is_nearer_key [[if \([^()]*->lo < [^()]*->hi\)]] [[if (false)]])
 
 mutation(hits_unsettled_in_kernels render_numerics RED ties)
 change(shaders/bind/settle.glsl [[again = m.met && hit.lo < hit.hi &&]] [[again = false &&]])
@@ -331,22 +331,22 @@ change(shaders/bind/settle.glsl [[m.met && exact.met && exact.key]] [[m.met && e
 # ---- whit hard ----
 
 mutation(leaks_uncounted accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c judge_ray [[\+= [^;]*is_leak]] [[+= false && is_leak]])
+change(host/hard/judge.c judge_ray [[\+= [^;]*is_leak]] [[+= false && is_leak]])
 
 mutation(promises_always_kept accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c hard_promise_kept [[== NUMERICS_FAST]] [[< 9]])
+change(host/hard/judge.c hard_promise_kept [[== NUMERICS_FAST]] [[< 9]])
 
 mutation(differences_unseen accel_hard RED the_judge_sees)
-change(host/accel/hard_judge.c hard_count_differing [[sizeof [^)]*]] [[1]])
+change(host/hard/judge.c hard_count_differing [[sizeof [^)]*]] [[1]])
 
 mutation(identities_unhashed accel_hard RED cases_are_what_they_say)
-change(host/accel/hard_judge.c hard_hash [[[^ ]+\.primitive]] [[0]])
+change(host/hard/judge.c hard_hash [[[^ ]+\.primitive]] [[0]])
 
 mutation(self_hits_unseen accel_hard RED self_hits_are_seen)
-change(host/accel/hard_judge.c judge_ray [[[^ (]+truth == HARD_MUST_MISS]] [[false]])
+change(host/hard/judge.c judge_ray [[[^ (]+truth == HARD_MUST_MISS]] [[false]])
 
 mutation(open_edges_unseen accel_hard RED surfaces_are_described)
-change(host/accel/hard_topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 0]])
+change(host/hard/topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 0]])
 
 mutation(broken_promises_are_fine cli_hard RED "a twin that loses rays: exit code 1"
   TARGET whit_leaky)

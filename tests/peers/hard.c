@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/hard.h"
 #include "base/array.h"
 #include "base/threads.h"
 #include "device/device.h"
+#include "hard/hard.h"
 #include "peers.h"
 #include "render/render.h"
 

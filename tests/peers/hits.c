@@ -16,8 +16,10 @@
 #include "base/array.h"
 #include "base/threads.h"
 #include "load/load.h"
+#include "oracle/oracle.h"
 #include "peers.h"
 #include "render/render.h"
+#include "twin/traverse.h"
 
 enum { CHUNK = 4096, HITS_THREADS = 2 };
 

@@ -9,9 +9,10 @@
 #include "base/threads.h"
 #include "peers.h"
 #include "scene/shapes.h"
+#include "twin/traverse.h"
 
 #ifdef PEERS_CONTRACTED
-/* host/accel/traverse.c under another name and other flags. */
+/* host/twin/traverse.c under another name and other flags. */
 void traverse_float_contracted(const struct accel *accel, uint32_t order, const struct gpu_ray *ray,
                                bool any, uint32_t skip_instance, uint32_t skip_primitive,
                                struct gpu_hit *hit, struct gpu_cost *cost, uint32_t *status);

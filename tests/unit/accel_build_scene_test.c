@@ -15,6 +15,7 @@
 #include "../random.h"
 #include "../scenes.h"
 #include "accel/accel.h"
+#include "twin/traverse.h"
 
 static const struct log silent;
 static char last_error[256];

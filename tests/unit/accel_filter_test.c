@@ -3,8 +3,8 @@
    last place, as Vulkan allows. What is found is measured in fractions. */
 #include "hard_fixture.h"
 
-#include "accel/exact_sphere.h"
 #include "fraction_fixture.h"
+#include "twin/exact_sphere.h"
 
 enum { VERTICES = 3, STEPS_MAX = 5 };
 

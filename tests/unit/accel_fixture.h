@@ -18,9 +18,11 @@
 #include "../cases.h"
 #include "../scenes.h"
 #include "accel/accel.h"
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
 #include "random_fixture.h"
 #include "scene/shapes.h"
+#include "twin/ray.h"
+#include "twin/traverse.h"
 
 static const struct log silent;
 

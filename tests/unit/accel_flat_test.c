@@ -15,6 +15,8 @@
 #include "../random.h"
 #include "../scenes.h"
 #include "accel/accel.h"
+#include "oracle/oracle.h"
+#include "twin/traverse.h"
 
 static char last_error[512];
 

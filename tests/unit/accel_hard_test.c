@@ -2,8 +2,8 @@
    judge sees what is wrong. */
 #include "accel_fixture.h"
 
-#include "accel/hard.h"
 #include "base/hash.h"
+#include "hard/hard.h"
 
 enum { RAYS = 512, THREADS = 2 };
 

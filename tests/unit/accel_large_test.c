@@ -5,8 +5,8 @@
 
 #include <sys/resource.h>
 
-#include "accel/hard.h"
 #include "base/clock.h"
+#include "hard/hard.h"
 
 enum { STEPS = 2237, RAYS = 20000 };
 

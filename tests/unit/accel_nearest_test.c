@@ -9,6 +9,7 @@
 
 #include "../scenes.h"
 #include "accel/accel.h"
+#include "oracle/nearest.h"
 #include "random_fixture.h"
 
 static const struct log quiet = {0};

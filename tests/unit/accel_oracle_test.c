@@ -14,7 +14,9 @@
 #include "../cases.h"
 #include "../scenes.h"
 #include "accel/accel.h"
+#include "oracle/oracle.h"
 #include "random_fixture.h"
+#include "twin/traverse.h"
 
 static const struct log silent;
 

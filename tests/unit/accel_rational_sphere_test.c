@@ -2,9 +2,9 @@
    without any: along axes, at tangents, at middles of floats, at the ends of what floats hold. */
 #include "accel_fixture.h"
 
-#include "accel/rational.h"
 #include "coordinate_fixture.h"
 #include "fraction_fixture.h"
+#include "oracle/rational.h"
 
 struct subject {
     struct vec3 origin, dir, center;

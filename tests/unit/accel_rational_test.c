@@ -2,9 +2,9 @@
    and filter what it says without them. */
 #include "accel_fixture.h"
 
-#include "accel/rational.h"
 #include "coordinate_fixture.h"
 #include "fraction_fixture.h"
+#include "oracle/rational.h"
 #include "sphere_fixture.h"
 
 /* ---- Fractions, as the definition in rational.h is written ---- */

@@ -2,9 +2,10 @@
    filter, and without, is the least of all ends of all chords in the order of hits. */
 #include "accel_fixture.h"
 
-#include "accel/rational.h"
 #include "coordinate_fixture.h"
+#include "oracle/rational.h"
 #include "sphere_fixture.h"
+#include "twin/ray.h"
 
 /* ---- The definition, with nothing left out ---- */
 

@@ -11,7 +11,7 @@
 
 #include "../random.h"
 #include "../scenes.h"
-#include "accel/report.h"
+#include "twin/report.h"
 
 #define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
 

@@ -2,7 +2,8 @@
    for any number of threads, and the hits of every other builder. */
 #include "accel_fixture.h"
 
-#include "accel/clip.h"
+#include "bvh/clip.h"
+#include "twin/traverse.h"
 
 __extension__ typedef __float128 quad;
 

@@ -4,7 +4,9 @@
 
 #include "accel_fixture.h"
 #include "base/array.h"
+#include "oracle/oracle.h"
 #include "sphere_fixture.h"
+#include "twin/traverse.h"
 
 static void note(void *user, whit_log_level level, const char *message)
 {

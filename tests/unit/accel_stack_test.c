@@ -9,6 +9,7 @@
 
 #include "accel/accel.h"
 #include "tree_fixture.h"
+#include "twin/traverse.h"
 
 enum { ORDERS = 3, STACK_SIZE = 512 /* of the traversal */ };
 

@@ -1,5 +1,6 @@
 /* How many nodes rays open in the trees of different builders, and in different orders. */
 #include "accel_fixture.h"
+#include "twin/traverse.h"
 
 enum { RAYS = 4000 };
 

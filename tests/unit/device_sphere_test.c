@@ -3,8 +3,8 @@
 #include "hard_sphere_fixture.h"
 
 #include "abi/spec.h"
-#include "accel/ff_sphere.h"
 #include "device_fixture.h"
+#include "twin/ff_sphere.h"
 
 #include "device_sphere.h"
 

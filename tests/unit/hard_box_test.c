@@ -1,6 +1,7 @@
 /* Boxes where they are hardest: a box that a ray does enter, by exact arithmetic, must be entered.
  */
 #include "hard_fixture.h"
+#include "twin/traverse.h"
 
 #include <gmp.h>
 

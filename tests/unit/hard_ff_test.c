@@ -2,7 +2,7 @@
    sure. */
 #include "hard_fixture.h"
 
-#include "accel/ff_triangle.h"
+#include "twin/ff_triangle.h"
 
 typedef void (*make_fn)(struct vec3 v[3], struct gpu_ray *ray);
 

@@ -5,10 +5,11 @@
 
 #include "accel_fixture.h"
 
-#include "accel/exact.h"
-#include "accel/intersect.h"
-#include "accel/moller.h"
-#include "accel/rational.h"
+#include "oracle/rational.h"
+#include "twin/exact.h"
+#include "twin/intersect.h"
+#include "twin/moller.h"
+#include "twin/traverse.h"
 
 struct level {
     const char *name;

@@ -3,7 +3,7 @@
    error, and must still meet the sheet in front of them. */
 #include "hard_fixture.h"
 
-#include "accel/hard.h"
+#include "hard/hard.h"
 
 /* In units of the last place of the largest coordinate: that is at least r = 2^-24 of it. A point
    is off by gamma(7) = 7 r of its coordinates on each axis at most, and moved by as much along the

@@ -3,6 +3,7 @@
    meets, and all of these must be among its hits, and no others. Counted by a rule for ties, the
    crossings are even from outside and odd from inside (github.com/jbikker/tinybvh, issue 168). */
 #include "hard_fixture.h"
+#include "twin/traverse.h"
 
 enum { STEPS = 24, PARTS = 4 }; /* of the landscape; units of integers in one of floats */
 

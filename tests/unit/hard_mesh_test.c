@@ -1,6 +1,7 @@
 /* Closed surfaces: no ray gets out of them. Other meshes with what is not promised of them. W1 and
    W2 with more rays, and W10, are tests/peers/leaks.c. */
 #include "hard_fixture.h"
+#include "twin/traverse.h"
 
 enum { RAYS = 30000 };
 

@@ -5,7 +5,7 @@
 
 #include "hard_fixture.h"
 
-#include "accel/exact_sphere.h"
+#include "twin/exact_sphere.h"
 
 struct subject {
     struct vec3 origin, dir, center;

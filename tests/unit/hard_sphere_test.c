@@ -2,9 +2,9 @@
    between; and what the filter says of them. */
 #include "hard_fixture.h"
 
-#include "accel/ff_sphere.h"
 #include "fraction_fixture.h"
 #include "hard_sphere_fixture.h"
+#include "twin/ff_sphere.h"
 
 /* ---- What is so ---- */
 

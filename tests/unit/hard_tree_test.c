@@ -2,6 +2,7 @@
    walked, does not tell; nor whether any hit is asked for or the closest one. At every level, bit
    for bit beside no tree at all. tests/peers/equal.c does the same for scenes and devices. */
 #include "hard_fixture.h"
+#include "twin/traverse.h"
 
 static const struct bvh_params trees[] = {
     {.builder = BVH_BINNED},

@@ -1,7 +1,8 @@
 /* Triangles where they are hardest, beside what exact arithmetic says of them. */
 #include "hard_fixture.h"
 
-#include "accel/moller.h"
+#include "oracle/oracle.h"
+#include "twin/moller.h"
 
 /* What is wrong in any case, whatever the level. */
 static bool is_sound(const struct gpu_hit *hit)

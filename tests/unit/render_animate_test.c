@@ -3,6 +3,7 @@
 #include "load/load.h"
 #include "render/renderer.h"
 #include "render_fixture.h"
+#include "twin/traverse.h"
 
 static const struct render_params animate_params = {
     .width = 40, .height = 32, .depth = 4, .packets = RENDER_PACKETS_ON};

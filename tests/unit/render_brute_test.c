@@ -4,6 +4,7 @@
 #include "render/renderer.h"
 #include "render_fixture.h"
 #include "render_scenes.h"
+#include "twin/traverse.h"
 
 enum { RAYS = 500 };
 

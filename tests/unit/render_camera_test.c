@@ -2,6 +2,7 @@
  */
 #include "picture_fixture.h"
 #include "render/renderer.h"
+#include "twin/traverse.h"
 
 static const double PI = 3.14159265358979323846;
 

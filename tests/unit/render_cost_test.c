@@ -3,6 +3,7 @@
 #include "render_fixture.h"
 #include "render_scenes.h"
 #include "tree_fixture.h"
+#include "twin/traverse.h"
 
 enum { RAYS = 6000, ORDERS = 3 };
 

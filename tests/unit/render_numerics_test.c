@@ -3,9 +3,10 @@
 #include "../scenes.h"
 #include "ray_fixture.h"
 
-#include "accel/rational.h"
+#include "oracle/rational.h"
 #include "render_scenes.h"
 #include "sphere_fixture.h"
+#include "twin/traverse.h"
 
 static const char *const names[] = {
     [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_FAST] = "fast", [NUMERICS_EXACT] = "exact"};

@@ -2,6 +2,7 @@
    and one-sided surfaces. */
 #include "picture_fixture.h"
 #include "sphere_fixture.h"
+#include "twin/traverse.h"
 
 /* ---- Hits ---- */
 

@@ -1,5 +1,6 @@
 /* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
 #include "ray_fixture.h"
+#include "twin/traverse.h"
 
 /* A ray is blocked up to t_max just when its closest hit is that near; a third of the rays end
    exactly there, or one float before. */

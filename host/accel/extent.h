@@ -1,0 +1,67 @@
+/* The boxes of primitives, and of boxes that are placed. */
+#ifndef ACCEL_EXTENT_H
+#define ACCEL_EXTENT_H
+
+#include <math.h>
+
+#include "accel/accel.h"
+
+/* Exact: minima and maxima of floats, nothing rounded. */
+static inline struct bvh_box accel_triangle_box(const float a[3], const float b[3],
+                                                const float c[3])
+{
+    struct bvh_box box;
+    for (int i = 0; i < 3; ++i) {
+        float lo = a[i] < b[i] ? a[i] : b[i], hi = a[i] > b[i] ? a[i] : b[i];
+        box.lo[i] = c[i] < lo ? c[i] : lo;
+        box.hi[i] = c[i] > hi ? c[i] : hi;
+    }
+    return box;
+}
+
+/* sphere_box of shaders/lib/sphere.glsl, bit for bit: what the test of a sphere looks at, so boxes
+   of nodes hold no less. */
+static inline struct bvh_box accel_sphere_box(const float center[3], float radius)
+{
+    struct bvh_box box;
+    for (int i = 0; i < 3; ++i) {
+        float margin = (fabsf(center[i]) + radius) * (1.0f / 4194304.0f);
+        box.lo[i] = (center[i] - radius) - margin;
+        box.hi[i] = (center[i] + radius) + margin;
+    }
+    return box;
+}
+
+static inline struct bvh_box accel_record_box(const struct gpu_triangle *record)
+{
+    if (record->flags & TRIANGLE_SPHERE)
+        return accel_sphere_box(record->v0, record->v1[0]);
+    return accel_triangle_box(record->v0, record->v1, record->v2);
+}
+
+static inline struct bvh_box accel_primitive_box(const struct scene_mesh *mesh, uint32_t primitive)
+{
+    if (mesh->sphere_count) {
+        const float *sphere = &mesh->spheres[4 * (size_t)primitive];
+        return accel_sphere_box(sphere, sphere[3]);
+    }
+    const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
+    return accel_triangle_box(&mesh->positions[3 * (size_t)corner[0]],
+                              &mesh->positions[3 * (size_t)corner[1]],
+                              &mesh->positions[3 * (size_t)corner[2]]);
+}
+
+static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
+{
+    return bvh_count(node) << BVH_COUNT_SHIFT | node->first;
+}
+
+/* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes that enter the
+   sums, which is what rounding them is relative to. */
+struct accel_extent {
+    double lo[3], hi[3], size[3];
+};
+
+struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box);
+
+#endif

@@ -1,0 +1,100 @@
+/* What is common to all builders: their parameters, and which of them is called. */
+#include <float.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/threads.h"
+#include "bvh/build.h"
+
+static bool builder_known(enum bvh_builder builder)
+{
+    switch (builder) {
+    case BVH_BINNED:
+    case BVH_MEDIAN:
+    case BVH_SWEEP:
+    case BVH_SPATIAL:
+    case BVH_NONE:
+        return true;
+    }
+    return false;
+}
+
+/* 0 becomes the default. */
+static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
+{
+    *out = in ? *in : (struct bvh_params){0};
+    if (out->bins == 0 && out->builder != BVH_BINNED)
+        out->bins = 16;
+    out->leaf_limit = out->leaf_limit ? out->leaf_limit : 4;
+    out->thread_count = out->thread_count ? out->thread_count : threads_available();
+    out->traversal_cost = out->traversal_cost != 0.0f ? out->traversal_cost : 1.0f;
+    out->spatial_alpha = out->spatial_alpha != 0.0f ? out->spatial_alpha : 1e-5f;
+    out->spatial_budget = out->spatial_budget != 0.0f ? out->spatial_budget : 0.5f;
+    if (out->spatial_budget < 0.0f)
+        out->spatial_budget = 0.0f;
+}
+
+static whit_result params_check(const struct log *log, const struct bvh_params *params)
+{
+    whit_result result = WHIT_ERROR_USAGE;
+    if (!builder_known(params->builder))
+        log_error(log, "tree: no builder has the number %d", (int)params->builder);
+    else if (params->bins == 1 || params->bins > 256 || params->leaf_limit > BVH_LEAF_MAX)
+        log_error(log, "tree: bins must be 2 to 256, leaves at most %u", BVH_LEAF_MAX);
+    else if (!(params->traversal_cost > 0.0f && params->traversal_cost <= FLT_MAX))
+        log_error(log, "tree: the cost of a node must be above 0");
+    else if (!(params->spatial_alpha >= 0.0f && params->spatial_budget <= FLT_MAX))
+        log_error(log, "tree: overlap and budget of spatial splits must be numbers from 0");
+    else
+        result = WHIT_OK;
+    return result;
+}
+
+static whit_result build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                         const struct bvh_params *params, struct bvh *out)
+{
+    switch (params->builder) {
+    case BVH_NONE:
+    case BVH_BINNED:
+    case BVH_MEDIAN:
+        return records_build(log, boxes, count, params, out);
+    case BVH_SWEEP:
+        return sweep_build(log, boxes, count, params, out);
+    case BVH_SPATIAL:
+        return spatial_build(log, boxes, count, params, out);
+    }
+    return WHIT_ERROR_USAGE; /* params_check knows better */
+}
+
+whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                      const struct bvh_params *params, struct bvh *out)
+{
+    double begin_ms = clock_ms();
+    *out = (struct bvh){.primitive_count = count, .reference_count = count};
+    struct bvh_params resolved;
+    params_resolve(params, &resolved);
+    whit_result result = params_check(log, &resolved);
+    if (result != WHIT_OK || count == 0)
+        return result;
+    if (count > BVH_FIRST_MASK / 2) {
+        log_error(log, "tree: %u primitives are more than the %u that a node can address", count,
+                  BVH_FIRST_MASK / 2);
+        return WHIT_ERROR_INPUT;
+    }
+    result = build(log, boxes, count, &resolved, out);
+    if (result == WHIT_OK && resolved.optimize)
+        result = bvh_optimize(log, resolved.thread_count, (double)resolved.traversal_cost, out);
+    out->build_ms = clock_ms() - begin_ms;
+    if (result != WHIT_OK)
+        bvh_finish(out);
+    return result;
+}
+
+void bvh_finish(struct bvh *bvh)
+{
+    if (!bvh)
+        return;
+    free(bvh->nodes);
+    free(bvh->order);
+    *bvh = (struct bvh){0};
+}

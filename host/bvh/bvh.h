@@ -1,0 +1,82 @@
+/* One tree over boxes: builders, and what every one of them leaves. */
+#ifndef BVH_BVH_H
+#define BVH_BVH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "abi/bvh.h"
+#include "base/log.h"
+
+struct bvh_box {
+    float lo[3], hi[3];
+};
+
+enum bvh_builder {
+    BVH_BINNED,  /* SAH over equal bins */
+    BVH_MEDIAN,  /* halves */
+    BVH_SWEEP,   /* SAH over every position, sorted once */
+    BVH_SPATIAL, /* SAH over object and spatial splits (SBVH): needs `triangles` */
+    BVH_NONE,    /* no choice: the order of the input, full leaves, every box that of everything */
+};
+
+/* The triangles that the boxes are of. */
+struct bvh_triangles {
+    const float *positions;  /* 3 a vertex */
+    const uint32_t *indices; /* 3 a triangle */
+    const uint8_t *whole;    /* 1: must stay in one leaf; NULL: none must */
+};
+
+struct bvh_params {
+    enum bvh_builder builder;
+    uint32_t bins;         /* BVH_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
+    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
+    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
+    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
+    bool optimize;         /* improve the finished tree by reinsertion */
+    const struct bvh_triangles *triangles; /* BVH_SPATIAL */
+    float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
+                             tried (Stich et al. 2009, 4.5); 0: 1e-5 */
+    float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;
+                             < 0: none */
+};
+
+/* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
+struct bvh {
+    struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
+    uint32_t *order;            /* free() */
+    uint32_t node_count;        /* with the unused one; 0: no primitives */
+    uint32_t primitive_count, leaf_count;
+    uint32_t
+        reference_count; /* length of `order`; beyond primitive_count where triangles were split */
+    uint32_t depth;      /* inner nodes on the longest path: the stack a traversal needs */
+    uint32_t leaf_largest;
+    bool clipped;    /* leaf boxes may hold parts of their triangles only */
+    double sah_cost; /* expected cost of a random ray, relative to the root's area */
+    double build_ms;
+};
+
+/* Boxes must be finite with lo <= hi. Deterministic. */
+WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                                 const struct bvh_params *params, struct bvh *out);
+void bvh_finish(struct bvh *bvh);
+
+static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
+{
+    return node->count & BVH_COUNT_MASK;
+}
+
+/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
+   and depth (bvh_complete.c). Every builder ends with it. */
+void bvh_complete(struct bvh *bvh, double traversal_cost);
+/* Sets only the axis bits of the pair of sibling nodes at `first`. */
+void bvh_set_axis(struct gpu_bvh_node *first);
+
+/* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
+   "Parallel reinsertion for bounding volume hierarchy optimization". Keeps leaves as they are; the
+   depth stays within BVH_DEPTH_MAX. Deterministic whatever the thread count. */
+WHIT_CHECK whit_result bvh_optimize(const struct log *log, uint32_t thread_count,
+                                    double traversal_cost, struct bvh *bvh);
+enum { BVH_DEPTH_MAX = 128 };
+
+#endif

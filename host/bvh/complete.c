@@ -1,0 +1,119 @@
+/* What is computed of a finished tree, whatever built it. */
+#include <math.h>
+
+#include "base/threads.h"
+#include "bvh/build.h"
+
+static double half_area(const struct gpu_bvh_node *node)
+{
+    double x = (double)node->hi[0] - (double)node->lo[0];
+    double y = (double)node->hi[1] - (double)node->lo[1];
+    double z = (double)node->hi[2] - (double)node->lo[2];
+    return x * y + y * z + z * x;
+}
+
+void bvh_set_axis(struct gpu_bvh_node *first)
+{
+    const struct gpu_bvh_node *second = first + 1;
+    uint32_t axis = 0;
+    double gap = 0.0;
+    for (uint32_t a = 0; a < 3; ++a) {
+        double along = ((double)second->lo[a] + (double)second->hi[a]) -
+                       ((double)first->lo[a] + (double)first->hi[a]);
+        if (fabs(along) > fabs(gap)) {
+            gap = along;
+            axis = a;
+        }
+    }
+    first->count = bvh_count(first) | axis << BVH_AXIS_SHIFT | (gap < 0.0 ? BVH_SECOND_LOW : 0);
+}
+
+struct tally {
+    double area_inner, area_leaves; /* of leaves: times primitives */
+    uint32_t leaf_count, leaf_largest;
+};
+
+static void node_tally(const struct gpu_bvh_node *node, struct tally *tally)
+{
+    uint32_t count = bvh_count(node);
+    if (count == 0) {
+        tally->area_inner += half_area(node);
+        return;
+    }
+    tally->area_leaves += half_area(node) * count;
+    ++tally->leaf_count;
+    if (count > tally->leaf_largest)
+        tally->leaf_largest = count;
+}
+
+/* The depth of the subtree below `node`, 0 for a leaf. Recurses at most BVH_DEPTH_MAX deep. */
+static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node)
+{
+    if (bvh_count(&nodes[node]) > 0)
+        return 0;
+    uint32_t a = subtree_depth(nodes, nodes[node].first);
+    uint32_t b = subtree_depth(nodes, nodes[node].first + 1);
+    return 1 + (a > b ? a : b);
+}
+
+/* Sums of chunks are summed up in the order of the chunks, whoever made them. */
+enum { CHUNK_NODES = 16384, CHUNKS_MAX = 512 };
+
+struct chunks {
+    struct bvh *bvh;
+    uint32_t nodes; /* of a chunk; even */
+    struct tally tallies[CHUNKS_MAX];
+};
+
+static void chunk_complete(void *user, uint32_t index)
+{
+    struct chunks *chunks = user;
+    struct bvh *bvh = chunks->bvh;
+    struct tally tally = {0};
+    uint32_t begin = index * chunks->nodes;
+    uint32_t end =
+        bvh->node_count - begin > chunks->nodes ? begin + chunks->nodes : bvh->node_count;
+    for (uint32_t i = begin; i < end; ++i) {
+        if (i == 1)
+            continue;
+        node_tally(&bvh->nodes[i], &tally);
+        if (i >= 2 && i % 2 == 0)
+            bvh_set_axis(&bvh->nodes[i]);
+    }
+    chunks->tallies[index] = tally;
+}
+
+static struct tally nodes_complete(struct bvh *bvh, uint32_t thread_count)
+{
+    struct tally sum = {0};
+    struct chunks chunks = {.bvh = bvh, .nodes = CHUNK_NODES};
+    while ((uint64_t)chunks.nodes * CHUNKS_MAX < bvh->node_count)
+        chunks.nodes *= 2;
+    uint32_t count = (bvh->node_count + chunks.nodes - 1) / chunks.nodes;
+    threads_for(thread_count, count, chunk_complete, &chunks);
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct tally *part = &chunks.tallies[i];
+        sum.area_inner += part->area_inner;
+        sum.area_leaves += part->area_leaves;
+        sum.leaf_count += part->leaf_count;
+        sum.leaf_largest =
+            part->leaf_largest > sum.leaf_largest ? part->leaf_largest : sum.leaf_largest;
+    }
+    return sum;
+}
+
+void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count)
+{
+    struct tally tally = nodes_complete(bvh, thread_count);
+    double root = bvh->node_count > 0 ? half_area(&bvh->nodes[0]) : 0.0;
+    bvh->sah_cost =
+        root > 0.0 ? (tally.area_inner * traversal_cost + tally.area_leaves) / root : 0.0;
+    bvh->leaf_count = tally.leaf_count;
+    bvh->leaf_largest = tally.leaf_largest;
+    bvh->depth = bvh->node_count > 0 ? subtree_depth(bvh->nodes, 0) : 0;
+}
+
+void bvh_complete(struct bvh *bvh, double traversal_cost)
+{
+    build_complete(bvh, traversal_cost, 1);
+}

@@ -1,0 +1,355 @@
+/* Moves subtrees of a finished tree to where they cost less. After Meister and Bittner 2018,
+   "Parallel reinsertion for bounding volume hierarchy optimization": the best place of each
+   candidate is searched in parallel, by branch and bound over the tree as it stands; then the moves
+   are made one by one, those that gain most first. By then the tree has changed: each gain is
+   computed anew, and a move that would raise the cost is taken back.
+
+   Leaves stay what they are, so that the areas of inner nodes are all that changes of the cost. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/clock.h"
+#include "base/threads.h"
+#include "bvh/build.h"
+
+enum {
+    ROUNDS_MAX = 10,
+    SEARCH_CHUNK = 256, /* searches made by one call */
+    SEARCH_MAX = 1024,  /* nodes looked at by one search: bounds what odd trees cost */
+    STACK_SIZE = BVH_DEPTH_MAX + 2,
+};
+
+/* A round that lowers the cost by less than this is the last. */
+static const double ROUND_MIN = 0.001;
+
+struct move {
+    float gain; /* scaled area */
+    uint32_t from, to;
+};
+
+struct optimizer {
+    struct gpu_bvh_node *nodes; /* a copy; without axis bits */
+    uint32_t *parents;          /* of each pair: the node above it */
+    struct move *moves;         /* one a node that is not the root */
+    uint32_t node_count, thread_count;
+    f4 scale;
+};
+
+/* ---- Boxes ---- */
+
+struct extent {
+    f4 lo, hi;
+};
+
+static inline struct extent node_extent(const struct gpu_bvh_node *node)
+{
+    return (struct extent){f4_xyz(f4_load(node->lo)), f4_xyz(f4_load(node->hi))};
+}
+
+static inline struct extent extent_unite(struct extent a, struct extent b)
+{
+    return (struct extent){f4_min(a.lo, b.lo), f4_max(a.hi, b.hi)};
+}
+
+static inline float extent_area(struct extent e, f4 scale)
+{
+    return build_scaled_area(e.lo, e.hi, scale);
+}
+
+static double node_area(const struct gpu_bvh_node *node)
+{
+    double x = (double)node->hi[0] - (double)node->lo[0];
+    double y = (double)node->hi[1] - (double)node->lo[1];
+    double z = (double)node->hi[2] - (double)node->lo[2];
+    return x * y + y * z + z * x;
+}
+
+/* True: the box is another one now. */
+static bool node_set_extent(struct gpu_bvh_node *node, struct extent e)
+{
+    alignas(16) float lo[4], hi[4];
+    f4_store(lo, e.lo);
+    f4_store(hi, e.hi);
+    bool same =
+        memcmp(node->lo, lo, sizeof node->lo) == 0 && memcmp(node->hi, hi, sizeof node->hi) == 0;
+    memcpy(node->lo, lo, sizeof node->lo);
+    memcpy(node->hi, hi, sizeof node->hi);
+    return !same;
+}
+
+/* ---- Where to ---- */
+
+struct candidate {
+    struct extent extent;
+    float area;
+    uint32_t node, visits;
+    struct move best;
+};
+
+/* Everything below `root`, with what is gained before the candidate is put there. */
+static void search_subtree(const struct optimizer *o, struct candidate *c, uint32_t root,
+                           float gained)
+{
+    struct {
+        uint32_t node;
+        float gained;
+    } stack[STACK_SIZE];
+    uint32_t top = 0;
+    stack[top].node = root;
+    stack[top++].gained = gained;
+    while (top > 0 && c->visits < SEARCH_MAX) {
+        uint32_t at = stack[--top].node;
+        gained = stack[top].gained;
+        if (gained - c->area <= c->best.gain)
+            continue;
+        ++c->visits;
+        const struct gpu_bvh_node *node = &o->nodes[at];
+        struct extent own = node_extent(node);
+        float gain = gained - extent_area(extent_unite(own, c->extent), o->scale);
+        if (gain > c->best.gain)
+            c->best = (struct move){gain, c->node, at};
+        float below = gain + extent_area(own, o->scale);
+        if (node->count > 0 || below - c->area <= c->best.gain || top + 2 > STACK_SIZE)
+            continue;
+        stack[top].node = node->first + 1;
+        stack[top++].gained = below;
+        stack[top].node = node->first;
+        stack[top++].gained = below;
+    }
+}
+
+/* Up the path to the root: what hangs beside it, and above which of its nodes. */
+static struct move search(const struct optimizer *o, uint32_t node)
+{
+    struct candidate c = {.extent = node_extent(&o->nodes[node]), .node = node};
+    c.area = extent_area(c.extent, o->scale);
+    uint32_t at = o->parents[node / 2];
+    struct extent left = node_extent(&o->nodes[node ^ 1]); /* of the path without the candidate */
+    float gained = extent_area(node_extent(&o->nodes[at]), o->scale);
+    search_subtree(o, &c, node ^ 1, gained);
+    while (at != 0 && c.visits < SEARCH_MAX) {
+        search_subtree(o, &c, at ^ 1, gained);
+        left = extent_unite(left, node_extent(&o->nodes[at ^ 1]));
+        at = o->parents[at / 2];
+        gained -= extent_area(left, o->scale);
+        if (gained > c.best.gain)
+            c.best = (struct move){gained, node, at};
+        gained += extent_area(node_extent(&o->nodes[at]), o->scale);
+    }
+    return c.best;
+}
+
+static void search_chunk(void *context, uint32_t index)
+{
+    struct optimizer *o = context;
+    uint32_t begin = 2 + index * SEARCH_CHUNK;
+    uint32_t end = o->node_count - begin > SEARCH_CHUNK ? begin + SEARCH_CHUNK : o->node_count;
+    for (uint32_t i = begin; i < end; ++i)
+        o->moves[i - 2] = search(o, i);
+}
+
+/* ---- Moving ---- */
+
+static void adopt(struct optimizer *o, uint32_t node)
+{
+    if (o->nodes[node].count == 0)
+        o->parents[o->nodes[node].first / 2] = node;
+}
+
+/* Boxes from the pair of `node` upwards; what the area of inner nodes grows by. */
+static double refit(struct optimizer *o, uint32_t node)
+{
+    double grown = 0.0;
+    while (node != 0) {
+        uint32_t above = o->parents[node / 2];
+        double before = node_area(&o->nodes[above]);
+        struct extent sum =
+            extent_unite(node_extent(&o->nodes[node]), node_extent(&o->nodes[node ^ 1]));
+        if (!node_set_extent(&o->nodes[above], sum))
+            break;
+        grown += node_area(&o->nodes[above]) - before;
+        node = above;
+    }
+    return grown;
+}
+
+/* The sibling takes the place above; the pair's other half stays for attach. */
+static double detach(struct optimizer *o, uint32_t from)
+{
+    uint32_t above = o->parents[from / 2];
+    double grown = -node_area(&o->nodes[above]);
+    o->nodes[above] = o->nodes[from ^ 1];
+    adopt(o, above);
+    return grown + refit(o, above);
+}
+
+static double attach(struct optimizer *o, uint32_t from, uint32_t to)
+{
+    o->nodes[from ^ 1] = o->nodes[to];
+    adopt(o, from ^ 1);
+    struct extent sum =
+        extent_unite(node_extent(&o->nodes[from]), node_extent(&o->nodes[from ^ 1]));
+    o->nodes[to].first = from & ~1u;
+    o->nodes[to].count = 0;
+    o->parents[from / 2] = to;
+    (void)node_set_extent(&o->nodes[to], sum);
+    return node_area(&o->nodes[to]) + refit(o, to);
+}
+
+static bool is_below(const struct optimizer *o, uint32_t node, uint32_t above)
+{
+    while (node != 0 && node != above)
+        node = o->parents[node / 2];
+    return node == above;
+}
+
+/* Makes the move if it lowers the cost. Gives by how much the cost falls, else 0. */
+static double move_make(struct optimizer *o, const struct move *move)
+{
+    uint32_t from = move->from, to = move->to, above = o->parents[from / 2];
+    if (to == above || to == (from ^ 1) || is_below(o, to, from))
+        return 0.0;
+    double removed = detach(o, from);
+    double grown = removed + attach(o, from, to);
+    if (grown < 0.0)
+        return -grown;
+    (void)detach(o, from);
+    /* The former place, unless it is the pair's free half: then what was there is above. */
+    (void)attach(o, from, above);
+    return 0.0;
+}
+
+static int larger_gain_first(const void *a, const void *b)
+{
+    const struct move *x = a, *y = b;
+    if (x->gain != y->gain)
+        return x->gain < y->gain ? 1 : -1;
+    return x->from < y->from ? -1 : x->from > y->from;
+}
+
+/* Runs one round of moves. Gives by how much the cost falls. */
+static double round_run(struct optimizer *o)
+{
+    uint32_t count = o->node_count - 2, kept = 0;
+    threads_for(o->thread_count, (count + SEARCH_CHUNK - 1) / SEARCH_CHUNK, search_chunk, o);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (o->moves[i].gain > 0.0f)
+            o->moves[kept++] = o->moves[i];
+    }
+    qsort(o->moves, kept, sizeof *o->moves, larger_gain_first);
+    double gained = 0.0;
+    for (uint32_t i = 0; i < kept; ++i)
+        gained += move_make(o, &o->moves[i]);
+    return gained;
+}
+
+/* ---- The whole tree ---- */
+
+static bool optimizer_init(struct optimizer *o, const struct bvh *bvh, uint32_t thread_count)
+{
+    *o = (struct optimizer){.node_count = bvh->node_count, .thread_count = thread_count};
+    o->nodes = array_alloc_aligned(bvh->node_count, sizeof *o->nodes);
+    o->parents = array_alloc_zeroed(bvh->node_count / 2, sizeof *o->parents);
+    o->moves = array_alloc(bvh->node_count, sizeof *o->moves);
+    if (!o->nodes || !o->parents || !o->moves)
+        return false;
+    memcpy(o->nodes, bvh->nodes, bvh->node_count * sizeof *o->nodes);
+    for (uint32_t i = 0; i < bvh->node_count; ++i) {
+        o->nodes[i].count = bvh_count(&o->nodes[i]);
+        if (i != 1)
+            adopt(o, i);
+    }
+    struct extent root = node_extent(&o->nodes[0]);
+    o->scale = build_area_scale(&(struct build_bounds){.lo = root.lo, .hi = root.hi});
+    return true;
+}
+
+static void optimizer_finish(struct optimizer *o)
+{
+    free(o->nodes);
+    free(o->parents);
+    free(o->moves);
+}
+
+static double inner_area(const struct gpu_bvh_node *nodes, uint32_t node_count)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < node_count; ++i)
+        sum += i != 1 && bvh_count(&nodes[i]) == 0 ? node_area(&nodes[i]) : 0.0;
+    return sum;
+}
+
+/* Whether no path has more than `left` inner nodes. */
+static bool is_within_depth(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t left)
+{
+    if (nodes[node].count > 0)
+        return true;
+    return left > 0 && is_within_depth(nodes, nodes[node].first, left - 1) &&
+           is_within_depth(nodes, nodes[node].first + 1, left - 1);
+}
+
+/* Pairs depth first, primitives in the order of the leaves. */
+static void emit(const struct optimizer *o, struct bvh *bvh, uint32_t *order)
+{
+    struct {
+        uint32_t from, to;
+    } stack[STACK_SIZE], at = {0, 0};
+    uint32_t top = 0, pair = 2, slot = 0;
+    for (;;) {
+        struct gpu_bvh_node *node = &bvh->nodes[at.to];
+        *node = o->nodes[at.from];
+        uint32_t first = node->first;
+        if (node->count > 0) {
+            memcpy(&order[slot], &bvh->order[first], node->count * sizeof *order);
+            node->first = slot;
+            slot += node->count;
+            if (top == 0)
+                return;
+            at = stack[--top];
+            continue;
+        }
+        node->first = pair;
+        stack[top].from = first + 1;
+        stack[top++].to = pair + 1;
+        at.from = first;
+        at.to = pair;
+        pair += 2;
+    }
+}
+
+whit_result bvh_optimize(const struct log *log, uint32_t thread_count, double traversal_cost,
+                         struct bvh *bvh)
+{
+    double begin_ms = clock_ms();
+    if (bvh->node_count <= 4)
+        return WHIT_OK;
+    struct optimizer o;
+    uint32_t *order = array_alloc(bvh->reference_count, sizeof *order);
+    if (!optimizer_init(&o, bvh, thread_count) || !order) {
+        log_error(log, "tree over %u boxes: out of memory to optimize it", bvh->primitive_count);
+        optimizer_finish(&o);
+        free(order);
+        return WHIT_ERROR_MEMORY;
+    }
+    double before = inner_area(o.nodes, o.node_count), now = before;
+    for (uint32_t i = 0; i < ROUNDS_MAX && now > 0.0; ++i) {
+        double gained = round_run(&o);
+        now -= gained;
+        if (!(gained > ROUND_MIN * now))
+            break;
+    }
+    bool better = inner_area(o.nodes, o.node_count) < before;
+    if (better && is_within_depth(o.nodes, 0, BVH_DEPTH_MAX)) {
+        emit(&o, bvh, order);
+        uint32_t *old = bvh->order;
+        bvh->order = order;
+        order = old;
+        bvh_complete(bvh, traversal_cost);
+    }
+    optimizer_finish(&o);
+    free(order);
+    bvh->build_ms += clock_ms() - begin_ms;
+    return WHIT_OK;
+}

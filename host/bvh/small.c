@@ -1,0 +1,255 @@
+/* Whole subtrees over so few boxes that bins would cost more than the boxes in them: surface area
+   heuristic over every position. Sorted once; the three axes are the lanes of one sweep. Most nodes
+   of a tree are made here. */
+#include "bvh/build.h"
+
+struct small_range {
+    f4 lo, hi;
+    uint32_t node, pair, first, count, depth; /* `first` counts from the range's first record */
+    uint32_t side;                            /* of `order` */
+};
+
+struct cut {
+    uint32_t axis, left_count;
+    float cost;
+};
+
+/* For each axis the union of the boxes met so far along it. */
+struct sides {
+    f4 lo[3], hi[3];
+};
+
+void small_sort(struct small *small, uint32_t count)
+{
+    f4 one = f4_splat(1.0f);
+    for (uint32_t i = 0; i < count; ++i) {
+        f4 own = f4_load(small->centroid[i]), rank = f4_splat(0.0f);
+        for (uint32_t j = 0; j < i; ++j) /* not above: before */
+            rank = f4_add(
+                rank, f4_select(f4_less(own, f4_load(small->centroid[j])), f4_splat(0.0f), one));
+        for (uint32_t j = i + 1; j < count; ++j)
+            rank = f4_add(
+                rank, f4_select(f4_less(f4_load(small->centroid[j]), own), one, f4_splat(0.0f)));
+        alignas(16) int at[4];
+        f4_truncate(rank, at);
+        for (int a = 0; a < 3; ++a)
+            small->order[0][a][at[a]] = (uint8_t)i;
+    }
+}
+
+static inline void sides_add(struct sides *sides, const struct small *s, const uint8_t *order[3],
+                             uint32_t i)
+{
+    for (int a = 0; a < 3; ++a) {
+        uint32_t box = order[a][i];
+        sides->lo[a] = f4_min(sides->lo[a], s->lo[box]);
+        sides->hi[a] = f4_max(sides->hi[a], s->hi[box]);
+    }
+}
+
+static inline f4 sides_areas(const struct sides *sides, f4 scale)
+{
+    f4 d[3];
+    for (int a = 0; a < 3; ++a)
+        d[a] = f4_sub(f4_mul(sides->hi[a], scale), f4_mul(sides->lo[a], scale));
+    return f4_half_areas(d[0], d[1], d[2]);
+}
+
+static inline f4 keys_at(const struct small *s, const uint8_t *order[3], uint32_t i)
+{
+    return f4_set(s->centroid[order[0][i]][0], s->centroid[order[1][i]][1],
+                  s->centroid[order[2][i]][2], 0.0f);
+}
+
+static inline struct sides sides_none(void)
+{
+    struct build_bounds empty = build_bounds_empty();
+    return (struct sides){{empty.lo, empty.lo, empty.lo}, {empty.hi, empty.hi, empty.hi}};
+}
+
+/* A plane cannot part equal centroids. */
+static void sweep_all(const struct small *s, const struct small_range *r, f4 scale,
+                      struct cut *best)
+{
+    const uint8_t *order[3];
+    for (int a = 0; a < 3; ++a)
+        order[a] = s->order[r->side][a] + r->first;
+    f4 right_cost[BUILD_SMALL], best_cost = f4_splat(INFINITY), best_at = f4_splat(0.0f);
+    struct sides sides = sides_none();
+    for (uint32_t i = r->count - 1; i > 0; --i) {
+        sides_add(&sides, s, order, i);
+        right_cost[i] = f4_mul(sides_areas(&sides, scale), f4_splat((float)(r->count - i)));
+    }
+    sides = sides_none();
+    f4 before = keys_at(s, order, 0);
+    for (uint32_t i = 1; i < r->count; ++i) {
+        sides_add(&sides, s, order, i - 1);
+        f4 left_cost = f4_mul(sides_areas(&sides, scale), f4_splat((float)i));
+        f4 cost = f4_add(left_cost, right_cost[i]), key = keys_at(s, order, i);
+        f4 better = f4_both(f4_less(before, key), f4_less(cost, best_cost));
+        best_cost = f4_select(better, cost, best_cost);
+        best_at = f4_select(better, f4_splat((float)i), best_at);
+        before = key;
+    }
+    alignas(16) float cost[4];
+    alignas(16) int at[4];
+    f4_store(cost, best_cost);
+    f4_truncate(best_at, at);
+    for (uint32_t a = 0; a < 3; ++a) {
+        if (cost[a] < best->cost)
+            *best = (struct cut){a, (uint32_t)at[a], cost[a]};
+    }
+}
+
+/* What sweep_all finds for two: the same cost on every axis that parts them. */
+static void sweep_two(const struct small *s, const struct small_range *r, f4 scale,
+                      struct cut *best)
+{
+    uint32_t i = s->order[r->side][0][r->first], j = s->order[r->side][0][r->first + 1];
+    f4 ci = f4_load(s->centroid[i]), cj = f4_load(s->centroid[j]);
+    unsigned differ = (f4_below(ci, cj) | f4_below(cj, ci)) & 7u;
+    if (differ == 0)
+        return;
+    best->axis = differ & 1u ? 0 : differ & 2u ? 1 : 2;
+    best->left_count = 1;
+    best->cost =
+        build_scaled_area(s->lo[i], s->hi[i], scale) + build_scaled_area(s->lo[j], s->hi[j], scale);
+}
+
+static uint32_t widest_axis(const struct small *s, const struct small_range *r)
+{
+    float extent[3];
+    for (uint32_t a = 0; a < 3; ++a) {
+        const uint8_t *order = s->order[r->side][a] + r->first;
+        extent[a] = s->centroid[order[r->count - 1]][a] - s->centroid[order[0]][a];
+    }
+    uint32_t axis = extent[1] > extent[0] ? 1 : 0;
+    return extent[2] > extent[axis] ? 2 : axis;
+}
+
+/* False: a leaf. */
+static bool choose(const struct small *s, const struct small_range *r,
+                   const struct bvh_params *params, struct cut *cut)
+{
+    *cut = (struct cut){.cost = INFINITY};
+    if (r->depth < BUILD_DEPTH_OF_MEDIANS) {
+        f4 scale = build_scale_of(r->lo, r->hi);
+        float area = build_scaled_area(r->lo, r->hi, scale);
+        if (area > 0.0f && r->count == 2)
+            sweep_two(s, r, scale, cut);
+        else if (area > 0.0f)
+            sweep_all(s, r, scale, cut);
+        if (r->count <= params->leaf_limit &&
+            area * (float)r->count <= area * params->traversal_cost + cut->cost)
+            return false;
+    }
+    if (cut->cost < INFINITY)
+        return true;
+    if (r->count <= params->leaf_limit)
+        return false;
+    cut->axis = widest_axis(s, r);
+    cut->left_count = r->count / 2;
+    return true;
+}
+
+/* Both runs of every list keep their order. */
+static void lists_part(struct small *s, const struct small_range *r, uint32_t left_set,
+                       uint32_t left_count)
+{
+    uint32_t lefts[3] = {0};
+    for (uint32_t i = 0; i < r->count; ++i) {
+        for (int a = 0; a < 3; ++a) {
+            uint8_t box = s->order[r->side][a][r->first + i];
+            uint32_t is_left = left_set >> box & 1u;
+            uint32_t at = is_left ? lefts[a] : left_count + i - lefts[a];
+            s->order[!r->side][a][r->first + at] = box;
+            lefts[a] += is_left;
+        }
+    }
+}
+
+/* Returns the set of its boxes. */
+static uint32_t half_unite(const struct small *s, const uint8_t *order, struct small_range *half)
+{
+    uint32_t set = 1u << order[0];
+    half->lo = s->lo[order[0]];
+    half->hi = s->hi[order[0]];
+    for (uint32_t i = 1; i < half->count; ++i) {
+        half->lo = f4_min(half->lo, s->lo[order[i]]);
+        half->hi = f4_max(half->hi, s->hi[order[i]]);
+        set |= 1u << order[i];
+    }
+    return set;
+}
+
+static void part(struct small *s, const struct small_range *r, const struct cut *cut,
+                 struct small_range halves[2])
+{
+    uint32_t child = 2 + 2 * r->pair, left = cut->left_count, side = !r->side;
+    const uint8_t *order = s->order[r->side][cut->axis] + r->first;
+    halves[0] = (struct small_range){
+        .node = child, .pair = r->pair + 1, .first = r->first, .count = left, .side = side};
+    halves[1] = (struct small_range){.node = child + 1,
+                                     .pair = r->pair + left,
+                                     .first = r->first + left,
+                                     .count = r->count - left,
+                                     .side = side};
+    halves[0].depth = halves[1].depth = r->depth + 1;
+    uint32_t left_set = half_unite(s, order, &halves[0]);
+    (void)half_unite(s, order + left, &halves[1]);
+    lists_part(s, r, left_set, left);
+}
+
+/* Two boxes that come apart: two leaves. */
+static void part_two(struct small *s, const struct small_range *r, const struct cut *cut,
+                     struct gpu_bvh_node *pair, uint32_t first)
+{
+    const uint8_t *order = s->order[r->side][cut->axis] + r->first;
+    for (uint32_t i = 0; i < 2; ++i) {
+        build_node_write(&pair[i], s->lo[order[i]], s->hi[order[i]], first + r->first + i, 1);
+        s->leaves[r->first + i] = order[i];
+    }
+}
+
+static void leaf_write(struct small *s, const struct small_range *r, struct gpu_bvh_node *node,
+                       uint32_t first)
+{
+    build_node_write(node, r->lo, r->hi, first + r->first, r->count);
+    for (uint32_t i = 0; i < r->count; ++i)
+        s->leaves[r->first + i] = s->order[r->side][0][r->first + i];
+}
+
+void small_grow(struct small *small, const struct build_output *output,
+                const struct bvh_params *params, const struct build_range *range)
+{
+    struct small_range stack[BUILD_SMALL], halves[2];
+    struct small_range r = {range->bounds.lo,
+                            range->bounds.hi,
+                            range->node,
+                            range->pair,
+                            0,
+                            range->count,
+                            range->depth,
+                            0};
+    struct cut cut;
+    uint32_t top = 0;
+    for (;;) {
+        struct gpu_bvh_node *node = &output->nodes[r.node];
+        if (r.count > 1 && choose(small, &r, params, &cut)) {
+            build_node_write(node, r.lo, r.hi, 2 + 2 * r.pair, 0);
+            output->slots[r.pair] = 1;
+            if (r.count > 2) {
+                part(small, &r, &cut, halves);
+                stack[top++] = halves[1];
+                r = halves[0];
+                continue;
+            }
+            part_two(small, &r, &cut, &output->nodes[2 + 2 * r.pair], range->first);
+        } else {
+            leaf_write(small, &r, node, range->first);
+        }
+        if (top == 0)
+            return;
+        r = stack[--top];
+    }
+}

@@ -1,0 +1,315 @@
+/* Surface area heuristic over every position on three axes. The primitives are sorted once along
+   each axis; a node sweeps its run of each list, and a split keeps the order of all three (Wald and
+   Havran 2006, "On building fast kd-trees for ray tracing, and on doing that in O(N log N)", 4.3,
+   for boxes that are not split). */
+#include <stdatomic.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/threads.h"
+#include "bvh/build.h"
+
+enum { THREADED_MIN = 4096 }; /* records from which the axes of one node are given to threads */
+
+struct sweep {
+    const struct bvh_params *params;
+    struct build_record *records; /* by primitive */
+    uint32_t *list[3];            /* primitives by centroid, equal ones by primitive */
+    /* For each primitive: 1 if it goes left, else 0; in a small subtree, its index there. */
+    uint8_t *mark;
+};
+
+static inline f4 record_centroid(const struct build_record *record)
+{
+    return build_centroid(build_record_lo(record), build_record_hi(record));
+}
+
+static inline float centroid_along(const struct build_record *record, uint32_t axis)
+{
+    return record->lo[axis] * 0.25f + record->hi[axis] * 0.25f;
+}
+
+/* ---- Sorting ---- */
+
+enum { DIGIT_BITS = 11, DIGITS = 3, BUCKETS = 1 << DIGIT_BITS };
+
+/* Floats in the order of unsigned integers. */
+static uint32_t ordered_bits(float value)
+{
+    uint32_t bits;
+    value += 0.0f; /* one zero */
+    memcpy(&bits, &value, sizeof bits);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+struct sorting {
+    struct sweep *sweep;
+    uint32_t count;
+    _Atomic bool failed;
+};
+
+static uint32_t digit_of(uint64_t item, uint32_t digit)
+{
+    return (uint32_t)(item >> (32 + digit * DIGIT_BITS)) & (BUCKETS - 1);
+}
+
+static void items_make(const struct sorting *sorting, uint32_t axis, uint64_t *items,
+                       uint32_t (*histogram)[BUCKETS])
+{
+    for (uint32_t i = 0; i < sorting->count; ++i) {
+        float centroid = centroid_along(&sorting->sweep->records[i], axis);
+        items[i] = (uint64_t)ordered_bits(centroid) << 32 | i;
+        for (uint32_t d = 0; d < DIGITS; ++d)
+            ++histogram[d][digit_of(items[i], d)];
+    }
+}
+
+static void items_scatter(const uint64_t *from, uint64_t *to, uint32_t count, uint32_t digit,
+                          uint32_t *histogram)
+{
+    uint32_t place = 0;
+    for (uint32_t b = 0; b < BUCKETS; ++b) {
+        uint32_t size = histogram[b];
+        histogram[b] = place;
+        place += size;
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        to[histogram[digit_of(from[i], digit)]++] = from[i];
+}
+
+/* Least digit first: stable. */
+static void sort_axis(void *user, uint32_t axis)
+{
+    struct sorting *sorting = user;
+    uint32_t count = sorting->count, histogram[DIGITS][BUCKETS];
+    uint64_t *items = array_alloc(2 * (size_t)count, sizeof *items), *other = items + count;
+    if (!items) {
+        atomic_store(&sorting->failed, true);
+        return;
+    }
+    uint64_t *begin = items;
+    memset(histogram, 0, sizeof histogram);
+    items_make(sorting, axis, items, histogram);
+    for (uint32_t d = 0; d < DIGITS; ++d) {
+        items_scatter(items, other, count, d, histogram[d]);
+        uint64_t *swapped = items;
+        items = other;
+        other = swapped;
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        sorting->sweep->list[axis][i] = (uint32_t)items[i];
+    free(begin);
+}
+
+/* ---- Sweeping ---- */
+
+struct cut {
+    uint32_t left_count;
+    float cost;
+    f4 lo, hi; /* of the left side */
+};
+
+struct node_sweep {
+    const struct sweep *sweep;
+    const struct build_range *range;
+    f4 scale;
+    float *right_cost[3];
+    struct cut best[3];
+};
+
+static inline void union_add(f4 *lo, f4 *hi, const struct build_record *record)
+{
+    *lo = f4_min(*lo, build_record_lo(record));
+    *hi = f4_max(*hi, build_record_hi(record));
+}
+
+/* A plane cannot part equal centroids. */
+static void sweep_axis(void *user, uint32_t axis)
+{
+    struct node_sweep *n = user;
+    const struct build_record *records = n->sweep->records;
+    const uint32_t *list = n->sweep->list[axis] + n->range->first;
+    uint32_t count = n->range->count;
+    float *right_cost = n->right_cost[axis];
+    struct build_bounds empty = build_bounds_empty();
+    struct cut best = {0, INFINITY, empty.lo, empty.hi};
+    f4 lo = empty.lo, hi = empty.hi;
+    for (uint32_t i = count - 1; i > 0; --i) {
+        union_add(&lo, &hi, &records[list[i]]);
+        right_cost[i] = build_scaled_area(lo, hi, n->scale) * (float)(count - i);
+    }
+    lo = empty.lo, hi = empty.hi;
+    float before = centroid_along(&records[list[0]], axis);
+    for (uint32_t i = 1; i < count; ++i) {
+        union_add(&lo, &hi, &records[list[i - 1]]);
+        float cost = build_scaled_area(lo, hi, n->scale) * (float)i + right_cost[i];
+        float key = centroid_along(&records[list[i]], axis);
+        if (cost < best.cost && before < key)
+            best = (struct cut){i, cost, lo, hi};
+        before = key;
+    }
+    n->best[axis] = best;
+}
+
+struct parting {
+    const struct sweep *sweep;
+    const struct build_range *range;
+    uint32_t axis, left_count;
+    uint32_t *right[3];
+};
+
+/* Both runs of a list keep their order. */
+static void part_axis(void *user, uint32_t axis)
+{
+    const struct parting *p = user;
+    if (axis == p->axis)
+        return;
+    const uint8_t *mark = p->sweep->mark;
+    uint32_t *list = p->sweep->list[axis] + p->range->first, *right = p->right[axis];
+    uint32_t left_count = 0, right_count = 0;
+    for (uint32_t i = 0; i < p->range->count; ++i) {
+        uint32_t item = list[i], left = mark[item];
+        list[left_count] = item;
+        right[right_count] = item;
+        left_count += left;
+        right_count += 1 - left;
+    }
+    memcpy(list + left_count, right, right_count * sizeof *list);
+}
+
+/* `scratch` is free again after sweeping. */
+static void part(const struct sweep *sweep, const struct build_range *range, uint32_t axis,
+                 uint32_t left_count, uint32_t thread_count, void *scratch)
+{
+    struct parting parting = {sweep, range, axis, left_count, {NULL}};
+    const uint32_t *list = sweep->list[axis] + range->first;
+    for (uint32_t i = 0; i < range->count; ++i)
+        sweep->mark[list[i]] = i < left_count;
+    for (uint32_t a = 0; a < 3; ++a)
+        parting.right[a] = (uint32_t *)scratch + a * (size_t)range->count;
+    threads_for(range->count < THREADED_MIN ? 1 : thread_count, 3, part_axis, &parting);
+}
+
+static enum build_choice split(void *user, const struct build_range *range, uint32_t thread_count,
+                               void *scratch, uint32_t *left_count, struct build_bounds halves[2])
+{
+    struct sweep *sweep = user;
+    const struct bvh_params *params = sweep->params;
+    struct node_sweep n = {
+        .sweep = sweep, .range = range, .scale = build_area_scale(&range->bounds)};
+    float area = build_scaled_area(range->bounds.lo, range->bounds.hi, n.scale);
+    for (uint32_t a = 0; a < 3; ++a) {
+        n.right_cost[a] = (float *)scratch + a * (size_t)range->count;
+        n.best[a].cost = INFINITY;
+    }
+    if (area > 0.0f)
+        threads_for(range->count < THREADED_MIN ? 1 : thread_count, 3, sweep_axis, &n);
+    uint32_t axis = n.best[1].cost < n.best[0].cost ? 1 : 0;
+    axis = n.best[2].cost < n.best[axis].cost ? 2 : axis;
+    const struct cut *best = &n.best[axis];
+    if (range->count <= params->leaf_limit &&
+        area * (float)range->count <= area * params->traversal_cost + best->cost)
+        return BUILD_LEAF;
+    if (!(best->cost < INFINITY))
+        return BUILD_NONE;
+    halves[0] = halves[1] = build_bounds_empty();
+    halves[0].lo = best->lo;
+    halves[0].hi = best->hi;
+    for (uint32_t i = best->left_count; i < range->count; ++i)
+        union_add(&halves[1].lo, &halves[1].hi,
+                  &sweep->records[sweep->list[axis][range->first + i]]);
+    part(sweep, range, axis, best->left_count, thread_count, scratch);
+    *left_count = best->left_count;
+    return BUILD_SPLIT;
+}
+
+static void halve(void *user, const struct build_range *range, void *scratch, uint32_t *left_count,
+                  struct build_bounds halves[2])
+{
+    struct sweep *sweep = user;
+    float extent[3];
+    for (uint32_t a = 0; a < 3; ++a) {
+        const uint32_t *list = sweep->list[a] + range->first;
+        extent[a] = centroid_along(&sweep->records[list[range->count - 1]], a) -
+                    centroid_along(&sweep->records[list[0]], a);
+    }
+    uint32_t axis = extent[1] > extent[0] ? 1 : 0, left = range->count / 2;
+    axis = extent[2] > extent[axis] ? 2 : axis;
+    halves[0] = halves[1] = build_bounds_empty();
+    for (uint32_t i = 0; i < range->count; ++i) {
+        struct build_bounds *half = &halves[i >= left];
+        union_add(&half->lo, &half->hi, &sweep->records[sweep->list[axis][range->first + i]]);
+    }
+    part(sweep, range, axis, left, 1, scratch);
+    *left_count = left;
+}
+
+static void grow_small(void *user, const struct build_output *output,
+                       const struct build_range *range)
+{
+    struct sweep *sweep = user;
+    uint32_t *list[3], own[BUILD_SMALL];
+    struct small small;
+    for (uint32_t a = 0; a < 3; ++a)
+        list[a] = sweep->list[a] + range->first;
+    for (uint32_t i = 0; i < range->count; ++i) {
+        const struct build_record *record = &sweep->records[list[0][i]];
+        own[i] = list[0][i];
+        sweep->mark[own[i]] = (uint8_t)i;
+        small.lo[i] = build_record_lo(record);
+        small.hi[i] = build_record_hi(record);
+        f4_store(small.centroid[i], record_centroid(record));
+    }
+    for (uint32_t a = 0; a < 3; ++a) {
+        for (uint32_t i = 0; i < range->count; ++i)
+            small.order[0][a][i] = sweep->mark[list[a][i]];
+    }
+    small_grow(&small, output, sweep->params, range);
+    for (uint32_t i = 0; i < range->count; ++i)
+        list[0][i] = own[small.leaves[i]];
+}
+
+/* ---- */
+
+static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uint32_t count)
+{
+    struct sorting sorting = {.sweep = sweep, .count = count};
+    atomic_init(&sorting.failed, false);
+    sweep->mark = array_alloc(count, sizeof *sweep->mark);
+    bool allocated = sweep->mark != NULL;
+    for (uint32_t a = 0; a < 3; ++a) {
+        sweep->list[a] = array_alloc(count, sizeof *sweep->list[a]);
+        allocated &= sweep->list[a] != NULL;
+    }
+    if (allocated)
+        threads_for(count < THREADED_MIN ? 1 : sweep->params->thread_count, 3, sort_axis, &sorting);
+    if (allocated && !atomic_load(&sorting.failed))
+        return WHIT_OK;
+    log_error(log, "tree over %u boxes: out of memory", count);
+    return WHIT_ERROR_MEMORY;
+}
+
+whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+                        const struct bvh_params *resolved, struct bvh *out)
+{
+    struct sweep sweep = {.params = resolved};
+    struct build_methods methods = {.context = &sweep,
+                                    .split = split,
+                                    .halve = halve,
+                                    .small = grow_small,
+                                    .small_count = BUILD_SMALL};
+    struct build_bounds bounds;
+    whit_result result =
+        records_make(log, boxes, count, 0, resolved->thread_count, &sweep.records, &bounds);
+    if (result == WHIT_OK)
+        result = sweep_prepare(log, &sweep, count);
+    if (result == WHIT_OK)
+        result = topdown_grow(log, &methods, resolved, &bounds, count, out);
+    if (result == WHIT_OK)
+        memcpy(out->order, sweep.list[0], count * sizeof *out->order);
+    free(sweep.records);
+    free(sweep.mark);
+    for (uint32_t a = 0; a < 3; ++a)
+        free(sweep.list[a]);
+    return result;
+}

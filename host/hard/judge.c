@@ -1,0 +1,383 @@
+/* What levels make of hard rays, beside exact arithmetic. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "accel/accel.h"
+#include "base/array.h"
+#include "base/hash.h"
+#include "base/threads.h"
+#include "hard/hard.h"
+#include "oracle/oracle.h"
+#include "twin/ray.h"
+#include "twin/traverse.h"
+
+enum { CHUNK = 1024 };
+
+static uint32_t chunks_of(uint64_t count)
+{
+    return (uint32_t)((count + CHUNK - 1) / CHUNK);
+}
+
+static uint64_t chunk_end(uint32_t chunk, uint64_t count)
+{
+    uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
+    return end < count ? end : count;
+}
+
+/* ---- Exact and twin ---- */
+
+struct tracing {
+    const struct hard_scene *hard;
+    const struct hard_ray *rays;
+    uint64_t count;
+    uint32_t numerics;
+    struct rational_hit *exact;
+    struct gpu_hit *hits;
+    uint32_t *failed; /* of each chunk */
+};
+
+static void exact_chunk(void *context, uint32_t chunk)
+{
+    struct tracing *t = context;
+    struct rational *rational = rational_create(t->hard->accel);
+    t->failed[chunk] = rational == NULL;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, t->count); ++i)
+        rational_trace(rational, &t->rays[i].ray, NULL, &t->exact[i]);
+    rational_destroy(rational);
+}
+
+static struct traverse_params level_params(uint32_t numerics)
+{
+    return (struct traverse_params){.order = ORDER_DISTANCE,
+                                    .numerics = numerics,
+                                    .skip_instance = HIT_NONE,
+                                    .skip_primitive = HIT_NONE};
+}
+
+static void twin_chunk(void *context, uint32_t chunk)
+{
+    struct tracing *t = context;
+    const struct traverse_params params = level_params(t->numerics);
+    for (uint64_t i = (uint64_t)chunk * CHUNK; i < chunk_end(chunk, t->count); ++i)
+        traverse_ray(t->hard->accel, &params, &t->rays[i].ray, &t->hits[i], NULL,
+                     &t->failed[chunk]);
+}
+
+static whit_result run_chunks(struct tracing *tracing, uint32_t thread_count,
+                              void (*fn)(void *context, uint32_t index), whit_result failure)
+{
+    uint32_t chunks = chunks_of(tracing->count);
+    whit_result result = WHIT_OK;
+    tracing->failed = array_alloc_zeroed(chunks, sizeof *tracing->failed);
+    if (!tracing->failed) {
+        log_error(&tracing->hard->scene->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    threads_for(thread_count, chunks, fn, tracing);
+    for (uint32_t i = 0; i < chunks; ++i)
+        if (tracing->failed[i])
+            result = failure;
+    free(tracing->failed);
+    return result;
+}
+
+whit_result hard_trace_exact(const struct hard_scene *hard, const struct hard_ray *rays,
+                             uint64_t count, uint32_t thread_count, struct rational_hit *exact)
+{
+    struct tracing tracing = {.hard = hard, .rays = rays, .count = count, .exact = exact};
+    whit_result result = run_chunks(&tracing, thread_count, exact_chunk, WHIT_ERROR_MEMORY);
+    if (result != WHIT_OK)
+        log_error(&hard->scene->log, "out of memory for exact numbers");
+    return result;
+}
+
+whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
+                            const struct hard_ray *rays, uint64_t count, uint32_t thread_count,
+                            struct gpu_hit *hits)
+{
+    struct tracing tracing = {
+        .hard = hard, .rays = rays, .count = count, .numerics = numerics, .hits = hits};
+    whit_result result = run_chunks(&tracing, thread_count, twin_chunk, WHIT_ERROR_STATUS);
+    if (result != WHIT_OK)
+        log_error(&hard->scene->log, "%s: a traversal on the CPU was cut short", hard->scene->name);
+    return result;
+}
+
+/* ---- One ray ---- */
+
+/* The relative offset of rays beside a ray, larger than float errors: the shear and the edge
+   functions of a level round coordinates relative to the origin some 8 times, 2^-24 each. */
+#define BESIDE 0x1p-19
+
+/* Two axes across the direction. */
+static void across(const double dir[3], double first[3], double second[3])
+{
+    int min = 0;
+    double axis[3] = {0, 0, 0};
+    for (int k = 1; k < 3; ++k)
+        if (fabs(dir[k]) < fabs(dir[min]))
+            min = k;
+    axis[min] = 1.0;
+    double3_cross(dir, axis, first);
+    double3_unit(first);
+    double3_cross(dir, first, second);
+    double3_unit(second);
+}
+
+/* Whether eight rays beside this one hit too: then it goes through the inside of a surface and not
+   along its outline. */
+static bool is_surrounded(struct rational *rational, const struct gpu_ray *ray)
+{
+    const double dir[3] = {(double)ray->dir[0], (double)ray->dir[1], (double)ray->dir[2]};
+    double first[3], second[3], length = sqrt(double3_dot(dir, dir));
+    across(dir, first, second);
+    for (int i = 0; i < 9; ++i) {
+        struct gpu_ray beside = *ray;
+        struct rational_hit hit;
+        for (int k = 0; k < 3; ++k)
+            beside.dir[k] =
+                (float)(dir[k] +
+                        BESIDE * length * ((i % 3 - 1) * first[k] + (i / 3 - 1) * second[k]));
+        rational_trace(rational, &beside, NULL, &hit);
+        if (hit.primitive == HIT_NONE)
+            return false;
+    }
+    return true;
+}
+
+/* Spheres have no edges. */
+static bool touches_open_edge(const struct hard_judgement *j, const struct rational_hit *hit)
+{
+    uint32_t mesh = j->hard->scene->instances[hit->instance].mesh;
+    return j->hard->scene->meshes[mesh].sphere_count == 0 &&
+           j->topology->open[j->topology->first[mesh] + hit->primitive];
+}
+
+/* Whether the hit is so near the ray's origin that rounding may put it on either side of it. */
+static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ray, float t)
+{
+    double size = 0.0, dir = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        size = fmax(size, hard->hi[k] - hard->lo[k]);
+        dir = fmax(dir, fabs((double)ray->dir[k]));
+    }
+    return (double)t * dir <= BESIDE * size;
+}
+
+/* Whether the ray starts in the plane of the triangle, as far as floats tell: then they do not say
+   on which side, and a ray along the plane may begin far from where it goes through. */
+static bool starts_in_plane(const struct hard_scene *hard, const struct gpu_ray *ray,
+                            const struct rational_hit *hit)
+{
+    const struct scene_mesh *mesh =
+        &hard->scene->meshes[hard->scene->instances[hit->instance].mesh];
+    struct gpu_ray local = accel_local_ray(&hard->accel->instances[hit->instance], ray);
+    double corners[3][3], e1[3], e2[3], normal[3], reach = 0.0;
+    if (mesh->sphere_count > 0)
+        return false;
+    for (int i = 0; i < 3; ++i) {
+        uint32_t vertex = mesh->indices[3 * (size_t)hit->primitive + (uint32_t)i];
+        for (int k = 0; k < 3; ++k) {
+            corners[i][k] =
+                (double)mesh->positions[3 * (size_t)vertex + (uint32_t)k] - (double)local.origin[k];
+            reach = fmax(reach, fabs(corners[i][k]));
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        e1[k] = corners[1][k] - corners[0][k];
+        e2[k] = corners[2][k] - corners[0][k];
+    }
+    double3_cross(e1, e2, normal);
+    return fabs(double3_dot(corners[0], normal)) <=
+           BESIDE * reach * sqrt(double3_dot(normal, normal));
+}
+
+static bool is_leak(const struct hard_judgement *j, struct rational *rational, uint64_t i)
+{
+    const struct gpu_ray *ray = &j->rays[i].ray;
+    return j->hard->truth == HARD_MUST_HIT ||
+           (!starts_there(j->hard, ray, j->exact[i].t) &&
+            !starts_in_plane(j->hard, ray, &j->exact[i]) && !touches_open_edge(j, &j->exact[i]) &&
+            is_surrounded(rational, ray));
+}
+
+static bool is_sure(const struct hard_judgement *j, uint64_t i)
+{
+    struct oracle_hit oracle;
+    if (j->numerics == NUMERICS_EXACT)
+        return true;
+    oracle_trace(j->hard->accel, &j->rays[i].ray, false, &oracle);
+    return fabs(oracle.edge_margin) >= 1.0;
+}
+
+double hard_ulps_between(float a, float b)
+{
+    int32_t x, y;
+    memcpy(&x, &a, sizeof x);
+    memcpy(&y, &b, sizeof y);
+    int64_t p = x < 0 ? INT32_MIN - (int64_t)x : x, q = y < 0 ? INT32_MIN - (int64_t)y : y;
+    return (double)(p < q ? q - p : p - q);
+}
+
+bool hard_goes_far(const struct gpu_ray *ray, float t)
+{
+    float origin = 0.0f, dir = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        origin = fmaxf(origin, fabsf(ray->origin[k]));
+        dir = fmaxf(dir, fabsf(ray->dir[k]));
+    }
+    return t * dir > 0x1p-20f * origin;
+}
+
+/* Hits whose t differ by at most this share are at the same place, but for rounding; exact hits are
+   at different places when they differ by more than four times as much. */
+#define TOGETHER 0x1p-18f
+
+static bool is_together(float t, float next, float share)
+{
+    return fabsf(next - t) <= share * fabsf(t);
+}
+
+/* Whether a second primitive, where exactly there is none, is hit at the same place. Traced by the
+   C twin, whose bits are compared with the device elsewhere. */
+static bool is_double(const struct hard_judgement *j, struct rational *rational, uint64_t i,
+                      uint32_t *status)
+{
+    const struct gpu_hit *hit = &j->hits[i];
+    const struct rational_hit own = {.primitive = hit->primitive, .instance = hit->instance};
+    const struct rational_query query = {.own = &own};
+    struct traverse_params params = level_params(j->numerics);
+    struct gpu_hit next;
+    struct rational_hit exact;
+    params.skip_instance = hit->instance;
+    params.skip_primitive = hit->primitive;
+    traverse_ray(j->hard->accel, &params, &j->rays[i].ray, &next, NULL, status);
+    if (next.primitive == HIT_NONE || !is_together(hit->t, next.t, TOGETHER))
+        return false;
+    rational_trace(rational, &j->rays[i].ray, &query, &exact);
+    return exact.primitive == HIT_NONE || !is_together(hit->t, exact.t, 4.0f * TOGETHER);
+}
+
+static void judge_ray(const struct hard_judgement *j, struct rational *rational, uint64_t i,
+                      struct hard_tally *tally, uint32_t *status)
+{
+    const struct rational_hit *exact = &j->exact[i];
+    const struct gpu_hit *hit = &j->hits[i];
+    bool hits = exact->primitive != HIT_NONE, met = hit->primitive != HIT_NONE;
+    ++tally->rays;
+    bool same = hit->primitive == exact->primitive && hit->instance == exact->instance;
+    tally->hits += hits;
+    tally->misses += hits && !met;
+    tally->leaks += hits && !met && is_leak(j, rational, i);
+    tally->false_hits += !hits && met;
+    tally->other_ids += hits && met && !same;
+    tally->wrong += !same && is_sure(j, i);
+    tally->self_hits +=
+        met && (j->hard->truth == HARD_MUST_MISS ||
+                (hit->primitive == j->rays[i].primitive && hit->instance == j->rays[i].instance));
+    if (!met)
+        return;
+    if (same) {
+        tally->wrong_keys += hit->t != exact->t;
+        if (hard_goes_far(&j->rays[i].ray, exact->t))
+            tally->ulp_max = fmax(tally->ulp_max, hard_ulps_between(hit->t, exact->t));
+    }
+    tally->double_hits += is_double(j, rational, i, status);
+}
+
+/* ---- All of them ---- */
+
+struct judging {
+    const struct hard_judgement *judgement;
+    struct hard_tally *tallies; /* of each chunk */
+    uint32_t *status;
+    uint32_t *failed;
+};
+
+static void judge_chunk(void *context, uint32_t chunk)
+{
+    struct judging *judging = context;
+    const struct hard_judgement *j = judging->judgement;
+    struct rational *rational = rational_create(j->hard->accel);
+    judging->failed[chunk] = rational == NULL;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, j->count); ++i)
+        judge_ray(j, rational, i, &judging->tallies[chunk], &judging->status[chunk]);
+    rational_destroy(rational);
+}
+
+static void add_tally(struct hard_tally *sum, const struct hard_tally *more)
+{
+    sum->rays += more->rays;
+    sum->hits += more->hits;
+    sum->misses += more->misses;
+    sum->leaks += more->leaks;
+    sum->false_hits += more->false_hits;
+    sum->other_ids += more->other_ids;
+    sum->wrong_keys += more->wrong_keys;
+    sum->wrong += more->wrong;
+    sum->double_hits += more->double_hits;
+    sum->self_hits += more->self_hits;
+    sum->ulp_max = fmax(sum->ulp_max, more->ulp_max);
+}
+
+whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
+                       struct hard_tally *tally)
+{
+    const struct log *log = &judgement->hard->scene->log;
+    uint32_t chunks = chunks_of(judgement->count);
+    struct judging judging = {
+        .judgement = judgement,
+        .tallies = array_alloc_zeroed(chunks, sizeof *judging.tallies),
+        .status = array_alloc_zeroed(chunks, sizeof *judging.status),
+        .failed = array_alloc_zeroed(chunks, sizeof *judging.failed),
+    };
+    whit_result result = WHIT_OK;
+    *tally = (struct hard_tally){0};
+    if (!judging.tallies || !judging.status || !judging.failed)
+        result = WHIT_ERROR_MEMORY;
+    else
+        threads_for(thread_count, chunks, judge_chunk, &judging);
+    for (uint32_t i = 0; result == WHIT_OK && i < chunks; ++i) {
+        add_tally(tally, &judging.tallies[i]);
+        if (judging.failed[i])
+            result = WHIT_ERROR_MEMORY;
+        else if (judging.status[i])
+            result = WHIT_ERROR_STATUS;
+    }
+    free(judging.tallies);
+    free(judging.status);
+    free(judging.failed);
+    if (result != WHIT_OK)
+        log_error(log, "%s: hits could not be judged: %s", judgement->hard->scene->name,
+                  whit_result_name(result));
+    return result;
+}
+
+uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, uint64_t count)
+{
+    uint64_t differing = 0;
+    for (uint64_t i = 0; i < count; ++i)
+        differing += memcmp(&a[i], &b[i], sizeof a[i]) != 0;
+    return differing;
+}
+
+uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t count)
+{
+    for (uint64_t i = 0; i < count; ++i) {
+        const uint32_t ids[2] = {exact[i].instance, exact[i].primitive};
+        value = hash_bytes(value, ids, sizeof ids);
+    }
+    return value;
+}
+
+bool hard_promise_kept(uint32_t numerics, bool promised, const struct hard_tally *tally)
+{
+    if (numerics == NUMERICS_FAST)
+        return true;
+    if (numerics == NUMERICS_EXACT)
+        return tally->misses == 0 && tally->false_hits == 0 && tally->other_ids == 0 &&
+               tally->wrong_keys == 0;
+    return tally->wrong == 0 && (!promised || tally->leaks == 0);
+}

@@ -1,0 +1,183 @@
+/* Which edges are open, crowded or flipped, and which triangles are there twice. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "hard/hard.h"
+
+struct corner {
+    float at[3];
+    uint32_t index; /* into the mesh's indices */
+};
+
+struct edge {
+    uint32_t from, to; /* from < to */
+    uint32_t triangle;
+    bool turned; /* the triangle goes from `to` to `from` */
+};
+
+struct face {
+    uint32_t corners[3]; /* sorted */
+};
+
+static int compare_corners(const void *a, const void *b)
+{
+    const struct corner *x = a, *y = b;
+    for (int k = 0; k < 3; ++k)
+        if (x->at[k] != y->at[k])
+            return x->at[k] < y->at[k] ? -1 : 1;
+    return 0;
+}
+
+static int compare_words(const uint32_t *x, const uint32_t *y, int count)
+{
+    for (int k = 0; k < count; ++k)
+        if (x[k] != y[k])
+            return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+static int compare_edges(const void *a, const void *b)
+{
+    const struct edge *x = a, *y = b;
+    const uint32_t left[2] = {x->from, x->to}, right[2] = {y->from, y->to};
+    return compare_words(left, right, 2);
+}
+
+static int compare_faces(const void *a, const void *b)
+{
+    return compare_words(((const struct face *)a)->corners, ((const struct face *)b)->corners, 3);
+}
+
+/* Equal vertices get one number, into `welded`, 3 a triangle. */
+static whit_result weld(const struct scene_mesh *mesh, uint32_t *welded)
+{
+    uint32_t count = 3 * mesh->triangle_count, number = 0;
+    struct corner *corners = array_alloc(count, sizeof *corners);
+    if (!corners)
+        return WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < count; ++i) {
+        memcpy(corners[i].at, &mesh->positions[3 * (size_t)mesh->indices[i]], sizeof corners[i].at);
+        corners[i].index = i;
+    }
+    qsort(corners, count, sizeof *corners, compare_corners);
+    for (uint32_t i = 0; i < count; ++i) {
+        number += i > 0 && compare_corners(&corners[i], &corners[i - 1]) != 0;
+        welded[corners[i].index] = number;
+    }
+    free(corners);
+    return WHIT_OK;
+}
+
+/* Edges [first, end) are one. */
+static void count_edge(struct hard_topology *topology, const struct edge *edges, uint32_t first,
+                       uint32_t end, uint8_t *vertex_open)
+{
+    uint32_t turned = 0;
+    for (uint32_t i = first; i < end; ++i)
+        turned += edges[i].turned;
+    ++topology->edges;
+    topology->open_edges += end - first == 1;
+    topology->crowded_edges += end - first > 2;
+    topology->flipped_edges += end - first == 2 && turned != 1;
+    if (end - first != 2) {
+        vertex_open[edges[first].from] = 1;
+        vertex_open[edges[first].to] = 1;
+    }
+}
+
+static void count_edges(struct hard_topology *topology, const uint32_t *welded, uint32_t triangles,
+                        struct edge *edges, uint8_t *vertex_open)
+{
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < triangles; ++t) {
+        for (uint32_t k = 0; k < 3; ++k) {
+            uint32_t a = welded[3 * t + k], b = welded[3 * t + (k + 1) % 3];
+            if (a == b)
+                continue;
+            edges[count++] = (struct edge){a < b ? a : b, a < b ? b : a, t, a > b};
+        }
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (uint32_t first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && compare_edges(&edges[first], &edges[end]) == 0;)
+            ++end;
+        count_edge(topology, edges, first, end, vertex_open);
+    }
+}
+
+static void sort_three(uint32_t v[3])
+{
+    for (int pass = 0; pass < 2; ++pass)
+        for (int k = 0; k < 2; ++k)
+            if (v[k] > v[k + 1]) {
+                uint32_t kept = v[k];
+                v[k] = v[k + 1];
+                v[k + 1] = kept;
+            }
+}
+
+static void count_duplicates(struct hard_topology *topology, const uint32_t *welded,
+                             uint32_t triangles, struct face *faces)
+{
+    for (uint32_t t = 0; t < triangles; ++t) {
+        memcpy(faces[t].corners, &welded[3 * (size_t)t], sizeof faces[t].corners);
+        sort_three(faces[t].corners);
+    }
+    qsort(faces, triangles, sizeof *faces, compare_faces);
+    for (uint32_t t = 1; t < triangles; ++t)
+        topology->duplicates += compare_faces(&faces[t], &faces[t - 1]) == 0;
+}
+
+static whit_result add_mesh(struct hard_topology *topology, const struct scene_mesh *mesh,
+                            uint8_t *open)
+{
+    uint32_t triangles = mesh->triangle_count;
+    uint32_t *welded = array_alloc(3 * (size_t)triangles, sizeof *welded);
+    struct edge *edges = array_alloc(3 * (size_t)triangles, sizeof *edges);
+    struct face *faces = array_alloc(triangles, sizeof *faces);
+    uint8_t *vertex_open = array_alloc_zeroed(3 * (size_t)triangles, 1);
+    whit_result result =
+        welded && edges && faces && vertex_open ? weld(mesh, welded) : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK) {
+        count_edges(topology, welded, triangles, edges, vertex_open);
+        count_duplicates(topology, welded, triangles, faces);
+        for (uint32_t t = 0; t < triangles; ++t)
+            open[t] = vertex_open[welded[3 * t]] | vertex_open[welded[3 * t + 1]] |
+                      vertex_open[welded[3 * t + 2]];
+        topology->triangles += triangles;
+    }
+    free(welded);
+    free(edges);
+    free(faces);
+    free(vertex_open);
+    return result;
+}
+
+whit_result hard_topology_init(const struct scene *scene, struct hard_topology *out)
+{
+    uint64_t triangles = 0;
+    *out = (struct hard_topology){0};
+    out->first = array_alloc(scene->mesh_count, sizeof *out->first);
+    for (uint32_t i = 0; out->first && i < scene->mesh_count; ++i) {
+        out->first[i] = triangles;
+        triangles += scene->meshes[i].triangle_count;
+    }
+    out->open = array_alloc_zeroed((size_t)triangles, 1);
+    whit_result result = out->first && out->open ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < scene->mesh_count; ++i)
+        if (scene->meshes[i].triangle_count)
+            result = add_mesh(out, &scene->meshes[i], &out->open[out->first[i]]);
+    if (result != WHIT_OK) {
+        log_error(&scene->log, "%s: out of memory", scene->name);
+        hard_topology_finish(out);
+    }
+    return result;
+}
+
+void hard_topology_finish(struct hard_topology *topology)
+{
+    free(topology->open);
+    free(topology->first);
+    *topology = (struct hard_topology){0};
+}

@@ -1,0 +1,146 @@
+/* How far a point is from a scene's surfaces, in double. */
+#include <float.h>
+#include <math.h>
+
+#include "accel/accel.h"
+#include "base/vec.h"
+#include "oracle/nearest.h"
+
+struct query {
+    const struct accel *accel;
+    struct affine placed; /* object to world, of the instance at hand */
+    double p[3], best2;
+};
+
+/* Squared distance to the box around a box that is placed: no more than to what is in it. */
+static double box_distance2(const struct query *q, const float lo[3], const float hi[3])
+{
+    double sum = 0.0;
+    for (int r = 0; r < 3; ++r) {
+        const double *row = &q->placed.m[4 * r];
+        double from = row[3], to = row[3];
+        for (int k = 0; k < 3; ++k) {
+            double a = row[k] * (double)lo[k], b = row[k] * (double)hi[k];
+            from += fmin(a, b);
+            to += fmax(a, b);
+        }
+        double away = fmax(fmax(from - q->p[r], q->p[r] - to), 0.0);
+        sum += away * away;
+    }
+    return sum;
+}
+
+/* Nearest point of a triangle: Ericson 2005, "Real-Time Collision Detection", 5.1.5. */
+static double triangle_distance2(const double p[3], double v[3][3])
+{
+    double ab[3], ac[3], ap[3], bp[3], cp[3];
+    for (int k = 0; k < 3; ++k) {
+        ab[k] = v[1][k] - v[0][k];
+        ac[k] = v[2][k] - v[0][k];
+        ap[k] = p[k] - v[0][k];
+        bp[k] = p[k] - v[1][k];
+        cp[k] = p[k] - v[2][k];
+    }
+    double d1 = double3_dot(ab, ap), d2 = double3_dot(ac, ap), d3 = double3_dot(ab, bp),
+           d4 = double3_dot(ac, bp);
+    double d5 = double3_dot(ab, cp), d6 = double3_dot(ac, cp);
+    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    double s = 0.0, t = 0.0; /* along ab and ac */
+    if (d1 <= 0 && d2 <= 0)
+        s = t = 0;
+    else if (d3 >= 0 && d4 <= d3)
+        s = 1;
+    else if (d6 >= 0 && d5 <= d6)
+        t = 1;
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+        s = d1 / (d1 - d3);
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+        t = d2 / (d2 - d6);
+    else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        s = 1 - t;
+    } else if (va + vb + vc > 0) {
+        s = vb / (va + vb + vc);
+        t = vc / (va + vb + vc);
+    }
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        double away = ap[k] - s * ab[k] - t * ac[k];
+        sum += away * away;
+    }
+    return sum;
+}
+
+/* No more than the distance to the sphere where its transform stretches. */
+static double sphere_distance2(const struct query *q, const struct gpu_triangle *record)
+{
+    double center[3], at[3], stretch2 = 0.0, away2 = 0.0;
+    for (int k = 0; k < 3; ++k)
+        center[k] = (double)record->v0[k];
+    affine_point(&q->placed, center, at);
+    for (int r = 0; r < 3; ++r) {
+        for (int k = 0; k < 3; ++k)
+            stretch2 += q->placed.m[4 * r + k] * q->placed.m[4 * r + k];
+        away2 += (q->p[r] - at[r]) * (q->p[r] - at[r]);
+    }
+    double gap = sqrt(away2) - (double)record->v1[0] * sqrt(stretch2);
+    return gap > 0.0 ? gap * gap : 0.0;
+}
+
+static void visit_record(struct query *q, uint32_t index)
+{
+    const struct gpu_triangle *record = &q->accel->triangles[index];
+    if (record->flags & TRIANGLE_SPHERE) {
+        q->best2 = fmin(q->best2, sphere_distance2(q, record));
+        return;
+    }
+    const float *corners[3] = {record->v0, record->v1, record->v2};
+    double v[3][3];
+    for (int i = 0; i < 3; ++i) {
+        double at[3] = {(double)corners[i][0], (double)corners[i][1], (double)corners[i][2]};
+        affine_point(&q->placed, at, v[i]);
+    }
+    q->best2 = fmin(q->best2, triangle_distance2(q->p, v));
+}
+
+static void visit_node(struct query *q, const struct gpu_bvh_node *node)
+{
+    if (box_distance2(q, node->lo, node->hi) >= q->best2)
+        return;
+    if (bvh_count(node)) {
+        for (uint32_t i = 0; i < bvh_count(node); ++i)
+            visit_record(q, node->first + i);
+        return;
+    }
+    const struct gpu_bvh_node *pair = &q->accel->nodes[node->first];
+    bool second = box_distance2(q, pair[1].lo, pair[1].hi) < box_distance2(q, pair->lo, pair->hi);
+    visit_node(q, &pair[second]);
+    visit_node(q, &pair[!second]);
+}
+
+static void visit_tree(struct query *q, uint32_t ref)
+{
+    if (ref != BVH_EMPTY_REF && ref >> BVH_COUNT_SHIFT) {
+        for (uint32_t i = 0; i < ref >> BVH_COUNT_SHIFT; ++i)
+            visit_record(q, (ref & BVH_FIRST_MASK) + i);
+    } else if (ref != BVH_EMPTY_REF) {
+        visit_node(q, &q->accel->nodes[ref & BVH_FIRST_MASK]);
+        visit_node(q, &q->accel->nodes[(ref & BVH_FIRST_MASK) + 1]);
+    }
+}
+
+double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3])
+{
+    struct query q = {
+        .accel = accel, .placed = affine_identity(), .p = {p[0], p[1], p[2]}, .best2 = DBL_MAX};
+    if (accel->flat)
+        visit_tree(&q, accel->meshes[0].root);
+    for (uint32_t i = 0; !accel->flat && i < accel->instance_count; ++i) {
+        const struct gpu_instance *instance = &accel->instances[i];
+        const struct accel_mesh *mesh = &accel->meshes[instance->mesh];
+        q.placed = pose->instances[i];
+        if (box_distance2(&q, mesh->box.lo, mesh->box.hi) < q.best2)
+            visit_tree(&q, instance->root);
+    }
+    return q.best2 < DBL_MAX ? sqrt(q.best2) : INFINITY;
+}

@@ -1,0 +1,263 @@
+/* End-point overlap: how much surface lies in boxes that it does not belong to. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/threads.h"
+#include "twin/report.h"
+
+/* ---- Clipping ---- */
+
+/* A pass over n corners leaves at most 1.5 n, however they are rounded: 3, 4, 6, 9, 13, 19, 28. */
+enum { CORNERS_MAX = 28 };
+
+struct polygon {
+    double corners[CORNERS_MAX][3];
+    uint32_t count;
+};
+
+static void polygon_add(struct polygon *polygon, const double corner[3])
+{
+    memcpy(polygon->corners[polygon->count++], corner, 3 * sizeof(double));
+}
+
+/* Keeps the part with sign * corner[axis] >= sign * bound (Sutherland and Hodgman 1974). */
+static void polygon_clip(struct polygon *polygon, int axis, double sign, double bound)
+{
+    double height[CORNERS_MAX];
+    uint32_t inside = 0;
+    for (uint32_t i = 0; i < polygon->count; ++i) {
+        height[i] = sign * (polygon->corners[i][axis] - bound);
+        inside += height[i] >= 0.0;
+    }
+    if (inside == polygon->count)
+        return;
+    struct polygon out = {.count = 0};
+    for (uint32_t i = 0; inside && i < polygon->count; ++i) {
+        uint32_t next = i + 1 < polygon->count ? i + 1 : 0;
+        const double *a = polygon->corners[i], *b = polygon->corners[next];
+        if (height[i] >= 0.0)
+            polygon_add(&out, a);
+        if ((height[i] >= 0.0) == (height[next] >= 0.0))
+            continue;
+        double along = height[i] / (height[i] - height[next]), cut[3];
+        for (int k = 0; k < 3; ++k)
+            cut[k] = a[k] + along * (b[k] - a[k]);
+        cut[axis] = bound;
+        polygon_add(&out, cut);
+    }
+    *polygon = out;
+}
+
+static double polygon_area(const struct polygon *polygon)
+{
+    double sum[3] = {0};
+    const double *o = polygon->corners[0];
+    for (uint32_t i = 1; i + 1 < polygon->count; ++i) {
+        const double *p = polygon->corners[i], *q = polygon->corners[i + 1];
+        double a[3], b[3];
+        for (int k = 0; k < 3; ++k) {
+            a[k] = p[k] - o[k];
+            b[k] = q[k] - o[k];
+        }
+        sum[0] += a[1] * b[2] - a[2] * b[1];
+        sum[1] += a[2] * b[0] - a[0] * b[2];
+        sum[2] += a[0] * b[1] - a[1] * b[0];
+    }
+    return 0.5 * sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+}
+
+double epo_clipped_area(const float a[3], const float b[3], const float c[3],
+                        const struct bvh_box *box)
+{
+    const float *vertices[3] = {a, b, c};
+    struct polygon polygon = {.count = 3};
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k)
+            polygon.corners[i][k] = (double)vertices[i][k];
+    }
+    for (int axis = 0; axis < 3 && polygon.count; ++axis) {
+        polygon_clip(&polygon, axis, 1.0, (double)box->lo[axis]);
+        polygon_clip(&polygon, axis, -1.0, (double)box->hi[axis]);
+    }
+    return polygon_area(&polygon);
+}
+
+/* The area of a sphere inside the box, to a few percent: the share of points inside, out of points
+   spread evenly over the sphere (a spiral by the golden angle, with equal area per point). */
+static double epo_sphere_area(const float center[3], float radius, const struct bvh_box *box)
+{
+    enum { POINTS = 256 };
+    const double golden_angle = 2.399963229728653, pi = 3.141592653589793;
+    double r = (double)radius;
+    uint32_t inside = 0;
+    for (int i = 0; i < POINTS; ++i) {
+        double height = 1.0 - (2.0 * i + 1.0) / POINTS, ring = sqrt(1.0 - height * height);
+        const double dir[3] = {ring * cos(golden_angle * i), height, ring * sin(golden_angle * i)};
+        bool in = true;
+        for (int k = 0; k < 3; ++k) {
+            double at = (double)center[k] + r * dir[k];
+            in &= at >= (double)box->lo[k] && at <= (double)box->hi[k];
+        }
+        inside += in;
+    }
+    return 4.0 * pi * r * r * inside / POINTS;
+}
+
+static double epo_area(const struct gpu_triangle *record, const struct bvh_box *box)
+{
+    if (record->flags & TRIANGLE_SPHERE)
+        return epo_sphere_area(record->v0, record->v1[0], box);
+    return epo_clipped_area(record->v0, record->v1, record->v2, box);
+}
+
+/* ---- One tree ---- */
+
+/* A triangle in a leaf. Sorted, the places of one triangle are side by side. */
+struct place {
+    uint32_t instance, primitive, leaf, record;
+};
+
+/* Leaves below a node, by number from the left. */
+struct leaves {
+    uint32_t begin, end;
+};
+
+enum { TRIANGLES_A_TASK = 256 };
+
+struct walk {
+    const struct gpu_bvh_node *nodes; /* of all meshes */
+    const struct gpu_triangle *triangles;
+    uint32_t first_node, first_triangle, place_count, triangle_count;
+    double pair_cost;
+    struct leaves *leaves; /* one a node */
+    struct place *places;
+    uint32_t *firsts;     /* of each triangle: its first place; then place_count */
+    struct bvh_epo *sums; /* one a task */
+};
+
+static uint32_t number_leaves(struct walk *walk, uint32_t node, uint32_t begin)
+{
+    const struct gpu_bvh_node *at = &walk->nodes[node];
+    uint32_t count = bvh_count(at), end = begin + 1;
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct gpu_triangle *triangle = &walk->triangles[at->first + i];
+        walk->places[walk->place_count++] = (struct place){
+            triangle->flags >> TRIANGLE_INSTANCE_SHIFT, triangle->primitive, begin, at->first + i};
+    }
+    if (count == 0) {
+        end = number_leaves(walk, at->first, begin);
+        end = number_leaves(walk, at->first + 1, end);
+    }
+    walk->leaves[node - walk->first_node] = (struct leaves){begin, end};
+    return end;
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct place *x = a, *y = b;
+    if (x->instance != y->instance)
+        return x->instance < y->instance ? -1 : 1;
+    if (x->primitive != y->primitive)
+        return x->primitive < y->primitive ? -1 : 1;
+    return x->leaf < y->leaf ? -1 : x->leaf > y->leaf;
+}
+
+static void find_triangles(struct walk *walk)
+{
+    qsort(walk->places, walk->place_count, sizeof *walk->places, compare_places);
+    for (uint32_t i = 0; i < walk->place_count; ++i) {
+        const struct place *at = &walk->places[i];
+        if (i == 0 || at->instance != at[-1].instance || at->primitive != at[-1].primitive)
+            walk->firsts[walk->triangle_count++] = i;
+    }
+    walk->firsts[walk->triangle_count] = walk->place_count;
+}
+
+static bool belongs(const struct walk *walk, uint32_t triangle, uint32_t node)
+{
+    const struct leaves *leaves = &walk->leaves[node - walk->first_node];
+    for (uint32_t i = walk->firsts[triangle]; i < walk->firsts[triangle + 1]; ++i) {
+        if (walk->places[i].leaf >= leaves->begin && walk->places[i].leaf < leaves->end)
+            return true;
+    }
+    return false;
+}
+
+/* Adds what `node` and the nodes below it hold of the triangle without owning it. */
+static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t node, double *sum)
+{
+    const struct gpu_bvh_node *at = &walk->nodes[node];
+    const struct gpu_triangle *t = &walk->triangles[walk->places[walk->firsts[triangle]].record];
+    struct bvh_box box;
+    memcpy(box.lo, at->lo, sizeof box.lo);
+    memcpy(box.hi, at->hi, sizeof box.hi);
+    double area = epo_area(t, &box);
+    if (area == 0.0)
+        return;
+    uint32_t count = bvh_count(at);
+    if (!belongs(walk, triangle, node))
+        *sum += area * (count ? (double)count : walk->pair_cost);
+    if (count == 0) {
+        add_overlap(walk, triangle, at->first, sum);
+        add_overlap(walk, triangle, at->first + 1, sum);
+    }
+}
+
+static void run_task(void *context, uint32_t index)
+{
+    const struct walk *walk = context;
+    static const struct bvh_box everything = {{-INFINITY, -INFINITY, -INFINITY},
+                                              {INFINITY, INFINITY, INFINITY}};
+    uint32_t begin = index * TRIANGLES_A_TASK;
+    uint32_t left = walk->triangle_count - begin;
+    uint32_t end = begin + (left < TRIANGLES_A_TASK ? left : TRIANGLES_A_TASK);
+    struct bvh_epo sum = {0};
+    for (uint32_t i = begin; i < end; ++i) {
+        const struct gpu_triangle *t = &walk->triangles[walk->places[walk->firsts[i]].record];
+        sum.surface += epo_area(t, &everything);
+        add_overlap(walk, i, walk->first_node, &sum.overlap);
+    }
+    walk->sums[index] = sum;
+}
+
+whit_result accel_mesh_epo(const struct accel *accel, uint32_t mesh_index, struct bvh_epo *epo)
+{
+    const struct accel_mesh *mesh = &accel->meshes[mesh_index];
+    *epo = (struct bvh_epo){0};
+    if (mesh->node_count == 0)
+        return WHIT_OK;
+    uint32_t task_count = (mesh->record_count + TRIANGLES_A_TASK - 1) / TRIANGLES_A_TASK;
+    float cost = accel->params.mesh.traversal_cost;
+    struct walk walk = {
+        .nodes = accel->nodes,
+        .triangles = accel->triangles,
+        .first_node = mesh->first_node,
+        .pair_cost = cost > 0.0f ? (double)cost : 1.0,
+        .leaves = array_alloc(mesh->node_count, sizeof *walk.leaves),
+        .places = array_alloc(mesh->record_count, sizeof *walk.places),
+        .firsts = array_alloc((size_t)mesh->record_count + 1, sizeof *walk.firsts),
+        .sums = array_alloc_zeroed(task_count, sizeof *walk.sums),
+    };
+    whit_result result = WHIT_OK;
+    if (walk.leaves && walk.places && walk.firsts && walk.sums) {
+        number_leaves(&walk, mesh->first_node, 0);
+        find_triangles(&walk);
+        threads_for(accel->params.mesh.thread_count,
+                    (walk.triangle_count + TRIANGLES_A_TASK - 1) / TRIANGLES_A_TASK, run_task,
+                    &walk);
+    } else {
+        log_error(&accel->log, "%s: out of memory for a report on its trees", accel->scene->name);
+        result = WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; result == WHIT_OK && i < task_count; ++i) {
+        epo->overlap += walk.sums[i].overlap;
+        epo->surface += walk.sums[i].surface;
+    }
+    free(walk.leaves);
+    free(walk.places);
+    free(walk.firsts);
+    free(walk.sums);
+    return result;
+}

@@ -1,0 +1,36 @@
+/* shaders/lib/exact.glsl in C: whether a ray meets a triangle and where, as exact arithmetic says
+   for the given floats. The filter is the shader's operation by operation; the exact test is the
+   same integer arithmetic, digit by digit, so that u and v have its bits too. Method and bounds:
+   docs/numerics.md, "exact". */
+#ifndef TWIN_EXACT_H
+#define TWIN_EXACT_H
+
+#include "twin/intersect.h"
+
+#define EXACT_UNIT  (1.0f / 16777216.0f)
+#define EXACT_TINY  7.8886090522101181e-31f /* 2^-100: whatever underflows, and more */
+#define EXACT_LARGE 1.2676506002282294e+30f
+
+/* What floats can tell. The key is the exact t, rounded to nearest. */
+struct exact_bounds {
+    bool outside; /* surely missed */
+    bool inside;  /* surely met, and t, u, v are good */
+    float t, u, v;
+    float lo, hi;     /* lo <= key <= hi if it is met */
+    float edge_error; /* no edge function is off by more */
+};
+
+/* Vertices relative to the ray's origin, as for intersect_triangle. */
+void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, struct vec3 c,
+                  struct exact_bounds *out);
+
+struct exact_candidate {
+    bool met; /* t >= 0, the closed triangle, not edge-on; false where the key exceeds FLT_MAX */
+    float key, u, v;
+};
+
+/* Decides exactly whether the ray meets the triangle. All coordinates must be finite. */
+void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
+                struct exact_candidate *out);
+
+#endif

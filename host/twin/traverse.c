@@ -1,0 +1,619 @@
+/* shaders/bind/traverse.glsl, with what it includes, in C: the two modes that geometry alone
+   decides. */
+#include "accel/accel.h"
+
+#include <float.h>
+
+#include "accel/extent.h"
+#include "twin/exact.h"
+#include "twin/exact_sphere.h"
+#include "twin/ff_sphere.h"
+#include "twin/ff_triangle.h"
+#include "twin/intersect.h"
+#include "twin/moller.h"
+#include "twin/ray.h"
+#include "twin/traverse.h"
+
+#define REF_DONE          0xffffffffu
+#define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
+/* As in the shader; the product is rounded to float there too. */
+#define SLAB_NEAR_SCALE   (1.0f - 1.0f / 524288.0f)
+enum { STACK_SIZE = 512 };
+
+struct walk {
+    const struct accel *accel;
+    const struct gpu_ray *ray; /* world space */
+    uint32_t order, numerics;
+    bool any;
+    bool next; /* TRAVERSE_NEXT */
+    float t_min, hit_before;
+    uint32_t skip_instance, skip_primitive;
+    struct gpu_hit *hit; /* t is the largest that still counts */
+    float lo, hi;        /* NUMERICS_EXACT: bounds of the hit's key */
+    bool at_exit;        /* NUMERICS_EXACT: the hit is the far end of a sphere */
+    uint32_t triangle;   /* record of the hit */
+    struct gpu_cost cost;
+    uint32_t status;
+    uint32_t level; /* of the ref in hand */
+    uint32_t stack[STACK_SIZE], levels[STACK_SIZE];
+};
+
+static bool is_inner(uint32_t ref)
+{
+    return ref < REF_ONE_PRIMITIVE;
+}
+
+static bool is_leaf(uint32_t ref)
+{
+    return ref - REF_ONE_PRIMITIVE < REF_DONE - REF_ONE_PRIMITIVE;
+}
+
+static void push_ref(struct walk *walk, uint32_t ref, uint32_t *top)
+{
+    if (*top == STACK_SIZE) {
+        walk->status |= STATUS_NODE_STACK_OVERFLOW;
+        return;
+    }
+    walk->stack[*top] = ref;
+    walk->levels[(*top)++] = walk->level;
+    if (*top > walk->cost.stack)
+        walk->cost.stack = *top;
+}
+
+static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
+{
+    if (*top == base)
+        return REF_DONE;
+    walk->level = walk->levels[--*top];
+    return walk->stack[*top];
+}
+
+static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float near_scale,
+                          uint32_t pair, uint32_t base, uint32_t *top)
+{
+    const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
+    float a_near, a_far, b_near, b_far;
+    slab_interval(ray, vec3_sub(vec3_load(a->lo), ray->above),
+                  vec3_sub(vec3_load(a->hi), ray->below), walk->t_min, &a_near, &a_far);
+    slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->above),
+                  vec3_sub(vec3_load(b->hi), ray->below), walk->t_min, &b_near, &b_far);
+    if (walk->numerics == NUMERICS_EXACT)
+        near_scale = SLAB_NEAR_SCALE;
+    if (walk->numerics == NUMERICS_FAST)
+        near_scale = 1.0f;
+    if (near_scale != 1.0f) {
+        a_near = a_near * near_scale;
+        b_near = b_near * near_scale;
+    }
+    ++walk->level;
+    ++walk->cost.inner_nodes;
+    if (walk->level > walk->cost.depth)
+        walk->cost.depth = walk->level;
+    float t = walk->numerics == NUMERICS_EXACT ? walk->hi : walk->hit->t;
+    bool hit_a = a_near <= a_far && a_near <= t;
+    bool hit_b = b_near <= b_far && b_near <= t;
+    uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
+    bool b_nearer = b_near < a_near;
+    if (walk->order == ORDER_SIGN)
+        b_nearer = ray->negative[a->count >> BVH_AXIS_SHIFT & BVH_AXIS_MASK] !=
+                   ((a->count & BVH_SECOND_LOW) != 0);
+    if (walk->order == ORDER_BASIC)
+        b_nearer = false;
+    bool b_first = hit_b && (!hit_a || b_nearer);
+    if (hit_a && hit_b)
+        push_ref(walk, b_first ? ref_a : ref_b, top);
+    if (!hit_a && !hit_b)
+        return pop_ref(walk, base, top);
+    return b_first ? ref_b : ref_a;
+}
+
+/* Where a ray meets a primitive, if it does. At NUMERICS_EXACT what decides is the key, the exact t
+   rounded to nearest, in lo..hi; it is the t of a finished hit. */
+struct candidate {
+    bool met;
+    float t, u, v;
+};
+
+static struct candidate meet_triangle(const struct walk *walk, const struct ray_setup *ray,
+                                      const struct gpu_triangle *triangle)
+{
+    struct candidate m;
+    if (walk->numerics == NUMERICS_FAST) {
+        m.met = intersect_moller(ray->origin, ray->dir, vec3_load(triangle->v0),
+                                 vec3_load(triangle->v1), vec3_load(triangle->v2), walk->t_min,
+                                 &m.t, &m.u, &m.v);
+        return m;
+    }
+    m.met = intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
+                               vec3_sub(vec3_load(triangle->v1), ray->origin),
+                               vec3_sub(vec3_load(triangle->v2), ray->origin), walk->t_min, &m.t,
+                               &m.u, &m.v);
+    return m;
+}
+
+static struct candidate meet_sphere(const struct walk *walk, const struct ray_setup *ray,
+                                    const struct chord *chord, bool at_exit, bool own)
+{
+    struct candidate m;
+    float at = at_exit ? chord->t_far : chord->t_near;
+    m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
+    m.t = at > chord->t_box ? at : chord->t_box;
+    square_from_dir(chord_end(ray, chord, at_exit), &m.u, &m.v);
+    return m;
+}
+
+/* Whether t, or the least that it may be, comes before `farthest`, or with it. */
+static bool is_nearer(const struct gpu_hit *hit, float farthest, float t, uint32_t instance,
+                      uint32_t primitive)
+{
+    return t < farthest ||
+           (t == farthest && (instance < hit->instance ||
+                              (instance == hit->instance && primitive < hit->primitive)));
+}
+
+/* TRAVERSE_NEXT: whether a hit comes after the known one. */
+static bool is_behind(const struct walk *walk, float t, uint32_t instance, uint32_t primitive)
+{
+    return t > walk->hit_before ||
+           (t == walk->hit_before &&
+            (instance > walk->skip_instance ||
+             (instance == walk->skip_instance && primitive > walk->skip_primitive)));
+}
+
+static bool accept_candidate(struct walk *walk, const struct candidate *m, uint32_t record,
+                             uint32_t instance)
+{
+    uint32_t primitive = walk->accel->triangles[record].primitive;
+    if (!m->met || !is_nearer(walk->hit, walk->hit->t, m->t, instance, primitive) ||
+        (walk->next && !is_behind(walk, m->t, instance, primitive)))
+        return false;
+    walk->hit->t = m->t;
+    walk->hit->u = m->u;
+    walk->hit->v = m->v;
+    walk->hit->primitive = primitive;
+    walk->hit->instance = instance;
+    walk->triangle = record;
+    return true;
+}
+
+/* ---- NUMERICS_EXACT ---- */
+
+static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
+
+/* Finds exactly where a triangle is met. `hit`: it is met, and only the key is wanted. */
+static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
+                         struct exact_candidate *out)
+{
+    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
+                v2 = vec3_load(triangle->v2);
+    bool key_known;
+    bool known = ff_meet(ray->origin, ray->dir, v0, v1, v2, out, &key_known);
+    if (!(hit ? key_known : known))
+        exact_meet(ray->origin, ray->dir, v0, v1, v2, out);
+}
+
+static void meet_sphere_exactly(const struct ray_setup *ray, const struct gpu_triangle *sphere,
+                                bool only_far, float t_min, struct sphere_candidate *out)
+{
+    struct vec3 center = vec3_load(sphere->v0);
+    float radius = sphere->v1[0];
+    if (!ff_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out))
+        exact_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out);
+}
+
+/* The key of the hit so far, where only its bounds are known. */
+static void settle_hit(struct walk *walk)
+{
+    struct ray_setup ray = ray_at(walk, walk->hit->instance);
+    const struct gpu_triangle *record = &walk->accel->triangles[walk->triangle];
+    struct exact_candidate m;
+    struct sphere_candidate on_sphere;
+    if (record->flags & TRIANGLE_SPHERE) {
+        meet_sphere_exactly(&ray, record, walk->at_exit, 0.0f, &on_sphere);
+        m.key = on_sphere.key;
+    } else {
+        meet_exactly(&ray, record, true, &m);
+    }
+    walk->lo = m.key;
+    walk->hi = m.key;
+    walk->hit->t = m.key;
+}
+
+/* Whether a hit with a known key is nearer than the hit so far, whose key is settled if needed. */
+static bool is_nearer_key(struct walk *walk, float key, uint32_t instance, uint32_t primitive)
+{
+    if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)
+        settle_hit(walk);
+    return is_nearer(walk->hit, walk->hi, key, instance, primitive);
+}
+
+/* Whether a primitive with a key of lo..hi may be what is looked for. */
+static bool may_count(const struct walk *walk, float lo, float hi, uint32_t instance,
+                      uint32_t primitive)
+{
+    return !(hi < walk->t_min) && is_nearer(walk->hit, walk->hi, lo, instance, primitive) &&
+           (!walk->next || is_behind(walk, hi, instance, primitive));
+}
+
+static bool keep_exact(struct walk *walk, const struct candidate *m, float lo, float hi,
+                       uint32_t record, uint32_t instance, bool at_exit)
+{
+    if (!walk->any) {
+        walk->lo = lo;
+        walk->hi = hi;
+    }
+    walk->at_exit = at_exit;
+    walk->hit->t = m->t;
+    walk->hit->u = m->u;
+    walk->hit->v = m->v;
+    walk->hit->primitive = walk->accel->triangles[record].primitive;
+    walk->hit->instance = instance;
+    walk->triangle = record;
+    return true;
+}
+
+static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                                uint32_t instance)
+{
+    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
+    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
+                v2 = vec3_load(triangle->v2);
+    struct exact_bounds bounds;
+    exact_filter(ray, vec3_sub(v0, ray->origin), vec3_sub(v1, ray->origin),
+                 vec3_sub(v2, ray->origin), &bounds);
+    if (bounds.outside || !may_count(walk, bounds.lo, bounds.hi, instance, triangle->primitive))
+        return false;
+    struct candidate m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u,
+                          bounds.v};
+    if (bounds.inside && bounds.lo >= walk->t_min && bounds.hi < walk->lo &&
+        (!walk->next || bounds.lo > walk->hit_before))
+        return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance, false);
+    struct exact_candidate exact;
+    meet_exactly(ray, triangle, false, &exact);
+    m.t = exact.key;
+    if (!bounds.inside)
+        m = (struct candidate){true, exact.key, exact.u, exact.v};
+    if (!exact.met || exact.key < walk->t_min ||
+        !is_nearer_key(walk, exact.key, instance, triangle->primitive) ||
+        (walk->next && !is_behind(walk, exact.key, instance, triangle->primitive)))
+        return false;
+    return keep_exact(walk, &m, exact.key, exact.key, record, instance, false);
+}
+
+/* One end of a chord; *at_exit becomes true where only the far one counts. */
+static bool test_end_exact(struct walk *walk, const struct ray_setup *ray,
+                           const struct sphere_bounds *bounds, const struct chord *chord,
+                           uint32_t record, uint32_t instance, bool own, bool *at_exit)
+{
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    bool near_known = *at_exit || bounds->near_lo >= walk->t_min;
+    float lo = *at_exit ? bounds->far_lo : bounds->near_lo;
+    float hi = *at_exit || !near_known ? bounds->far_hi : bounds->near_hi;
+    if (bounds->outside || (own && bounds->inward_known && !chord->inward) ||
+        !may_count(walk, lo, hi, instance, sphere->primitive))
+        return false;
+    struct candidate m = meet_sphere(walk, ray, chord, *at_exit, own);
+    bool rounded = bounds->inside && near_known;
+    if (rounded && lo >= walk->t_min && (!own || bounds->inward_known) && hi < walk->lo &&
+        (!walk->next || lo > walk->hit_before))
+        return keep_exact(walk, &m, lo, hi, record, instance, *at_exit);
+    struct sphere_candidate exact;
+    meet_sphere_exactly(ray, sphere, *at_exit, walk->t_min, &exact);
+    m.t = exact.key;
+    if (!rounded || exact.at_exit != *at_exit)
+        square_from_dir(
+            vec3_sub(vec3_scale(ray->dir, exact.key), vec3_sub(vec3_load(sphere->v0), ray->origin)),
+            &m.u, &m.v);
+    *at_exit = exact.at_exit;
+    if (!exact.met || (own && !exact.inward) ||
+        !is_nearer_key(walk, exact.key, instance, sphere->primitive) ||
+        (walk->next && !is_behind(walk, exact.key, instance, sphere->primitive)))
+        return false;
+    return keep_exact(walk, &m, exact.key, exact.key, record, instance, exact.at_exit);
+}
+
+static bool test_sphere_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                              uint32_t instance, bool own)
+{
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    struct vec3 center = vec3_load(sphere->v0);
+    struct chord chord = intersect_sphere(ray, center, sphere->v1[0], walk->t_min);
+    struct sphere_bounds bounds;
+    bound_sphere(ray, center, sphere->v1[0], &bounds);
+    bool at_exit = own || bounds.near_hi < walk->t_min;
+    bool accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
+    if (walk->next && !accepted && !at_exit) {
+        at_exit = true;
+        accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
+    }
+    return accepted;
+}
+
+static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                        uint32_t instance, bool own)
+{
+    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
+    struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
+    bool at_exit = own || !(chord.t_near >= walk->t_min);
+    struct candidate m = meet_sphere(walk, ray, &chord, at_exit, own);
+    bool accepted = accept_candidate(walk, &m, record, instance);
+    if (walk->next && !accepted && !at_exit) {
+        m = meet_sphere(walk, ray, &chord, true, own);
+        accepted = accept_candidate(walk, &m, record, instance);
+    }
+    return accepted;
+}
+
+static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t record,
+                        uint32_t instance)
+{
+    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
+    ++walk->cost.triangles;
+    if (walk->accel->flat)
+        instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
+    bool own = !walk->next && triangle->primitive == walk->skip_primitive &&
+               instance == walk->skip_instance;
+    if (triangle->flags & TRIANGLE_SPHERE)
+        return (walk->numerics == NUMERICS_EXACT
+                    ? test_sphere_exact(walk, ray, record, instance, own)
+                    : test_sphere(walk, ray, record, instance, own)) &&
+               walk->any;
+    if (walk->numerics == NUMERICS_EXACT)
+        return !own && test_triangle_exact(walk, ray, record, instance) && walk->any;
+    struct candidate m = meet_triangle(walk, ray, triangle);
+    m.met &= !own;
+    return accept_candidate(walk, &m, record, instance) && walk->any;
+}
+
+static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32_t root,
+                          uint32_t base, uint32_t instance)
+{
+    uint32_t top = base, ref = root;
+    while (ref != REF_DONE) {
+        while (is_inner(ref))
+            ref = step_pair(walk, ray, 1.0f, ref, base, &top);
+        while (is_leaf(ref)) {
+            bool done = test_record(walk, ray, ref & BVH_FIRST_MASK, instance);
+            ref += 1u - REF_ONE_PRIMITIVE;
+            if (is_inner(ref) || done)
+                ++walk->cost.leaves;
+            if (is_inner(ref))
+                ref = pop_ref(walk, base, &top);
+            if (done)
+                ref = REF_DONE;
+        }
+    }
+}
+
+static void widen(const struct accel *accel, const struct gpu_instance *i, struct ray_setup *ray)
+{
+    if (accel->clipped)
+        widen_ray_setup(ray, vec3_make(i->center_x, i->center_y, i->center_z), i->reach);
+}
+
+static struct ray_setup setup_ray(const struct walk *walk, struct vec3 origin, struct vec3 dir)
+{
+    struct ray_setup ray = make_ray_setup(origin, dir);
+    if (walk->numerics == NUMERICS_FAST)
+        ray.far_scale = 1.0f;
+    if (walk->numerics == NUMERICS_EXACT)
+        bound_ray_setup(&ray);
+    return ray;
+}
+
+static struct ray_setup world_ray(const struct walk *walk)
+{
+    return setup_ray(walk, vec3_load(walk->ray->origin), vec3_load(walk->ray->dir));
+}
+
+static struct ray_setup local_ray(const struct walk *walk, const struct gpu_instance *instance)
+{
+    struct gpu_ray local = accel_local_ray(instance, walk->ray);
+    return setup_ray(walk, vec3_load(local.origin), vec3_load(local.dir));
+}
+
+/* No instances to choose among: rays meet the only mesh tree as they are. */
+static bool one_tree(const struct accel *accel)
+{
+    return accel->single_identity || accel->flat;
+}
+
+static struct ray_setup ray_at(const struct walk *walk, uint32_t instance)
+{
+    return one_tree(walk->accel) ? world_ray(walk)
+                                 : local_ray(walk, &walk->accel->instances[instance]);
+}
+
+static void traverse_instances(struct walk *walk, uint32_t root)
+{
+    struct ray_setup world = world_ray(walk);
+    uint32_t top = 0, ref = root;
+    while (ref != REF_DONE) {
+        while (is_inner(ref))
+            ref = step_pair(walk, &world, SLAB_NEAR_SCALE, ref, 0, &top);
+        if (is_leaf(ref)) {
+            uint32_t index = ref & BVH_FIRST_MASK;
+            const struct gpu_instance *instance = &walk->accel->instances[index];
+            struct ray_setup local = local_ray(walk, instance);
+            widen(walk->accel, instance, &local);
+            ++walk->cost.instances;
+            uint32_t level = walk->level;
+            traverse_mesh(walk, &local, instance->root, top, index);
+            walk->level = level;
+            bool done = walk->any && walk->hit->primitive != HIT_NONE;
+            ref = done ? REF_DONE : pop_ref(walk, 0, &top);
+        }
+    }
+}
+
+/* (v1 - v0) x (v2 - v0), or that of a sphere, taken to world space by the inverse transpose. */
+static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t record)
+{
+    const struct gpu_triangle *triangle = &accel->triangles[record];
+    struct vec3 v0 = vec3_load(triangle->v0);
+    struct vec3 n =
+        vec3_cross(vec3_sub(vec3_load(triangle->v1), v0), vec3_sub(vec3_load(triangle->v2), v0));
+    if (triangle->flags & TRIANGLE_SPHERE)
+        n = dir_from_square(hit->u, hit->v);
+    if (triangle->flags & TRIANGLE_MIRRORED && accel->flat)
+        n = vec3_make(-n.x, -n.y, -n.z);
+    if (!accel->single_identity && !accel->flat) {
+        const struct gpu_instance *i = &accel->instances[hit->instance];
+        const float *r0 = i->inverse0, *r1 = i->inverse1, *r2 = i->inverse2;
+        n = accel_rotate_rows((float[]){r0[0], r1[0], r2[0]}, (float[]){r0[1], r1[1], r2[1]},
+                              (float[]){r0[2], r1[2], r2[2]}, n);
+    }
+    hit->ng_x = n.x;
+    hit->ng_y = n.y;
+    hit->ng_z = n.z;
+}
+
+static void begin_hit(struct gpu_hit *hit, float t_max)
+{
+    *hit = (struct gpu_hit){
+        .t = t_max < FLT_MAX ? t_max : FLT_MAX, .primitive = HIT_NONE, .instance = HIT_NONE};
+}
+
+static void end_hit(struct gpu_hit *hit, const struct accel *accel, uint32_t record)
+{
+    if (hit->primitive == HIT_NONE)
+        hit->t = INFINITY;
+    else
+        set_normal(hit, accel, record);
+}
+
+static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
+{
+    to->rays += from->rays;
+    to->inner_nodes += from->inner_nodes;
+    to->leaves += from->leaves;
+    to->instances += from->instances;
+    to->triangles += from->triangles;
+    to->stack = from->stack > to->stack ? from->stack : to->stack;
+    to->depth = from->depth > to->depth ? from->depth : to->depth;
+}
+
+static void traverse_trees(struct walk *walk)
+{
+    const struct accel *accel = walk->accel;
+    if (!one_tree(accel)) {
+        traverse_instances(walk, accel->instance_root);
+        return;
+    }
+    struct ray_setup setup = world_ray(walk);
+    uint32_t root = accel->flat ? accel->meshes[0].root : accel->instances[0].root;
+    if (root == BVH_EMPTY_REF)
+        return;
+    widen(accel, &accel->instances[0], &setup);
+    traverse_mesh(walk, &setup, root, 0, 0);
+}
+
+/* Every record of every instance, in this order. */
+static void traverse_records(struct walk *walk)
+{
+    const struct accel *accel = walk->accel;
+    bool done = false;
+    for (uint32_t i = 0; !done && i < (accel->flat ? 1 : accel->instance_count); ++i) {
+        const struct accel_mesh *mesh = &accel->meshes[accel->flat ? 0 : accel->instances[i].mesh];
+        struct ray_setup setup = ray_at(walk, i);
+        walk->cost.instances += !one_tree(accel) && mesh->record_count > 0;
+        for (uint32_t k = 0; !done && k < mesh->record_count; ++k)
+            done = test_record(walk, &setup, mesh->first_triangle + k, i);
+    }
+}
+
+static void begin_walk(struct walk *walk, const struct accel *accel,
+                       const struct traverse_params *params, const struct gpu_ray *ray,
+                       struct gpu_hit *hit)
+{
+    walk->accel = accel;
+    walk->ray = ray;
+    walk->order = params->order;
+    walk->numerics = params->numerics;
+    walk->any = params->any;
+    walk->next = false;
+    walk->t_min = ray->t_min;
+    if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
+        walk->t_min = 0.0f;
+    walk->skip_instance = params->skip_instance;
+    walk->skip_primitive = params->skip_primitive;
+    walk->hit = hit;
+    walk->triangle = 0;
+    walk->level = 0;
+    walk->cost = (struct gpu_cost){.rays = 1};
+    walk->status = 0;
+    begin_hit(hit, ray->t_max);
+    walk->at_exit = false;
+    walk->lo = hit->t;
+    walk->hi = hit->t;
+}
+
+static void traverse_all(struct walk *walk, bool brute)
+{
+    if (!accel_ray_is_usable(walk->ray))
+        return;
+    if (brute)
+        traverse_records(walk);
+    else
+        traverse_trees(walk);
+    if (walk->numerics == NUMERICS_EXACT && !walk->any && walk->lo < walk->hi)
+        settle_hit(walk);
+}
+
+void traverse_ray(const struct accel *accel, const struct traverse_params *params,
+                  const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
+                  uint32_t *status)
+{
+    struct walk walk;
+    begin_walk(&walk, accel, params, ray, hit);
+    traverse_all(&walk, params->brute);
+    end_hit(hit, accel, walk.triangle);
+    if (cost)
+        add_cost(&walk.cost, cost);
+    *status |= walk.status;
+}
+
+void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
+                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
+                    struct gpu_cost *cost, uint32_t *status)
+{
+    const struct traverse_params params = {.order = order,
+                                           .any = any,
+                                           .skip_instance = skip_instance,
+                                           .skip_primitive = skip_primitive};
+    traverse_ray(accel, &params, ray, hit, cost, status);
+}
+
+void traverse_next(const struct accel *accel, const struct traverse_params *params,
+                   const struct gpu_ray *ray, const struct gpu_hit *before, struct gpu_hit *hit,
+                   uint32_t *status)
+{
+    struct walk walk;
+    struct gpu_hit found;
+    begin_walk(&walk, accel, params, ray, &found);
+    if (before) {
+        walk.next = true;
+        walk.hit_before = before->t;
+        walk.skip_instance = before->instance;
+        walk.skip_primitive = before->primitive;
+    }
+    traverse_all(&walk, params->brute);
+    end_hit(&found, accel, walk.triangle);
+    *hit = found;
+    *status |= walk.status;
+}
+
+void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
+                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
+{
+    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    traverse_next(accel, &params, ray, before, hit, status);
+}
+
+void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, struct gpu_hit *hit)
+{
+    const struct traverse_params params = {
+        .brute = true, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    uint32_t status = 0;
+    traverse_ray(accel, &params, ray, hit, NULL, &status);
+}
