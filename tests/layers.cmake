@@ -57,6 +57,7 @@ list(APPEND public_headers whit_base.h)
 function(check_module file module target)
   string(REPLACE "\"" "" path "${target}")
   get_filename_component(folder "${path}" DIRECTORY)
+  string(REGEX REPLACE "/.*" "" folder "${folder}") # a module may have folders
   get_filename_component(name "${path}" NAME)
   if("whit.h" IN_LIST allowed_${module} AND (name IN_LIST public_headers))
     return()

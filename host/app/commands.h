@@ -3,9 +3,9 @@
 #define APP_COMMANDS_H
 
 #include "app/document.h"
-#include "app/frames.h"
+#include "app/render/frames.h"
 #include "app/job.h"
-#include "app/view_image.h"
+#include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,

@@ -1,16 +1,23 @@
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
-  app/main.c app/cache.c app/cli.c app/ends.c app/options.c app/describe.c app/job.c app/document.c app/recipe.c app/stats.c
-  app/costs.c app/view_image.c app/frames.c app/settings_json.c
-  app/receipt.c app/receipt_output.c app/kernels.c app/listing.c app/listing_output.c app/triangles.c
-  app/bench_command.c app/bench_measure.c app/bench_report.c app/bench_builders.c
-  app/bench_section.c app/bench_table.c app/bench_child.c app/hard_command.c app/hard_output.c app/compare_command.c
-  app/probe_command.c app/probe_output.c
-  app/cost_command.c app/cost_table.c app/cost_json.c app/cost_page.c app/cost_compare.c
-  app/cost_choice.c
-  app/page.c app/plot.c
-  app/render_command.c app/scene_command.c app/trace_command.c app/ray_file.c app/bvh_command.c
-  app/study.c app/study_rays.c app/study_trace.c app/study_output.c app/devices_command.c app/device_hints.c)
+  app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/ends.c app/job.c app/main.c
+  app/page.c app/plot.c app/settings_json.c
+  app/bench/bench_builders.c app/bench/bench_child.c app/bench/bench_command.c
+  app/bench/bench_measure.c app/bench/bench_report.c app/bench/bench_section.c
+  app/bench/bench_table.c
+  app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
+  app/bvh/study_trace.c
+  app/compare/compare_command.c
+  app/cost/cost_choice.c app/cost/cost_command.c app/cost/cost_compare.c app/cost/cost_json.c
+  app/cost/cost_page.c app/cost/cost_table.c
+  app/devices/device_hints.c app/devices/devices_command.c
+  app/hard/hard_command.c app/hard/hard_output.c
+  app/probe/probe_command.c app/probe/probe_output.c
+  app/render/costs.c app/render/frames.c app/render/recipe.c app/render/render_command.c
+  app/render/stats.c app/render/view_image.c
+  app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c
+  app/scene/receipt_output.c app/scene/scene_command.c app/scene/triangles.c
+  app/trace/ray_file.c app/trace/trace_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 # What a program made of these sources links; tests make some more of them.
@@ -18,7 +25,7 @@ add_library(whit_program_needs INTERFACE)
 target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 if(WHIT_VIEWER)
-  target_sources(whit_program PRIVATE app/bench_view.c app/state_file.c app/view_command.c)
+  target_sources(whit_program PRIVATE app/bench/bench_view.c app/view/state_file.c app/view/view_command.c)
   target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
     WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
   # In front of the library, whose modules they call.

@@ -104,7 +104,7 @@ enum build_choice split_binned(struct build_record *records, const struct build_
 void split_median(struct build_record *records, const struct build_range *range,
                   uint32_t *left_count, struct build_bounds halves[2]);
 
-/* ---- Small subtrees (small.c) ---- */
+/* ---- Small subtrees (sweep_small.c) ---- */
 
 /* At most BUILD_SMALL boxes, and their order along each axis. */
 enum { BUILD_SMALL = 16 };

@@ -275,7 +275,7 @@ void effects_choose(const struct render_params *params, struct scene_effects *ef
 /* Sets the constants that effects switch. */
 void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 
-/* bound.c: by how much a pixel of the last picture may differ for the rays that --bailout cut; < 0:
+/* bailout_bound.c: by how much a pixel of the last picture may differ for the rays that --bailout cut; < 0:
    no bound is known (emissive surfaces as points, highlights of flat emitters, a light on a
    surface). */
 double bailout_bound(const struct renderer *renderer);
@@ -392,7 +392,7 @@ void async_finish(struct renderer *renderer);
 /* trace.c */
 void trace_finish(struct trace_state *trace);
 
-/* frame.c: all of renderer->frame but the rows. */
+/* frame_uniform.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
 /* The same, and to the device. */
 WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
@@ -410,7 +410,7 @@ WHIT_CHECK whit_result readback_non_finite(const struct target *target, uint32_t
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
 void stats_clear(struct render_stats *stats);
 
-/* adaptive.c: everything around the passes of an adaptive picture, which render.c makes. */
+/* adaptive.c: everything around the passes of an adaptive picture, which draw.c makes. */
 /* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,
    in some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
 uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels);
@@ -420,7 +420,7 @@ WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progres
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* render.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+/* draw.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk);
 
@@ -428,7 +428,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
    traces take more turns of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
-/* render.c: what submissions are made of. */
+/* draw.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 /* Empties a list of deferred rays, if there is one. Barriers are the caller's. */
@@ -444,11 +444,11 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
                        uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct target *target);
 
-/* render.c: what kernels have listed as waiting since `deferred_clear`. */
+/* draw.c: what kernels have listed as waiting since `deferred_clear`. */
 WHIT_CHECK whit_result deferred_clear(struct target *target);
 WHIT_CHECK whit_result deferred_read(const struct target *target, uint32_t *count);
 
-/* render.c: logs what the bits say. WHIT_OK when there are none. */
+/* draw.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct target *target);
 
 #endif

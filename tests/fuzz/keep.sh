@@ -23,13 +23,13 @@ sources() {
     image) echo host/image/png.c host/image/exr.c host/image/pfm.c host/image/hdr.c ;;
     texture) echo host/load/picture.c host/load/jpeg.c ;;
     reply) echo host/image/image_reply.c host/load/importer.c host/base/foreign.c ;;
-    rays) echo host/app/ray_file.c host/twin/traverse.c ;;
+    rays) echo host/app/trace/ray_file.c host/twin/traverse.c ;;
     validate) echo host/accel/bvh_validate*.c ;;
     store) echo host/base/store.c ;;
     paths) echo host/base/roots.c ;;
-    settings) echo host/app/state_file.c host/app/options.c host/cost/words.c ;;
-    report) echo host/app/cost_json.c ;;
-    view) echo host/view/events.c host/view/memory.c ;;
+    settings) echo host/app/view/state_file.c host/app/arguments.c host/cost/words.c ;;
+    report) echo host/app/cost/cost_json.c ;;
+    view) echo host/view/events.c host/view/remembered_cameras.c ;;
     esac
 }
 

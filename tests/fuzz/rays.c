@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/cli.h"
-#include "app/ray_file.h"
+#include "app/trace/ray_file.h"
 #include "trees.h"
 #include "twin/traverse.h"
 

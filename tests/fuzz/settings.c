@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/state_file.h"
+#include "app/view/state_file.h"
 #include "settings/quote.h"
 
 static const struct setting none[] = {{0}};

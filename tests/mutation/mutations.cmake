@@ -350,7 +350,7 @@ change(host/hard/topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 
 
 mutation(broken_promises_are_fine cli_hard RED "a twin that loses rays: exit code 1"
   TARGET whit_leaky)
-change(host/app/hard_command.c work [[[a-z]+ == EXIT_FINE \? EXIT_DIFFERS : ]] [[]])
+change(host/app/hard/hard_command.c work [[[a-z]+ == EXIT_FINE \? EXIT_DIFFERS : ]] [[]])
 
 # ---- The reference in double ----
 

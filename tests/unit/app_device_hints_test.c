@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "app/device_hints.h"
+#include "app/devices/device_hints.h"
 
 static const whit_device_info lavapipe = {.name = "llvmpipe", .kind = "cpu", .usable = true},
                               nvidia = {.name = "NVIDIA H100", .kind = "discrete", .usable = true};

@@ -2,7 +2,7 @@
 #ifndef BENCH_FIGURES_H
 #define BENCH_FIGURES_H
 
-#include "app/bench_section.h"
+#include "app/bench/bench_section.h"
 
 /* `must` 0: nothing is asked of it, and the row gets no verdict. */
 struct goal {

@@ -2,7 +2,7 @@
 #ifndef BENCH_PEER_H
 #define BENCH_PEER_H
 
-#include "app/bench.h"
+#include "app/bench/bench.h"
 
 struct peer {
     int socket;

@@ -2,7 +2,7 @@
 #ifndef BENCH_RAYS_H
 #define BENCH_RAYS_H
 
-#include "app/study.h"
+#include "app/bvh/study.h"
 #include "figures.h"
 #include "peer.h"
 

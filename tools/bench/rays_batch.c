@@ -3,7 +3,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/ray_file.h"
+#include "app/trace/ray_file.h"
 #include "rays.h"
 
 const char *const rays_kind_names[RAYS_KINDS] = {"camera", "shadow", "bounce"};

@@ -1,0 +1,126 @@
+#include "app/bvh/study.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *study_kind_name(enum study_kind kind)
+{
+    static const char *const names[] = {"primary", "shadow", "diffuse"};
+    return names[kind];
+}
+
+struct study_spread study_spread_of(double *values, uint32_t count)
+{
+    sample_sort(values, count);
+    return (struct study_spread){
+        .median = sample_quantile(values, count, 0.5),
+        .min = values[0],
+        .max = values[count - 1],
+    };
+}
+
+whit_result study_step(struct study *study)
+{
+    ++study->steps_done;
+    cli_progress_update(&study->progress, (double)study->steps_done / study->steps);
+    return job_still_wanted();
+}
+
+/* A tree is the same whatever the number of threads that built it. */
+static whit_result check_same(const struct study_row *row, const whit_accel_info *info)
+{
+    bool same = row->info.node_count == info->node_count &&
+                row->info.reference_count == info->reference_count &&
+                row->info.depth == info->depth && row->info.sah_cost == info->sah_cost;
+    if (same)
+        return WHIT_OK;
+    cli_error("%s: two builds gave two trees: SAH costs %.9g and %.9g", row->name,
+              row->info.sah_cost, info->sah_cost);
+    return WHIT_ERROR_STATUS;
+}
+
+/* Builds a row once; the first tree is kept. */
+static whit_result build_once(struct study *study, struct study_row *row, uint32_t threads,
+                              double *build_ms)
+{
+    whit_accel_params params = study->job.settings.trees;
+    whit_accel *accel = NULL;
+    params.build = row->trees.build;
+    params.optimize = row->trees.optimize;
+    params.bins = row->trees.bins;
+    params.spatial_alpha = row->trees.spatial_alpha;
+    params.spatial_budget = row->trees.spatial_budget;
+    params.threads = threads;
+    whit_result result = whit_accel_create(study->job.scene, &params, &accel);
+    if (result != WHIT_OK)
+        return result;
+    whit_accel_info info;
+    whit_accel_get_info(accel, &info);
+    *build_ms = info.build_ms;
+    if (!row->accel) {
+        row->accel = accel;
+        row->info = info;
+        return WHIT_OK;
+    }
+    whit_accel_destroy(accel);
+    return check_same(row, &info);
+}
+
+struct building {
+    struct study *study;
+    double *times_ms; /* [list][run]; a list is a row with a number of threads */
+};
+
+static whit_result build_list(void *user, uint32_t list, uint32_t run)
+{
+    const struct building *building = user;
+    struct study *study = building->study;
+    whit_result result = build_once(study, &study->rows[list % study->row_count],
+                                    study->threads[list / study->row_count],
+                                    &building->times_ms[(size_t)list * study->run_count + run]);
+    return result == WHIT_OK ? study_step(study) : result;
+}
+
+whit_result study_build(struct study *study)
+{
+    uint32_t runs = study->run_count, lists = study->row_count * study->thread_count;
+    double *times_ms = calloc((size_t)lists * runs, sizeof *times_ms);
+    if (!times_ms) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    struct building building = {.study = study, .times_ms = times_ms};
+    whit_result result = sample_in_turns(lists, runs, build_list, &building);
+    for (uint32_t list = 0; result == WHIT_OK && list < lists; ++list)
+        study->rows[list % study->row_count].build_ms[list / study->row_count] =
+            study_spread_of(&times_ms[(size_t)list * runs], runs);
+    free(times_ms);
+    return result;
+}
+
+whit_result study_report(struct study *study)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < study->row_count; ++i) {
+        struct study_row *row = &study->rows[i];
+        if (study->validate)
+            result = whit_accel_validate(row->accel);
+        if (result == WHIT_OK)
+            result = whit_accel_get_report(row->accel, &row->report);
+        if (result == WHIT_OK)
+            result = study_step(study);
+    }
+    return result;
+}
+
+void study_finish(struct study *study)
+{
+    for (uint32_t i = 0; i < study->row_count; ++i) {
+        whit_renderer_destroy(study->rows[i].renderer);
+        whit_accel_destroy(study->rows[i].accel);
+    }
+    for (uint32_t k = 0; k < STUDY_KINDS; ++k)
+        free(study->rays[k].rays);
+    cli_progress_finish(&study->progress);
+    job_finish(&study->job);
+}

@@ -1,0 +1,81 @@
+/* What `whit bvh` measures: builders side by side, on the CPU and on a device. */
+#ifndef APP_BVH_STUDY_H
+#define APP_BVH_STUDY_H
+
+#include "app/job.h"
+#include "cost/sample.h"
+
+enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
+enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
+
+/* The median, the least and the greatest figure of the runs. */
+struct study_spread {
+    double median, min, max;
+};
+
+struct study_row {
+    whit_accel_params trees; /* of which only what --build names is read */
+    char name[96];
+    whit_accel *accel;
+    whit_renderer *renderer; /* NULL: not traced */
+    whit_accel_info info;
+    whit_accel_report report;
+    struct study_spread build_ms[STUDY_THREADS_MAX], mrays_per_s[STUDY_KINDS];
+};
+
+struct study_rays {
+    whit_ray *rays;
+    uint32_t count;
+};
+
+struct study {
+    struct job job;
+    struct study_row rows[STUDY_ROWS_MAX];
+    uint32_t threads[STUDY_THREADS_MAX];
+    uint32_t row_count, thread_count, run_count, ray_count;
+    bool validate, json, no_trace;
+
+    struct cli_progress progress;
+    uint32_t steps, steps_done;
+    struct study_rays rays[STUDY_KINDS];
+    uint64_t compared, differing; /* hits */
+    bool traced;
+};
+
+/* The name of a kind: "primary". */
+const char *study_kind_name(enum study_kind kind);
+/* Sorts `values`. */
+struct study_spread study_spread_of(double *values, uint32_t count);
+/* One of study->steps is done; an error when the time is over or the user stopped it. */
+whit_result study_step(struct study *study);
+
+/* Builds every row with every number of threads, in turns (study.c). */
+whit_result study_build(struct study *study);
+/* Trees checked when asked for, and reported on. */
+whit_result study_report(struct study *study);
+/* Traces the same rays through all rows, in turns, and compares their hits; EXIT_DIFFERS's result
+   is WHIT_ERROR_STATUS (study_trace.c). With a device opened. */
+whit_result study_trace(struct study *study);
+void study_finish(struct study *study);
+
+/* Rays of the scene's first camera, one a pixel: line by line, or in tiles of 8x8, which `width`
+   and `height` are then multiples of. `rays->rays` is the caller's to free (study_rays.c). */
+whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t height, bool tiles,
+                              struct study_rays *rays);
+/* From the hit of `ray`: off at random by the cosine, where `index` says at which; and to it from a
+   point light, with t 1 at the hit. They end clear of the surface. `size`: study_scene_size. */
+whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t index, double size);
+whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit);
+/* The diagonal of its bounds; 1 where they have none. */
+double study_scene_size(const whit_scene *scene);
+
+/* Rays of the scene's first camera, as many as come near ray_count (study_rays.c). */
+whit_result study_primary_rays(struct study *study);
+/* From the hits of those: towards the lights in turns, and off at random by the cosine. None when
+   nothing was hit. */
+whit_result study_secondary_rays(struct study *study, const whit_hit *hits);
+
+/* On standard output (study_output.c). */
+int study_print(const struct study *study);
+
+#endif

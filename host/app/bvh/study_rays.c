@@ -1,0 +1,243 @@
+/* Rays that are the same on every machine: made on the CPU in double, without a random seed. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/bvh/study.h"
+
+static const double PI = 3.14159265358979323846;
+
+struct vector {
+    double x, y, z;
+};
+
+static struct vector make(const double v[3])
+{
+    return (struct vector){v[0], v[1], v[2]};
+}
+
+static struct vector add(struct vector a, struct vector b, double times)
+{
+    return (struct vector){a.x + b.x * times, a.y + b.y * times, a.z + b.z * times};
+}
+
+static double dot(struct vector a, struct vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static struct vector cross(struct vector a, struct vector b)
+{
+    return (struct vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static struct vector unit(struct vector a)
+{
+    double length = sqrt(dot(a, a));
+    return length > 0.0 ? (struct vector){a.x / length, a.y / length, a.z / length} : a;
+}
+
+static whit_ray make_ray(struct vector origin, struct vector dir, double t_min, double t_max)
+{
+    return (whit_ray){
+        .origin = {(float)origin.x, (float)origin.y, (float)origin.z},
+        .t_min = (float)t_min,
+        .dir = {(float)dir.x, (float)dir.y, (float)dir.z},
+        .t_max = (float)t_max,
+    };
+}
+
+static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
+{
+    rays->rays = malloc((count ? count : 1) * sizeof *rays->rays);
+    rays->count = count;
+    if (rays->rays)
+        return WHIT_OK;
+    cli_error("out of memory");
+    return WHIT_ERROR_MEMORY;
+}
+
+/* ---- Primary ---- */
+
+struct view {
+    struct vector eye, right, up, ahead; /* right and up: half the picture, at `ahead` */
+    bool parallel, panorama;
+};
+
+static struct view camera_view(const whit_camera_info *camera, double aspect)
+{
+    struct view view = {.eye = make(camera->eye)};
+    view.ahead = unit(add(make(camera->target), view.eye, -1.0));
+    view.right = unit(cross(view.ahead, make(camera->up)));
+    view.up = cross(view.right, view.ahead);
+    view.parallel = strcmp(camera->kind, "orthographic") == 0;
+    view.panorama = strcmp(camera->kind, "panorama") == 0;
+    if (view.panorama)
+        return view;
+    double half = view.parallel ? 0.5 * camera->height : tan(camera->fov_y_degrees * PI / 360.0);
+    view.right = add((struct vector){0, 0, 0}, view.right, half * aspect);
+    view.up = add((struct vector){0, 0, 0}, view.up, half);
+    return view;
+}
+
+static whit_ray panorama_ray(const struct view *view, double x, double y)
+{
+    double longitude = x * PI, latitude = y * 0.5 * PI;
+    struct vector dir = add((struct vector){0, 0, 0}, view->up, sin(latitude));
+    dir = add(dir, view->ahead, cos(latitude) * cos(longitude));
+    dir = add(dir, view->right, cos(latitude) * sin(longitude));
+    return make_ray(view->eye, dir, 0.0, INFINITY);
+}
+
+/* x and y from -1 to 1, y upwards. A lens has its rays through the middle. */
+static whit_ray camera_ray(const struct view *view, double x, double y)
+{
+    if (view->panorama)
+        return panorama_ray(view, x, y);
+    struct vector aside = add(add((struct vector){0, 0, 0}, view->right, x), view->up, y);
+    if (view->parallel)
+        return make_ray(add(view->eye, aside, 1.0), view->ahead, 0.0, INFINITY);
+    return make_ray(view->eye, add(view->ahead, aside, 1.0), 0.0, INFINITY);
+}
+
+/* Ray `i` goes through this pixel: line by line, or by tiles of 8x8, and in these by 4x2 pixels,
+   which is how a subgroup of 8 takes them. */
+static void pixel_of(uint32_t i, uint32_t width, bool tiles, uint32_t *x, uint32_t *y)
+{
+    uint32_t across = width / 8, tile = i / 64, k = i % 64;
+    *x = tiles ? tile % across * 8 + ((k & 3) | (k >> 1 & 4)) : i % width;
+    *y = tiles ? tile / across * 8 + ((k >> 2 & 1) | (k >> 3 & 6)) : i / width;
+}
+
+whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t height, bool tiles,
+                              struct study_rays *rays)
+{
+    whit_result result = alloc_rays(rays, width * height);
+    if (result != WHIT_OK)
+        return result;
+    whit_camera_info camera;
+    whit_scene_get_camera(scene, 0, &camera);
+    struct view view = camera_view(&camera, (double)width / height);
+    for (uint32_t i = 0; i < rays->count; ++i) {
+        uint32_t x, y;
+        pixel_of(i, width, tiles, &x, &y);
+        rays->rays[i] =
+            camera_ray(&view, 2.0 * (x + 0.5) / width - 1.0, 1.0 - 2.0 * (y + 0.5) / height);
+    }
+    return WHIT_OK;
+}
+
+whit_result study_primary_rays(struct study *study)
+{
+    uint32_t width = (uint32_t)sqrt((double)study->ray_count * 4.0 / 3.0);
+    width = width ? width : 1;
+    uint32_t height = study->ray_count / width ? study->ray_count / width : 1;
+    return study_camera_rays(study->job.scene, width, height, false, &study->rays[STUDY_PRIMARY]);
+}
+
+/* ---- From hits ---- */
+
+/* Where rays leave again, in shares of their length or of the scene: clear of the surface that they
+   start on, whatever the unit of the scene. */
+static const double LEAVE = 1e-4;
+
+struct surface {
+    struct vector point, normal; /* on the side the ray came from */
+};
+
+static struct surface surface_at(const whit_ray *ray, const whit_hit *hit)
+{
+    const double origin[3] = {(double)ray->origin[0], (double)ray->origin[1],
+                              (double)ray->origin[2]};
+    const double along[3] = {(double)ray->dir[0], (double)ray->dir[1], (double)ray->dir[2]};
+    const double across[3] = {(double)hit->ng[0], (double)hit->ng[1], (double)hit->ng[2]};
+    struct vector dir = make(along), normal = unit(make(across));
+    struct surface surface = {.point = add(make(origin), dir, (double)hit->t)};
+    surface.normal = add((struct vector){0, 0, 0}, normal, dot(dir, normal) > 0.0 ? -1.0 : 1.0);
+    return surface;
+}
+
+static whit_ray shadow_ray(const whit_scene *scene, const struct surface *surface, uint32_t light,
+                           double size)
+{
+    whit_light_info info;
+    whit_scene_get_light(scene, light, &info);
+    if (info.kind[0] == 'd') {
+        struct vector dir = unit(make(info.direction));
+        return make_ray(surface->point, add((struct vector){0, 0, 0}, dir, -size), LEAVE, INFINITY);
+    }
+    struct vector dir = add(make(info.position), surface->point, -1.0);
+    return make_ray(surface->point, dir, LEAVE, 1.0 - LEAVE);
+}
+
+/* Steele, Lea and Flood 2014: splitmix64 of `index`, in [0, 1). */
+static double random_at(uint64_t index)
+{
+    uint64_t z = (index + 1) * UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+static whit_ray diffuse_ray(const struct surface *surface, uint64_t index, double size)
+{
+    struct vector n = surface->normal;
+    struct vector other = fabs(n.x) < 0.5 ? (struct vector){1, 0, 0} : (struct vector){0, 1, 0};
+    struct vector a = unit(cross(n, other)), b = cross(n, a);
+    double square = random_at(2 * index), angle = 2.0 * PI * random_at(2 * index + 1);
+    struct vector dir = add((struct vector){0, 0, 0}, n, sqrt(1.0 - square) * size);
+    dir = add(dir, a, sqrt(square) * cos(angle) * size);
+    dir = add(dir, b, sqrt(square) * sin(angle) * size);
+    return make_ray(surface->point, dir, LEAVE, INFINITY);
+}
+
+double study_scene_size(const whit_scene *scene)
+{
+    whit_scene_info info;
+    whit_scene_get_info(scene, &info);
+    struct vector across = add(make(info.hi), make(info.lo), -1.0);
+    double size = sqrt(dot(across, across));
+    return info.hi[0] >= info.lo[0] && size > 0.0 ? size : 1.0;
+}
+
+whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t index, double size)
+{
+    struct surface surface = surface_at(ray, hit);
+    return diffuse_ray(&surface, index, size);
+}
+
+whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit)
+{
+    struct surface surface = surface_at(ray, hit);
+    struct vector from = make(light);
+    return make_ray(from, add(surface.point, from, -1.0), 0.0, 1.0 - LEAVE);
+}
+
+whit_result study_secondary_rays(struct study *study, const whit_hit *hits)
+{
+    const struct study_rays *primary = &study->rays[STUDY_PRIMARY];
+    uint32_t hit_count = 0, done = 0;
+    double size = study_scene_size(study->job.scene);
+    whit_scene_info info;
+    whit_scene_get_info(study->job.scene, &info);
+    uint32_t light_count = info.light_count;
+    for (uint32_t i = 0; i < primary->count; ++i)
+        hit_count += hits[i].primitive != WHIT_NONE;
+    if (hit_count == 0)
+        return WHIT_OK;
+    struct study_rays *shadow = &study->rays[STUDY_SHADOW], *diffuse = &study->rays[STUDY_DIFFUSE];
+    whit_result result = alloc_rays(shadow, light_count ? primary->count : 0);
+    if (result == WHIT_OK)
+        result = alloc_rays(diffuse, primary->count);
+    /* As many as primary ones: hits are used again until there are. */
+    for (uint32_t i = 0; result == WHIT_OK && done < primary->count; i = (i + 1) % primary->count) {
+        if (hits[i].primitive == WHIT_NONE)
+            continue;
+        struct surface surface = surface_at(&primary->rays[i], &hits[i]);
+        if (done < shadow->count)
+            shadow->rays[done] = shadow_ray(study->job.scene, &surface, done % light_count, size);
+        diffuse->rays[done] = diffuse_ray(&surface, done, size);
+        ++done;
+    }
+    return result;
+}

@@ -1,0 +1,69 @@
+/* What `whit cost` was asked for, and its report in all forms. */
+#ifndef APP_COST_COST_H
+#define APP_COST_COST_H
+
+#include "app/commands.h"
+#include "app/document.h"
+#include "app/page.h"
+#include "cost/cost.h"
+
+enum { COST_RAYS_UNSAID = WHIT_NONE };
+
+struct cost {
+    struct job job;
+    struct cost_request request;
+    const char *html, *json, *csv, *markdown; /* files, or NULL */
+    bool quick, compares;
+    double under, within_ms; /* 0: not asked for */
+    uint32_t metric;
+    uint32_t rays; /* COST_RAYS_UNSAID: as it suits */
+    char *command; /* that made it; owned */
+    struct cli_progress progress;
+    struct cost_report *report;
+};
+
+/* cost_request.progress of a cli_progress. */
+void cost_on_progress(void *user, double done, double seconds_left, const char *what);
+
+/* Seconds that `whit cost` may take by itself, with --quick, and for `whit render`'s choices. */
+#define COST_SECONDS       150.0
+#define COST_SECONDS_QUICK 20.0
+
+/* ---- Tables and sentences, the same in all forms (cost_table.c) ---- */
+
+enum { COST_COLUMNS = 11, COST_HIT_COLUMNS = 13, COST_CELL = 64, COST_COLUMNS_MAX = 13 };
+struct cost_cells {
+    char text[COST_COLUMNS_MAX][COST_CELL];
+};
+extern const struct page_column cost_columns[COST_COLUMNS], cost_hit_columns[COST_HIT_COLUMNS];
+void cost_row_cells(const struct cost_report *report, const struct cost_row *row,
+                    struct cost_cells *cells);
+void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_cells *cells);
+/* Calls say() with each sentence: how it was measured; what the figures answer. */
+typedef void cost_say(void *user, const char *sentence);
+void cost_say_method(const struct cost_report *report, cost_say *say, void *user);
+void cost_say_answers(const struct cost_report *report, cost_say *say, void *user);
+
+int cost_print_text(const struct cost *cost);
+whit_result cost_save_markdown(const struct cost *cost);
+whit_result cost_save_csv(const struct cost *cost);
+
+/* ---- JSON (cost_json.c) ---- */
+
+whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
+                           const char *path);
+/* What cost_save_json wrote, for comparisons: no pictures. `scene` gets the name of its scene,
+   which the caller frees. False, said: another file. */
+bool cost_load_json(const char *path, struct cost_report *report, char **scene);
+/* The same in whit's cache, for choices: complete reports alone. */
+void cost_keep(const struct cost_report *report, const char *name);
+bool cost_load_kept(const char *name, struct cost_report *report);
+
+/* ---- The page (cost_page.c) ---- */
+
+whit_result cost_save_page(const struct cost *cost);
+
+/* Two reports beside each other (cost_compare.c). */
+int cost_compare_files(const char *a, const char *b);
+
+#endif

@@ -1,0 +1,295 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost/cost.h"
+#include "base/text.h"
+#include "settings/quote.h"
+
+enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
+/* Drivers cannot be stopped while they compile a kernel, and some take that long. */
+enum { GRACE_MS = 20000 };
+
+static const struct setting_value values_metric[] = {
+    {"rmse", COST_RMSE, NULL}, {"flip", COST_FLIP, NULL}, {0}};
+static const struct setting_value values_reference_samples[] = {
+    {"4", 4, NULL}, {"16", 16, NULL}, {"64", 64, NULL}, {0}};
+
+/* ---- Options ---- */
+
+static bool read_knobs(const struct setting *setting, const char *list, void *record, char *why)
+{
+    const char *names[64];
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    (void)setting;
+    for (uint32_t i = 0; i < count; ++i)
+        names[i] = table[i].name;
+    for (const char *at = list; at;) {
+        char name[32];
+        size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
+        uint32_t found = knob_find(name);
+        if (found == WHIT_NONE) {
+            const char *nearest = text_nearest(name, names, count);
+            return setting_refuse(why, ": there is no knob `%s`%s%s%s", name,
+                                  nearest ? "; did you mean `" : "", nearest ? nearest : "",
+                                  nearest ? "`?" : "");
+        }
+        ((struct cost *)record)->request.knobs |= UINT64_C(1) << found;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    return true;
+}
+
+static const struct setting options[] = {
+    {"html", 0, "FILE", "the report as one page, with plots and pictures",
+     SETTING_AT_NAME(struct cost, html)},
+    {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json)},
+    {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv)},
+    {"markdown", 0, "FILE", "the tables as Markdown", SETTING_AT_NAME(struct cost, markdown)},
+    {"under", 0, "E", "find the cheapest settings with an error of at most E",
+     SETTING_AT_NUMBER(struct cost, under), .min = 1e-12, .max = 1e6},
+    {"within", 0, "T", "find the best picture that takes at most T ms",
+     SETTING_AT_NUMBER(struct cost, within_ms), .min = 1e-3, .max = 1e9},
+    {"metric", 0, NULL, "what E is (rmse)", SETTING_AT_CHOICE(struct cost, metric),
+     .values = values_metric},
+    {"quick", 0, NULL, "20 s, 16 samples, 2000 rays", SETTING_AT_FLAG(struct cost, quick)},
+    {"spend", 0, "S", "seconds that it may take, more or less (150)",
+     SETTING_AT_NUMBER(struct cost, request.seconds), .min = 0.1, .max = 1e6},
+    {"samples", 0, NULL, "is `--reference-samples` now", .kind = SETTING_GONE},
+    {"reference-samples", 0, NULL,
+     "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",
+     SETTING_AT_CHOICE(struct cost, request.samples_max), .values = values_reference_samples},
+    {"rays", 0, "N", "of each of the two sets; 0: none (20000)",
+     SETTING_AT_COUNT(struct cost, rays), .max = RAYS_MAX},
+    {"knobs", 0, "NAME,...", "only these (all that the scene calls for)", .kind = SETTING_OWN,
+     .read = read_knobs},
+    {"compare", 0, NULL, "two files of --json in place of the scene: what differs",
+     SETTING_AT_FLAG(struct cost, compares)},
+    {0},
+};
+
+static bool check_files(struct cli_reader *reader, const struct cost *cost)
+{
+    const char *const names[] = {"--html", "--json", "--csv", "--markdown"};
+    const char *const files[] = {cost->html, cost->json, cost->csv, cost->markdown};
+    for (int i = 0; i < 4; ++i) {
+        if (!cli_no_dash(reader, names[i], files[i], "for a pipe give /dev/stdout"))
+            return false;
+        for (int k = 0; k < i; ++k)
+            if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
+                return cli_misuse(reader, "%s: %s and %s name the same file", files[i], names[k],
+                                  names[i]);
+        if (files[i] && !cli_can_write(files[i])) {
+            reader->status = EXIT_USAGE;
+            return false;
+        }
+    }
+    return true;
+}
+
+static void complete(struct cost *cost)
+{
+    struct cost_request *request = &cost->request;
+    if (request->seconds == 0.0)
+        request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
+    if (request->samples_max == 0 && cost->quick)
+        request->samples_max = SAMPLES_QUICK;
+    request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
+                    : cost->quick                  ? RAYS_QUICK
+                                                   : RAYS_USUAL;
+    if (cost->under > 0.0)
+        request->goals[request->goal_count++] = (struct cost_goal){
+            .kind = COST_UNDER, .metric = (enum cost_metric)cost->metric, .limit = cost->under};
+    if (cost->within_ms > 0.0)
+        request->goals[request->goal_count++] =
+            (struct cost_goal){.kind = COST_WITHIN,
+                               .metric = (enum cost_metric)cost->metric,
+                               .limit = cost->within_ms};
+}
+
+static bool check_request(struct cli_reader *reader, struct cost *cost)
+{
+    if (cost->compares && !reader->second)
+        return cli_misuse(reader, "--compare needs two files that --json wrote");
+    if (!cost->compares && !reader->positional)
+        return cli_misuse(reader, "a scene is missing");
+    if (!cost->compares && reader->second)
+        return cli_misuse(reader, "too many arguments: `%s`", reader->second);
+    return cost->compares || check_files(reader, cost);
+}
+
+/* ---- Work ---- */
+
+void cost_on_progress(void *user, double done, double seconds_left, const char *what)
+{
+    cli_progress_tell(user, done, seconds_left, what);
+}
+
+static whit_result find_out(struct cost *cost)
+{
+    struct job *job = &cost->job;
+    struct cost_request *request = &cost->request;
+    job_begin_device(job);
+    whit_result result = job_load(job);
+    if (result == WHIT_OK)
+        job_print_notes(job, false);
+    if (result == WHIT_OK)
+        result = job_build(job);
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (result != WHIT_OK)
+        return result;
+    cli_progress_init(&cost->progress, job->settings.quiet);
+    request->device = job->device;
+    request->scene = job->scene;
+    request->accel = job->accel;
+    request->settings = &job->settings;
+    request->cancel = &cli_cancel;
+    request->time_limit_s = cli_time_left_s();
+    request->keep_pictures = cost->html != NULL;
+    request->progress = cost_on_progress;
+    request->progress_user = &cost->progress;
+    request->hush = cli_hush;
+    request->log = &cli_log;
+    cli_keep_what_is_done(GRACE_MS);
+    result = cost_measure(request, &cost->report);
+    cli_progress_finish(&cost->progress);
+    return result;
+}
+
+static whit_result save_all(const struct cost *cost)
+{
+    whit_result result = WHIT_OK;
+    if (cost->json)
+        result = cost_save_json(cost->report, cost->job.settings.scene, cost->command, cost->json);
+    if (result == WHIT_OK && cost->csv)
+        result = cost_save_csv(cost);
+    if (result == WHIT_OK && cost->markdown)
+        result = cost_save_markdown(cost);
+    if (result == WHIT_OK && cost->html)
+        result = cost_save_page(cost);
+    return result;
+}
+
+/* What may change nothing has changed something; what was asked for was not found. */
+static int judge(const struct cost_report *report)
+{
+    int status = EXIT_FINE;
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (!row->broken)
+            continue;
+        cli_error("%s %s: it may change nothing, yet %llu pixels and %llu ids differ", row->knob,
+                  row->setting, (unsigned long long)row->pixels_changed,
+                  (unsigned long long)row->ids_changed);
+        status = EXIT_DIFFERS;
+    }
+    for (uint32_t i = 0; i < report->answer_count; ++i) {
+        const struct cost_answer *answer = &report->answers[i];
+        if (answer->kept)
+            continue;
+        cli_error("no setting was found %s %.6g%s",
+                  answer->goal.kind == COST_WITHIN ? "within" : "with an error of at most",
+                  answer->goal.limit, answer->goal.kind == COST_WITHIN ? " ms" : "");
+        status = EXIT_DIFFERS;
+    }
+    return status;
+}
+
+static void say_stopped(struct cost *cost)
+{
+    uint32_t measured = 0;
+    for (uint32_t i = 0; i < cost->report->row_count; ++i)
+        measured += cost->report->rows[i].measured;
+    cli_set_kept(measured, cost->report->row_count, "settings were measured");
+}
+
+static int work(struct cost *cost)
+{
+    whit_result result = find_out(cost);
+    if (!cost->report)
+        return cli_exit_of(result);
+    whit_result saved = save_all(cost);
+    int status = cost_print_text(cost);
+    if (result != WHIT_OK) {
+        say_stopped(cost);
+        return cli_exit_of(result);
+    }
+    if (saved != WHIT_OK)
+        return cli_exit_of(saved);
+    if (status == EXIT_FINE)
+        status = judge(cost->report);
+    return status == EXIT_FINE ? job_check_validation(&cost->job) : status;
+}
+
+static void put_part(void *user, const char *part)
+{
+    fputs(part, user);
+}
+
+/* As a shell takes it; NULL: no memory. */
+static char *command_line(int argc, char **argv)
+{
+    char *line = NULL;
+    size_t bytes;
+    FILE *to = open_memstream(&line, &bytes);
+    if (!to)
+        return NULL;
+    fputs("whit", to);
+    for (int i = 0; i < argc; ++i) {
+        fputc(' ', to);
+        quote_word(argv[i], put_part, to);
+    }
+    if (fclose(to) == 0)
+        return line;
+    free(line);
+    return NULL;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct cost cost = {.rays = COST_RAYS_UNSAID};
+    job_init(&cost.job, command);
+    cli_reader_init(&reader, command, argc, argv);
+    if (!job_read(&cost.job, &reader, &cost, true) || !check_request(&reader, &cost))
+        return reader.status;
+    if (cost.compares)
+        return cost_compare_files(reader.positional, reader.second);
+    complete(&cost);
+    job_start(&cost.job);
+    cost.command = command_line(argc, argv);
+    int status = cost.command ? work(&cost) : cli_exit_of(WHIT_ERROR_MEMORY);
+    cost_report_destroy(cost.report);
+    free(cost.command);
+    job_finish(&cost.job);
+    return status;
+}
+
+static const char *knob_word(const char *option, uint32_t index)
+{
+    uint32_t count;
+    const struct knob *knobs = knob_table(&count);
+    return strcmp(option, "knobs") == 0 && index < count ? knobs[index].name : NULL;
+}
+
+const struct cli_command command_cost = {
+    .name = "cost",
+    .arguments = "SCENE [options]",
+    .summary = "Measures what each setting costs in this scene, and what it gets wrong.",
+    .details =
+        "Every knob that the scene calls for, beside the usual settings of `whit render`: times "
+        "in\n"
+        "turns, with intervals of 95 %, and errors against the reference in double, which is kept\n"
+        "in the user's cache folder. Hits are held against exact arithmetic, for rays of the\n"
+        "picture and for rays aimed at the scene's edges and vertices. Exit code 1 when a setting\n"
+        "that may change nothing changes a picture, or when --under or --within cannot be met.\n"
+        "`whit cost --compare A B`: two files of --json. Ctrl+C keeps what is measured.\n",
+    .options = options,
+    .settings = IN_COST,
+    .takes_two = true,
+    .run = run,
+    .word = knob_word,
+};

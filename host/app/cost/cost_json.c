@@ -1,0 +1,375 @@
+/* Reports of `whit cost` as JSON, and back. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost/cost.h"
+
+/* ---- Writing ---- */
+
+static json_t *median_document(const struct sample_median *median)
+{
+    json_t *out = document_object();
+    document_number(out, "median", median->median);
+    document_number(out, "low", median->low);
+    document_number(out, "high", median->high);
+    document_number(out, "coverage", median->coverage);
+    return out;
+}
+
+static json_t *price_document(const struct cost_price *price)
+{
+    json_t *out = document_object();
+    document_count(out, "rounds", price->rounds);
+    document_count(out, "width", price->width);
+    document_count(out, "height", price->height);
+    document_number(out, "verdict", price->verdict);
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
+        json_t *clock = document_object();
+        if (price->ratio[c].count == 0) {
+            json_decref(clock);
+            document_put(out, cost_clock_name((enum cost_clock)c), json_null());
+            continue;
+        }
+        document_put(clock, "usual_ms", median_document(&price->usual_ms[c]));
+        document_put(clock, "setting_ms", median_document(&price->setting_ms[c]));
+        document_put(clock, "difference_ms", median_document(&price->difference[c]));
+        document_put(clock, "ratio", median_document(&price->ratio[c]));
+        document_put(out, cost_clock_name((enum cost_clock)c), clock);
+    }
+    return out;
+}
+
+static json_t *difference_document(const whit_difference *difference)
+{
+    if (difference->pixel_count == 0)
+        return json_null();
+    json_t *out = document_object();
+    document_count(out, "pixels", difference->pixel_count);
+    document_number(out, "rmse", difference->rmse);
+    document_number(out, "relative_mse", difference->relative_mse);
+    document_number(out, "largest", difference->largest);
+    document_count(out, "over_1_255", difference->over_1_255);
+    document_number(out, "flip", difference->flip_mean);
+    document_count(out, "non_finite", difference->nonfinite_b);
+    return out;
+}
+
+static json_t *hits_document(const struct cost_hits *hits)
+{
+    const whit_judgement *judged = &hits->judged;
+    if (!hits->traced)
+        return json_null();
+    json_t *out = document_object();
+    document_flag(out, "unanswered", hits->unanswered);
+    document_count(out, "rays", judged->rays);
+    document_count(out, "wrong", judged->wrong);
+    document_count(out, "leaks", judged->leaks);
+    document_count(out, "misses", judged->misses);
+    document_count(out, "false_hits", judged->false_hits);
+    document_count(out, "other_ids", judged->other_ids);
+    document_count(out, "non_finite", judged->non_finite);
+    document_count(out, "ulp_rays", judged->ulp_rays);
+    document_number(out, "ulp_median", judged->ulp_median);
+    document_number(out, "ulp_999", judged->ulp_999);
+    document_number(out, "ulp_max", judged->ulp_max);
+    document_number(out, "ms", hits->ms);
+    return out;
+}
+
+static json_t *row_document(const struct cost_row *row)
+{
+    json_t *out = document_object();
+    document_text(out, "knob", row->knob);
+    document_text(out, "setting", row->setting);
+    document_text(out, "option", row->option);
+    document_text(out, "may_change", knob_change_name(row->change));
+    document_text(out, "note", row->note);
+    document_flag(out, "measured", row->measured);
+    document_flag(out, "broken", row->broken);
+    document_flag(out, "best", row->best);
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
+        char key[32];
+        snprintf(key, sizeof key, "%s_ms", cost_clock_name((enum cost_clock)c));
+        document_number(out, key, row->ms[c] >= 0.0 ? row->ms[c] : (double)NAN);
+    }
+    document_number(out, "ms_low", row->ms_low);
+    document_number(out, "ms_high", row->ms_high);
+    document_number(out, "build_ms", row->build_ms >= 0.0 ? row->build_ms : (double)NAN);
+    document_put(out, "price", price_document(&row->price));
+    document_put(out, "error", difference_document(&row->error));
+    document_put(out, "alone", difference_document(&row->alone));
+    document_count(out, "pixels_changed", row->pixels_changed);
+    document_count(out, "ids_changed", row->ids_changed);
+    for (uint32_t set = 0; set < COST_SETS; ++set)
+        document_put(out, set == COST_AIMED ? "aimed_rays" : "picture_rays",
+                     hits_document(&row->hits[set]));
+    return out;
+}
+
+static json_t *answer_document(const struct cost_report *report, const struct cost_answer *answer)
+{
+    json_t *out = document_object();
+    document_text(out, "goal", answer->goal.kind == COST_WITHIN ? "within_ms" : "under");
+    document_text(out, "metric", cost_metric_name(answer->goal.metric));
+    document_number(out, "limit", answer->goal.limit);
+    document_flag(out, "found", answer->found);
+    document_flag(out, "kept", answer->kept);
+    document_number(out, "predicted_ms", answer->ms);
+    document_number(out, "predicted_error", answer->error);
+    document_text(out, "options",
+                  answer->found && answer->row != WHIT_NONE ? report->rows[answer->row].option
+                                                            : NULL);
+    return out;
+}
+
+static void put_head(json_t *out, const struct cost_report *report, const char *scene,
+                     const char *command)
+{
+    document_text(out, "command", command);
+    document_text(out, "scene", scene);
+    document_hash(out, "scene_hash", report->scene_hash);
+    document_text(out, "device", report->device);
+    document_text(out, "driver", report->driver);
+    document_text(out, "kind", report->kind);
+    document_text(out, "load_path", report->load_path);
+    document_flag(out, "complete", report->complete);
+    document_number(out, "seconds", report->spent_ms * 1e-3);
+    document_text(out, "clock", cost_clock_name(report->clock));
+    document_count(out, "width", report->width);
+    document_count(out, "height", report->height);
+    document_count(out, "judged_width", report->judged_width);
+    document_count(out, "judged_height", report->judged_height);
+    document_number(out, "usual_ms_max", report->usual_ms_max);
+    document_number(out, "small_ms", report->small_ms);
+}
+
+static json_t *reference_document(const struct cost_report *report)
+{
+    json_t *out = document_object();
+    document_count(out, "samples", report->reference_samples);
+    document_count(out, "depth", report->reference_depth);
+    document_count(out, "light_samples", report->reference_light_samples);
+    document_flag(out, "cached", report->reference_cached[0] && report->reference_cached[1]);
+    document_number(out, "one_sample_ms",
+                    report->reference_cached[0] ? (double)NAN : report->reference_ms[0]);
+    document_number(out, "all_samples_ms",
+                    report->reference_cached[1] ? (double)NAN : report->reference_ms[1]);
+    return out;
+}
+
+static json_t *report_document(const struct cost_report *report, const char *scene,
+                               const char *command)
+{
+    json_t *out = document_root(), *rows = document_array(), *answers = document_array();
+    json_t *absent = document_array();
+    put_head(out, report, scene, command);
+    document_put(out, "reference", reference_document(report));
+    for (uint32_t i = 0; i < report->row_count; ++i)
+        document_append(rows, row_document(&report->rows[i]));
+    for (uint32_t i = 0; i < report->answer_count; ++i)
+        document_append(answers, answer_document(report, &report->answers[i]));
+    for (uint32_t i = 0; i < report->absent_count; ++i) {
+        json_t *entry = document_object();
+        document_text(entry, "name", report->absent[i].name);
+        document_text(entry, "why", report->absent[i].why);
+        document_append(absent, entry);
+    }
+    document_put(out, "rows", rows);
+    document_put(out, "answers", answers);
+    document_put(out, "not_here", absent);
+    return out;
+}
+
+whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
+                           const char *path)
+{
+    return document_save(report_document(report, scene, command), path);
+}
+
+void cost_keep(const struct cost_report *report, const char *name)
+{
+    char *text = document_line(report_document(report, NULL, NULL));
+    if (text && report->complete)
+        whit_cache_write(name, text, strlen(text), &cli_log);
+    free(text);
+}
+
+/* ---- Reading ---- */
+
+static double number(const json_t *object, const char *key, double otherwise)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : otherwise;
+}
+
+static uint64_t whole(const json_t *object, const char *key)
+{
+    double value = number(object, key, 0.0);
+    return value > 0.0 && value < 0x1p53 ? (uint64_t)value : 0;
+}
+
+static void text(const json_t *object, const char *key, char *out, size_t out_bytes)
+{
+    const char *value = json_string_value(json_object_get(object, key));
+    snprintf(out, out_bytes, "%s", value ? value : "");
+}
+
+static struct sample_median read_median(const json_t *object, uint32_t count)
+{
+    return (struct sample_median){.median = number(object, "median", 0.0),
+                                  .low = number(object, "low", 0.0),
+                                  .high = number(object, "high", 0.0),
+                                  .coverage = number(object, "coverage", 0.0),
+                                  .count = count};
+}
+
+static void read_price(const json_t *object, struct cost_price *price)
+{
+    price->rounds = (uint32_t)whole(object, "rounds");
+    price->width = (uint32_t)whole(object, "width");
+    price->height = (uint32_t)whole(object, "height");
+    double verdict = number(object, "verdict", 0.0);
+    price->verdict = (verdict > 0.0) - (verdict < 0.0);
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
+        const json_t *clock = json_object_get(object, cost_clock_name((enum cost_clock)c));
+        if (!json_is_object(clock))
+            continue;
+        price->ratio[c] = read_median(json_object_get(clock, "ratio"), price->rounds);
+        price->usual_ms[c] = read_median(json_object_get(clock, "usual_ms"), price->rounds);
+        price->setting_ms[c] = read_median(json_object_get(clock, "setting_ms"), price->rounds);
+        price->difference[c] = read_median(json_object_get(clock, "difference_ms"), price->rounds);
+    }
+}
+
+static void read_difference(const json_t *object, whit_difference *difference)
+{
+    difference->pixel_count = whole(object, "pixels");
+    difference->rmse = number(object, "rmse", 0.0);
+    difference->relative_mse = number(object, "relative_mse", 0.0);
+    difference->largest = number(object, "largest", 0.0);
+    difference->over_1_255 = whole(object, "over_1_255");
+    difference->flip_mean = number(object, "flip", 0.0);
+    difference->nonfinite_b = whole(object, "non_finite");
+}
+
+static void read_hits(const json_t *object, struct cost_hits *hits)
+{
+    hits->traced = json_is_object(object);
+    hits->unanswered = json_is_true(json_object_get(object, "unanswered"));
+    hits->judged.rays = whole(object, "rays");
+    hits->judged.wrong = whole(object, "wrong");
+    hits->judged.leaks = whole(object, "leaks");
+    hits->judged.misses = whole(object, "misses");
+    hits->judged.false_hits = whole(object, "false_hits");
+    hits->judged.other_ids = whole(object, "other_ids");
+    hits->ms = number(object, "ms", -1.0);
+}
+
+/* The knob and setting of these names, or neither. */
+static void find_setting(struct cost_row *row)
+{
+    uint32_t count, index = knob_find(row->knob);
+    const struct knob *table = knob_table(&count);
+    row->knob_index = row->setting_index = WHIT_NONE;
+    for (uint32_t s = 0; index != WHIT_NONE && s < table[index].count; ++s) {
+        if (strcmp(knob_setting_name(&table[index], s), row->setting) == 0) {
+            row->knob_index = index;
+            row->setting_index = s;
+            row->change = knob_change(&table[index]);
+        }
+    }
+}
+
+static void read_row(const json_t *object, struct cost_row *row)
+{
+    static const char *const keys[] = {"wall_ms", "cpu_ms", "device_ms"};
+    text(object, "knob", row->knob, sizeof row->knob);
+    text(object, "setting", row->setting, sizeof row->setting);
+    text(object, "option", row->option, sizeof row->option);
+    text(object, "note", row->note, sizeof row->note);
+    row->measured = json_is_true(json_object_get(object, "measured"));
+    row->broken = json_is_true(json_object_get(object, "broken"));
+    row->best = json_is_true(json_object_get(object, "best"));
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c)
+        row->ms[c] = number(object, keys[c], -1.0);
+    row->ms_low = number(object, "ms_low", 0.0);
+    row->ms_high = number(object, "ms_high", 0.0);
+    row->build_ms = number(object, "build_ms", -1.0);
+    row->pixels_changed = whole(object, "pixels_changed");
+    row->ids_changed = whole(object, "ids_changed");
+    read_price(json_object_get(object, "price"), &row->price);
+    read_difference(json_object_get(object, "error"), &row->error);
+    read_difference(json_object_get(object, "alone"), &row->alone);
+    read_hits(json_object_get(object, "picture_rays"), &row->hits[COST_CAMERA]);
+    read_hits(json_object_get(object, "aimed_rays"), &row->hits[COST_AIMED]);
+    find_setting(row);
+}
+
+static void read_report(const json_t *root, struct cost_report *report, char **scene)
+{
+    char clock[16], hash[24];
+    const char *name = json_string_value(json_object_get(root, "scene"));
+    const json_t *rows = json_object_get(root, "rows"), *row;
+    size_t i;
+    text(root, "device", report->device, sizeof report->device);
+    text(root, "driver", report->driver, sizeof report->driver);
+    text(root, "scene_hash", hash, sizeof hash);
+    text(root, "clock", clock, sizeof clock);
+    report->scene_hash = strtoull(hash, NULL, 16);
+    report->complete = json_is_true(json_object_get(root, "complete"));
+    report->spent_ms = number(root, "seconds", 0.0) * 1e3;
+    report->width = (uint32_t)whole(root, "width");
+    report->height = (uint32_t)whole(root, "height");
+    report->judged_width = (uint32_t)whole(root, "judged_width");
+    report->judged_height = (uint32_t)whole(root, "judged_height");
+    report->usual_ms_max = number(root, "usual_ms_max", 0.0);
+    report->small_ms = number(root, "small_ms", 0.0);
+    report->reference_samples = (uint32_t)whole(json_object_get(root, "reference"), "samples");
+    for (uint32_t c = 0; c < COST_CLOCKS; ++c)
+        if (strcmp(clock, cost_clock_name((enum cost_clock)c)) == 0)
+            report->clock = (enum cost_clock)c;
+    json_array_foreach(rows, i, row)
+    {
+        if (report->row_count < COST_ROWS_MAX)
+            read_row(row, &report->rows[report->row_count++]);
+    }
+    if (scene)
+        *scene = name ? strdup(name) : NULL;
+}
+
+/* Takes over `root`. */
+static bool read_known(json_t *root, struct cost_report *report, char **scene)
+{
+    bool known = root && number(root, "format", 0.0) == DOCUMENT_FORMAT &&
+                 json_is_array(json_object_get(root, "rows")) &&
+                 json_array_size(json_object_get(root, "rows")) > 0;
+    *report = (struct cost_report){0};
+    if (known)
+        read_report(root, report, scene);
+    json_decref(root);
+    return known;
+}
+
+bool cost_load_json(const char *path, struct cost_report *report, char **scene)
+{
+    json_error_t error;
+    json_t *root = json_load_file(path, 0, &error);
+    if (!root)
+        cli_error("%s:%d: %s", path, error.line, error.text);
+    else if (!read_known(root, report, scene))
+        cli_error("%s: this is no report of `whit cost --json`", path);
+    else
+        return true;
+    return false;
+}
+
+bool cost_load_kept(const char *name, struct cost_report *report)
+{
+    uint8_t *data;
+    size_t bytes;
+    bool known = whit_cache_read(name, &cli_log, &data, &bytes) &&
+                 read_known(json_loadb((const char *)data, bytes, 0, NULL), report, NULL);
+    free(data);
+    return known && report->complete;
+}

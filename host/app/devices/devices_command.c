@@ -1,0 +1,134 @@
+#include <stdlib.h>
+
+#include "app/cache.h"
+#include "app/commands.h"
+#include "app/devices/device_hints.h"
+#include "app/document.h"
+
+struct devices {
+    bool json;
+};
+
+static const struct setting options[] = {
+    {"json", 0, NULL, "everything as JSON", SETTING_AT_FLAG(struct devices, json)},
+    {0},
+};
+
+static json_t *device_document(const whit_device_info *info)
+{
+    json_t *device = document_object();
+    document_count(device, "index", info->index);
+    document_text(device, "name", info->name);
+    document_text(device, "kind", info->kind);
+    document_text(device, "driver", info->driver);
+    document_text(device, "api_version", info->api_version);
+    document_count(device, "memory_bytes", info->memory_bytes);
+    document_count(device, "max_storage_range_bytes", info->max_storage_range_bytes);
+    document_count(device, "subgroup_size", info->subgroup_size);
+    document_flag(device, "float64", info->float64);
+    document_flag(device, "int64", info->int64);
+    document_flag(device, "timestamps", info->timestamps);
+    document_flag(device, "usable", info->usable);
+    document_text(device, "why_not", info->usable ? NULL : info->why_not);
+    document_flag(device, "automatic", info->automatic);
+    return device;
+}
+
+static void print_device(const whit_device_info *info)
+{
+    printf("%c %u  %s\n", info->automatic ? '*' : ' ', info->index, cli_shown(info->name));
+    printf("     kind      %s, Vulkan %s\n", info->kind, info->api_version);
+    printf("     driver    %s\n", cli_shown(info->driver));
+    printf("     memory    %.1f GiB, storage buffers to %.0f MiB\n",
+           (double)info->memory_bytes / 1073741824.0,
+           (double)info->max_storage_range_bytes / 1048576.0);
+    printf("     subgroup  %u\n", info->subgroup_size);
+    printf("     has       %s%s%s\n", info->timestamps ? "timestamps" : "no timestamps",
+           info->float64 ? ", float64" : "", info->int64 ? ", int64" : "");
+    if (!info->usable)
+        printf("     not usable: %s\n", cli_shown(info->why_not));
+}
+
+static json_t *hints_document(const struct device_hints *hints)
+{
+    json_t *list = document_array();
+    for (uint32_t i = 0; i < hints->count; ++i)
+        document_append(list, json_string(hints->list[i]));
+    return list;
+}
+
+static int print_json(const whit_device_info *infos, uint32_t count,
+                      const struct device_hints *hints)
+{
+    json_t *list = document_array();
+    for (uint32_t i = 0; i < count; ++i)
+        document_append(list, device_document(&infos[i]));
+    json_t *root = document_root();
+    document_put(root, "devices", list);
+    document_put(root, "hints", hints_document(hints));
+    document_put(root, "cache", cache_document());
+    return cli_print_json(root);
+}
+
+static int print_text(const whit_device_info *infos, uint32_t count,
+                      const struct device_hints *hints)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        print_device(&infos[i]);
+    if (count > 0)
+        puts("\n* is what `--device auto` takes.");
+    for (uint32_t i = 0; i < hints->count; ++i)
+        printf("%s%s\n", i == 0 ? "\n" : "", hints->list[i]);
+    cache_print();
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+static bool any_usable(const whit_device_info *infos, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (infos[i].usable)
+            return true;
+    }
+    return false;
+}
+
+static int list(bool json)
+{
+    whit_device_info *infos;
+    uint32_t count;
+    struct device_hints hints;
+    whit_result result = whit_device_list(&cli_log, &infos, &count);
+    if (result != WHIT_OK && result != WHIT_ERROR_NO_DEVICE)
+        return cli_exit_of(result);
+    device_hints_find("", getenv("NVIDIA_DRIVER_CAPABILITIES"), infos, count, &hints);
+    int status = json ? print_json(infos, count, &hints) : print_text(infos, count, &hints);
+    if (status == EXIT_FINE && count > 0 && !any_usable(infos, count))
+        cli_error("none of these devices is usable");
+    if (status == EXIT_FINE && !any_usable(infos, count))
+        status = EXIT_DEVICE;
+    free(infos);
+    return status;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct devices devices = {0};
+    cli_reader_init(&reader, command, argc, argv);
+    if (!cli_read(&reader, &devices, NULL))
+        return reader.status;
+    if (reader.positional) {
+        cli_misuse(&reader, "`%s` is one argument too many", reader.positional);
+        return reader.status;
+    }
+    cache_prepare(false);
+    return list(devices.json);
+}
+
+const struct cli_command command_devices = {
+    .name = "devices",
+    .arguments = "[options]",
+    .summary = "Lists what Vulkan offers here, and what whit will use.",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,27 @@
+/* What `whit hard` was asked for, and what it found. */
+#ifndef APP_HARD_HARD_H
+#define APP_HARD_HARD_H
+
+#include "app/job.h"
+
+enum { HARD_ALL = WHIT_NONE };
+
+struct hard {
+    struct job job;
+    whit_hard_params params;
+    whit_hard_view_params view;
+    const char *json_path, *output; /* NULL: none */
+    uint32_t drawn;                 /* a picture instead of the table */
+    uint32_t level;                 /* whit_numerics; HARD_ALL: the table has all */
+    bool quick;
+    whit_hard_report *report;
+    struct cli_progress progress;
+    double seconds; /* that it took */
+};
+
+/* On standard output. */
+int hard_print(const struct hard *hard);
+/* To json_path. */
+whit_result hard_save_json(const struct hard *hard);
+
+#endif

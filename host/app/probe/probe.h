@@ -1,0 +1,20 @@
+/* What `whit probe` was asked for, and what it found. */
+#ifndef APP_PROBE_PROBE_H
+#define APP_PROBE_PROBE_H
+
+#include "app/commands.h"
+
+struct probe {
+    struct job job;
+    uint32_t x, y, max_rays; /* 0: all that there is room for */
+    bool has_pixel;
+    const char *json_path; /* NULL: none */
+    whit_probe_report *report;
+};
+
+/* On standard output. */
+int probe_print(const struct probe *probe);
+/* To json_path. */
+whit_result probe_save_json(const struct probe *probe);
+
+#endif

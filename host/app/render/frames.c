@@ -1,0 +1,311 @@
+#include "app/render/frames.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+
+enum { FRAME_MAX = 1000000000 };
+
+/* ---- Options ---- */
+
+static const char *read_number(const char *text, uint32_t *out)
+{
+    uint64_t value = 0;
+    if (!isdigit((unsigned char)*text))
+        return NULL;
+    for (; isdigit((unsigned char)*text); ++text) {
+        value = 10 * value + (uint64_t)(*text - '0');
+        if (value > FRAME_MAX)
+            return NULL;
+    }
+    *out = (uint32_t)value;
+    return text;
+}
+
+bool frames_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES])
+{
+    struct frames *frames = &((struct render_request *)request)->frames;
+    const char *text = read_number(value, &frames->first);
+    (void)setting;
+    if (text && *text == '-')
+        text = read_number(text + 1, &frames->last);
+    else
+        text = NULL;
+    if (!text || *text)
+        return setting_refuse(why, " `%s`: A-B is needed, whole numbers such as 0-99", value);
+    if (frames->last < frames->first)
+        return setting_refuse(why, " `%s`: the last frame is before the first", value);
+    frames->given = true;
+    return true;
+}
+
+/* The last run of # in the name of the file, folders apart; 0: there is none. */
+static size_t find_marks(const char *pattern, size_t *length)
+{
+    const char *slash = strrchr(pattern, '/');
+    const char *last = strrchr(slash ? slash : pattern, '#');
+    *length = 0;
+    if (!last)
+        return 0;
+    const char *first = last;
+    while (first > pattern && first[-1] == '#')
+        --first;
+    *length = (size_t)(last - first) + 1;
+    return (size_t)(first - pattern);
+}
+
+static bool has_marks(const char *pattern)
+{
+    size_t length;
+    find_marks(pattern, &length);
+    return length > 0;
+}
+
+char *frames_path(const char *pattern, uint32_t frame)
+{
+    size_t length, at = find_marks(pattern, &length), size = strlen(pattern) + 16;
+    char *path = length ? malloc(size) : NULL;
+    if (path)
+        snprintf(path, size, "%.*s%0*u%s", (int)at, pattern, (int)length, frame,
+                 pattern + at + length);
+    return path;
+}
+
+bool frames_check(struct cli_reader *reader, const struct job *job,
+                  const struct render_request *request)
+{
+    if (!request->frames.given)
+        return true;
+    bool time = settings_given(&job->settings, "time");
+    if (time || settings_given(&job->settings, "frame"))
+        return cli_misuse(reader, "--frames and --%s: either all of these frames or one",
+                          time ? "time" : "frame");
+    if (request->output && !has_marks(request->output))
+        return cli_misuse(reader,
+                          "-o %s: with --frames its name needs # for the number of the frame, "
+                          "such as name.####.png",
+                          request->output);
+    if (request->ids && !has_marks(request->ids))
+        return cli_misuse(reader,
+                          "--ids %s: with --frames its name needs # for the number of the frame, "
+                          "such as name.####.exr",
+                          request->ids);
+    return true;
+}
+
+/* ---- Progress ---- */
+
+/* Not before a quarter is done: first parts may be the dear ones. */
+static void watch_budget(struct frames_progress *progress, double done)
+{
+    double will_ms = (whit_clock_ms() - progress->bar.start_ms) / fmax(done, 0.25);
+    if (progress->said || progress->budget_ms <= 0.0 || will_ms <= progress->budget_ms)
+        return;
+    progress->said = true;
+    cli_note("it will take about %.0f ms, not %.6g: the device is slower now than just before",
+             will_ms, progress->budget_ms);
+}
+
+void frames_progress_update(void *user, double done)
+{
+    struct frames_progress *progress = user;
+    watch_budget(progress, done);
+    cli_progress_update(&progress->bar, ((double)progress->done + done) / (double)progress->count);
+}
+
+/* ---- Times ---- */
+
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+static void add_cost(const whit_cost *from, whit_cost *to)
+{
+    to->rays += from->rays;
+    to->inner_nodes += from->inner_nodes;
+    to->leaves += from->leaves;
+    to->instances += from->instances;
+    to->triangles += from->triangles;
+    to->stack = larger(from->stack, to->stack);
+    to->depth = larger(from->depth, to->depth);
+    to->records += from->records;
+    to->stack_sum += from->stack_sum;
+    to->depth_sum += from->depth_sum;
+    to->max_inner_nodes = larger(from->max_inner_nodes, to->max_inner_nodes);
+    to->max_leaves = larger(from->max_leaves, to->max_leaves);
+    to->max_instances = larger(from->max_instances, to->max_instances);
+    to->max_triangles = larger(from->max_triangles, to->max_triangles);
+}
+
+static void add_stage(const whit_stage *from, whit_stage *to)
+{
+    bool measured = from->ms >= 0.0 && to->ms >= 0.0;
+    memcpy(to->name, from->name, sizeof to->name);
+    to->rays += from->rays;
+    to->ms = measured ? to->ms + from->ms : -1.0;
+}
+
+static void add_stats(const whit_stats *from, whit_stats *to)
+{
+    to->render_ms += from->render_ms;
+    bool measured = from->render_device_ms >= 0.0 && to->render_device_ms >= 0.0;
+    to->render_device_ms = measured ? to->render_device_ms + from->render_device_ms : -1.0;
+    to->rays_primary += from->rays_primary;
+    to->rays_shadow += from->rays_shadow;
+    to->rays_reflected += from->rays_reflected;
+    to->rays_refracted += from->rays_refracted;
+    to->rays_cut_depth += from->rays_cut_depth;
+    to->rays_cut_bailout += from->rays_cut_bailout;
+    to->weight_cut_depth = fmax(to->weight_cut_depth, from->weight_cut_depth);
+    to->weight_cut_bailout = fmax(to->weight_cut_bailout, from->weight_cut_bailout);
+    bool bounded = from->bailout_bound >= 0.0 && to->bailout_bound >= 0.0;
+    to->bailout_bound = bounded ? fmax(to->bailout_bound, from->bailout_bound) : -1.0;
+    for (int i = 0; i < WHIT_SAMPLE_LEVELS; ++i)
+        to->pixels_by_samples[i] += from->pixels_by_samples[i];
+    to->dispatches += from->dispatches;
+    to->tiles += from->tiles;
+    to->deferred += from->deferred;
+    to->tile_size = from->tile_size;
+    to->device_bytes = from->device_bytes;
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
+        add_cost(&from->costs[kind], &to->costs[kind]);
+    for (int i = 0; i < WHIT_STAGES; ++i)
+        add_stage(&from->stages[i], &to->stages[i]);
+    uint64_t rays = to->rays_primary + to->rays_shadow + to->rays_reflected + to->rays_refracted;
+    to->mrays_per_s = to->render_ms > 0.0 ? (double)rays / to->render_ms * 1e-3 : 0.0;
+}
+
+static whit_result keep_times(struct sequence *sequence, const struct frame_times *times)
+{
+    if (sequence->count == sequence->capacity) {
+        uint32_t capacity = sequence->capacity ? 2 * sequence->capacity : 64;
+        struct frame_times *each = realloc(sequence->each, capacity * sizeof *each);
+        if (!each) {
+            cli_error("out of memory for the times of %u frames", capacity);
+            return WHIT_ERROR_MEMORY;
+        }
+        sequence->each = each;
+        sequence->capacity = capacity;
+    }
+    sequence->each[sequence->count++] = *times;
+    return WHIT_OK;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static double median_of(double *values, uint32_t count)
+{
+    qsort(values, count, sizeof *values, by_value);
+    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+static whit_result find_medians(struct sequence *sequence)
+{
+    uint32_t count = sequence->count;
+    if (count == 0)
+        return WHIT_OK;
+    double *values = malloc(4 * (size_t)count * sizeof *values);
+    if (!values) {
+        cli_error("out of memory for the times of %u frames", count);
+        return WHIT_ERROR_MEMORY;
+    }
+    double *instances = values, *upload = values + count, *render = upload + count,
+           *save = render + count;
+    for (uint32_t i = 0; i < count; ++i) {
+        instances[i] = sequence->each[i].instances_ms;
+        upload[i] = sequence->each[i].upload_ms;
+        render[i] = sequence->each[i].render_ms;
+        save[i] = sequence->each[i].save_ms;
+    }
+    sequence->median = (struct frame_times){.instances_ms = median_of(instances, count),
+                                            .upload_ms = median_of(upload, count),
+                                            .render_ms = median_of(render, count),
+                                            .save_ms = median_of(save, count)};
+    free(values);
+    return WHIT_OK;
+}
+
+void sequence_finish(struct sequence *sequence)
+{
+    free(sequence->each);
+    *sequence = (struct sequence){0};
+}
+
+/* ---- Frames ---- */
+
+static whit_result save_frame(const struct job *job, const struct render_request *request,
+                              whit_renderer *renderer, const whit_stats *stats, uint32_t frame)
+{
+    struct render_request single = *request;
+    char *output = frames_path(request->output, frame);
+    char *ids = request->ids ? frames_path(request->ids, frame) : NULL;
+    whit_result result = WHIT_ERROR_MEMORY;
+    single.output = output;
+    single.ids = ids;
+    if (output && (ids || !request->ids))
+        result = render_save(job, &single, renderer, stats);
+    else
+        cli_error("out of memory");
+    free(output);
+    free(ids);
+    return result;
+}
+
+static whit_result render_frame(struct job *job, const struct render_request *request,
+                                whit_renderer *renderer, uint32_t frame, struct sequence *sequence)
+{
+    whit_stats stats;
+    job->settings.picture.time_s = (double)frame / job->settings.fps;
+    whit_result result = whit_renderer_set_time(renderer, job->settings.picture.time_s);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    if (result != WHIT_OK)
+        return result;
+    double start_ms = whit_clock_ms();
+    whit_renderer_get_stats(renderer, &stats);
+    result = save_frame(job, request, renderer, &stats, frame);
+    if (result != WHIT_OK)
+        return result;
+    double save_ms = whit_clock_ms() - start_ms;
+    ++sequence->written;
+    sequence->save_ms += save_ms;
+    add_stats(&stats, &sequence->stats);
+    if (job->settings.stats == STATS_NONE)
+        return WHIT_OK;
+    whit_accel_info tree;
+    whit_accel_get_info(job->accel, &tree);
+    return keep_times(sequence, &(struct frame_times){.frame = frame,
+                                                      .time_s = job->settings.picture.time_s,
+                                                      .instances_ms = tree.instance_build_ms,
+                                                      .upload_ms = stats.upload_ms,
+                                                      .render_ms = stats.render_ms,
+                                                      .save_ms = save_ms});
+}
+
+whit_result frames_render(struct job *job, const struct render_request *request,
+                          whit_renderer *renderer, struct frames_progress *progress,
+                          struct sequence *sequence)
+{
+    whit_result result = WHIT_OK;
+    *sequence = (struct sequence){0};
+    whit_renderer_get_stats(renderer, &sequence->stats);
+    sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;
+    for (uint32_t i = 0; result == WHIT_OK && i < progress->count; ++i) {
+        progress->done = i;
+        cli_set_written(i, progress->count);
+        result = job_still_wanted();
+        if (result == WHIT_OK)
+            result = render_frame(job, request, renderer, request->frames.first + i, sequence);
+    }
+    cli_set_written(sequence->written, progress->count);
+    return result == WHIT_OK ? find_medians(sequence) : result;
+}

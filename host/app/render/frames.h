@@ -1,0 +1,58 @@
+/* Sequences of frames: `whit render --frames A-B`. */
+#ifndef APP_RENDER_FRAMES_H
+#define APP_RENDER_FRAMES_H
+
+#include "app/job.h"
+
+struct render_request;
+
+/* Frames first to last, both of them. */
+struct frames {
+    bool given;
+    uint32_t first, last;
+};
+
+/* What one frame took. */
+struct frame_times {
+    uint32_t frame;
+    double time_s;
+    double instances_ms; /* transforms, boxes and the tree over instances; flat: the whole tree */
+    double upload_ms, render_ms, save_ms;
+};
+
+/* What a sequence took. `each` is kept for --stats only. */
+struct sequence {
+    struct frame_times *each;
+    struct frame_times median;
+    uint32_t count, capacity;
+    uint32_t written; /* frames */
+    double save_ms;
+    whit_stats stats; /* summed up; upload and compile: before the first frame */
+};
+
+/* setting.read of --frames, into a render_request. */
+bool frames_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES]);
+/* Whether the other options go with --frames. */
+bool frames_check(struct cli_reader *reader, const struct job *job,
+                  const struct render_request *request);
+/* `pattern` with the number in place of its last run of #, zeros in front, at least that many
+   digits. free() it; NULL: out of memory, or no #. */
+char *frames_path(const char *pattern, uint32_t frame);
+
+/* whit_renderer_params.progress of one picture or of many. */
+struct frames_progress {
+    struct cli_progress bar;
+    uint32_t done, count; /* pictures */
+    double budget_ms;     /* of a picture; 0: none. One that will take more is said, once */
+    bool said;
+};
+void frames_progress_update(void *progress, double done);
+
+/* Renders and saves all frames with one renderer. What was written before a failure stays. */
+whit_result frames_render(struct job *job, const struct render_request *request,
+                          whit_renderer *renderer, struct frames_progress *progress,
+                          struct sequence *sequence);
+void sequence_finish(struct sequence *sequence);
+
+#endif

@@ -1,0 +1,28 @@
+/* Pictures of what traversals cost: `whit render --view`, `--counters`. */
+#ifndef APP_RENDER_VIEW_IMAGE_H
+#define APP_RENDER_VIEW_IMAGE_H
+
+#include "app/cli.h"
+
+struct json_t;
+
+/* What a picture says about its numbers. */
+struct view_figures {
+    double mean, max, scale; /* over pixels; scale: of the heat map, used or not */
+};
+
+/* True for files that get colours in place of numbers. */
+bool view_is_png(const char *path);
+
+/* The numbers of the picture just rendered: as a heat map with legend for a .png, as they are for
+   other files. */
+WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings *settings,
+                                  const char *output, struct view_figures *figures,
+                                  whit_image **out);
+
+/* The costs of a picture by kind of ray: a table on standard output, and JSON. Kinds without rays
+   are left out of the table. */
+void costs_print(const whit_stats *stats);
+struct json_t *costs_document(const whit_stats *stats);
+
+#endif

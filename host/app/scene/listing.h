@@ -1,0 +1,16 @@
+/* What `whit scene` lists: as text, as JSON, as triangles. */
+#ifndef APP_SCENE_LISTING_H
+#define APP_SCENE_LISTING_H
+
+#include "app/job.h"
+
+/* Both give the exit code. `all`: every item, not only the first of each kind. */
+int listing_print_text(const struct job *job, const whit_scene_info *info, bool all);
+/* listing_output.c */
+int listing_print_json(const struct job *job, const whit_scene_info *info);
+
+/* triangles.c: all triangles of the scene at the job's time, into the file `path`. Failures were
+   said. */
+WHIT_CHECK whit_result triangles_write(const struct job *job, const char *path);
+
+#endif

@@ -1,0 +1,111 @@
+#include "app/scene/receipt.h"
+
+static void print_head(const struct receipt *receipt)
+{
+    const whit_renderer_params *picture = &receipt->job->settings.picture;
+    whit_device_info device;
+    whit_device_get_info(receipt->job->device, &device);
+    printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->settings.scene), picture->width,
+           picture->height);
+    if (picture->adaptive > 0.0)
+        printf("adaptive samples, ");
+    else
+        printf("%u sample%s a pixel, ", picture->samples, picture->samples == 1 ? "" : "s");
+    printf("depth %u\n", picture->depth);
+    printf("  device    %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
+    printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
+           receipt->kernel.general_instructions, receipt->kernel.bindings,
+           receipt->kernel.general_bindings);
+    printf("  frame     %.2f ms (%.2f to %.2f)\n\n", bench_median(&receipt->frame),
+           bench_quantile(&receipt->frame, 0.25), bench_quantile(&receipt->frame, 0.75));
+}
+
+static void print_price(const struct receipt_row *row)
+{
+    char loss[64] = "";
+    if (!row->priced) {
+        printf("%9s %19s  %-32s", "-", "", row->compiled ? "not to be left out" : "");
+        return;
+    }
+    if (row->compiled && row->pixels)
+        snprintf(loss, sizeof loss, "%llu pixel%s, by up to %.3g", (unsigned long long)row->pixels,
+                 row->pixels == 1 ? "" : "s", row->largest);
+    else if (row->compiled)
+        snprintf(loss, sizeof loss, "nothing in this picture");
+    else if (row->pixels)
+        snprintf(loss, sizeof loss, "NOT THE SAME PICTURE");
+    printf("%+9.2f %+9.2f %+9.2f  %-32s", bench_median(&row->cost),
+           bench_quantile(&row->cost, 0.25), bench_quantile(&row->cost, 0.75), loss);
+}
+
+int receipt_print_text(const struct receipt *receipt)
+{
+    print_head(receipt);
+    printf("  %-19s%-9s%8s %19s  %-32s%s\n", "effect", "compiled", "ms here", "quartiles",
+           "the picture without it loses", "where it comes from");
+    for (uint32_t i = 0; i < receipt->row_count; ++i) {
+        const struct receipt_row *row = &receipt->rows[i];
+        printf("  %-19s%-8s", row->name, row->compiled ? "yes" : "-");
+        print_price(row);
+        puts(cli_shown(row->reason));
+    }
+    puts("\n  ms of one frame, with the effect less without it, measured in turns; of what is not"
+         "\n  compiled: what it would cost if it were on.");
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+static json_t *times_document(const struct bench_times *times)
+{
+    json_t *object = document_object();
+    document_ms(object, "median", bench_median(times));
+    document_ms(object, "low", bench_quantile(times, 0.25));
+    document_ms(object, "high", bench_quantile(times, 0.75));
+    document_count(object, "rounds", times->count);
+    return object;
+}
+
+static json_t *row_document(const struct receipt_row *row)
+{
+    json_t *object = document_object(), *difference = NULL;
+    document_text(object, "name", row->name);
+    document_flag(object, "called", row->called);
+    document_flag(object, "compiled", row->compiled);
+    document_text(object, "reason", row->reason);
+    document_put(object, "cost_ms", row->priced ? times_document(&row->cost) : json_null());
+    if (row->priced) {
+        difference = document_object();
+        document_count(difference, "pixels", row->pixels);
+        document_number(difference, "largest", row->largest);
+    }
+    document_put(object, "difference", difference ? difference : json_null());
+    return object;
+}
+
+int receipt_print_json(const struct receipt *receipt)
+{
+    whit_scene_info scene;
+    whit_device_info info;
+    whit_scene_get_info(receipt->job->scene, &scene);
+    whit_device_get_info(receipt->job->device, &info);
+    json_t *root = document_root(), *device = document_object(), *kernel = document_object();
+    json_t *effects = document_array();
+    document_text(root, "file", receipt->job->settings.scene);
+    document_hash(root, "hash", scene.hash);
+    document_text(device, "name", info.name);
+    document_text(device, "driver", info.driver);
+    document_text(device, "kind", info.kind);
+    document_put(root, "device", device);
+    json_t *picture = document_object();
+    settings_describe(&receipt->job->settings, IN_SCENE, picture);
+    document_put(root, "picture", picture);
+    document_count(kernel, "instructions", receipt->kernel.instructions);
+    document_count(kernel, "general_instructions", receipt->kernel.general_instructions);
+    document_count(kernel, "bindings", receipt->kernel.bindings);
+    document_count(kernel, "general_bindings", receipt->kernel.general_bindings);
+    document_put(root, "kernel", kernel);
+    document_put(root, "frame_ms", times_document(&receipt->frame));
+    for (uint32_t i = 0; i < receipt->row_count; ++i)
+        document_append(effects, row_document(&receipt->rows[i]));
+    document_put(root, "effects", effects);
+    return cli_print_json(root);
+}

@@ -1,0 +1,267 @@
+/* whit view: the options of `whit render`, on a window. */
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "app/view/state_file.h"
+#include "view/view.h"
+
+static const struct setting_value values_remember[] = {{"yes", 1, NULL}, {"no", 0, NULL}, {0}};
+
+static const char *const start_hint = "Drag turns the camera, the wheel comes nearer, H lists all "
+                                      "keys. Drop a scene here to open it.";
+
+enum { REMEMBER_UNSAID = 2 };
+
+/* What the options say; its strings are borrowed. */
+struct view_request {
+    struct job job;
+    struct view_params view;
+    const char *state;
+    double ui_scale;
+    uint32_t remember; /* REMEMBER_UNSAID: as it suits */
+};
+
+static const struct setting options[] = {
+    {"fullscreen", 0, NULL, "the whole screen",
+     SETTING_AT_FLAG(struct view_request, view.fullscreen)},
+    {"no-vsync", 0, NULL, "show pictures as they come, not as the screen does",
+     SETTING_AT_FLAG(struct view_request, view.no_vsync)},
+    {"blit", 0, NULL, "copy pictures to the window, in place of writing them there",
+     SETTING_AT_FLAG(struct view_request, view.blit)},
+    {"frames", 0, "N", "end after N pictures were shown",
+     SETTING_AT_COUNT(struct view_request, view.frames), .min = 1, .max = 1e9},
+    {"record", 0, "FILE", "write down what the user does",
+     SETTING_AT_NAME(struct view_request, view.record)},
+    {"replay", 0, "FILE", "do what FILE says, and end",
+     SETTING_AT_NAME(struct view_request, view.replay)},
+    {"remember", 0, NULL,
+     "cameras of scenes, from one run to the next (yes; no with\n"
+     "--record and --replay)",
+     SETTING_AT_CHOICE(struct view_request, remember), .values = values_remember},
+    {"state", 0, "FILE",
+     "options that Ctrl+S saved, one a line; those beside it\n"
+     "here come after them",
+     SETTING_AT_NAME(struct view_request, state)},
+    {"ui-scale", 0, "X", "of text and panels (the monitor's)",
+     SETTING_AT_NUMBER(struct view_request, ui_scale), .min = 0.25, .max = 8.0},
+    {"spend", 0, "S",
+     "seconds that measuring costs may take, more or less: for\n"
+     "--budget-ms and --max-error (20), for the list of P (12)",
+     SETTING_AT_NUMBER(struct view_request, view.spend_s), .min = 0.1, .max = 1e6},
+    {0},
+};
+
+/* After a signal: the window looks for it four times a second, and keeps the camera. */
+enum { GRACE_MS = 1000 };
+
+/* ---- Files of settings ---- */
+
+static bool read_state(struct settings *settings, const char *path, char *said, size_t said_bytes)
+{
+    struct state_file file;
+    bool read = state_file_open(&file, path, said, said_bytes) &&
+                state_file_read(&file, &command_view, settings, said, said_bytes);
+    free(file.text);
+    return read;
+}
+
+/* view_params.load_state. What files may reach stays as the command line says. */
+static whit_result load_state(void *user, const char *path, struct settings *settings,
+                              char *message, size_t message_bytes)
+{
+    struct settings loaded = settings_usual();
+    (void)user;
+    if (!read_state(&loaded, path, message, message_bytes))
+        return WHIT_ERROR_INPUT;
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (row->trusted)
+            setting_copy(row, settings, &loaded);
+    }
+    memcpy(loaded.scene, settings->scene, sizeof loaded.scene);
+    loaded.reload = settings->reload;
+    loaded.validation = settings->validation;
+    *settings = loaded;
+    return WHIT_OK;
+}
+
+/* view_params.save: the file that `whit render` would have written. */
+static whit_result save_shot(void *user, const struct view_shot *shot, const char *path)
+{
+    struct recipe recipe;
+    (void)user;
+    if (!recipe_init(&recipe, shot->settings, shot->scene, shot->device, shot->stats, path))
+        return WHIT_ERROR_MEMORY;
+    whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
+    recipe_finish(&recipe);
+    return result;
+}
+
+/* ---- Scenes ---- */
+
+enum { SCENES_MAX = 512 };
+
+struct scene_list {
+    char *paths[SCENES_MAX];
+    uint32_t count;
+};
+
+static bool is_scene(const char *name)
+{
+    static const char *const endings[] = {".json", ".obj", ".gltf", ".glb", ".ply", ".stl"};
+    size_t length = strlen(name);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
+        size_t end = strlen(endings[i]);
+        if (length > end && strcmp(name + length - end, endings[i]) == 0)
+            return name[0] != '.';
+    }
+    return false;
+}
+
+static int compare_paths(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Scenes and models in a folder, by name. */
+static void list_folder(struct scene_list *list, const char *folder)
+{
+    DIR *dir = opendir(folder[0] ? folder : ".");
+    struct dirent *entry;
+    while (dir && (entry = readdir(dir)) != NULL && list->count < SCENES_MAX) {
+        size_t bytes = strlen(folder) + strlen(entry->d_name) + 1;
+        char *path = is_scene(entry->d_name) ? malloc(bytes) : NULL;
+        if (!path)
+            continue;
+        snprintf(path, bytes, "%s%s", folder, entry->d_name);
+        list->paths[list->count++] = path;
+    }
+    if (dir)
+        closedir(dir);
+    qsort(list->paths, list->count, sizeof *list->paths, compare_paths);
+}
+
+static void list_beside(struct scene_list *list, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char folder[SETTING_PATH_BYTES];
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
+    list_folder(list, folder);
+}
+
+static void list_finish(struct scene_list *list)
+{
+    for (uint32_t i = 0; i < list->count; ++i)
+        free(list->paths[i]);
+}
+
+/* whit's own scene to begin with: beside the installed program, or where it was built. */
+static const char *find_start(char *path, size_t bytes)
+{
+    char own[SETTING_PATH_BYTES];
+    ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+    char *slash = NULL;
+    if (length > 0) {
+        own[length] = '\0';
+        slash = strrchr(own, '/');
+    }
+    if (slash) {
+        *slash = '\0';
+        snprintf(path, bytes, "%.900s/../share/whit/scenes/default.json", own);
+        if (access(path, R_OK) == 0)
+            return path;
+    }
+    snprintf(path, bytes, "%s/default.json", WHIT_SCENES_DIR);
+    return access(path, R_OK) == 0 ? path : NULL;
+}
+
+/* ---- The command ---- */
+
+static int work(struct job *job, struct view_params *view)
+{
+    char *scene = job->settings.scene;
+    struct scene_list scenes = {0};
+    uint32_t validation = 0;
+    if (!scene[0]) {
+        if (!find_start(scene, sizeof job->settings.scene)) {
+            cli_error("name a scene: whit view SCENE");
+            return EXIT_USAGE;
+        }
+        view->hint = start_hint;
+    }
+    view->settings = job->settings;
+    list_beside(&scenes, scene);
+    view->scenes = (const char *const *)scenes.paths;
+    view->scene_count = scenes.count;
+    view->cancel = &cli_cancel;
+    view->save = save_shot;
+    view->load_state = load_state;
+    cli_keep_what_is_done(GRACE_MS);
+    cli_set_saving();
+    whit_result result = view_run(view, &cli_log, &validation);
+    list_finish(&scenes);
+    if (result == WHIT_OK && cli_cancel)
+        result = WHIT_ERROR_CANCELLED;
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    if (validation > 0)
+        cli_error("the validation layers had %u messages", validation);
+    return validation > 0 ? EXIT_DIFFERS : EXIT_FINE;
+}
+
+/* The file of --state comes first, so that the command line has the last word. */
+static bool read_all(struct view_request *request, struct cli_reader *reader, int argc, char **argv)
+{
+    char said[1024];
+    *request = (struct view_request){.remember = REMEMBER_UNSAID};
+    job_init(&request->job, &command_view);
+    cli_reader_init(reader, &command_view, argc, argv);
+    if (!job_read(&request->job, reader, request, true))
+        return false;
+    const char *state = request->state;
+    if (!state)
+        return true;
+    job_init(&request->job, &command_view);
+    if (!read_state(&request->job.settings, state, said, sizeof said)) {
+        cli_error("%s", said);
+        reader->status = EXIT_USAGE;
+        return false;
+    }
+    request->job.settings.given = 0; /* what it says and the command line says too is no quarrel */
+    cli_reader_init(reader, &command_view, argc, argv);
+    return job_read(&request->job, reader, request, true);
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct view_request request;
+    struct cli_reader reader;
+    (void)command;
+    if (!read_all(&request, &reader, argc, argv))
+        return reader.status;
+    struct view_params *view = &request.view;
+    bool as_it_suits = request.remember == REMEMBER_UNSAID;
+    view->remember = as_it_suits ? !view->record && !view->replay : request.remember == 1;
+    view->ui_scale = (float)request.ui_scale;
+    job_start(&request.job);
+    int status = work(&request.job, view);
+    job_finish(&request.job);
+    return status;
+}
+
+const struct cli_command command_view = {
+    .name = "view",
+    .arguments = "[SCENE] [options]",
+    .summary = "Shows a scene in a window: turn it, switch how it is drawn, see what that costs.",
+    .details =
+        "Defaults are in brackets. H in the window lists its keys. Without a display there is\n"
+        "`whit render`.\n"
+        "A SCENE that cannot be shown is an error at once; one that is dropped later is not.\n"
+        "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device or display,\n"
+        "130 interrupted.\n",
+    .options = options,
+    .settings = IN_VIEW,
+    .run = run,
+};
