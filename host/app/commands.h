@@ -3,8 +3,8 @@
 #define APP_COMMANDS_H
 
 #include "app/document.h"
-#include "app/render/frames.h"
 #include "app/job.h"
+#include "app/render/frames.h"
 #include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,

@@ -275,9 +275,9 @@ void effects_choose(const struct render_params *params, struct scene_effects *ef
 /* Sets the constants that effects switch. */
 void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 
-/* bailout_bound.c: by how much a pixel of the last picture may differ for the rays that --bailout cut; < 0:
-   no bound is known (emissive surfaces as points, highlights of flat emitters, a light on a
-   surface). */
+/* bailout_bound.c: by how much a pixel of the last picture may differ for the rays that --bailout
+   cut; < 0: no bound is known (emissive surfaces as points, highlights of flat emitters, a light on
+   a surface). */
 double bailout_bound(const struct renderer *renderer);
 
 /* variants.c: which constants a scene gets, and the pipelines made with them. */

@@ -2,6 +2,8 @@
 #ifndef TWIN_RAY_H
 #define TWIN_RAY_H
 
+#include <stdbool.h>
+
 #include "abi/bvh.h"
 #include "base/vec.h"
 

@@ -111,8 +111,8 @@ mutation(t_min_of_shadows_in_world_units render_scale RED pictures_do_not_depend
 change(shaders/kernel/shadow.comp [[(TRAVERSE_SHADOW, 0.0,]] [[(TRAVERSE_SHADOW, 1e-3,]])
 
 mutation(contracted_twin peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
-change(host/accel/module.cmake [[LINK whit_base whit_scene PkgConfig::GMP)]]
-  [[LINK whit_base whit_scene PkgConfig::GMP)
+change(host/twin/module.cmake [[LINK whit_accel m)]]
+  [[LINK whit_accel m)
 set_source_files_properties(twin/traverse.c PROPERTIES COMPILE_OPTIONS
   "-ffp-contract=fast;$<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-mfma>")]])
 
@@ -208,7 +208,7 @@ mutation(signs_of_directions_in_kernels render_trace RED box_equals_twin)
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
 mutation(transform_by_a_sum accel_instance RED far_translations_keep_their_precision)
-change(host/accel/accel_inside.h accel_local_ray
+change(host/twin/ray.h accel_local_ray
   [[(\.origin, )(accel_rotate_rows\([^()]*, )[a-z]+\)]] [[\1vec3_sub(\2vec3_load(ray->origin)), \2origin))]])
 
 mutation(transform_by_a_sum_in_kernels render_trace RED instances_equal_twin)
