@@ -5,6 +5,7 @@
 #include "api/handles.h"
 #include "base/array.h"
 #include "hard/hard.h"
+#include "picture/camera.h"
 
 enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
 
@@ -45,8 +46,8 @@ static whit_result prepare(struct view *view)
         log_error(&view->log, "out of memory for %u x %u rays", view->width, view->height);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = render_camera_rays(&view->log, &view->hard.pose, view->params->camera,
-                                            view->width, view->height, view->plain);
+    whit_result result = camera_all_rays(&view->log, &view->hard.pose, view->params->camera,
+                                         view->width, view->height, view->plain);
     for (size_t i = 0; result == WHIT_OK && i < count; ++i)
         view->rays[i] = (struct hard_ray){view->plain[i], HIT_NONE, HIT_NONE};
     return result == WHIT_OK ? hard_topology_init(view->hard.scene, &view->topology) : result;

@@ -5,6 +5,7 @@
 #include "api/handles.h"
 #include "base/array.h"
 #include "hard/hard.h"
+#include "picture/camera.h"
 
 enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };
 
@@ -37,8 +38,8 @@ static whit_result camera_rays(whit_judge *judge, const whit_judge_params *param
     uint32_t width, height;
     grid_of(params, wanted, &width, &height);
     judge->count = (uint64_t)width * height;
-    return render_camera_rays(&judge->log, &judge->hard.pose, params->camera, width, height,
-                              (struct gpu_ray *)judge->plain);
+    return camera_all_rays(&judge->log, &judge->hard.pose, params->camera, width, height,
+                           (struct gpu_ray *)judge->plain);
 }
 
 static whit_result make_rays(whit_judge *judge, const whit_judge_params *params, uint32_t wanted)

@@ -1,11 +1,11 @@
 whit_module(api
   SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c reference_api.c hard_api.c hard_view.c judge_api.c image_api.c file_api.c
-  LINK whit_base whit_image whit_scene whit_load whit_hard whit_device whit_render whit_reference)
+  LINK whit_base whit_image whit_scene whit_load whit_hard whit_picture whit_device whit_render whit_reference)
 target_include_directories(whit_api PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/base>)
 
 # libwhit: the objects of all modules in one archive. Its users link `whit`; its headers are found
 # as <whit/whit.h>, and as "whit.h".
-set(library_modules base image scene load bvh accel twin oracle hard device render reference api kernels)
+set(library_modules base image scene load bvh accel twin oracle hard picture device render reference api kernels)
 list(TRANSFORM library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:whit_\\1>"
   OUTPUT_VARIABLE library_objects)
 add_library(whit STATIC ${library_objects})

@@ -2,7 +2,7 @@
    surfaces of several of them that a ray crosses at one place. */
 #include "reference/inside.h"
 
-#include "render/bodies.h"
+#include "picture/bodies.h"
 
 /* Surfaces touch within roundings of floats: their vertices are floats. */
 #define FLOAT_ROUNDINGS 8.0

@@ -65,8 +65,8 @@ static whit_result create_parts(struct reference *r)
     if (result == WHIT_OK)
         result = accel_pose(r->accel, &r->pose);
     if (result == WHIT_OK)
-        result = render_view(&r->log, r->accel, &r->pose, params->camera, params->width,
-                             params->height, &r->frame, &r->camera);
+        result = media_view(&r->log, r->accel, &r->pose, params->camera, params->width,
+                            params->height, &r->frame, &r->camera);
     if (result == WHIT_OK && !fill_tables(r)) {
         log_error(&r->log, "out of memory for the reference");
         result = WHIT_ERROR_MEMORY;

@@ -3,7 +3,7 @@
    limits is the difference to it.
 
    It shares what the host prepares: the scene and its pose, the trees of accel/ with their walk in
-   double (oracle/conservative.h), the camera and the media around it (render_view), the patterns of
+   double (oracle/conservative.h), the camera and the media around it (media_view), the patterns of
    samples. Nothing that decides a colour is shared with the kernels or with their float twins.
 
    What is other than in the kernels, on purpose:
@@ -26,7 +26,11 @@
 
 #include "accel/accel.h"
 #include "image/image.h"
-#include "render/render.h"
+#include "picture/camera.h"
+#include "picture/environment.h"
+#include "picture/media.h"
+#include "picture/params.h"
+#include "picture/sequence.h"
 
 struct reference_params {
     /* As for a renderer: of the view, samples, depth, bailout, no_shadows, light_samples, schlick,

@@ -351,3 +351,20 @@ whit_result renderer_render(struct renderer *renderer)
     renderer->rendered = result == WHIT_OK;
     return result;
 }
+
+whit_result params_check_loops(const struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    const struct scene *scene = renderer->scene;
+    bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
+    uint64_t rays = shadows ? lights_samples(renderer) : 1;
+    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
+        rays * accel->turns <= ACCEL_ITERATIONS_MAX)
+        return WHIT_OK;
+    log_error(&renderer->log,
+              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
+              "takes %llu rays at once: fewer --light-samples are possible",
+              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
+              (unsigned long long)rays);
+    return WHIT_ERROR_USAGE;
+}

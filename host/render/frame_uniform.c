@@ -45,20 +45,7 @@ whit_result frame_fill(struct renderer *renderer)
     frame->bailout = bailout == 0.0  ? (float)WHIT_BAILOUT_DEFAULT
                      : bailout < 0.0 ? FLT_MIN
                                      : (float)bailout;
-    return media_frame(renderer);
-}
-
-whit_result render_view(const struct log *log, struct accel *accel, const struct scene_pose *pose,
-                        const char *camera, uint32_t width, uint32_t height,
-                        struct gpu_frame *frame, uint32_t *kind)
-{
-    struct renderer view = {.log = *log, .accel = accel, .scene = accel->scene, .pose = *pose};
-    whit_result result = camera_frame(log, pose, camera, width, height, &view.frame, kind);
-    if (result == WHIT_OK)
-        result = media_frame(&view);
-    bodies_finish(&view.bodies);
-    *frame = view.frame;
-    return result;
+    return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 
 whit_result frame_upload(struct renderer *renderer)

@@ -1,8 +1,9 @@
 /* Pictures from the device to the host. */
-#include "render/renderer.h"
-
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "render/renderer.h"
 
 bool readback_is_late(const struct renderer *renderer)
 {
@@ -116,4 +117,26 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
     memcpy(out->words, renderer->ids.words,
            (size_t)out->width * out->height * 2 * sizeof(uint32_t));
     return WHIT_OK;
+}
+
+whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
+                                 struct gpu_ray **rays, uint64_t *count)
+{
+    const struct render_params *params = &renderer->params;
+    uint32_t width = params->width, height = params->height;
+    for (uint32_t by = 2; (uint64_t)width * height > max && width * height > 1; ++by) {
+        width = (params->width + by - 1) / by;
+        height = (params->height + by - 1) / by;
+    }
+    *count = (uint64_t)width * height;
+    *rays = malloc((size_t)*count * sizeof **rays);
+    if (!*rays)
+        return render_no_memory(renderer, "camera rays");
+    whit_result result =
+        camera_all_rays(&renderer->log, &renderer->pose, params->camera, width, height, *rays);
+    if (result != WHIT_OK) {
+        free(*rays);
+        *rays = NULL;
+    }
+    return result;
 }

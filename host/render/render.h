@@ -10,44 +10,9 @@
 #include "accel/accel.h"
 #include "device/device.h"
 #include "image/image.h"
+#include "picture/params.h"
 #include "scene/scene.h"
 #include "twin/counters.h"
-
-enum render_classes { RENDER_CLASSES_AUTO, RENDER_CLASSES_ONE, RENDER_CLASSES_MANY };
-enum render_packets { RENDER_PACKETS_AUTO, RENDER_PACKETS_ON, RENDER_PACKETS_OFF };
-enum render_load_path { RENDER_LOAD_AUTO, RENDER_LOAD_STORAGE, RENDER_LOAD_TEXEL };
-
-struct render_params {
-    uint32_t width, height; /* 0: 640 x 480 */
-    const char *camera;     /* name, index, or ten numbers; NULL: the first */
-    double time_s;
-    uint32_t samples;      /* a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
-    uint32_t first_sample; /* a multiple of `samples`; ids are of sample 0 alone */
-    uint32_t depth;        /* most bounces */
-    double bailout; /* rays that can add less to a pixel are not traced; 0: 1/1024, < 0: none */
-    bool no_shadows;
-    double adaptive;        /* contrast from which a pixel gets 16, then 64 samples; 0: off */
-    uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
-    bool schlick, opaque_shadows;
-    bool all_effects; /* compile everything */
-    /* Bits 1 << SCENE_EFFECT_*: compiled though not called for; left out though called for. */
-    uint64_t effects_added, effects_removed;
-    bool compile_async, many_pictures;
-    uint32_t tile_size; /* 16..512; 0: by measured time */
-    const volatile bool *cancel;
-    void (*progress)(void *user, double done);
-    void *progress_user;
-    double time_limit_s; /* counted from renderer_create on */
-    enum render_load_path load_path;
-    uint32_t order;              /* ORDER_* */
-    uint32_t numerics;           /* NUMERICS_* */
-    enum render_packets packets; /* see whit_packets */
-    enum render_classes classes; /* see whit_classes */
-    uint32_t segments;           /* of lists, 1 or 2; 0: as the device likes */
-    bool count;                  /* count what traversals cost */
-    /* Most rays that renderer_trace will be given, so that buffers need not be larger; 0: any. */
-    uint32_t trace_rays;
-};
 
 /* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made
    of cannot be taken out (spheres, instances, kinds of cameras); a lens can: a pinhole is left. */
@@ -116,12 +81,6 @@ WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct ima
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
 
-/* The first sample's camera ray of every pixel of a picture, row by row; `camera` as in params.
-   Those of the kernels, bit for bit. */
-WHIT_CHECK whit_result render_camera_rays(const struct log *log, const struct scene_pose *pose,
-                                          const char *camera, uint32_t width, uint32_t height,
-                                          struct gpu_ray *rays);
-
 /* The same of the picture that was set last, or of a smaller one of at most `max` pixels whose
    sides are that of it over a whole number. *rays: free(). */
 WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
@@ -174,39 +133,5 @@ WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gp
 double renderer_trace_device_ms(const struct renderer *renderer);
 /* Rays of the last batch that walked in packets. */
 uint64_t renderer_trace_together(const struct renderer *renderer);
-
-/* ---- What pictures share that are made without a device (host/reference) ---- */
-
-/* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
-WHIT_CHECK whit_result params_check(const struct log *log, struct render_params *params);
-
-/* Fills in the camera of *frame, the media that it is in, whether media meet, and `contact`; the
-   rest is 0. `kind` gets CAMERA_*. `accel` has the pose. */
-WHIT_CHECK whit_result render_view(const struct log *log, struct accel *accel,
-                                   const struct scene_pose *pose, const char *camera,
-                                   uint32_t width, uint32_t height, struct gpu_frame *frame,
-                                   uint32_t *kind);
-
-/* ---- sequence.c: where samples are ---- */
-
-enum { SEQUENCE_BITS = 12 }; /* of the index of a sample, below WHIT_SAMPLES_MAX */
-
-/* Point `index` of the sequence, in the unit square, in 2^-32. */
-void sequence_point(uint32_t index, uint32_t xy[2]);
-/* Which point of it a sample of a pixel takes on the lens, and which run of `light_samples` points
-   on flat emitters; in the pixel it takes that of its own index. */
-uint32_t sequence_lens(uint32_t sample);
-uint32_t sequence_light(uint32_t sample);
-
-/* Where a sample is in pixel (x, y), from sample_xy or lens_xy: neighbours have mirror images. */
-void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2]);
-
-/* Sample `index` into chunk->sample_index, sample_xy, lens_xy and light_index. */
-void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk);
-
-/* A map as an octahedral square of *size texels a side, RGBA, free(); NULL for a gradient. False
-   when memory runs out. */
-bool environment_resample(const struct scene_environment *environment, uint32_t *size,
-                          float **texels);
 
 #endif

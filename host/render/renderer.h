@@ -6,7 +6,11 @@
 #include "abi/queues.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
-#include "render/bodies.h"
+#include "picture/bodies.h"
+#include "picture/camera.h"
+#include "picture/environment.h"
+#include "picture/media.h"
+#include "picture/sequence.h"
 #include "render/render.h"
 
 /* The scene in device memory. `none` stands in for what the scene lacks. */
@@ -170,9 +174,8 @@ struct renderer {
 };
 
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
-enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of chunks, pixels */
-enum { READ_SLICE = 4096 };             /* pixels that are read at once */
-enum { ADAPTIVE_MAX = 64 };             /* samples of a pixel of an adaptive picture */
+enum { READ_SLICE = 4096 }; /* pixels that are read at once */
+enum { ADAPTIVE_MAX = 64 }; /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -196,19 +199,6 @@ void target_drop_pixels(struct target *target);
 uint32_t pixels_levels(const struct render_params *params);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
 uint32_t pixels_blocks_across(uint32_t pixels);
-
-/* camera.c: the camera of params->camera in `pose`, and its CAMERA_*. */
-WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
-                                    const char *selector, uint32_t width, uint32_t height,
-                                    struct gpu_frame *frame, uint32_t *kind);
-
-/* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
-   camera of `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
-void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
-                const struct gpu_chunk *sample, struct gpu_ray *ray);
-
-/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1, within 1.2e-7. */
-void sine_cosine_pi(float a, float *sine, float *cosine);
 
 /* costs.c: all of it does nothing without params.count. */
 WHIT_CHECK whit_result costs_create(struct target *target);
@@ -261,14 +251,6 @@ uint32_t lights_kinds(const struct scene_pose *pose);
 uint32_t lights_samples(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
-/* media.c: fills in the media of renderer->frame that the camera is in, and whether media meet, for
-   the pose and the camera that it has. WHIT_ERROR_USAGE for more materials than can be told
-   apart, WHIT_ERROR_STATUS where the camera is in too many media. */
-WHIT_CHECK whit_result media_frame(struct renderer *renderer);
-/* Whether surfaces of two bodies may be at one place, for the frame that was filled in; of a scene
-   that moves, at some time. */
-bool media_touch(const struct renderer *renderer);
-
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */
 void effects_choose(const struct render_params *params, struct scene_effects *effects);

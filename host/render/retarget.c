@@ -50,16 +50,17 @@ whit_result renderer_set_view(struct renderer *renderer, const struct render_par
     renderer->params = wanted;
     renderer->has_secondary = renderer_bounces(renderer);
     uint32_t camera = variant_camera(renderer);
-    bool touched = media_touch(renderer);
+    bool touched = media_touch(renderer->scene, &renderer->bodies, &renderer->frame);
     if (!same)
         result = replace_pixels(renderer);
     if (result == WHIT_OK && moved)
         result = renderer_set_time(renderer, wanted.time_s);
     else if (result == WHIT_OK)
         result = frame_upload(renderer);
-    bool other_kernel = variant_camera(renderer) != camera || (wanted.adaptive > 0.0) != listed ||
-                        renderer->has_secondary != had_secondary ||
-                        media_touch(renderer) != touched;
+    bool other_kernel =
+        variant_camera(renderer) != camera || (wanted.adaptive > 0.0) != listed ||
+        renderer->has_secondary != had_secondary ||
+        media_touch(renderer->scene, &renderer->bodies, &renderer->frame) != touched;
     if (result == WHIT_OK && other_kernel) {
         async_finish(renderer);
         passes_finish(renderer);

@@ -417,3 +417,22 @@ void upload_finish(struct scene_buffers *buffers)
         buffer_destroy(all[i]);
     *buffers = (struct scene_buffers){0};
 }
+
+whit_result upload_environment(struct renderer *renderer)
+{
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    uint32_t size;
+    float *texels;
+    buffers->environment_size = 0;
+    if (!renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
+        return WHIT_OK;
+    if (!environment_resample(&renderer->scene->environment, &size, &texels))
+        return render_no_memory(renderer, "the environment");
+    if (!texels)
+        return WHIT_OK;
+    buffers->environment_size = size;
+    whit_result result = upload_words(renderer, texels, (uint64_t)size * size * 4 * sizeof(float),
+                                      BUFFER_STORAGE, "environment", &buffers->environment);
+    free(texels);
+    return result;
+}

@@ -137,7 +137,8 @@ struct gpu_spec variant_spec(const struct target *target)
                                   : accel_filters_patterned(renderer->accel) ? FILTERS_PATTERNED
                                   : spec.SPEC_ABSORPTION                     ? FILTERS_ABSORB
                                                                              : FILTERS_PLAIN;
-    if (!renderer->params.all_effects && spec.SPEC_MEDIA && !media_touch(renderer))
+    if (!renderer->params.all_effects && spec.SPEC_MEDIA &&
+        !media_touch(renderer->scene, &renderer->bodies, &renderer->frame))
         spec.SPEC_MEDIA = MEDIA_ALONE;
     spec.SPEC_PRIORITIES = renderer->params.all_effects || priorities_differ(renderer->scene);
     narrow_textures(renderer, SCENE_MATERIALS_ALL, &spec);

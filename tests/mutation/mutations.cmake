@@ -378,10 +378,10 @@ mutation(points_unturned_in_kernels device_sequence RED points_are_those_of_the_
 change(shaders/lib/sequence.glsl [[0x55555541u]] [[1u]])
 
 mutation(points_at_corners render_sequence RED points_lean_to_no_side)
-change(host/render/sequence.c [[0x55555541u : 1u]] [[0u : 0u]])
+change(host/picture/sequence.c [[0x55555541u : 1u]] [[0u : 0u]])
 
 mutation(lens_as_pixel render_sequence RED squares_meet_once)
-change(host/render/sequence.c sequence_lens [[reorder\([a-z]+, ([a-z]+)\)]] [[0 * columns[0] + \1]])
+change(host/picture/sequence.c sequence_lens [[reorder\([a-z]+, ([a-z]+)\)]] [[0 * columns[0] + \1]])
 
 mutation(neighbours_alike_in_kernels reference_effects RED every_effect_agrees_with_the_device)
 change(shaders/bind/camera.glsl [[pixel.x ^ pixel.y, pixel.x]] [[0u, pixel.x]])

@@ -1,6 +1,6 @@
 /* shaders/lib/sequence.glsl as the device computes it: host/render/sequence.c, bit for bit. */
 #include "device_fixture.h"
-#include "render/render.h"
+#include "picture/sequence.h"
 
 #include "device_sequence.h"
 

@@ -398,7 +398,7 @@ static void ray_trees_add_up_to_pixels(void **state)
     close_reference(&d);
 }
 
-/* First rays are those of kernels (render_camera_rays has their bits), but for the roundings of
+/* First rays are those of kernels (camera_all_rays has their bits), but for the roundings of
  * floats. */
 static void cameras_are_those_of_kernels(void **state)
 {
@@ -422,7 +422,7 @@ static void cameras_are_those_of_kernels(void **state)
         struct scene_pose pose;
         uint32_t kind;
         assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-        assert_int_equal(render_view(&fixture_log, d.accel, &pose, NULL, 13, 9, &frame, &kind),
+        assert_int_equal(media_view(&fixture_log, d.accel, &pose, NULL, 13, 9, &frame, &kind),
                          WHIT_OK);
         for (uint32_t k = 0; k < 13 * 9 * 4; ++k) {
             struct gpu_chunk chunk = {0};

@@ -12,7 +12,7 @@
 #include "../cases.h"
 #include "../random.h"
 #include "../scenes.h"
-#include "render/bodies.h"
+#include "picture/bodies.h"
 
 static struct scene_material glass(const char *name)
 {

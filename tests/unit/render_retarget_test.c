@@ -89,12 +89,12 @@ static void media_touch_for_cameras_far_away(void **state)
     struct render_params far_away = steps[0];
     far_away.camera = "0.6,2.35,900,0.42,1.62,0,0,1,0,0.3";
     struct fixture f = fixture_open(load("whitted"), NULL, &steps[0]);
-    assert_false(media_touch(f.renderer));
+    assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     assert_int_equal(renderer_set_view(f.renderer, &far_away), WHIT_OK);
-    assert_true(media_touch(f.renderer));
+    assert_true(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     check_same(&f, &far_away);
     assert_int_equal(renderer_set_view(f.renderer, &steps[0]), WHIT_OK);
-    assert_false(media_touch(f.renderer));
+    assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     check_same(&f, &steps[0]);
     fixture_close(&f);
 }

@@ -2,12 +2,13 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
 #include <cmocka.h>
 
-#include "render/render.h"
+#include "picture/sequence.h"
 
 enum { LEVELS = 6, POINTS = 1 << (2 * LEVELS) };
 

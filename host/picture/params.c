@@ -1,5 +1,4 @@
-/* What a renderer is asked for: defaults, and what is out of range. */
-#include "render/renderer.h"
+#include "picture/params.h"
 
 enum { DEPTH_LARGEST = 255 }; /* bounces of a ray have 8 bits */
 enum { LIGHT_SAMPLES_MAX = 64 };
@@ -60,21 +59,4 @@ whit_result params_check(const struct log *log, struct render_params *params)
         return WHIT_ERROR_USAGE;
     }
     return WHIT_OK;
-}
-
-whit_result params_check_loops(const struct renderer *renderer)
-{
-    const struct accel *accel = renderer->accel;
-    const struct scene *scene = renderer->scene;
-    bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
-    uint64_t rays = shadows ? lights_samples(renderer) : 1;
-    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
-        rays * accel->turns <= ACCEL_ITERATIONS_MAX)
-        return WHIT_OK;
-    log_error(&renderer->log,
-              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
-              "takes %llu rays at once: fewer --light-samples are possible",
-              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
-              (unsigned long long)rays);
-    return WHIT_ERROR_USAGE;
 }

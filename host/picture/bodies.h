@@ -1,6 +1,6 @@
 /* Bodies of media: what is of one medium, in one instance; each sphere is one of its own. */
-#ifndef RENDER_BODIES_H
-#define RENDER_BODIES_H
+#ifndef PICTURE_BODIES_H
+#define PICTURE_BODIES_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 
 #include "base/array.h"
-#include "render/renderer.h"
+#include "picture/camera.h"
+#include "picture/media.h"
 #include "twin/traverse.h"
 
 enum { MATERIALS_MAX = 65534, DIRECTIONS = 3, HITS_MAX = 4096 };
@@ -24,11 +25,9 @@ static bool any_medium(const struct scene *scene)
    crossing_contact of shaders/bind/crossing.glsl. Rays start in the scene or at the camera and end
    on a body; the two edges of a triangle are no longer than its body, those of a sphere's
    coordinates together three times pi of its radius. */
-static double crossing_reach(const struct renderer *renderer)
+static double crossing_reach(const struct scene *scene, const struct scene_pose *pose,
+                             const struct bodies *bodies, const struct gpu_frame *frame)
 {
-    const struct gpu_frame *frame = &renderer->frame;
-    const struct scene_pose *pose = &renderer->pose;
-    const struct bodies *bodies = &renderer->bodies;
     const double rounding = 8.0 * 0x1p-24 / (1.0 - 8.0 * 0x1p-24), pi = 3.14159265358979;
     double origin = 0.0, place = 0.0, edges = 0.0, way2 = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -47,13 +46,14 @@ static double crossing_reach(const struct renderer *renderer)
         way2 += way * way;
     }
     double size = origin + place + edges + sqrt(way2);
-    return 1.01 * (1024.0 * rounding * size + 16.0 * (double)renderer->scene->contact);
+    return 1.01 * (1024.0 * rounding * size + 16.0 * (double)scene->contact);
 }
 
-bool media_touch(const struct renderer *renderer)
+bool media_touch(const struct scene *scene, const struct bodies *bodies,
+                 const struct gpu_frame *frame)
 {
-    bool moves = renderer->scene->channel_count > 0;
-    return moves ? renderer->bodies.count > 1 : renderer->frame.nested != 0;
+    bool moves = scene->channel_count > 0;
+    return moves ? bodies->count > 1 : frame->nested != 0;
 }
 
 /* ---- What is around the camera ---- */
@@ -81,13 +81,13 @@ static struct around *find_around(struct surroundings *s, uint32_t instance, uin
 }
 
 /* All bodies that a ray from `eye` crosses, until it is out of the scene. */
-static bool look_around(const struct renderer *renderer, const float eye[3], int direction,
+static bool look_around(const struct accel *accel, const float eye[3], int direction,
                         struct surroundings *s)
 {
     /* Along no axis and no diagonal, where models have edges. */
     static const float directions[DIRECTIONS][3] = {
         {0.5377f, 0.8339f, 0.1249f}, {-0.7647f, 0.3189f, -0.5601f}, {0.2319f, -0.6343f, 0.7375f}};
-    const struct scene *scene = renderer->scene;
+    const struct scene *scene = accel->scene;
     struct gpu_ray ray = {.t_min = 0.0f, .t_max = INFINITY};
     for (int k = 0; k < 3; ++k) {
         ray.origin[k] = eye[k];
@@ -99,7 +99,7 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
     uint32_t last_instance = SCENE_NONE, last_material = SCENE_NONE;
     float last_t = 0.0f;
     bool last_left = false;
-    traverse_next_float(renderer->accel, &ray, NULL, &hit, &status);
+    traverse_next_float(accel, &ray, NULL, &hit, &status);
     for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MAX; ++hits) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[hit.instance].mesh];
         uint32_t material = mesh->materials[hit.primitive];
@@ -119,7 +119,7 @@ static bool look_around(const struct renderer *renderer, const float eye[3], int
             last_t = hit.t;
             last_left = left;
         }
-        traverse_next_float(renderer->accel, &ray, &hit, &hit, &status);
+        traverse_next_float(accel, &ray, &hit, &hit, &status);
     }
     return true;
 }
@@ -158,21 +158,22 @@ static bool add_medium(const struct scene *scene, uint32_t material, uint32_t *l
     return true;
 }
 
-static whit_result fill_eye(struct renderer *renderer, struct surroundings *s)
+static whit_result fill_eye(const struct log *log, const struct scene *scene,
+                            struct surroundings *s, struct gpu_frame *frame)
 {
     uint32_t list[MEDIA_MAX] = {0}, count = 0;
     if (s->count > 1)
         qsort(s->all, s->count, sizeof *s->all, by_exit);
     for (uint32_t i = 0; i < s->count; ++i) {
         for (int32_t n = times_inside(&s->all[i]); n > 0; --n) {
-            if (!add_medium(renderer->scene, s->all[i].material, list, &count)) {
-                log_error(&renderer->log, "the camera is in more than %u media at once", MEDIA_MAX);
+            if (!add_medium(scene, s->all[i].material, list, &count)) {
+                log_error(log, "the camera is in more than %u media at once", MEDIA_MAX);
                 return WHIT_ERROR_STATUS;
             }
         }
     }
-    uint32_t *words[] = {&renderer->frame.eye_media0, &renderer->frame.eye_media1,
-                         &renderer->frame.eye_media2, &renderer->frame.eye_media3};
+    uint32_t *words[] = {&frame->eye_media0, &frame->eye_media1, &frame->eye_media2,
+                         &frame->eye_media3};
     for (uint32_t i = 0; i < count; ++i)
         *words[i / 2] |= (list[i] + 1) << 16 * (i % 2);
     return WHIT_OK;
@@ -192,30 +193,44 @@ static bool in_a_box(const struct bodies *bodies, const float eye[3], double mar
     return false;
 }
 
-whit_result media_frame(struct renderer *renderer)
+whit_result media_frame(const struct log *log, const struct accel *accel,
+                        const struct scene_pose *pose, struct bodies *bodies,
+                        struct gpu_frame *frame)
 {
-    struct gpu_frame *frame = &renderer->frame;
-    frame->contact = renderer->scene->contact;
+    const struct scene *scene = accel->scene;
+    frame->contact = scene->contact;
     frame->nested = 0;
     frame->eye_media0 = frame->eye_media1 = frame->eye_media2 = frame->eye_media3 = 0;
-    if (!any_medium(renderer->scene))
+    if (!any_medium(scene))
         return WHIT_OK;
-    if (renderer->scene->material_count > MATERIALS_MAX) {
-        log_error(&renderer->log, "%s: %u materials; with refraction at most %d are told apart",
-                  renderer->scene->name, renderer->scene->material_count, MATERIALS_MAX);
+    if (scene->material_count > MATERIALS_MAX) {
+        log_error(log, "%s: %u materials; with refraction at most %d are told apart", scene->name,
+                  scene->material_count, MATERIALS_MAX);
         return WHIT_ERROR_USAGE;
     }
-    struct bodies *bodies = &renderer->bodies;
     struct surroundings around = {0};
-    bool fine = bodies_list(renderer->scene, &renderer->pose, bodies);
-    frame->nested = fine && bodies_come_within(renderer->scene, &renderer->pose, bodies,
-                                               crossing_reach(renderer));
+    bool fine = bodies_list(scene, pose, bodies);
+    frame->nested =
+        fine && bodies_come_within(scene, pose, bodies, crossing_reach(scene, pose, bodies, frame));
     bool inside = fine && in_a_box(bodies, frame->eye, (double)frame->contact);
     for (int i = 0; fine && inside && i < DIRECTIONS; ++i)
-        fine = look_around(renderer, frame->eye, i, &around);
-    whit_result result = fine ? fill_eye(renderer, &around) : WHIT_ERROR_MEMORY;
+        fine = look_around(accel, frame->eye, i, &around);
+    whit_result result = fine ? fill_eye(log, scene, &around, frame) : WHIT_ERROR_MEMORY;
     if (!fine)
-        log_error(&renderer->log, "out of memory for the media of the scene");
+        log_error(log, "out of memory for the media of the scene");
     free(around.all);
+    return result;
+}
+
+whit_result media_view(const struct log *log, struct accel *accel, const struct scene_pose *pose,
+                       const char *camera, uint32_t width, uint32_t height, struct gpu_frame *frame,
+                       uint32_t *kind)
+{
+    struct bodies bodies = {0};
+    *frame = (struct gpu_frame){0};
+    whit_result result = camera_frame(log, pose, camera, width, height, frame, kind);
+    if (result == WHIT_OK)
+        result = media_frame(log, accel, pose, &bodies, frame);
+    bodies_finish(&bodies);
     return result;
 }

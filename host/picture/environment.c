@@ -5,7 +5,7 @@
 
 #include "base/array.h"
 #include "base/threads.h"
-#include "render/renderer.h"
+#include "picture/environment.h"
 
 static const double PI = 3.14159265358979323846;
 enum { ENVIRONMENT_SIDE_MAX = 2048 };
@@ -84,23 +84,4 @@ bool environment_resample(const struct scene_environment *environment, uint32_t 
     *size = job.size;
     *texels = job.to;
     return true;
-}
-
-whit_result upload_environment(struct renderer *renderer)
-{
-    struct scene_buffers *buffers = &renderer->scene_buffers;
-    uint32_t size;
-    float *texels;
-    buffers->environment_size = 0;
-    if (!renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
-        return WHIT_OK;
-    if (!environment_resample(&renderer->scene->environment, &size, &texels))
-        return render_no_memory(renderer, "the environment");
-    if (!texels)
-        return WHIT_OK;
-    buffers->environment_size = size;
-    whit_result result = upload_words(renderer, texels, (uint64_t)size * size * 4 * sizeof(float),
-                                      BUFFER_STORAGE, "environment", &buffers->environment);
-    free(texels);
-    return result;
 }

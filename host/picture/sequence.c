@@ -2,7 +2,7 @@
    the middle of the square. Of the first 4^k one is in each of 4^k columns, in each of as many
    rows, and in each box of 2^i columns and 2^(2k - i) rows, so in each square of a grid of 2^k x
    2^k; so are those of every later block of 4^k whose first index is a multiple of that. */
-#include "render/render.h"
+#include "picture/sequence.h"
 
 static uint32_t reverse_bits(uint32_t value)
 {

@@ -1,11 +1,13 @@
 /* From a camera of the scene, or ten numbers, to the vectors that camera rays are made of. */
+#include "picture/camera.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vec.h"
-#include "render/renderer.h"
+#include "picture/sequence.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -315,9 +317,9 @@ void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32
     ray->t_max = INFINITY;
 }
 
-whit_result render_camera_rays(const struct log *log, const struct scene_pose *pose,
-                               const char *camera, uint32_t width, uint32_t height,
-                               struct gpu_ray *rays)
+whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
+                            const char *camera, uint32_t width, uint32_t height,
+                            struct gpu_ray *rays)
 {
     struct gpu_frame frame = {0};
     struct gpu_chunk sample = {0};
@@ -330,26 +332,4 @@ whit_result render_camera_rays(const struct log *log, const struct scene_pose *p
         for (uint32_t x = 0; x < width; ++x)
             camera_ray(&frame, kind, x, y, &sample, rays++);
     return WHIT_OK;
-}
-
-whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
-                                 struct gpu_ray **rays, uint64_t *count)
-{
-    const struct render_params *params = &renderer->params;
-    uint32_t width = params->width, height = params->height;
-    for (uint32_t by = 2; (uint64_t)width * height > max && width * height > 1; ++by) {
-        width = (params->width + by - 1) / by;
-        height = (params->height + by - 1) / by;
-    }
-    *count = (uint64_t)width * height;
-    *rays = malloc((size_t)*count * sizeof **rays);
-    if (!*rays)
-        return render_no_memory(renderer, "camera rays");
-    whit_result result =
-        render_camera_rays(&renderer->log, &renderer->pose, params->camera, width, height, *rays);
-    if (result != WHIT_OK) {
-        free(*rays);
-        *rays = NULL;
-    }
-    return result;
 }

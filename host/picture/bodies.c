@@ -1,6 +1,6 @@
 /* Bodies of media, and how near their surfaces come: where those of two bodies are farther apart
    than what kernels take for one place (shaders/bind/crossing.glsl), none has to look for them. */
-#include "render/bodies.h"
+#include "picture/bodies.h"
 
 #include <float.h>
 #include <math.h>

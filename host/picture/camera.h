@@ -1,0 +1,36 @@
+/* Cameras, and the rays they send: the twin of bind/camera.glsl. */
+#ifndef PICTURE_CAMERA_H
+#define PICTURE_CAMERA_H
+
+#include "abi/bvh.h"
+#include "abi/shade.h"
+#include "abi/spec.h"
+#include "base/log.h"
+#include "scene/scene.h"
+
+/* The camera of params->camera in `pose`, and its CAMERA_*. */
+WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
+                                    const char *selector, uint32_t width, uint32_t height,
+                                    struct gpu_frame *frame, uint32_t *kind);
+
+/* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
+   camera of `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
+void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
+                const struct gpu_chunk *sample, struct gpu_ray *ray);
+
+/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1, within 1.2e-7. */
+void sine_cosine_pi(float a, float *sine, float *cosine);
+
+/* Where a sample is in pixel (x, y), from sample_xy or lens_xy: neighbours have mirror images. */
+void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2]);
+
+/* Sample `index` into chunk->sample_index, sample_xy, lens_xy and light_index. */
+void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk);
+
+/* The first sample's camera ray of every pixel of a picture, row by row; `camera` as in params.
+   Those of the kernels, bit for bit. */
+WHIT_CHECK whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
+                                       const char *camera, uint32_t width, uint32_t height,
+                                       struct gpu_ray *rays);
+
+#endif
