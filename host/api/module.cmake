@@ -10,12 +10,21 @@ list(TRANSFORM library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:whit_\\1>"
   OUTPUT_VARIABLE library_objects)
 add_library(whit STATIC ${library_objects})
 add_library(whit::whit ALIAS whit)
-set_target_properties(whit PROPERTIES LINKER_LANGUAGE C)
-target_link_libraries(whit
-  PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
-  PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP
-    PkgConfig::SECCOMP Vulkan::Vulkan
-    Threads::Threads m)
+# The same as a shared library, which exports whit_* and nothing else. Its name changes with the minor
+# version, as names in whit.h may.
+add_library(whit_shared SHARED ${library_objects})
+set(version_script ${CMAKE_CURRENT_SOURCE_DIR}/api/whit.map)
+set_target_properties(whit_shared PROPERTIES OUTPUT_NAME whit VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LINK_DEPENDS ${version_script})
+target_link_options(whit_shared PRIVATE -Wl,--version-script=${version_script})
+foreach(library whit whit_shared)
+  set_target_properties(${library} PROPERTIES LINKER_LANGUAGE C)
+  target_link_libraries(${library}
+    PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
+    PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP
+      PkgConfig::SECCOMP Vulkan::Vulkan
+      Threads::Threads m)
+endforeach()
 
 set(public_headers api/whit.h api/whit_accel.h api/whit_compare.h api/whit_device.h api/whit_file.h
   api/whit_hard.h api/whit_image.h api/whit_probe.h api/whit_reference.h api/whit_renderer.h
@@ -24,11 +33,13 @@ foreach(header ${public_headers})
   get_filename_component(name ${header} NAME)
   configure_file(${header} ${PROJECT_BINARY_DIR}/include/whit/${name} COPYONLY)
 endforeach()
-target_include_directories(whit PUBLIC
-  $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-  $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include/whit>
-  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/whit>)
+foreach(library whit whit_shared)
+  target_include_directories(${library} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include/whit>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/whit>)
+endforeach()
 
 # find_package(whit)
 include(CMakePackageConfigHelpers)
@@ -37,7 +48,14 @@ configure_package_config_file(api/cmake/whitConfig.cmake.in
   ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
-install(TARGETS whit EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# pkg-config
+configure_file(api/cmake/whit.pc.in ${PROJECT_BINARY_DIR}/cmake/whit.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/cmake/whit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
+  ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT whitTargets NAMESPACE whit:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake DESTINATION ${package_dir})
