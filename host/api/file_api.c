@@ -112,3 +112,8 @@ void whit_cache_get_info(whit_cache_info *info)
     memcpy(info->folder, inner.folder, sizeof info->folder);
     memcpy(info->why_not, inner.why_not, sizeof info->why_not);
 }
+
+void whit_memory_destroy(void *memory)
+{
+    free(memory);
+}

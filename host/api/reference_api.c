@@ -85,8 +85,3 @@ whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t 
     *rays = (whit_tree_ray *)(void *)found;
     return result;
 }
-
-void whit_tree_rays_destroy(whit_tree_ray *rays)
-{
-    free(rays);
-}

@@ -75,8 +75,9 @@ typedef struct whit_box {
     bool leaf;
 } whit_box;
 /* The nodes at `level`, and the leaves above it, of the tree over instances, or of the mesh trees
-   of every instance, at `time_s`, which the accel must stand at. At most `most` of them; *boxes is
-   one block, free() it. *total: how many there are. */
+   of every instance, at `time_s`, which the accel must stand at. At most `max` of them; *boxes is
+   one block for
+   whit_memory_destroy. *total: how many there are. */
 WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
                                         uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);

@@ -19,7 +19,7 @@ typedef struct whit_device_info {
     char why_not[128]; /* when not usable */
 } whit_device_info;
 
-/* *infos is one block; free() it. */
+/* *infos is one block for whit_memory_destroy. */
 WHIT_CHECK whit_result whit_device_list(const whit_log *log, whit_device_info **infos,
                                         uint32_t *count);
 

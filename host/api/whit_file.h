@@ -32,13 +32,14 @@ double whit_clock_cpu_ms(void); /* used by all threads of this process */
    WHIT_NO_CACHE is set. What is kept has a checksum; files used longest ago are removed beyond
    512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines there. */
 
-/* What was kept under `name`, with one zero byte behind its size: free() it. False: nothing, or
+/* What was kept under `name`, with one zero byte behind its size, for
+   whit_memory_destroy. False: nothing, or
    what was there was damaged, and is thrown away. */
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
 /* `name`: of what and in which version it is; no slash, at most 200 bytes. What cannot be kept is
    not. */
 void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log);
-/* The folder, made when it is not there: free() it. NULL: nothing is kept. */
+/* The folder, made when it is not there, for whit_memory_destroy. NULL: nothing is kept. */
 char *whit_cache_folder(void);
 typedef struct whit_cache_info {
     char folder[4096]; /* "": there is no such place */

@@ -59,7 +59,7 @@ double whit_image_heat_scale(const whit_image *values);
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
 
-/* The bytes of a PNG, as whit_image_save writes it; free() them. */
+/* The bytes of a PNG, as whit_image_save writes it, for whit_memory_destroy. */
 WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
                                              uint32_t text_count, const whit_log *log,
                                              uint8_t **data, size_t *size_bytes);

@@ -63,11 +63,10 @@ typedef struct whit_tree_ray {
 } whit_tree_ray;
 
 /* The ray tree of one sample (0: the first) of a pixel from the upper left; the sum of `radiance`
-   is the sample's colour. whit_tree_rays_destroy() ends it. WHIT_ERROR_USAGE outside of the
+   is the sample's colour. It is for whit_memory_destroy. WHIT_ERROR_USAGE outside of the
    picture. */
 WHIT_CHECK whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t y,
                                            uint32_t sample, whit_tree_ray **rays, uint32_t *count);
-void whit_tree_rays_destroy(whit_tree_ray *rays);
 
 #ifdef __cplusplus
 }

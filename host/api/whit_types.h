@@ -12,6 +12,11 @@
 extern "C" {
 #endif
 
+/* What libwhit hands out belongs to the caller until a function of that name releases it: a handle
+   by its own (whit_scene_destroy), a block of infos, boxes, rays or bytes by whit_memory_destroy.
+   All take NULL. */
+void whit_memory_destroy(void *memory);
+
 #define WHIT_NONE UINT32_MAX /* no primitive, no instance: a miss */
 
 typedef struct whit_scene whit_scene;       /* geometry, materials, lights, cameras */

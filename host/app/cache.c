@@ -152,7 +152,7 @@ void cache_prepare(bool off)
         choose_folder(folder);
     else
         (void)setenv(mesa_off, "true", 0);
-    free(folder);
+    whit_memory_destroy(folder);
 }
 
 /* ---- For `whit devices` ---- */

@@ -284,7 +284,7 @@ static void put_image(struct page *page, const whit_image *image, const char *al
     append_markup(page, "\" src=\"data:image/png;base64,");
     page_base64(page, data, size_bytes);
     append_markup(page, "\"/>");
-    free(data);
+    whit_memory_destroy(data);
 }
 
 void page_picture(struct page *page, const whit_image *image, const char *alternative,

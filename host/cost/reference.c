@@ -68,7 +68,7 @@ static whit_image *read_kept(const struct measure *measure, const whit_renderer_
         image = NULL;
     if (image)
         whit_image_display_as(image, params);
-    free(data);
+    whit_memory_destroy(data);
     return image;
 }
 

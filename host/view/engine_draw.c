@@ -204,7 +204,7 @@ void engine_frame_finish(struct engine_frame *frame)
     whit_image_destroy(frame->color);
     whit_image_destroy(frame->ids);
     free(frame->rgba);
-    free(frame->boxes);
+    whit_memory_destroy(frame->boxes);
     scene_ref_drop(frame->scene);
     *frame = (struct engine_frame){0};
 }

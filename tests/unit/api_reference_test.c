@@ -66,7 +66,7 @@ static void draws_pictures_and_ray_trees(void **state)
         assert_true(fabs(sum - (double)whit_image_floats(color)[4 * i + 1]) <= 1e-6 * sum);
         assert_int_equal(rays[0].instance, whit_image_words(ids)[2 * i]);
         assert_int_equal(rays[0].primitive, whit_image_words(ids)[2 * i + 1]);
-        whit_tree_rays_destroy(rays);
+        whit_memory_destroy(rays);
     }
     whit_image_destroy(color);
     whit_image_destroy(ids);

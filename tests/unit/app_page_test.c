@@ -368,7 +368,7 @@ static void pictures_are_whole(void **state)
         assert_int_equal(bits >> held & 255, png[at++]);
     }
     assert_int_equal(at, size_bytes);
-    free(png);
+    whit_memory_destroy(png);
     page_finish(&page);
     whit_image_destroy(image);
 }

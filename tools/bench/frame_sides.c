@@ -240,7 +240,7 @@ static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struc
         bool is_shadow = rays[i].kind == WHIT_TREE_SHADOW;
         room = add_ray(is_shadow ? shadow : closest, is_shadow ? rays[i].light : 0, &ray);
     }
-    whit_tree_rays_destroy(rays);
+    whit_memory_destroy(rays);
     if (!room)
         cli_error("out of memory");
     return !room ? WHIT_ERROR_MEMORY : cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;

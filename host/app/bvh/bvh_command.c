@@ -117,7 +117,7 @@ static bool any_device(void)
         return false;
     for (uint32_t i = 0; i < count; ++i)
         usable |= infos[i].usable;
-    free(infos);
+    whit_memory_destroy(infos);
     return usable;
 }
 

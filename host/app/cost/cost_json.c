@@ -370,6 +370,6 @@ bool cost_load_kept(const char *name, struct cost_report *report)
     size_t bytes;
     bool known = whit_cache_read(name, &cli_log, &data, &bytes) &&
                  read_known(json_loadb((const char *)data, bytes, 0, NULL), report, NULL);
-    free(data);
+    whit_memory_destroy(data);
     return known && report->complete;
 }

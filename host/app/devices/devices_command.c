@@ -106,7 +106,7 @@ static int list(bool json)
         cli_error("none of these devices is usable");
     if (status == EXIT_FINE && !any_usable(infos, count))
         status = EXIT_DEVICE;
-    free(infos);
+    whit_memory_destroy(infos);
     return status;
 }
 
