@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/commands.h"
+#include "cost/sample.h"
 
 enum { FRAME_MAX = 1000000000 };
 
@@ -196,16 +197,10 @@ static whit_result keep_times(struct sequence *sequence, const struct frame_time
     return WHIT_OK;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 static double median_of(double *values, uint32_t count)
 {
-    qsort(values, count, sizeof *values, by_value);
-    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+    sample_sort(values, count);
+    return sample_quantile(values, count, 0.5);
 }
 
 static whit_result find_medians(struct sequence *sequence)
