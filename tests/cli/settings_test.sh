@@ -20,42 +20,54 @@ has_json() {
 }
 command_of() { grep -a -o 'whit render [^"]* -o whit\.png' "$1"; }
 
+# All rows together, but for those of costs, which are pictures of their own.
 count=0
-while IFS=$TAB read -r name value commands change _ _ json held; do
-    # What is of a run, not of its pictures, is never written; the device is that of the test.
+: >all.view
+for pass in colours costs; do
+    render= probe= prices=
+    while IFS=$TAB read -r name value commands change _ _ _ held; do
+        # What is of a run, not of its pictures, is never written; the device is that of the test.
+        if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
+        of=$(expr "$name" : view >/dev/null && echo costs || echo colours)
+        [ $of = $pass ] || [ "$name" = size ] || continue
+        count=$((count + 1))
+        if has $VIEW && [ "$held" -eq 0 ] && [ $of = $pass ]; then echo "--$name $value"; fi >>all.view
+        has $RENDER && render="$render --$name=$value"
+        has $PROBE && probe="$probe --$name=$value"
+        has $PRICES && prices="$prices --$name=$value"
+    done <rows
+    # shellcheck disable=SC2086
+    {
+        expect 0 "render$render" render "$CUBE" -o $pass.png $render --quiet
+        [ $pass = costs ] || expect 0 "probe$probe" probe "$CUBE" --pixel 1,1 $probe --json probe.json --quiet
+        [ $pass = costs ] || expect 0 "cost$prices" cost "$CUBE" $prices --spend 0.3 --rays 0 \
+            --knobs traversal --json cost.json --quiet
+    }
+done
+check "there are rows ($count)" test $count -ge 20
+jq .picture probe.json >probe.options
+jq -r .command cost.json >cost.command
+while IFS=$TAB read -r name value commands change _ _ json _; do
     if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
-    count=$((count + 1))
     words="--$name $value"
-    small=$(test "$name" = size || echo --size=24x16)
-    costs=$(expr "$name" : view- >/dev/null && echo --view=visits)
-    if has $VIEW && [ "$held" -eq 0 ]; then echo "$words"; fi >>all.view
-    if has $RENDER; then
-        # shellcheck disable=SC2086
-        expect 0 "render $words" render "$CUBE" -o p.png $small $costs "--$name=$value" --quiet
-        case $change in
-        "$IN_COST") check "and no word of it" sh -c '! echo "$1" | grep -q -- "--$2"' - "$(command_of p.png)" "$name" ;;
-        *) check "and its recipe says so" sh -c 'echo "$1 " | grep -qF -- "$2 "' - "$(command_of p.png)" "$words" ;;
-        esac
-        case $change$name in
-        "$IN_COST"* | *allow-path) ;;
-        *view*) check "and its JSON" grep -aq "\"whit:view\|\"$value\|:$value" p.png ;;
-        *)
-            grep -a -o '{"width":[^}]*}' p.png >options
-            check "and its JSON" has_json options ;;
-        esac
+    pass=$(expr "$name" : view >/dev/null && echo costs || echo colours)
+    command_of $pass.png >command
+    grep -a -o '{"width":[^}]*}' $pass.png >options
+    if has $RENDER && [ "$change" -eq $IN_COST ]; then
+        check "no recipe says --$name, which changes no pixel" sh -c '! grep -q -- "--$1" command' - "$name"
+    elif has $RENDER; then
+        check "the recipe says $words" sh -c 'grep -qF -- "$1 " command' - "$words"
     fi
-    if has $PROBE; then
-        # shellcheck disable=SC2086
-        expect 0 "probe $words" probe "$CUBE" --pixel 1,1 $small "--$name=$value" --json probe.json --quiet
-        jq .picture probe.json >options
-        [ "$change" -eq $IN_COST ] || [ "$name" = allow-path ] || check "and its JSON" has_json options
-    fi
-    if has $PRICES; then
-        # shellcheck disable=SC2086
-        expect 0 "cost $words" cost "$CUBE" $small "--$name=$value" --spend 0.3 --rays 0 --knobs traversal --quiet
+    if [ "$change" -eq $IN_COST ] || [ "$name" = allow-path ]; then
+        continue
+    elif [ $pass = costs ]; then
+        check "JSON of costs has $words" grep -aqE "\"[a-z]+\":\"?$value" costs.png
+    else
+        has $RENDER && check "JSON of the recipe has $words" has_json options
+        has $PROBE && check "JSON of the probe has $words" has_json probe.options
+        has $PRICES && check "whit cost has $words" grep -qF -- "--$name=$value " cost.command
     fi
 done <rows
-check "there are rows ($count)" test $count -ge 20
 
 # What is displayed is darker, what is found is not.
 expect 0 "light" render "$CUBE" -o light.pfm --size 24x16 --quiet
