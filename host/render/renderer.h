@@ -392,7 +392,7 @@ WHIT_CHECK whit_result readback_non_finite(const struct target *target, uint32_t
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
 void stats_clear(struct render_stats *stats);
 
-/* adaptive.c: everything around the passes of an adaptive picture, which draw.c makes. */
+/* adaptive_samples.c: everything around the passes of an adaptive picture, which tiles.c makes. */
 /* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,
    in some channel as displayed (linear, 0..1), the level `level`. The number of such pixels. */
 uint64_t adaptive_mark(const struct image *color, double contrast, uint8_t level, uint8_t *levels);
@@ -402,7 +402,7 @@ WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progres
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* draw.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+/* tiles.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk);
 
@@ -410,7 +410,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
    traces take more turns of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
-/* draw.c: what submissions are made of. */
+/* tiles.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 /* Empties a list of deferred rays, if there is one. Barriers are the caller's. */
@@ -426,11 +426,11 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
                        uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct target *target);
 
-/* draw.c: what kernels have listed as waiting since `deferred_clear`. */
+/* tiles.c: what kernels have listed as waiting since `deferred_clear`. */
 WHIT_CHECK whit_result deferred_clear(struct target *target);
 WHIT_CHECK whit_result deferred_read(const struct target *target, uint32_t *count);
 
-/* draw.c: logs what the bits say. WHIT_OK when there are none. */
+/* tiles.c: logs what the bits say. WHIT_OK when there are none. */
 WHIT_CHECK whit_result status_check(struct target *target);
 
 #endif

@@ -1,6 +1,6 @@
-/* The order of a picture: chunks of pixel blocks, each sample of a chunk in stages (stages.c). A
-   chunk's size follows measured time, so that no submission runs long. A pixel that is probed has
-   one dispatch of its camera ray and one a ray as long as there are any left. */
+/* The order of a picture: tiles of pixel blocks, each sample of a tile in stages (stages.c). The
+   size of tiles follows measured time (adapt_tile), so that no submission runs long. A pixel that
+   is probed has one dispatch of its camera ray and one a ray as long as there are any left. */
 #include "render/render.h"
 
 #include <math.h>
