@@ -7,7 +7,7 @@
 #include "app/page.h"
 #include "cost/cost.h"
 
-enum { COST_RAYS_UNSAID = WHIT_NONE };
+#define COST_RAYS_UNSAID WHIT_NONE
 
 struct cost {
     struct job job;

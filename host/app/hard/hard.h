@@ -4,7 +4,7 @@
 
 #include "app/job.h"
 
-enum { HARD_ALL = WHIT_NONE };
+#define HARD_ALL WHIT_NONE
 
 struct hard {
     struct job job;
