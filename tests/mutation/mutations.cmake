@@ -372,7 +372,7 @@ change(shaders/kernel/resolve.comp [[carry = chunk.summed; (carry & 1u) != 0u; c
 
 mutation(sums_of_parts_mixed render_samples RED full_queues_do_not_matter)
 change(host/render/stages.c [[part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS]]
-  [[part.first_block += most]])
+  [[part.first_block += max]])
 
 mutation(points_unturned_in_kernels device_sequence RED points_are_those_of_the_host)
 change(shaders/lib/sequence.glsl [[0x55555541u]] [[1u]])
