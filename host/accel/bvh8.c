@@ -8,7 +8,8 @@
 #include "accel/accel_inside.h"
 #include "base/array.h"
 
-/* A node of two that becomes one of eight, and which. */
+/* A node of eight still to be made: the one at `at`, `depth` levels down (root: 1), out of the two
+   children at `pair` and `pair` + 1 of the tree of two. */
 struct opening {
     uint32_t pair, at, depth;
 };

@@ -20,12 +20,14 @@ typedef enum whit_build {
 
 typedef struct whit_accel_params {
     whit_build build;
-    bool optimize;                       /* improve the finished trees by reinsertion */
-    uint32_t bins;                       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
-    uint32_t leaf_limit;                 /* triangles in a leaf, 1..15; 0: 4 */
-    float spatial_alpha, spatial_budget; /* of WHIT_BUILD_SPATIAL: see docs/cli.md; 0: defaults;
-                                            budget < 0: none */
-    uint32_t threads;                    /* 0: one a core; never changes the tree */
+    bool optimize;       /* improve the finished trees by reinsertion */
+    uint32_t bins;       /* of WHIT_BUILD_BINNED, 2..256; 0: the measured default */
+    uint32_t leaf_limit; /* triangles in a leaf, 1..15; 0: 4 */
+    /* WHIT_BUILD_SPATIAL alone. Alpha: the overlap of siblings, relative to the root's area, from
+       which on space is split; 0: 1e-5. Budget: references beyond one a triangle, relative to
+       triangles; 0: 0.5; < 0: none beyond. */
+    float spatial_alpha, spatial_budget;
+    uint32_t threads;          /* 0: one a core; never changes the tree */
     whit_build instance_build; /* of the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
     bool instance_refit;       /* moving instances keep their tree, with new boxes */
     whit_instances instances;

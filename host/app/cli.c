@@ -167,10 +167,11 @@ static void put(const char *text)
 
 void cli_put_end(const char *kind, const char *why)
 {
-    /* It may be what this thread was about to say that it crashed over. */
+    /* Waits for a thread that is saying why the program ends. Not where that is this thread, which
+       crashed while it did and holds the lock: it would wait for ever. */
     while (!holds_reason && atomic_flag_test_and_set(&reason_lock))
         ;
-    /* Else it was about to leave, or what went wrong has been said. */
+    /* Why the program ends has been said already. */
     if (end_said || (error_said && !interrupt_signal))
         return;
     put(kind);

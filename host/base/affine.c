@@ -43,14 +43,6 @@ struct affine affine_from_trs(const double translation[3], const double rotation
     return out;
 }
 
-struct affine affine_from_floats(const float rows[12])
-{
-    struct affine out;
-    for (int i = 0; i < 12; ++i)
-        out.m[i] = (double)rows[i];
-    return out;
-}
-
 double affine_determinant(const struct affine *a)
 {
     const double *m = a->m;

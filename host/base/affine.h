@@ -14,7 +14,6 @@ struct affine affine_multiply(const struct affine *a, const struct affine *b); /
 /* `rotation` is a quaternion x, y, z, w of any length but 0 (0 counts as identity). */
 struct affine affine_from_trs(const double translation[3], const double rotation[4],
                               const double scale[3]);
-struct affine affine_from_floats(const float rows[12]);
 double affine_determinant(const struct affine *a); /* of the 3x3 part */
 bool affine_is_finite(const struct affine *a);
 bool affine_is_identity(const struct affine *a);

@@ -61,11 +61,6 @@ void platform_zero(void *data, size_t size_bytes)
     memset(data, 0, size_bytes);
 }
 
-bool platform_is_terminal(int fd)
-{
-    return isatty(fd) == 1;
-}
-
 uint64_t platform_peak_memory_bytes(void)
 {
     struct rusage own, children;

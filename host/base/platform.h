@@ -22,7 +22,6 @@ void platform_expect_much(void *data, size_t size_bytes);
    only what is written later takes memory and time. */
 void platform_zero(void *data, size_t size_bytes);
 
-bool platform_is_terminal(int fd);
 /* The most that this process, or any one of its finished children, had resident. */
 uint64_t platform_peak_memory_bytes(void);
 /* Resident memory of this process at this moment: all of it, and the anonymous part. Both are 0

@@ -1,4 +1,5 @@
-/* Answers from the figures of a report. */
+/* What a report's figures say: which rows are in the Pareto set, what each setting is good for, and
+   which settings together best meet a limit of error or of time. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

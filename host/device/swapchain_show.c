@@ -375,7 +375,7 @@ static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *
     if (had_one)
         read_time(swapchain);
     if (swapchain->stale)
-        return WHIT_OK; /* for swapchain_resize */
+        return WHIT_OK; /* nothing is shown until the caller has called swapchain_resize */
     result = acquire(swapchain, &index, &usable);
     swapchain->info.wait_ms = clock_ms() - start_ms;
     if (result != WHIT_OK || !usable)

@@ -1,4 +1,4 @@
-/* What a picture is asked for, with or without a device. */
+/* The parameters of a picture, with or without a device. */
 #ifndef PICTURE_PARAMS_H
 #define PICTURE_PARAMS_H
 

@@ -9,7 +9,7 @@
 /* Triangles in a space where the scene is around the origin and its bounding sphere is 1. */
 struct soup {
     float *corners;    /* 9 per triangle */
-    uint8_t *pictured; /* 1 per triangle: shows a picture */
+    uint8_t *pictured; /* 1 per triangle: whether its material has a diffuse texture */
     uint32_t count;
     uint32_t fit_count; /* with those that only the fit looks at: where things are later on */
     bool whole;         /* else boxes around the instances stand for them */

@@ -25,8 +25,9 @@ struct sphere_candidate {
     float key;    /* where it is met */
 };
 
-/* The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none.
-   All finite, radius > 0. */
+/* Where the ray meets the sphere: the nearer end of its chord that is at t >= 0 and whose key (t
+   rounded to the nearest float) is at least `t_min`, which must be >= 0. `only_far`: only the far
+   end is considered. All arguments are finite, radius > 0. */
 void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
                        bool only_far, float t_min, struct sphere_candidate *out);
 

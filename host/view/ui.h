@@ -93,8 +93,6 @@ bool ui_choice(const char *label, const char *preview, const char *const *names,
                int *value);
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
-bool ui_tree_begin(const char *label, bool open); /* true: ui_tree_end ends it */
-void ui_tree_end(void);
 /* A bar of colours with labels below, evenly from its left to its right end. */
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */

@@ -139,17 +139,6 @@ bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t h
     return noted(ImGui::SliderScalar(label, ImGuiDataType_U32, value, &lo, &hi), label);
 }
 
-bool ui_tree_begin(const char *label, bool open)
-{
-    ImGui::SetNextItemOpen(open, ImGuiCond_Once);
-    return ImGui::TreeNode(label);
-}
-
-void ui_tree_end(void)
-{
-    ImGui::TreePop();
-}
-
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count)
 {
     float em = ImGui::GetFontSize(), width = 20.0f * em, height = 0.8f * em;

@@ -46,7 +46,7 @@ for pass in colours costs; do
 done
 check "there are rows ($count)" test $count -ge 20
 jq .picture probe.json >probe.options
-jq -r .command cost.json >cost.command
+jq .picture cost.json >cost.options
 while IFS=$TAB read -r name value commands change _ _ json _; do
     if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
     words="--$name $value"
@@ -65,7 +65,7 @@ while IFS=$TAB read -r name value commands change _ _ json _; do
     else
         has $RENDER && check "JSON of the recipe has $words" has_json options
         has $PROBE && check "JSON of the probe has $words" has_json probe.options
-        has $PRICES && check "whit cost has $words" grep -qF -- "--$name=$value " cost.command
+        has $PRICES && check "JSON of whit cost has $words" has_json cost.options
     fi
 done <rows
 

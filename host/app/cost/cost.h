@@ -50,8 +50,7 @@ whit_result cost_save_csv(const struct cost *cost);
 
 /* ---- JSON (cost_json.c) ---- */
 
-whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
-                           const char *path);
+whit_result cost_save_json(const struct cost *cost, const char *path);
 /* What cost_save_json wrote, for comparisons: no pictures. `scene` gets the name of its scene,
    which the caller frees. False, said: another file. */
 bool cost_load_json(const char *path, struct cost_report *report, char **scene);

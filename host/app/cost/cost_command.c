@@ -163,7 +163,7 @@ static whit_result save_all(const struct cost *cost)
 {
     whit_result result = WHIT_OK;
     if (cost->json)
-        result = cost_save_json(cost->report, cost->job.settings.scene, cost->command, cost->json);
+        result = cost_save_json(cost, cost->json);
     if (result == WHIT_OK && cost->csv)
         result = cost_save_csv(cost);
     if (result == WHIT_OK && cost->markdown)

@@ -123,11 +123,15 @@ static json_t *answer_document(const struct cost_report *report, const struct co
     return out;
 }
 
-static void put_head(json_t *out, const struct cost_report *report, const char *scene,
-                     const char *command)
+/* `cost`: that asked for it; NULL: the report is kept for choices, which know that. */
+static void put_head(json_t *out, const struct cost_report *report, const struct cost *cost)
 {
-    document_text(out, "command", command);
-    document_text(out, "scene", scene);
+    json_t *picture = document_object();
+    document_text(out, "command", cost ? cost->command : NULL);
+    document_text(out, "scene", cost ? cost->job.settings.scene : NULL);
+    if (cost)
+        settings_describe(&cost->job.settings, IN_COST, picture);
+    document_put(out, "picture", picture);
     document_hash(out, "scene_hash", report->scene_hash);
     document_text(out, "device", report->device);
     document_text(out, "driver", report->driver);
@@ -158,12 +162,11 @@ static json_t *reference_document(const struct cost_report *report)
     return out;
 }
 
-static json_t *report_document(const struct cost_report *report, const char *scene,
-                               const char *command)
+static json_t *report_document(const struct cost_report *report, const struct cost *cost)
 {
     json_t *out = document_root(), *rows = document_array(), *answers = document_array();
     json_t *absent = document_array();
-    put_head(out, report, scene, command);
+    put_head(out, report, cost);
     document_put(out, "reference", reference_document(report));
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
@@ -181,15 +184,14 @@ static json_t *report_document(const struct cost_report *report, const char *sce
     return out;
 }
 
-whit_result cost_save_json(const struct cost_report *report, const char *scene, const char *command,
-                           const char *path)
+whit_result cost_save_json(const struct cost *cost, const char *path)
 {
-    return document_save(report_document(report, scene, command), path);
+    return document_save(report_document(cost->report, cost), path);
 }
 
 void cost_keep(const struct cost_report *report, const char *name)
 {
-    char *text = document_line(report_document(report, NULL, NULL));
+    char *text = document_line(report_document(report, NULL));
     if (text && report->complete)
         whit_cache_write(name, text, strlen(text), &cli_log);
     free(text);
