@@ -273,7 +273,7 @@ static whit_result bare_check(struct accel *accel)
     }
     if (accel->params.flatten)
         turns = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
-    accel->turns = (uint32_t)turns;
+    accel->iterations = (uint32_t)turns;
     if (primitives <= ACCEL_BARE_MAX && turns <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&accel->log,

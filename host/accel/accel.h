@@ -70,7 +70,8 @@ struct accel {
                       world; accel_pose builds it anew. Instances say mesh and shade_base of the
                       scene's meshes, but root, centre and reach of the world */
     bool no_trees; /* BVH_NONE: rays that meet the box of everything test every primitive */
-    uint32_t turns; /* of loops that a ray takes at most then: ACCEL_TURNS_MAX */
+    uint32_t
+        iterations; /* of loops, at most, that one ray takes then: up to ACCEL_ITERATIONS_MAX */
     double build_ms, instance_build_ms;
     struct accel_bvh8 bvh8;      /* after accel_widen */
     struct accel_posing *posing; /* buffers of accel_pose */

@@ -32,9 +32,8 @@ double whit_clock_cpu_ms(void); /* used by all threads of this process */
    WHIT_NO_CACHE is set. What is kept has a checksum; files used longest ago are removed beyond
    512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines there. */
 
-/* What was kept under `name`, with one zero byte behind its size, for
-   whit_memory_destroy. False: nothing, or
-   what was there was damaged, and is thrown away. */
+/* Reads what was kept under `name`. The caller releases *data, which has one zero byte behind its
+   size, by whit_memory_destroy. False: nothing was kept, or it was damaged and is thrown away. */
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
 /* `name`: of what and in which version it is; no slash, at most 200 bytes. What cannot be kept is
    not. */

@@ -106,7 +106,7 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   samples, adaptive, light_samples, bailout and depth, and nothing else. `camera` is
+   samples, adaptive, light_samples, bailout, depth and exposure_ev, and nothing else. `camera` is
    borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
    After an error there is nothing to render before a call that succeeds. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,

@@ -12,9 +12,9 @@
 extern "C" {
 #endif
 
-/* What libwhit hands out belongs to the caller until a function of that name releases it: a handle
-   by its own (whit_scene_destroy), a block of infos, boxes, rays or bytes by whit_memory_destroy.
-   All take NULL. */
+/* The caller owns what libwhit hands out. A handle is released by its own function, as
+   whit_scene_destroy; a block of infos, boxes, rays or bytes by whit_memory_destroy. All of these
+   functions take NULL. */
 void whit_memory_destroy(void *memory);
 
 #define WHIT_NONE UINT32_MAX /* no primitive, no instance: a miss */

@@ -227,7 +227,7 @@ static const struct setting *next(struct cli_reader *reader)
     return NULL;
 }
 
-/* What a file said is quoted up to 40 characters, where `why` quotes it. */
+/* Cuts the value out of a file of settings, where `why` quotes it, to 40 characters. */
 static void shorten(const char *value, char why[SETTING_WHY_BYTES])
 {
     const struct text_token token = text_token(value);
@@ -244,7 +244,7 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
     char why[SETTING_WHY_BYTES];
     bool is_setting = !is_own(reader->command, option);
     if (reader->where && (!is_setting || option->trusted)) {
-        /* What files may reach is not for a file to say. */
+        /* No file of settings may widen what files may be read. */
         cli_misuse(reader, "--%s is nothing to be saved", option->name);
         return;
     }

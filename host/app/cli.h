@@ -74,7 +74,8 @@ bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path
 const struct setting *cli_option_at(const struct cli_command *command, uint32_t i);
 /* How its argument is named; "" where there is none. `text` may hold it. */
 const char *cli_argument_name(const struct setting *option, char *text, size_t text_bytes);
-/* Its help, with the default in brackets; in `text`. */
+/* Writes the help of an option into `text`, with the default that the command has in brackets.
+   Gives `text`. */
 const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
                      size_t text_bytes);
 void cli_print_help(const struct cli_command *command, bool all, FILE *to);

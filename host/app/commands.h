@@ -11,7 +11,7 @@ extern const struct cli_command command_render, command_scene, command_trace, co
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
     command_probe;
 
-/* What `whit render` was asked for beside the job's settings. */
+/* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     bool counters;            /* costs in --stats */
@@ -45,8 +45,8 @@ WHIT_CHECK whit_result render_choose(struct job *job, const struct render_reques
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats);
 
-/* What a picture says about itself: only what decides its pixels, so that the same inputs give the
-   same bytes. */
+/* The texts that a picture carries about itself: only what decides its pixels, so that the same
+   inputs give the same bytes. */
 enum { RECIPE_TEXTS = 9 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];

@@ -13,8 +13,8 @@
 #include "api/whit.h"
 
 json_t *document_object(void);
-/* What every document of whit begins with: its version, and that of the names of keys. From 2 on
-   keys are added, and none is renamed or removed while the number stays. */
+/* An object with the version of whit and that of the names of keys, which begin every document.
+   From 2 on keys are added, and none is renamed or removed while the number stays. */
 enum { DOCUMENT_FORMAT = 2 };
 json_t *document_root(void);
 json_t *document_array(void);

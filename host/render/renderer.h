@@ -407,7 +407,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
                         struct gpu_chunk *chunk);
 
 /* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
-   traces take more turns of loops together than the driver grants it; else WHIT_OK. */
+   traces take more iterations of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
 /* tiles.c: what submissions are made of. */

@@ -359,7 +359,7 @@ whit_result params_check_loops(const struct renderer *renderer)
     bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
     uint64_t rays = shadows ? lights_samples(renderer) : 1;
     if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
-        rays * accel->turns <= ACCEL_ITERATIONS_MAX)
+        rays * accel->iterations <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&renderer->log,
               "%s: without trees every ray tests %llu primitives, which is too much where each hit "

@@ -228,8 +228,9 @@ static bool is_written(const struct setting *row, const struct settings *setting
     return true;
 }
 
-bool settings_word(const struct setting *row, const struct settings *settings,
-                   enum settings_words which, uint32_t index, char text[SETTING_VALUE_BYTES])
+/* Whether a row is to be written, and what its option takes. */
+static bool settings_word(const struct setting *row, const struct settings *settings,
+                          enum settings_words which, uint32_t index, char text[SETTING_VALUE_BYTES])
 {
     const struct settings usual = settings_usual();
     bool always = which == SETTINGS_RECIPE && row->always;

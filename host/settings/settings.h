@@ -110,9 +110,6 @@ enum settings_words {
                         reach */
     SETTINGS_LINE,   /* all of these */
 };
-/* Whether a row is to be written, and what its option takes. */
-bool settings_word(const struct setting *row, const struct settings *settings,
-                   enum settings_words which, uint32_t index, char text[SETTING_VALUE_BYTES]);
 /* The options that say the same as `settings`, each word in quotes where a shell needs them.
    `separator`: between an option and the next, " " or "\n". The number of bytes written, without
    the 0 at the end; text that does not fit is cut. */

@@ -34,13 +34,11 @@ static const struct setting_value steps_bailout[] = {{"0", 0, "0: every ray"},
                                                      {"0.015625", 0, "1/64"},
                                                      {"0.0625", 0, "1/16"},
                                                      {0}};
-static const struct setting_value more_build[] = {{"binned+opt", 0, NULL},
-                                                  {"binned:4", 0, NULL},
-                                                  {"binned:8", 0, NULL},
-                                                  {"binned:16", 0, NULL},
-                                                  {"binned:64", 0, NULL},
-                                                  {"binned:256", 0, NULL},
-                                                  {0}};
+static const struct setting_value more_build[] = {{"binned+opt", 0, NULL}, {"binned:4", 0, NULL},
+                                                  {"binned:7", 0, NULL},   {"binned:8", 0, NULL},
+                                                  {"binned:16", 0, NULL},  {"binned:32", 0, NULL},
+                                                  {"binned:64", 0, NULL},  {"binned:128", 0, NULL},
+                                                  {"binned:256", 0, NULL}, {0}};
 
 /* ---- Kinds of their own ---- */
 
@@ -322,3 +320,5 @@ const struct setting settings_table[] = {
     {"tile", 0, NULL, "is `--tile-size` now", .kind = SETTING_GONE, .commands = IN_RENDER},
     {0},
 };
+_Static_assert(sizeof settings_table / sizeof *settings_table <= 64,
+               "settings.given has a bit for each row");

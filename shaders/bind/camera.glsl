@@ -41,7 +41,7 @@ vec2 mirror_sample(vec2 xy, uvec2 pixel)
     return uintBitsToFloat(floatBitsToUint(xy) ^ (uvec2(pixel.x ^ pixel.y, pixel.x) << 31));
 }
 
-// camera_ray of render/camera.c is this in C, bit for bit: sums, differences and products alone, which
+// camera_ray of picture/camera.c is this in C, bit for bit: sums, differences and products alone, which
 // all devices round alike.
 Ray camera_ray(uvec2 pixel)
 {

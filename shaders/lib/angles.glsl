@@ -3,7 +3,7 @@
 #ifndef LIB_ANGLES_GLSL
 #define LIB_ANGLES_GLSL
 
-// sine_cosine_pi of render/camera.c is this in C, bit for bit.
+// sine_cosine_pi of picture/camera.c is this in C, bit for bit.
 // x: sin(pi a), y: cos(pi a), for a in -1..1. Within 1.2e-7 of the exact values: the nearest quarter
 // turn is taken off, which is exact, and what remains, up to pi / 4, goes through the Taylor
 // polynomials of degree 9 and 10, whose own error is below 2e-9.
@@ -23,7 +23,7 @@ vec2 sine_cosine_pi(float a)
 
 // 1 / sqrt(x) within 2 ulp, by products and differences alone: no driver's choice is in it. Newton's
 // steps from a guess by the exponent (Lomont 2003, "Fast inverse square root").
-// inverse_square_root of render/camera.c is this in C, bit for bit.
+// inverse_square_root of picture/camera.c is this in C, bit for bit.
 float inverse_square_root(float x)
 {
     precise float y = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1));

@@ -61,7 +61,7 @@ while IFS=$TAB read -r name value commands change _ _ json _; do
     if [ "$change" -eq $IN_COST ] || [ "$name" = allow-path ]; then
         continue
     elif [ $pass = costs ]; then
-        check "JSON of costs has $words" grep -aqE "\"[a-z]+\":\"?$value" costs.png
+        check "JSON of costs has $words" grep -aqE "\"${name#view-}\":\"?$value" costs.png
     else
         has $RENDER && check "JSON of the recipe has $words" has_json options
         has $PROBE && check "JSON of the probe has $words" has_json probe.options

@@ -24,7 +24,7 @@ sources() {
     texture) echo host/load/picture.c host/load/jpeg.c ;;
     reply) echo host/image/image_reply.c host/load/importer.c host/base/foreign.c ;;
     rays) echo host/app/trace/ray_file.c host/twin/traverse.c ;;
-    validate) echo host/accel/bvh_validate*.c ;;
+    validate) echo host/accel/validate*.c ;;
     store) echo host/base/store.c ;;
     paths) echo host/base/roots.c ;;
     settings) echo host/app/view/state_file.c host/app/arguments.c host/cost/words.c ;;

@@ -309,7 +309,7 @@ static void many_shadows_are_refused(void **state)
         struct probe_report report;
         assert_non_null(strstr(last_error, "without trees every ray tests 28800 primitives"));
         assert_int_equal(renderer_probe(f.renderer, 4, 4, 0, &report), WHIT_ERROR_USAGE);
-        f.accel->turns = 0;
+        f.accel->iterations = 0;
         assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);
     }
     fixture_close(&f);

@@ -104,6 +104,7 @@ static void a_row_has_a_field_of_its_own(void **state)
 static void defaults_are_named_as_they_are(void **state)
 {
     (void)state;
+    uint32_t fractions = 0;
     char why[SETTING_WHY_BYTES];
     for (const struct setting *row = settings_table; row->name; ++row) {
         const struct settings usual = settings_usual();
@@ -112,10 +113,18 @@ static void defaults_are_named_as_they_are(void **state)
         if (has_value(row) && !is_text && row->usual && row->usual[0] &&
             setting_read(row, row->usual, &settings, why))
             assert_true(setting_same(row, &settings, &usual));
+        /* Help may name a number as a fraction, which the option does not take. */
+        double above, below;
+        if (row->kind == SETTING_NUMBER && row->usual &&
+            sscanf(row->usual, "%lf/%lf", &above, &below) == 2) {
+            ++fractions;
+            assert_true(*(const double *)((const char *)&usual + row->offset) == above / below);
+        }
         assert_true(row->kind == SETTING_GONE || row->commands != 0);
         for (const struct setting *other = settings_table; other < row; ++other)
             assert_string_not_equal(other->name, row->name);
     }
+    assert_int_equal(fractions, 1); /* --bailout */
 }
 
 /* What a row needs is what comparing two settings says. */

@@ -6,7 +6,7 @@
 
 struct json_t;
 
-/* What a picture says about its numbers. */
+/* The mean, the largest value and the scale of a picture of costs. */
 struct view_figures {
     double mean, max, scale; /* over pixels; scale: of the heat map, used or not */
 };
