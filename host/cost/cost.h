@@ -7,8 +7,8 @@
 #ifndef COST_COST_H
 #define COST_COST_H
 
+#include "base/sample.h"
 #include "cost/knobs.h"
-#include "cost/sample.h"
 
 enum cost_clock { COST_WALL, COST_CPU, COST_DEVICE, COST_CLOCKS };
 const char *cost_clock_name(enum cost_clock clock); /* "wall" */

@@ -1,8 +1,8 @@
 /* What the user waits for: how long pictures take, and how far apart they are. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/sample.h"
 #include "view/view_private.h"
 
 static void note(struct view_figures *figures, double value)
@@ -12,19 +12,11 @@ static void note(struct view_figures *figures, double value)
     ++figures->count;
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double figures_quantile(struct view_figures *figures, double share)
 {
     uint32_t count = figures->count < FIGURES_MAX ? figures->count : FIGURES_MAX;
-    if (count == 0)
-        return 0.0;
-    qsort(figures->values, count, sizeof *figures->values, compare);
-    return figures->values[(uint32_t)(share * (count - 1) + 0.5)];
+    sample_sort(figures->values, count);
+    return sample_quantile(figures->values, count, share);
 }
 
 void measure_begin(struct view *view)

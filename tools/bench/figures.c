@@ -3,19 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-struct bench_times figures_ratio(const struct bench_times *a, const struct bench_times *b)
-{
-    struct bench_times ratio = {0};
-    for (uint32_t i = 0; i < a->count && i < b->count; ++i)
-        bench_add(&ratio, b->ms[i] > 0.0 ? a->ms[i] / b->ms[i] : 0.0);
-    return ratio;
-}
-
-json_t *figures_times(const struct bench_times *times)
+json_t *figures_times(const struct sample_runs *times)
 {
     json_t *object = document_object();
-    document_ms(object, "median", bench_median(times));
-    document_ms(object, "spread", bench_spread(times));
+    document_ms(object, "median", sample_of(times).median);
+    document_ms(object, "spread", sample_of(times).spread);
     document_count(object, "runs", times->count);
     return object;
 }

@@ -36,9 +36,7 @@ void figures_leave_out(struct figures *figures, const char *name, const char *wh
    what went wrong. */
 WHIT_CHECK whit_result figures_end(struct figures *figures, const char *title, whit_result result);
 
-json_t *figures_times(const struct bench_times *times); /* `median spread runs` */
-/* The ratio a / b of each run of `a` and the run of `b` in the same turn; 0 where b is 0. */
-struct bench_times figures_ratio(const struct bench_times *a, const struct bench_times *b);
+json_t *figures_times(const struct sample_runs *times); /* `median spread runs` */
 
 /* figures_plot.c: how far each is from what it must, as SVG. */
 WHIT_CHECK whit_result figures_plot(const struct figures *figures, const char *title,

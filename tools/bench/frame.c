@@ -48,7 +48,7 @@ static bool is_pov(const char *name)
 
 /* ---- Rows ---- */
 
-static void put_ms(struct figures *figures, const struct bench_times *times)
+static void put_ms(struct figures *figures, const struct sample_runs *times)
 {
     struct table *table = &figures->section.table;
     if (times)
@@ -64,11 +64,11 @@ static void put_ratio(struct figures *figures, const struct frame *frame, const 
                       struct goal goal)
 {
     struct figure figure = {.unit = "", .goal = goal};
-    struct bench_times ratio = figures_ratio(&frame->ms[side], &frame->ms[other]);
+    struct sample_runs ratio = sample_ratio(&frame->ms[side], &frame->ms[other]);
     json_t *row = document_object();
     snprintf(figure.name, sizeof figure.name, "%s%s : %.16s", frame->name, what, beside);
-    figure.value = bench_median(&ratio);
-    figure.spread = bench_spread(&ratio);
+    figure.value = sample_of(&ratio).median;
+    figure.spread = sample_of(&ratio).spread;
     document_text(row, "picture", frame->name);
     document_text(row, "level", what[0] ? what + 2 : "watertight");
     document_text(row, "beside", beside);

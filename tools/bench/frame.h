@@ -44,7 +44,7 @@ struct frame {
     struct peer peer;
     enum frame_side sides[FRAME_SIDES]; /* who draws */
     uint32_t side_count;
-    struct bench_times
+    struct sample_runs
         ms[FRAME_SIDES]; /* by side: processor time of all threads, or by the clock */
 };
 

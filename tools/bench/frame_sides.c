@@ -164,7 +164,7 @@ static whit_result run_side(void *user, uint32_t index, uint32_t round)
     double ms = 0.0;
     whit_result result = draw(frame, side, &ms);
     if (result == WHIT_OK && (round > 0 || frame->bench->quick))
-        bench_add(&frame->ms[side], ms);
+        sample_add(&frame->ms[side], ms);
     return cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 

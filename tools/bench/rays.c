@@ -19,14 +19,14 @@ static const struct goal goals[RAYS_KINDS][2] = {
 
 /* ---- Rows ---- */
 
-static void put_ns(const struct model *model, const struct bench_times *times)
+static void put_ns(const struct model *model, const struct sample_runs *times)
 {
     struct table *table = &model->figures->section.table;
     if (times->count == 0 || model->count == 0)
         table_cell(table, "-");
     else
         table_cell(table, "%.*f", model->is_cpu ? 1 : 3,
-                   bench_median(times) * 1e6 / (double)model->count);
+                   sample_of(times).median * 1e6 / (double)model->count);
 }
 
 static json_t *row_document(const struct model *model, uint32_t kind, const struct batch *batches,
@@ -41,7 +41,7 @@ static json_t *row_document(const struct model *model, uint32_t kind, const stru
     for (uint32_t order = 0; order < 2; ++order) {
         json_t *times = document_object();
         for (uint32_t side = 0; side < RAYS_BACK; ++side) {
-            const struct bench_times *of =
+            const struct sample_runs *of =
                 side ? batch_quicker(&batches[order], (enum rays_side)side)
                      : &batches[order].sides[0];
             if (of->count)
@@ -63,14 +63,14 @@ static void put_row(const struct model *model, uint32_t kind, const struct batch
     struct table *table = &model->figures->section.table;
     struct figure figure = {.unit = ""};
     const struct batch *tiles = &batches[0], *shuffled = &batches[1];
-    struct bench_times ratio =
-        figures_ratio(batch_quicker(tiles, RAYS_SINGLE), &tiles->sides[RAYS_WHIT]);
-    struct bench_times other =
-        figures_ratio(batch_quicker(shuffled, RAYS_SINGLE), &shuffled->sides[RAYS_WHIT]);
+    struct sample_runs ratio =
+        sample_ratio(batch_quicker(tiles, RAYS_SINGLE), &tiles->sides[RAYS_WHIT]);
+    struct sample_runs other =
+        sample_ratio(batch_quicker(shuffled, RAYS_SINGLE), &shuffled->sides[RAYS_WHIT]);
     snprintf(figure.name, sizeof figure.name, "%s, %s", model->name, rays_kind_names[kind]);
     if (ratio.count) {
-        figure.value = bench_median(&ratio);
-        figure.spread = bench_spread(&ratio);
+        figure.value = sample_of(&ratio).median;
+        figure.spread = sample_of(&ratio).spread;
         figure.goal = goals[kind][model->loaded.info.triangle_count > LARGE];
     } else {
         figure.value = NAN;
@@ -82,7 +82,7 @@ static void put_row(const struct model *model, uint32_t kind, const struct batch
     put_ns(model, &tiles->sides[RAYS_WHIT]);
     for (int side = RAYS_SINGLE; side < RAYS_BACK; ++side)
         put_ns(model, batch_quicker(tiles, (enum rays_side)side));
-    table_cell(table, other.count ? "%.2f" : "-", bench_median(&other));
+    table_cell(table, other.count ? "%.2f" : "-", sample_of(&other).median);
     figures_row(model->figures, &figure, row_document(model, kind, batches, agreement));
     if (agreement->one_alone + agreement->other_t > 0)
         section_say(&model->figures->section,

@@ -12,7 +12,7 @@ enum rays_kind { RAYS_CAMERA, RAYS_SHADOW, RAYS_BOUNCE, RAYS_KINDS };
 /* One set of rays in one order, and what it took each side in ms. */
 struct batch {
     char rays_name[96], whit_name[96], peer_name[96];
-    struct bench_times sides[RAYS_SIDES];
+    struct sample_runs sides[RAYS_SIDES];
     bool any, coherent; /* any: any hit will do; coherent: neighbours go the same way */
 };
 
@@ -48,6 +48,6 @@ extern const char *const rays_kind_names[RAYS_KINDS];
 WHIT_CHECK whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind,
                                  bool shuffled, struct agreement *agreement);
 /* Shadow rays go both ways: the times of the one that Embree is quicker in. */
-const struct bench_times *batch_quicker(const struct batch *batch, enum rays_side side);
+const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_side side);
 
 #endif

@@ -97,7 +97,7 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
                                           side >= RAYS_BACK, model->batch->coherent, ms);
     double time_ms = side == RAYS_WHIT || model->is_cpu ? ms[0] : ms[1];
     if (result == WHIT_OK && round > 0 && time_ms >= 0.0)
-        bench_add(&model->batch->sides[side], time_ms);
+        sample_add(&model->batch->sides[side], time_ms);
     if (side == RAYS_WHIT)
         bench_step(model->bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : result;
@@ -108,10 +108,11 @@ static uint32_t count_sides(const struct model *model)
     return !model->has_peer ? 1 : model->batch->any ? RAYS_SIDES : RAYS_BACK;
 }
 
-const struct bench_times *batch_quicker(const struct batch *batch, enum rays_side side)
+const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_side side)
 {
-    const struct bench_times *forth = &batch->sides[side], *back = &batch->sides[side + 3];
-    return batch->any && back->count && bench_median(back) < bench_median(forth) ? back : forth;
+    const struct sample_runs *forth = &batch->sides[side], *back = &batch->sides[side + 3];
+    return batch->any && back->count && sample_of(back).median < sample_of(forth).median ? back
+                                                                                         : forth;
 }
 
 static whit_result run_sides(struct model *model, enum rays_kind kind, bool shuffled)

@@ -35,7 +35,7 @@ struct starting {
     struct peers peers;
     const struct start *start;
     char own[BENCH_PATH], scene[BENCH_PATH], second[BENCH_PATH];
-    struct bench_times clock[SIDES], cpu[SIDES]; /* of this whit, of the other */
+    struct sample_runs clock[SIDES], cpu[SIDES]; /* of this whit, of the other */
 };
 
 /* Round 0 fills files and caches; of those that are to be empty nothing is left. */
@@ -79,24 +79,24 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
         bench_scratch_remove(cache);
     whit_result result = bench_child_run(&child, &times);
     if (result == WHIT_OK && round > 0) {
-        bench_add(&s->clock[side], times.clock_ms);
-        bench_add(&s->cpu[side], times.cpu_ms);
+        sample_add(&s->clock[side], times.clock_ms);
+        sample_add(&s->cpu[side], times.cpu_ms);
     }
     return cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 
-static void put_row(struct starting *s, const char *what, const struct bench_times *of,
+static void put_row(struct starting *s, const char *what, const struct sample_runs *of,
                     struct goal goal)
 {
     struct figures *figures = s->peers.figures;
-    struct bench_times ratio = figures_ratio(&of[0], &of[1]);
+    struct sample_runs ratio = sample_ratio(&of[0], &of[1]);
     struct figure figure = {.unit = "", .value = NAN};
     json_t *row = document_object();
     snprintf(figure.name, sizeof figure.name, "%s, %s", s->start->label, what);
     if (ratio.count) {
         figure.goal = goal;
-        figure.value = bench_median(&ratio);
-        figure.spread = bench_spread(&ratio);
+        figure.value = sample_of(&ratio).median;
+        figure.spread = sample_of(&ratio).spread;
     }
     document_text(row, "start", s->start->label);
     document_text(row, "time", what);

@@ -4,15 +4,9 @@
 
 #include "app/cli.h"
 #include "app/document.h"
-#include "cost/sample.h"
+#include "base/sample.h"
 
-enum {
-    BENCH_RUNS_MAX = 99,
-    BENCH_NOTES_MAX = 32,
-    BENCH_PATH = 2200,
-    BENCH_SCRATCH = 512,
-    BENCH_GRACE_MS = 3000
-};
+enum { BENCH_NOTES_MAX = 32, BENCH_PATH = 2200, BENCH_SCRATCH = 512, BENCH_GRACE_MS = 3000 };
 
 /* What `whit bench` was asked for, and where its answers go. */
 struct bench {
@@ -38,12 +32,6 @@ struct bench_scene {
     char name[32];
 };
 
-/* Times in ms, in the order of the runs. */
-struct bench_times {
-    double ms[BENCH_RUNS_MAX];
-    uint32_t count;
-};
-
 struct bench_case {
     const char *label;
     struct bench_scene *scene;
@@ -54,7 +42,7 @@ struct bench_case {
     whit_accel *accel;
     whit_accel_info accel_info;
     whit_renderer *renderer;
-    struct bench_times build, frame;
+    struct sample_runs build, frame;
     whit_stats counted;
     bool has_counts;
 };
@@ -84,14 +72,8 @@ WHIT_CHECK whit_result bench_render(struct bench *bench, struct bench_case *case
 WHIT_CHECK whit_result bench_count(struct bench *bench, struct bench_case *cases, uint32_t count);
 void bench_case_finish(struct bench_case *cases, uint32_t count);
 
-void bench_add(struct bench_times *times, double ms); /* the first BENCH_RUNS_MAX count */
-/* The value below which `share` of the times are, between neighbours by a straight line. */
-double bench_quantile(const struct bench_times *times, double share);
-double bench_median(const struct bench_times *times);
-/* Half the width of the middle half. */
-double bench_spread(const struct bench_times *times);
 /* 1: `a` takes longer; -1: `b` does; 0: not to be distinguished, as sample_compare says. */
-int bench_compare(const struct bench_times *a, const struct bench_times *b);
+int bench_compare(const struct sample_runs *a, const struct sample_runs *b);
 double bench_fps(const struct bench_case *c);
 /* Nodes opened a ray (pairs, leaves, instances), over all rays. */
 double bench_visits(const struct bench_case *c);
@@ -131,7 +113,7 @@ struct table {
 void table_begin(struct table *table, const char *const *heads);
 void table_row(struct table *table);
 void table_cell(struct table *table, const char *format, ...) WHIT_PRINTF(2, 3);
-void table_ms(struct table *table, const struct bench_times *times);
+void table_ms(struct table *table, const struct sample_runs *times);
 /* As Markdown, aligned: the first column to the left, all others to the right. */
 void table_print(const struct table *table);
 

@@ -10,7 +10,7 @@ static const struct setting options[] = {
     {"quick", 0, NULL, "tiny pictures and few runs: shows that it works, no more",
      SETTING_AT_FLAG(struct bench, quick)},
     {"runs", 0, "N", "of each case, 1 to 99 (7; quick: 2)", SETTING_AT_COUNT(struct bench, runs),
-     .min = 1, .max = BENCH_RUNS_MAX},
+     .min = 1, .max = SAMPLE_RUNS_MAX},
     {"json", 0, "FILE", "also write all figures as JSON", SETTING_AT_NAME(struct bench, json)},
     {"scenes", 0, "FOLDER", "where whit's scenes are (./scenes, or beside the program)",
      SETTING_AT_NAME(struct bench, scenes)},

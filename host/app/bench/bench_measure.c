@@ -85,40 +85,16 @@ void bench_end(struct bench *bench)
 
 /* ---- Figures ---- */
 
-void bench_add(struct bench_times *times, double ms)
+int bench_compare(const struct sample_runs *a, const struct sample_runs *b)
 {
-    if (times->count < BENCH_RUNS_MAX)
-        times->ms[times->count++] = ms;
-}
-
-double bench_quantile(const struct bench_times *times, double share)
-{
-    double sorted[BENCH_RUNS_MAX];
-    memcpy(sorted, times->ms, times->count * sizeof *sorted);
-    sample_sort(sorted, times->count);
-    return sample_quantile(sorted, times->count, share);
-}
-
-double bench_median(const struct bench_times *times)
-{
-    return bench_quantile(times, 0.5);
-}
-
-double bench_spread(const struct bench_times *times)
-{
-    return 0.5 * (bench_quantile(times, 0.75) - bench_quantile(times, 0.25));
-}
-
-int bench_compare(const struct bench_times *a, const struct bench_times *b)
-{
-    double differences[BENCH_RUNS_MAX];
+    double differences[SAMPLE_RUNS_MAX];
     uint32_t count = a->count < b->count ? a->count : b->count;
-    return sample_compare(a->ms, b->ms, count, differences, NULL);
+    return sample_compare(a->values, b->values, count, differences, NULL);
 }
 
 double bench_fps(const struct bench_case *c)
 {
-    double ms = bench_median(&c->frame);
+    double ms = sample_of(&c->frame).median;
     return ms > 0.0 ? 1e3 / ms : 0.0;
 }
 
@@ -148,11 +124,11 @@ double bench_triangle_tests(const struct bench_case *c)
     return rays > 0.0 ? triangles / rays : 0.0;
 }
 
-static json_t *times_document(const struct bench_times *times)
+static json_t *times_document(const struct sample_runs *times)
 {
     json_t *object = document_object();
-    document_ms(object, "median", bench_median(times));
-    document_ms(object, "spread", bench_spread(times));
+    document_ms(object, "median", sample_of(times).median);
+    document_ms(object, "spread", sample_of(times).spread);
     document_count(object, "runs", times->count);
     return object;
 }
@@ -212,7 +188,7 @@ static whit_result build_once(void *user, uint32_t index, uint32_t run)
     if (result != WHIT_OK)
         return result;
     whit_accel_get_info(c->accel, &c->accel_info);
-    bench_add(&c->build, c->accel_info.build_ms);
+    sample_add(&c->build, c->accel_info.build_ms);
     bench_step(turns->bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
@@ -248,7 +224,7 @@ static whit_result render_once(struct bench *bench, struct bench_case *c, bool t
         return result;
     whit_renderer_get_stats(c->renderer, &stats);
     if (timed)
-        bench_add(&c->frame, stats.render_ms);
+        sample_add(&c->frame, stats.render_ms);
     bench_step(bench);
     return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }

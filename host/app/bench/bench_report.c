@@ -16,7 +16,7 @@ enum { SHRINK = 20, SHRINK_QUICK = 4 };
 static double estimated_frame_ms(const struct bench *bench, const struct bench_case *small)
 {
     double pixels = (double)bench->width * bench->height;
-    return bench_median(&small->frame) * pixels / ((double)small->width * small->height);
+    return sample_of(&small->frame).median * pixels / ((double)small->width * small->height);
 }
 
 static void row_of_trees(struct section *section, const struct bench_case *c, const char *report,
@@ -55,10 +55,10 @@ static void judge_trees(struct section *section, const struct bench_case *cases)
         "a tree; the report's never finished. Both are without shadows, whose rays by all four "
         "lights "
         "test more than one dispatch of a driver grants.",
-        cases[3].width, cases[3].height, bench_median(&cases[3].frame),
+        cases[3].width, cases[3].height, sample_of(&cases[3].frame).median,
         (double)section->bench->width * section->bench->height /
             ((double)cases[3].width * cases[3].height),
-        estimate_ms / bench_median(&cases[2].frame));
+        estimate_ms / sample_of(&cases[2].frame).median);
 }
 
 static whit_result trees_on_and_off(struct bench *bench)
@@ -112,7 +112,7 @@ static whit_result trees_on_and_off(struct bench *bench)
 static void judge_builds(struct section *section, const struct bench_case *cases)
 {
     const struct bench_case *binned = &cases[0], *sweep = &cases[1];
-    double binned_ms = bench_median(&binned->build), sweep_ms = bench_median(&sweep->build);
+    double binned_ms = sample_of(&binned->build).median, sweep_ms = sample_of(&sweep->build).median;
     section_say(
         section,
         "Every position, sorted once, takes %.1f times as long as 7 bins; summed up anew for each "

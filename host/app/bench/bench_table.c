@@ -34,15 +34,15 @@ static int decimals_for(double value)
     return value < 10.0 ? 2 : value < 100.0 ? 1 : 0;
 }
 
-void table_ms(struct table *table, const struct bench_times *times)
+void table_ms(struct table *table, const struct sample_runs *times)
 {
     if (times->count == 0) {
         table_cell(table, "-");
         return;
     }
-    double median = bench_median(times);
+    double median = sample_of(times).median;
     table_cell(table, "%.*f ± %.*f", decimals_for(median), median, decimals_for(median),
-               bench_spread(times));
+               sample_of(times).spread);
 }
 
 /* The number of characters in a UTF-8 text. */

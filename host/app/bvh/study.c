@@ -9,16 +9,6 @@ const char *study_kind_name(enum study_kind kind)
     return names[kind];
 }
 
-struct study_spread study_spread_of(double *values, uint32_t count)
-{
-    sample_sort(values, count);
-    return (struct study_spread){
-        .median = sample_quantile(values, count, 0.5),
-        .min = values[0],
-        .max = values[count - 1],
-    };
-}
-
 whit_result study_step(struct study *study)
 {
     ++study->steps_done;
@@ -93,7 +83,7 @@ whit_result study_build(struct study *study)
     whit_result result = sample_in_turns(lists, runs, build_list, &building);
     for (uint32_t list = 0; result == WHIT_OK && list < lists; ++list)
         study->rows[list % study->row_count].build_ms[list / study->row_count] =
-            study_spread_of(&times_ms[(size_t)list * runs], runs);
+            sample_sum_up(&times_ms[(size_t)list * runs], runs);
     free(times_ms);
     return result;
 }

@@ -3,15 +3,10 @@
 #define APP_BVH_STUDY_H
 
 #include "app/job.h"
-#include "cost/sample.h"
+#include "base/sample.h"
 
 enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
 enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
-
-/* The median, the least and the greatest figure of the runs. */
-struct study_spread {
-    double median, min, max;
-};
 
 struct study_row {
     whit_accel_params trees; /* of which only what --build names is read */
@@ -20,7 +15,7 @@ struct study_row {
     whit_renderer *renderer; /* NULL: not traced */
     whit_accel_info info;
     whit_accel_report report;
-    struct study_spread build_ms[STUDY_THREADS_MAX], mrays_per_s[STUDY_KINDS];
+    struct sample_summary build_ms[STUDY_THREADS_MAX], mrays_per_s[STUDY_KINDS];
 };
 
 struct study_rays {
@@ -44,8 +39,6 @@ struct study {
 
 /* The name of a kind: "primary". */
 const char *study_kind_name(enum study_kind kind);
-/* Sorts `values`. */
-struct study_spread study_spread_of(double *values, uint32_t count);
 /* One of study->steps is done; an error when the time is over or the user stopped it. */
 whit_result study_step(struct study *study);
 

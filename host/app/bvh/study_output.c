@@ -93,7 +93,7 @@ static void print_bins(const char *title, const uint64_t *bins, uint32_t count)
 static void print_rates(const struct study *study, const struct study_row *row)
 {
     for (uint32_t kind = 0; study->traced && kind < STUDY_KINDS; ++kind) {
-        const struct study_spread *rate = &row->mrays_per_s[kind];
+        const struct sample_summary *rate = &row->mrays_per_s[kind];
         if (study->rays[kind].count)
             printf("  %-9s%.3f Mray/s (%.3f to %.3f), %u rays\n",
                    study_kind_name((enum study_kind)kind), rate->median, rate->min, rate->max,
@@ -146,14 +146,14 @@ static int print_text(const struct study *study)
 
 /* ---- JSON ---- */
 
-static void put_spread(json_t *object, const struct study_spread *spread)
+static void put_spread(json_t *object, const struct sample_summary *spread)
 {
     document_number(object, "median", spread->median);
     document_number(object, "min", spread->min);
     document_number(object, "max", spread->max);
 }
 
-static void put_times(json_t *object, const struct study_spread *spread_ms)
+static void put_times(json_t *object, const struct sample_summary *spread_ms)
 {
     document_ms(object, "median", spread_ms->median);
     document_ms(object, "min", spread_ms->min);

@@ -109,7 +109,7 @@ static whit_result trace_runs(struct tracing *tracing, uint32_t kind)
     whit_result result = sample_in_turns(study->row_count, study->run_count, trace_run, tracing);
     for (uint32_t row = 0; result == WHIT_OK && row < study->row_count; ++row)
         study->rows[row].mrays_per_s[kind] =
-            study_spread_of(rates_of(tracing, kind, row), study->run_count);
+            sample_sum_up(rates_of(tracing, kind, row), study->run_count);
     return result;
 }
 

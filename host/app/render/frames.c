@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/commands.h"
-#include "cost/sample.h"
+#include "base/sample.h"
 
 enum { FRAME_MAX = 1000000000 };
 
@@ -197,12 +197,6 @@ static whit_result keep_times(struct sequence *sequence, const struct frame_time
     return WHIT_OK;
 }
 
-static double median_of(double *values, uint32_t count)
-{
-    sample_sort(values, count);
-    return sample_quantile(values, count, 0.5);
-}
-
 static whit_result find_medians(struct sequence *sequence)
 {
     uint32_t count = sequence->count;
@@ -221,10 +215,10 @@ static whit_result find_medians(struct sequence *sequence)
         render[i] = sequence->each[i].render_ms;
         save[i] = sequence->each[i].save_ms;
     }
-    sequence->median = (struct frame_times){.instances_ms = median_of(instances, count),
-                                            .upload_ms = median_of(upload, count),
-                                            .render_ms = median_of(render, count),
-                                            .save_ms = median_of(save, count)};
+    sequence->median = (struct frame_times){.instances_ms = sample_sum_up(instances, count).median,
+                                            .upload_ms = sample_sum_up(upload, count).median,
+                                            .render_ms = sample_sum_up(render, count).median,
+                                            .save_ms = sample_sum_up(save, count).median};
     free(values);
     return WHIT_OK;
 }

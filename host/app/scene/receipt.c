@@ -45,7 +45,7 @@ static whit_result compare_pictures(whit_renderer *a, whit_renderer *b, struct r
 
 static uint32_t rounds_for(const struct receipt *receipt, uint32_t effects)
 {
-    double pair_ms = 2.0 * fmax(bench_median(&receipt->frame), 0.1);
+    double pair_ms = 2.0 * fmax(sample_of(&receipt->frame).median, 0.1);
     double rounds = MEASURE_MS / (effects ? effects : 1) / pair_ms;
     return rounds < ROUNDS_MIN ? ROUNDS_MIN : rounds > ROUNDS_MAX ? ROUNDS_MAX : (uint32_t)rounds;
 }
@@ -63,8 +63,8 @@ static whit_result price_once(void *user, uint32_t index, uint32_t round)
     whit_result result = time_frame(pair->renderers[index], &pair->ms[index]);
     bool complete = index == (round % 2 ? 0 : 1);
     if (result == WHIT_OK && complete)
-        bench_add(&pair->row->cost,
-                  pair->row->compiled ? pair->ms[0] - pair->ms[1] : pair->ms[1] - pair->ms[0]);
+        sample_add(&pair->row->cost,
+                   pair->row->compiled ? pair->ms[0] - pair->ms[1] : pair->ms[1] - pair->ms[0]);
     return result;
 }
 
@@ -120,7 +120,7 @@ static whit_result time_base(struct receipt *receipt, whit_renderer *base)
     whit_result result = time_frame(base, &ms); /* compiles, and warms up */
     for (int i = 0; result == WHIT_OK && i < ROUNDS_MIN; ++i) {
         result = time_frame(base, &ms);
-        bench_add(&receipt->frame, ms);
+        sample_add(&receipt->frame, ms);
     }
     return result;
 }

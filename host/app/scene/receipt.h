@@ -2,8 +2,8 @@
 #ifndef APP_SCENE_RECEIPT_H
 #define APP_SCENE_RECEIPT_H
 
-#include "app/bench/bench.h"
 #include "app/commands.h"
+#include "base/sample.h"
 
 /* What the receipt says of one effect. */
 struct receipt_row {
@@ -11,7 +11,7 @@ struct receipt_row {
     bool called, compiled;
     bool priced; /* what follows was measured */
     /* Per pair of runs: the time of a frame with the effect less that of one without it. */
-    struct bench_times cost;
+    struct sample_runs cost;
     /* What the picture has by it: pixels with any difference, largest one of a channel. */
     uint64_t pixels;
     double largest;
@@ -21,7 +21,7 @@ enum { RECEIPT_ROWS_MAX = 64 };
 struct receipt {
     const struct job *job;
     whit_kernel_info kernel;
-    struct bench_times frame;
+    struct sample_runs frame;
     uint32_t row_count;
     struct receipt_row rows[RECEIPT_ROWS_MAX];
 };

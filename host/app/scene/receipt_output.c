@@ -16,8 +16,8 @@ static void print_head(const struct receipt *receipt)
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
            receipt->kernel.general_instructions, receipt->kernel.bindings,
            receipt->kernel.general_bindings);
-    printf("  frame     %.2f ms (%.2f to %.2f)\n\n", bench_median(&receipt->frame),
-           bench_quantile(&receipt->frame, 0.25), bench_quantile(&receipt->frame, 0.75));
+    const struct sample_summary frame = sample_of(&receipt->frame);
+    printf("  frame     %.2f ms (%.2f to %.2f)\n\n", frame.median, frame.low, frame.high);
 }
 
 static void print_price(const struct receipt_row *row)
@@ -34,8 +34,8 @@ static void print_price(const struct receipt_row *row)
         snprintf(loss, sizeof loss, "nothing in this picture");
     else if (row->pixels)
         snprintf(loss, sizeof loss, "NOT THE SAME PICTURE");
-    printf("%+9.2f %+9.2f %+9.2f  %-32s", bench_median(&row->cost),
-           bench_quantile(&row->cost, 0.25), bench_quantile(&row->cost, 0.75), loss);
+    const struct sample_summary cost = sample_of(&row->cost);
+    printf("%+9.2f %+9.2f %+9.2f  %-32s", cost.median, cost.low, cost.high, loss);
 }
 
 int receipt_print_text(const struct receipt *receipt)
@@ -54,12 +54,13 @@ int receipt_print_text(const struct receipt *receipt)
     return cli_finish_stdout(EXIT_FINE);
 }
 
-static json_t *times_document(const struct bench_times *times)
+static json_t *times_document(const struct sample_runs *times)
 {
+    const struct sample_summary ms = sample_of(times);
     json_t *object = document_object();
-    document_ms(object, "median", bench_median(times));
-    document_ms(object, "low", bench_quantile(times, 0.25));
-    document_ms(object, "high", bench_quantile(times, 0.75));
+    document_ms(object, "median", ms.median);
+    document_ms(object, "low", ms.low);
+    document_ms(object, "high", ms.high);
     document_count(object, "rounds", times->count);
     return object;
 }

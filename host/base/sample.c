@@ -1,4 +1,4 @@
-#include "cost/sample.h"
+#include "base/sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,6 +24,40 @@ double sample_quantile(const double *sorted, uint32_t count, double share)
     uint32_t below = (uint32_t)at;
     uint32_t above = below + 1 < count ? below + 1 : below;
     return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+}
+
+struct sample_summary sample_sum_up(double *values, uint32_t count)
+{
+    sample_sort(values, count);
+    double low = sample_quantile(values, count, 0.25), high = sample_quantile(values, count, 0.75);
+    return (struct sample_summary){
+        .median = sample_quantile(values, count, 0.5),
+        .low = low,
+        .high = high,
+        .spread = 0.5 * (high - low),
+        .min = sample_quantile(values, count, 0.0),
+        .max = sample_quantile(values, count, 1.0),
+    };
+}
+
+void sample_add(struct sample_runs *runs, double value)
+{
+    if (runs->count < SAMPLE_RUNS_MAX)
+        runs->values[runs->count++] = value;
+}
+
+struct sample_summary sample_of(const struct sample_runs *runs)
+{
+    struct sample_runs sorted = *runs;
+    return sample_sum_up(sorted.values, sorted.count);
+}
+
+struct sample_runs sample_ratio(const struct sample_runs *a, const struct sample_runs *b)
+{
+    struct sample_runs ratio = {0};
+    for (uint32_t i = 0; i < a->count && i < b->count; ++i)
+        sample_add(&ratio, b->values[i] > 0.0 ? a->values[i] / b->values[i] : 0.0);
+    return ratio;
 }
 
 /* The probability that exactly `heads` of `count` tosses of a coin come up heads. */

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "cost/sample.h"
+#include "base/sample.h"
 #include "random_fixture.h"
 
 static void quantiles_are_between_neighbours(void **state)
@@ -22,6 +22,26 @@ static void quantiles_are_between_neighbours(void **state)
     assert_true(sample_quantile(values, 4, 0.0) == 1.0 && sample_quantile(values, 4, 1.0) == 4.0);
     assert_true(sample_quantile(values, 4, 0.5) == 2.5 && sample_quantile(values, 4, 0.25) == 1.75);
     assert_true(sample_quantile(values, 3, 0.5) == 2.0 && sample_quantile(values, 0, 0.5) == 0.0);
+}
+
+static void runs_are_summed_up(void **state)
+{
+    (void)state;
+    static const double times[] = {9.0, 1.0, 5.0, 2.0, 3.0};
+    struct sample_runs a = {0}, b = {0};
+    for (int i = 0; i < 5; ++i) {
+        sample_add(&a, times[i]);
+        sample_add(&b, i == 4 ? 0.0 : 2.0 * times[i]);
+    }
+    const struct sample_summary of = sample_of(&a);
+    assert_true(of.median == 3.0 && of.low == 2.0 && of.high == 5.0 && of.spread == 1.5);
+    assert_true(of.min == 1.0 && of.max == 9.0 && a.values[0] == 9.0);
+    const struct sample_runs ratio = sample_ratio(&a, &b);
+    assert_int_equal(ratio.count, 5);
+    assert_true(ratio.values[0] == 0.5 && ratio.values[3] == 0.5 && ratio.values[4] == 0.0);
+    for (int i = 0; i < SAMPLE_RUNS_MAX; ++i)
+        sample_add(&a, 1.0);
+    assert_int_equal(a.count, SAMPLE_RUNS_MAX);
 }
 
 /* Ranks and coverages of sums of binomial coefficients in whole numbers; those of 10, 20, 30, 50
@@ -175,6 +195,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quantiles_are_between_neighbours),
+        cmocka_unit_test(runs_are_summed_up),
         cmocka_unit_test(ranks_are_those_of_the_binomial),
         cmocka_unit_test(intervals_hold_the_median),
         cmocka_unit_test(equal_things_are_rarely_told_apart),

@@ -1,14 +1,33 @@
 /* Figures that were measured several times: what they say, and whether two of them differ. */
-#ifndef COST_SAMPLE_H
-#define COST_SAMPLE_H
+#ifndef BASE_SAMPLE_H
+#define BASE_SAMPLE_H
 
-#include "api/whit.h"
+#include "base/whit_base.h"
 
 /* Upwards; none of the values may be NAN. */
 void sample_sort(double *values, uint32_t count);
 /* The value below which `share` of the sorted values are, between neighbours by a straight line; 0
    when there are none. */
 double sample_quantile(const double *sorted, uint32_t count, double share);
+
+/* What is printed of repeated runs. All 0 when there are none. */
+struct sample_summary {
+    double median, low, high, spread; /* low, high: quartiles; spread: half of what is between */
+    double min, max;
+};
+struct sample_summary sample_sum_up(double *values, uint32_t count); /* sorts them */
+
+/* Figures of one thing, in the order of its runs, which those of another one in the same turns are
+   held against. */
+enum { SAMPLE_RUNS_MAX = 99 };
+struct sample_runs {
+    double values[SAMPLE_RUNS_MAX];
+    uint32_t count;
+};
+void sample_add(struct sample_runs *runs, double value); /* the first SAMPLE_RUNS_MAX count */
+struct sample_summary sample_of(const struct sample_runs *runs);
+/* The ratio a / b of each run of `a` and the run of `b` in the same turn; 0 where b is 0. */
+struct sample_runs sample_ratio(const struct sample_runs *a, const struct sample_runs *b);
 
 /* The median, and an interval that holds the true one in at least 95 of 100 such measurements,
    whatever the distribution: from the k-th value to the k-th last, where fewer than k of `count`
