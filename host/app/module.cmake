@@ -2,9 +2,7 @@
 add_executable(whit_program
   app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/ends.c app/job.c app/main.c
   app/page.c app/plot.c app/settings_json.c
-  app/bench/bench_builders.c app/bench/bench_child.c app/bench/bench_command.c
-  app/bench/bench_measure.c app/bench/bench_report.c app/bench/bench_section.c
-  app/bench/bench_table.c
+  app/bench/bench_command.c app/bench/request.c
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
   app/bvh/study_trace.c
   app/compare/compare_command.c
@@ -25,16 +23,13 @@ add_library(whit_program_needs INTERFACE)
 target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 if(WHIT_VIEWER)
-  target_sources(whit_program PRIVATE app/bench/bench_view.c app/view/state_file.c app/view/view_command.c)
+  target_sources(whit_program PRIVATE app/view/state_file.c app/view/view_command.c)
   target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
     WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
   # In front of the library, whose modules they call.
   target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_view> glfw
     PkgConfig::IMGUI stdc++)
   add_dependencies(whit_program_needs whit_view)
-endif()
-if(WHIT_BENCH) # with what tools/CMakeLists.txt adds
-  target_compile_definitions(whit_program PRIVATE WHIT_BENCH)
 endif()
 # In front of the library, which it calls.
 target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_settings>

@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit bench`: the list, the report's tables on small pictures, refusals, Ctrl+C.
+# `whit bench`: the list, the report's tables and those of builders on small pictures, refusals, Ctrl+C.
 . "$(dirname "$0")/common.sh"
 needs jq
 mkdir "$OUT/files" "$OUT/tmp"
@@ -16,10 +16,10 @@ refuse 2 "no runs" "from 1 to 99" bench report --runs 0
 J=$OUT/files/figures.json
 expect 0 "the report, quick" bench report --quick --scenes "$SCENES" --json "$J"
 check "says nothing on a pipe" test ! -s "$OUT/stderr"
-check "six tables" test "$(grep -c '^### ' "$OUT/stdout")" -eq 6
+check "three tables" test "$(grep -c '^### ' "$OUT/stdout")" -eq 3
 check "is said to be quick" grep -q "Quick run" "$OUT/stdout"
 for row in "cube, no tree" "34k, no tree .*estimated" "sweep .*249.8" \
-    "distance .*33 " "sign .*28 " "binned:7 .*0.328" "binned:2" "spatial"; do
+    "distance .*33 " "sign .*28 " "binned:7 .*0.328"; do
     check "a row of $row" grep -q "^| $row" "$OUT/stdout"
 done
 check "the estimate of 34k is explained" grep -q "34k without a tree is estimated" "$OUT/stdout"
@@ -34,11 +34,18 @@ done
 saved=$(awk -F'|' '/^\| basic/ { b = $6 } /^\| distance/ { d = $6 } /^\| sign/ { s = $6 }
     END { print (b > 0 && d + 0 < b + 0 && s + 0 < b + 0) }' "$OUT/stdout")
 check "basic opens the most nodes" test "$saved" = 1
+
 # Spatial splits: more references than triangles, and fewer visits where these are long and thin.
-split=$(awk -F'|' '/^### strands/ { here = 1 } /^### atrium/ { here = 0 }
-    here && /^\| sweep / { n = $4; v = $6 } here && /^\| spatial / { m = $4; w = $6 }
-    END { print (n == 20002 && m + 0 > n + 0 && w + 0 < v + 0) }' "$OUT/stdout")
-check "strands: more references, fewer visits" test "$split" = 1
+B=$OUT/files/builders.json
+expect 0 "builders, quick" bench build "$SCENES/strands.json" --quick --runs 1 --json "$B"
+check "says nothing on a pipe" test ! -s "$OUT/stderr"
+check "strands: more references, fewer visits" jq -e '.bench == "build" and (.tables[0] | .table == "build" and
+    .model == "strands.json" and (.rows | map({(.case): .}) | add | .sweep.references == 20002 and
+    .spatial.references > 20002 and .spatial.visits_per_ray < .sweep.visits_per_ray))' "$B"
+check "time and memory of each" jq -e '.tables[0].rows | length > 2 and all(.one_thread_ms.median > 0 and
+    .build_ms.runs == 1 and .bytes_per_triangle > 40)' "$B"
+check "Embree, or why not" grep -q "^- Beside Embree\|^- Left out: Embree" "$OUT/stdout"
+refuse 2 "no triangles" "balls.json: has no triangles" bench build "$SCENES/balls.json" --quick
 check "no scratch files stay" is_empty "$OUT/tmp"
 
 "$WHIT" bench report --runs 99 --scenes "$SCENES" --json "$OUT/files/never" \
@@ -49,5 +56,15 @@ kill -INT $pid
 wait $pid
 status=$?
 check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
-check "and no file" test "$(ls -A "$OUT/files")" = figures.json
+check "and no file" test ! -e "$OUT/files/never"
+check "no scratch files stay" is_empty "$OUT/tmp"
+
+# The work is done by a program beside whit, or of one that is installed.
+mkdir -p "$OUT/alone/bin" "$OUT/alone/libexec/whit"
+cp "$WHIT" "$OUT/alone/bin/whit"
+PEERED=$WHIT WHIT=$OUT/alone/bin/whit
+refuse 2 "no whit-bench" "neither beside this program nor in ../libexec/whit" bench report
+expect 0 "which is no error of the list" bench
+cp "$(dirname "$PEERED")/whit-bench" "$OUT/alone/libexec/whit/"
+refuse 2 "installed it is found" "nowhere/cube.json" bench report --quick --scenes "$OUT/nowhere"
 finish

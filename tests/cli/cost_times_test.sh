@@ -4,7 +4,7 @@
 # WHIT_TEST_WRONG is wrong.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/cost_common.sh"
-WHIT=$WRONG
+PLAIN=$WHIT WHIT=$WRONG
 WHIT_TEST_CLOCK=real
 export WHIT_TEST_CLOCK
 C=$OUT/files/right.csv
@@ -25,6 +25,7 @@ check "about as much as it is" holds "0.05 < $slowed - $right && $slowed - $righ
 check "and in no other row" test "$(value "$D" depth 4 verdict)" != 1
 unset WHIT_TEST_WRONG
 
+WHIT=$PLAIN # which has whit-bench beside it
 expect 0 "the report, quick" bench report --quick --scenes "$SCENES" --json "$OUT/files/figures.json"
 slow=$(awk -F'|' '/^\| 34k, tree/ { tree = $5 } /^\| 34k, no tree/ { none = $5 }
     END { print (none + 0 > 2 * (tree + 0)) }' "$OUT/stdout")

@@ -12,7 +12,7 @@ J=$OUT/files/figures.json
 expect 0 "the viewer, quick" bench view --quick --scenes "$SCENES" --json "$J"
 check "says nothing on a pipe" test ! -s "$OUT/stderr"
 rows=$(jq -r '.tables[0].rows[] | "\(.scene), \(.case)"' "$J")
-for row in "cube, full" "34k, with shadows" "34k, full" "54k, full"; do
+for row in "cube, full" "34k, with shadows" "34k, full" "54k, full" "default, full"; do
     check "a row of $row" grep -q "^| $row" "$OUT/stdout"
     check "and one as JSON" test "$(echo "$rows" | grep -cxF "$row")" -eq 1
 done
@@ -35,6 +35,11 @@ done
 every "with gaps_over_100_ms" '.moving | has("gaps_over_100_ms")'
 every "a first picture, whole ones" \
     '.first_ms > 0 and .whole.whole_ms.count > 0 and .whole.whole_ms.median > 0'
+check "what it must reach" holds '.tables[1].table == "view_goals" and [.tables[1].rows[] | [.viewer, .must, .aim]] ==
+    [["34k, whole pictures", 8, 17], ["default moving, size 1/N", 6, 4], ["default moving", 30, 30]]'
+check "with verdicts" holds '.tables[1].rows | all((.figure | type == "number") and
+    .verdict == if (.more_is_better and .figure >= .must) or (.more_is_better | not) and .figure <= .must
+        then "held" else "short" end)'
 if [ "$FIGURES" = figures ]; then
     every "pictures while it moves, and who waited for them" \
         '.moving.quick_ms.median > 0 and .moving.latency_ms.median > 0'

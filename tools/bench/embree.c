@@ -8,8 +8,10 @@
                                  stream; `none`: not in this build of Embree. back: from the end of
                                  each ray, which has one, to its origin. coherent: Embree is told
                                  that neighbours go the same way
-       hits FILE                 `hits COUNT`: of the last trace, written; of them t, primitive and
-                                 instance mean something, where any will do only whether it is one
+       build QUALITY THREADS     `built WALL_MS BYTES`: a tree of low, medium or high quality, and
+   the most memory that it held by Embree's own monitor hits FILE                 `hits COUNT`: of
+   the last trace, written; of them t, primitive and instance mean something, where any will do only
+   whether it is one
 
    The first line that it prints is `embree VERSION THREADS`. What goes wrong is said on standard
    error, and ends it with exit code 2. Scenes are ROBUST, of medium quality. */
@@ -84,17 +86,18 @@ static void *read_records(const char *path, size_t record, uint64_t *count)
 
 /* ---- The scene ---- */
 
-static void build(struct peer *peer)
+static RTCDevice open_device(int threads)
 {
     char config[32];
-    snprintf(config, sizeof config, "threads=%d", peer->threads);
-    peer->device = rtcNewDevice(config);
-    peer->wide =
-        rtcGetDeviceProperty(peer->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    peer->scene = rtcNewScene(peer->device);
-    rtcSetSceneFlags(peer->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(peer->scene, RTC_BUILD_QUALITY_MEDIUM);
-    RTCGeometry geometry = rtcNewGeometry(peer->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    snprintf(config, sizeof config, "threads=%d", threads);
+    return rtcNewDevice(config);
+}
+
+/* All triangles, not committed yet. */
+static RTCScene make_scene(const struct peer *peer, RTCDevice device, enum RTCBuildQuality quality)
+{
+    RTCScene scene = rtcNewScene(device);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     size_t count = (size_t)peer->triangle_count;
     float *positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                RTC_FORMAT_FLOAT3, 12, 3 * count);
@@ -107,12 +110,56 @@ static void build(struct peer *peer)
         for (size_t k = 0; k < 3; ++k)
             indices[3 * i + k] = (uint32_t)(3 * i + k);
     }
+    rtcSetSceneBuildQuality(scene, quality);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(peer->scene, geometry);
+    rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
+    return scene;
+}
+
+static void build(struct peer *peer)
+{
+    peer->device = open_device(peer->threads);
+    peer->wide =
+        rtcGetDeviceProperty(peer->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    peer->scene = make_scene(peer, peer->device, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(peer->scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(peer->scene);
     if (rtcGetDeviceError(peer->device) != RTC_ERROR_NONE)
         fail("Embree cannot build the scene");
+}
+
+/* Threads of Embree's call it. */
+struct memory {
+    _Atomic int64_t now, peak;
+};
+
+static bool on_memory(void *user, ssize_t bytes, bool post)
+{
+    struct memory *memory = user;
+    int64_t now = atomic_fetch_add(&memory->now, bytes) + bytes, peak = memory->peak;
+    (void)post;
+    while (now > peak && !atomic_compare_exchange_weak(&memory->peak, &peak, now))
+        ;
+    return true;
+}
+
+static void build_anew(const struct peer *peer, const char *quality, int threads)
+{
+    static struct memory memory;
+    enum RTCBuildQuality level = strcmp(quality, "low") == 0    ? RTC_BUILD_QUALITY_LOW
+                                 : strcmp(quality, "high") == 0 ? RTC_BUILD_QUALITY_HIGH
+                                                                : RTC_BUILD_QUALITY_MEDIUM;
+    RTCDevice device = open_device(threads);
+    rtcSetDeviceMemoryMonitorFunction(device, on_memory, &memory);
+    RTCScene scene = make_scene(peer, device, level);
+    int64_t before = memory.peak = memory.now;
+    double wall = clock_of(CLOCK_MONOTONIC);
+    rtcCommitScene(scene);
+    printf("built %.6f %lld\n", clock_of(CLOCK_MONOTONIC) - wall,
+           (long long)(memory.peak - before));
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
 }
 
 /* ---- Rays ---- */
@@ -298,6 +345,10 @@ static void obey(struct peer *peer, char *line)
     }
     if (word && strcmp(word, "hits") == 0 && argument) {
         write_hits(peer, argument);
+        return;
+    }
+    if (word && strcmp(word, "build") == 0 && last && atoi(last) > 0) {
+        build_anew(peer, argument, atoi(last));
         return;
     }
     for (int way = 0; word && strcmp(word, "trace") == 0 && order && way < WAYS; ++way) {

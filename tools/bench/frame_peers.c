@@ -2,25 +2,25 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "frame.h"
+#include "bench/frame.h"
 
 /* Whether `program --version` runs, and its line with `word` into `line`. */
-static bool ask_version(const struct peers *peers, const char *program, const char *word,
+static bool ask_version(const struct bench *bench, const char *program, const char *word,
                         char line[128])
 {
-    char path[BENCH_PATH];
-    const char *const arguments[] = {program, "--version", NULL};
-    const struct bench_child child = {.program = program,
-                                      .arguments = arguments,
-                                      .folder = peers->folder,
-                                      .is_tried = true,
-                                      .out = "version",
-                                      .err = "version.err"};
-    bool runs = bench_child_run(&child, NULL) == WHIT_OK;
-    line[0] = 0;
     static const char *const files[] = {"version", "version.err"};
+    const char *const arguments[] = {program, "--version", NULL};
+    struct process process = {.program = program,
+                              .arguments = arguments,
+                              .folder = bench->folder,
+                              .is_tried = true,
+                              .out = files[0],
+                              .err = files[1]};
+    bool runs = process_run(&process, NULL) == WHIT_OK;
+    line[0] = 0;
     for (size_t i = 0; runs && !line[0] && i < 2; ++i) {
-        snprintf(path, sizeof path, "%s/%s", peers->folder, files[i]);
+        char path[BENCH_PATH];
+        bench_file(bench, files[i], path);
         FILE *from = fopen(path, "r");
         while (from && fgets(line, 128, from) && strncmp(line, word, strlen(word)) != 0)
             line[0] = 0;
@@ -31,58 +31,48 @@ static bool ask_version(const struct peers *peers, const char *program, const ch
     return line[0] != 0;
 }
 
-static void find_pov(struct peers *peers)
+static void find_pov(struct peers *peers, struct table *table)
 {
-    struct figures *figures = peers->figures;
+    static const char pictures[] = "glass, wine, flake, hollow, mesh";
     char path[BENCH_PATH], line[128];
-    whit_result found = bench_find(figures->section.bench, "34k", path, sizeof path);
+    whit_result found = bench_find(table->bench, "34k", path);
     char *slash = found == WHIT_OK ? strrchr(path, '/') : NULL;
     if (slash)
         *slash = 0;
     snprintf(peers->pov_scenes, sizeof peers->pov_scenes, "%.1900s/../tests/peers/pov/scenes.sh",
              slash ? path : ".");
     if (access(peers->pov_scenes, R_OK) != 0) {
-        figures_leave_out(figures, "glass, wine, flake, hollow, mesh",
-                          "tests/peers/pov/scenes.sh is not beside whit's scenes");
-    } else if (!ask_version(peers, "povray", "POV-Ray", line)) {
-        figures_leave_out(figures, "glass, wine, flake, hollow, mesh",
-                          "povray is not installed (Debian: povray)");
+        table_leave_out(table, pictures, "tests/peers/pov/scenes.sh is not beside whit's scenes");
+    } else if (!ask_version(table->bench, "povray", "POV-Ray", line)) {
+        table_leave_out(table, pictures, "povray is not installed (Debian: povray)");
     } else {
         peers->has_pov = true;
-        section_say(&figures->section, "Beside %s.", cli_shown(line));
+        table_say(table, "Beside %s.", cli_shown(line));
     }
 }
 
-whit_result peers_find_against(struct peers *peers)
+whit_result peers_find_against(struct peers *peers, struct table *table)
 {
-    struct bench *bench = peers->figures->section.bench;
+    const char *against = table->bench->ask.against;
     char line[128];
-    if (bench->against) {
-        char *whole = strchr(bench->against, '/') ? realpath(bench->against, NULL) : NULL;
-        snprintf(peers->against, sizeof peers->against, "%s", whole ? whole : bench->against);
-        free(whole);
-        if (!ask_version(peers, peers->against, "whit ", line)) {
-            cli_error("--against %s: is no whit that runs", cli_shown(bench->against));
-            return WHIT_ERROR_INPUT;
-        }
-        bench->against = peers->against;
-    } else {
-        figures_leave_out(peers->figures, "another whit", "--against PROGRAM names it");
+    if (!against) {
+        table_leave_out(table, "another whit", "--against PROGRAM names it");
+        return WHIT_OK;
     }
-    return WHIT_OK;
+    char *whole = strchr(against, '/') ? realpath(against, NULL) : NULL;
+    snprintf(peers->against, sizeof peers->against, "%s", whole ? whole : against);
+    free(whole);
+    if (ask_version(table->bench, peers->against, "whit ", line))
+        return WHIT_OK;
+    cli_error("--against %s: is no whit that runs", cli_shown(against));
+    return WHIT_ERROR_INPUT;
 }
 
-whit_result frame_find_peers(struct peers *peers)
+void peers_find(struct peers *peers, struct table *table, bool wants_pov)
 {
-    whit_result result = peers_find_against(peers);
-    if (result != WHIT_OK)
-        return result;
     peers->has_embree = peer_is_here();
     if (!peers->has_embree)
-        figures_leave_out(peers->figures, "Embree",
-                          "`whit-embree` is not beside this program; the build makes it where "
-                          "Embree 3 is installed (Debian: libembree-dev)");
-    if (peers->wants_pov)
-        find_pov(peers);
-    return WHIT_OK;
+        table_leave_out(table, "Embree", peer_why_not);
+    if (wants_pov)
+        find_pov(peers, table);
 }

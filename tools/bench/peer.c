@@ -1,17 +1,15 @@
 #define _GNU_SOURCE
-#include "peer.h"
+#include "bench/peer.h"
 
 #include <errno.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
+const char peer_why_not[] =
+    "`whit-embree` is not beside whit-bench; the build makes it where Embree "
+    "3 is installed (Debian: libembree-dev)";
 
 static bool find_program(char *path, size_t bytes)
 {
@@ -32,10 +30,10 @@ bool peer_is_here(void)
 
 /* ---- Files ---- */
 
-static whit_result open_in(const char *folder, const char *name, FILE **to)
+static whit_result open_in(const struct bench *bench, const char *name, FILE **to)
 {
     char path[BENCH_PATH];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    bench_file(bench, name, path);
     *to = fopen(path, "wb");
     if (*to)
         return WHIT_OK;
@@ -43,12 +41,12 @@ static whit_result open_in(const char *folder, const char *name, FILE **to)
     return WHIT_ERROR_OUTPUT;
 }
 
-static whit_result close_whole(FILE *to, const char *folder, const char *name)
+static whit_result close_whole(FILE *to, const char *name)
 {
     bool whole = !ferror(to);
     if (fclose(to) == 0 && whole)
         return WHIT_OK;
-    cli_error("%s/%s: cannot write: %s", folder, name, strerror(errno));
+    cli_error("%s: cannot write: %s", name, strerror(errno));
     return WHIT_ERROR_OUTPUT;
 }
 
@@ -57,26 +55,27 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
     return fwrite(triangle, sizeof *triangle, 1, user) == 1 && !cli_cancel;
 }
 
-whit_result peer_write_triangles(const whit_scene *scene, const char *folder, const char *name)
+static whit_result write_triangles(const struct bench *bench, const whit_scene *scene,
+                                   const char *name)
 {
     FILE *to;
-    whit_result result = open_in(folder, name, &to);
+    whit_result result = open_in(bench, name, &to);
     if (result != WHIT_OK)
         return result;
     result = whit_scene_triangles(scene, 0.0, write_triangle, to);
-    whit_result closed = close_whole(to, folder, name);
+    whit_result closed = close_whole(to, name);
     return closed != WHIT_OK ? closed : result;
 }
 
-whit_result peer_write_rays(const char *folder, const char *name, const whit_ray *rays,
+whit_result peer_write_rays(const struct bench *bench, const char *name, const whit_ray *rays,
                             uint64_t count)
 {
     FILE *to;
-    whit_result result = open_in(folder, name, &to);
+    whit_result result = open_in(bench, name, &to);
     if (result != WHIT_OK)
         return result;
     fwrite(rays, sizeof *rays, (size_t)count, to);
-    return close_whole(to, folder, name);
+    return close_whole(to, name);
 }
 
 /* ---- The program ---- */
@@ -84,16 +83,10 @@ whit_result peer_write_rays(const char *folder, const char *name, const whit_ray
 /* Waits for its end, which may be on its way already. */
 static whit_result lost(struct peer *peer)
 {
-    int status = 0;
-    waitpid((pid_t)peer->pid, &status, 0);
-    peer->pid = 0;
-    if (cli_cancel)
-        return WHIT_ERROR_CANCELLED;
-    if (WIFSIGNALED(status))
-        cli_error("`whit-embree` died of signal %d", WTERMSIG(status));
-    else
-        cli_error("`whit-embree` ended with exit code %d", WEXITSTATUS(status));
-    return WHIT_ERROR_FAILED;
+    whit_result result = process_end(&peer->process, NULL);
+    if (result == WHIT_OK)
+        cli_error("`whit-embree` ended too soon");
+    return result == WHIT_OK ? WHIT_ERROR_FAILED : result;
 }
 
 static whit_result read_answer(struct peer *peer, char *answer, size_t bytes, const char *word)
@@ -119,45 +112,29 @@ static whit_result WHIT_PRINTF(4, 5)
     return read_answer(peer, answer, 128, word);
 }
 
-static whit_result spawn(struct peer *peer, int theirs, const char *folder, const char *triangles)
-{
-    char path[BENCH_PATH];
-    posix_spawn_file_actions_t actions;
-    pid_t pid;
-    if (!find_program(path, sizeof path)) {
-        cli_error("%s: is not there", path);
-        return WHIT_ERROR_INPUT;
-    }
-    const char *const arguments[] = {"whit-embree", triangles, NULL};
-    posix_spawn_file_actions_init(&actions);
-    int failed = posix_spawn_file_actions_addchdir_np(&actions, folder);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, theirs, STDIN_FILENO);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, theirs, STDOUT_FILENO);
-    if (!failed)
-        failed =
-            posix_spawn(&pid, path, &actions, NULL, (char *const *)(uintptr_t)arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed) {
-        cli_error("%s: cannot be run: %s", path, strerror(failed));
-        return WHIT_ERROR_INPUT;
-    }
-    peer->pid = pid;
-    return WHIT_OK;
-}
-
-whit_result peer_begin(struct peer *peer, const char *folder, const char *triangles)
+whit_result peer_begin(struct peer *peer, const struct bench *bench, const whit_scene *scene,
+                       const char *triangles)
 {
     int ends[2];
     char answer[128];
     *peer = (struct peer){.socket = -1};
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        cli_error("no socket for `whit-embree`: %s", strerror(errno));
+    whit_result result = write_triangles(bench, scene, triangles);
+    if (result != WHIT_OK)
+        return result;
+    if (!find_program(peer->program, sizeof peer->program) ||
+        socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        cli_error("no `whit-embree`, or no socket for it: %s", strerror(errno));
         return WHIT_ERROR_MEMORY;
     }
+    peer->arguments[0] = "whit-embree";
+    peer->arguments[1] = triangles;
+    peer->process = (struct process){.program = peer->program,
+                                     .arguments = peer->arguments,
+                                     .folder = bench->folder,
+                                     .socket = ends[1]};
     peer->socket = ends[0];
     peer->answers = fdopen(ends[0], "r");
-    whit_result result =
-        peer->answers ? spawn(peer, ends[1], folder, triangles) : WHIT_ERROR_MEMORY;
+    result = peer->answers ? process_start(&peer->process) : WHIT_ERROR_MEMORY;
     close(ends[1]);
     if (result == WHIT_OK)
         result = read_answer(peer, answer, sizeof answer, "embree ");
@@ -166,15 +143,17 @@ whit_result peer_begin(struct peer *peer, const char *folder, const char *triang
     return result;
 }
 
+/* It ends with its input. */
 void peer_end(struct peer *peer)
 {
     if (peer->answers)
         fclose(peer->answers);
-    else if (peer->socket >= 0)
+    else if (peer->socket > 0)
         close(peer->socket);
-    if (peer->pid) /* it ends with its input */
-        waitpid((pid_t)peer->pid, NULL, 0);
-    *peer = (struct peer){.socket = -1};
+    peer->process.is_tried = true;
+    if (peer->process.pid)
+        (void)!process_end(&peer->process, NULL);
+    *peer = (struct peer){0};
 }
 
 whit_result peer_rays(struct peer *peer, const char *name, bool any)
@@ -197,5 +176,15 @@ whit_result peer_trace(struct peer *peer, const char *way, bool back, bool coher
                              back ? "back" : "forth", coherent ? "coherent" : "scattered");
     if (result == WHIT_OK && answer[0] == 't')
         sscanf(answer, "time %lf %lf", &ms[0], &ms[1]);
+    return result;
+}
+
+whit_result peer_build(struct peer *peer, const char *quality, uint32_t threads, double *ms,
+                       double *bytes)
+{
+    char answer[128];
+    whit_result result = ask(peer, answer, "built ", "build %s %u\n", quality, threads);
+    if (result == WHIT_OK)
+        sscanf(answer, "built %lf %lf", ms, bytes);
     return result;
 }

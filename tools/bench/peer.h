@@ -2,25 +2,27 @@
 #ifndef BENCH_PEER_H
 #define BENCH_PEER_H
 
-#include "app/bench/bench.h"
+#include "bench/bench.h"
 
 struct peer {
     int socket;
     FILE *answers;
-    long pid; /* 0: not running */
-    char version[32];
+    struct process process;
+    const char *arguments[3];
+    char program[BENCH_PATH], version[32];
 };
 
 /* Whether there is one beside this program. */
 bool peer_is_here(void);
-/* The triangles of a scene, as it works on them, and as it names them: a file in `folder`. */
-WHIT_CHECK whit_result peer_write_triangles(const whit_scene *scene, const char *folder,
-                                            const char *name);
-WHIT_CHECK whit_result peer_write_rays(const char *folder, const char *name, const whit_ray *rays,
-                                       uint64_t count);
-/* Starts it in `folder`, on triangles there. End it in any case. */
-WHIT_CHECK whit_result peer_begin(struct peer *peer, const char *folder, const char *triangles);
+WHIT_CHECK whit_result peer_write_rays(const struct bench *bench, const char *name,
+                                       const whit_ray *rays, uint64_t count);
+/* Writes the triangles of a scene, as it works on them, and as whit names them, into a file of the
+   bench's folder, and starts it on these. End it in any case, also a zeroed one. */
+WHIT_CHECK whit_result peer_begin(struct peer *peer, const struct bench *bench,
+                                  const whit_scene *scene, const char *triangles);
 void peer_end(struct peer *peer);
+/* Why it is left out where it is not here. */
+extern const char peer_why_not[];
 /* `rays NAME closest` (or any), and `hits NAME`: names in the folder. */
 WHIT_CHECK whit_result peer_rays(struct peer *peer, const char *name, bool any);
 WHIT_CHECK whit_result peer_hits(struct peer *peer, const char *name);
@@ -28,5 +30,8 @@ WHIT_CHECK whit_result peer_hits(struct peer *peer, const char *name);
    way. `coherent`: Embree is told that neighbours go the same way. */
 WHIT_CHECK whit_result peer_trace(struct peer *peer, const char *way, bool back, bool coherent,
                                   double ms[2]);
+/* Builds a tree of all triangles: wall time, and the most memory that it held. */
+WHIT_CHECK whit_result peer_build(struct peer *peer, const char *quality, uint32_t threads,
+                                  double *ms, double *bytes);
 
 #endif

@@ -3,15 +3,14 @@
 #define BENCH_RAYS_H
 
 #include "app/bvh/study.h"
-#include "figures.h"
-#include "peer.h"
+#include "bench/peer.h"
+#include "bench/table.h"
 
 enum rays_side { RAYS_WHIT, RAYS_SINGLE, RAYS_PACKETS, RAYS_STREAM, RAYS_BACK, RAYS_SIDES = 7 };
 enum rays_kind { RAYS_CAMERA, RAYS_SHADOW, RAYS_BOUNCE, RAYS_KINDS };
 
 /* One set of rays in one order, and what it took each side in ms. */
 struct batch {
-    char rays_name[96], whit_name[96], peer_name[96];
     struct sample_runs sides[RAYS_SIDES];
     bool any, coherent; /* any: any hit will do; coherent: neighbours go the same way */
 };
@@ -24,14 +23,13 @@ struct agreement {
 
 struct model {
     struct bench *bench;
-    struct figures *figures;
+    struct table *table;
     char name[40]; /* letters and digits of the file's, which is a name in the folder */
-    char folder[BENCH_PATH];
     struct bench_scene loaded;
     whit_accel *accel;
     whit_renderer *renderer;
     struct peer peer;
-    bool has_peer, is_cpu;
+    bool has_peer;
     struct study_rays camera;
     whit_hit *hits; /* of camera rays: there the others begin */
     /* The batch that is being traced; arrays have room for as many rays as the camera has: */

@@ -3,28 +3,18 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/trace/ray_file.h"
-#include "rays.h"
+#include "bench/rays.h"
 
 const char *const rays_kind_names[RAYS_KINDS] = {"camera", "shadow", "bounce"};
 static const char *const ways[] = {"single", "packets", "stream"};
 
 /* ---- Rays ---- */
 
-/* splitmix64 (Steele, Lea and Flood 2014), as a walk. */
-static uint64_t next_random(uint64_t *state)
-{
-    uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
-
+/* By Fisher and Yates. */
 static void shuffle(whit_ray *rays, uint64_t count)
 {
-    uint64_t state = 1;
     for (uint64_t i = count; i > 1; --i) {
-        uint64_t j = next_random(&state) % i;
+        uint64_t j = (uint64_t)(study_random(i) * (double)i);
         whit_ray kept = rays[i - 1];
         rays[i - 1] = rays[j];
         rays[j] = kept;
@@ -53,18 +43,6 @@ static uint64_t make_rays(const struct model *model, enum rays_kind kind, whit_r
     return count;
 }
 
-static whit_result read_rays(struct model *model)
-{
-    char path[BENCH_PATH + 100];
-    struct ray_file file;
-    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->rays_name);
-    whit_result result = ray_file_open(path, &file);
-    if (result == WHIT_OK)
-        result = ray_file_read(&file, model->rays, model->camera.count, &model->count);
-    ray_file_close(&file);
-    return result;
-}
-
 /* ---- Sides ---- */
 
 static double thread_ms(void)
@@ -81,8 +59,8 @@ static whit_result trace_here(struct model *model, double *ms)
     double all = whit_clock_cpu_ms(), own = thread_ms();
     whit_result result = whit_trace(model->renderer, WHIT_TRACE_DEVICE, model->rays, model->count,
                                     model->batch->any, model->traced, NULL);
-    *ms = model->is_cpu ? whit_clock_cpu_ms() - all - (thread_ms() - own)
-                        : whit_trace_device_ms(model->renderer);
+    *ms = model->bench->is_cpu ? whit_clock_cpu_ms() - all - (thread_ms() - own)
+                               : whit_trace_device_ms(model->renderer);
     return result;
 }
 
@@ -95,12 +73,10 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
                              ? trace_here(model, ms)
                              : peer_trace(&model->peer, ways[(side - RAYS_SINGLE) % 3],
                                           side >= RAYS_BACK, model->batch->coherent, ms);
-    double time_ms = side == RAYS_WHIT || model->is_cpu ? ms[0] : ms[1];
+    double time_ms = side == RAYS_WHIT || model->bench->is_cpu ? ms[0] : ms[1];
     if (result == WHIT_OK && round > 0 && time_ms >= 0.0)
         sample_add(&model->batch->sides[side], time_ms);
-    if (side == RAYS_WHIT)
-        bench_step(model->bench);
-    return cli_cancel ? WHIT_ERROR_CANCELLED : result;
+    return result == WHIT_OK && side == RAYS_WHIT ? bench_step(model->bench) : result;
 }
 
 static uint32_t count_sides(const struct model *model)
@@ -115,28 +91,13 @@ const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_sid
                                                                                          : forth;
 }
 
-static whit_result run_sides(struct model *model, enum rays_kind kind, bool shuffled)
+static whit_result run_sides(struct model *model, const char *file)
 {
-    struct batch *batch = model->batch;
-    const char *order = shuffled ? "-shuffled" : "";
-    batch->any = kind == RAYS_SHADOW;
-    batch->coherent = kind != RAYS_BOUNCE && !shuffled;
-    snprintf(batch->rays_name, sizeof batch->rays_name, "%s-%s%s.rays", model->name,
-             rays_kind_names[kind], order);
-    snprintf(batch->whit_name, sizeof batch->whit_name, "%s-%s%s.whit.hits", model->name,
-             rays_kind_names[kind], order);
-    snprintf(batch->peer_name, sizeof batch->peer_name, "%s-%s%s.embree.hits", model->name,
-             rays_kind_names[kind], order);
-    uint64_t count = make_rays(model, kind, model->rays);
-    if (shuffled)
-        shuffle(model->rays, count);
-    whit_result result = peer_write_rays(model->folder, batch->rays_name, model->rays, count);
-    if (result == WHIT_OK)
-        result = read_rays(model);
+    whit_result result = peer_write_rays(model->bench, file, model->rays, model->count);
     if (result == WHIT_OK && model->has_peer)
-        result = peer_rays(&model->peer, batch->rays_name, batch->any);
+        result = peer_rays(&model->peer, file, model->batch->any);
     if (result == WHIT_OK)
-        result = sample_in_turns(count_sides(model), model->bench->runs + 1, run_side, model);
+        result = sample_in_turns(count_sides(model), model->bench->ask.runs + 1, run_side, model);
     return result;
 }
 
@@ -174,24 +135,23 @@ static whit_result read_hits(const char *path, whit_hit *hits, uint64_t count)
 }
 
 /* Writes what both sides met, and compares it. */
-static whit_result keep_hits(struct model *model, struct agreement *agreement)
+static whit_result keep_hits(struct model *model, const char *own, const char *other,
+                             struct agreement *agreement)
 {
-    char path[BENCH_PATH + 100];
+    char path[BENCH_PATH];
     double ms[2];
-    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->whit_name);
+    bench_file(model->bench, own, path);
     whit_result result =
         whit_file_write(path, model->traced, (size_t)model->count * sizeof(whit_hit), &cli_log);
     if (result != WHIT_OK || !model->has_peer)
         return result;
     whit_hit *theirs = malloc((size_t)(model->count + 1) * sizeof *theirs);
-    if (!theirs) {
-        cli_error("out of memory");
+    if (!theirs)
         return WHIT_ERROR_MEMORY;
-    }
     result = peer_trace(&model->peer, ways[0], false, false, ms);
     if (result == WHIT_OK)
-        result = peer_hits(&model->peer, model->batch->peer_name);
-    snprintf(path, sizeof path, "%s/%s", model->folder, model->batch->peer_name);
+        result = peer_hits(&model->peer, other);
+    bench_file(model->bench, other, path);
     if (result == WHIT_OK)
         result = read_hits(path, theirs, model->count);
     if (result == WHIT_OK)
@@ -200,24 +160,26 @@ static whit_result keep_hits(struct model *model, struct agreement *agreement)
     return result;
 }
 
-static void remove_files(const struct model *model)
-{
-    const struct batch *batch = model->batch;
-    const char *const names[] = {batch->rays_name, batch->whit_name, batch->peer_name};
-    for (size_t i = 0; i < 3 && !model->bench->keep; ++i) {
-        char path[BENCH_PATH + 100];
-        snprintf(path, sizeof path, "%s/%s", model->folder, names[i]);
-        remove(path);
-    }
-}
-
 whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind, bool shuffled,
                       struct agreement *agreement)
 {
+    static const char *const ends[] = {"rays", "whit.hits", "embree.hits"};
+    char files[3][96], path[BENCH_PATH];
+    for (int i = 0; i < 3; ++i)
+        snprintf(files[i], sizeof files[i], "%s-%s%s.%s", model->name, rays_kind_names[kind],
+                 shuffled ? "-shuffled" : "", ends[i]);
     model->batch = batch;
-    whit_result result = run_sides(model, kind, shuffled);
+    batch->any = kind == RAYS_SHADOW;
+    batch->coherent = kind != RAYS_BOUNCE && !shuffled;
+    model->count = make_rays(model, kind, model->rays);
+    if (shuffled)
+        shuffle(model->rays, model->count);
+    whit_result result = run_sides(model, files[0]);
     if (result == WHIT_OK)
-        result = keep_hits(model, agreement);
-    remove_files(model);
+        result = keep_hits(model, files[1], files[2], agreement);
+    for (int i = 0; i < 3 && !model->bench->ask.keep; ++i) {
+        bench_file(model->bench, files[i], path);
+        remove(path);
+    }
     return result;
 }

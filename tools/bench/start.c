@@ -1,12 +1,9 @@
 /* `whit bench start`: the first picture, whole processes with empty caches, beside another whit;
    and the same on the lavapipe that tools/second-driver unpacks. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "figures.h"
-#include "frame.h"
+#include "bench/frame.h"
 
 enum { SIDES = 2, ARGUMENTS_MAX = 24 };
 
@@ -32,9 +29,11 @@ static const struct start {
 enum { STARTS = sizeof starts / sizeof starts[0] };
 
 struct starting {
+    struct bench *bench;
+    struct table *table;
     struct peers peers;
     const struct start *start;
-    char own[BENCH_PATH], scene[BENCH_PATH], second[BENCH_PATH];
+    char scene[BENCH_PATH], second[BENCH_PATH];
     struct sample_runs clock[SIDES], cpu[SIDES]; /* of this whit, of the other */
 };
 
@@ -43,107 +42,90 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
 {
     struct starting *s = user;
     const struct start *start = s->start;
-    struct bench *bench = s->peers.figures->section.bench;
-    char cache[BENCH_PATH + 32], home[BENCH_PATH + 64], drivers[2][BENCH_PATH + 32];
+    const struct bench_request *ask = &s->bench->ask;
+    char cache[BENCH_PATH], home[BENCH_PATH + 64], drivers[2][BENCH_PATH + 32];
     const char *arguments[ARGUMENTS_MAX] = {"env", "-u", "MESA_SHADER_CACHE_DIR", "-u",
                                             "MESA_SHADER_CACHE_MAX_SIZE"};
     int count = 5;
-    struct bench_child_times times;
-    snprintf(cache, sizeof cache, "%s/cache%u", s->peers.folder, side);
+    struct process_times times;
+    bench_file(s->bench, side ? "cache1" : "cache0", cache);
     snprintf(home, sizeof home, "XDG_CACHE_HOME=%s", cache);
     arguments[count++] = home;
     snprintf(drivers[0], sizeof drivers[0], "VK_DRIVER_FILES=%s", s->second);
     snprintf(drivers[1], sizeof drivers[1], "VK_ICD_FILENAMES=%s", s->second);
     for (int i = 0; start->second && i < 2; ++i)
         arguments[count++] = drivers[i];
-    arguments[count++] = side ? bench->against : s->own;
+    arguments[count++] = side ? s->peers.against : s->bench->whit;
     arguments[count++] = start->size ? "render" : "probe";
     arguments[count++] = s->scene;
     arguments[count++] = start->size ? "-o" : "--pixel";
     arguments[count++] = start->size ? "start.png" : "320,240";
     if (start->size) {
         arguments[count++] = "--size";
-        arguments[count++] = bench->quick ? "32x24" : start->size;
+        arguments[count++] = ask->quick ? "32x24" : start->size;
     }
     arguments[count++] = "--quiet";
-    if (bench->settings.device[0] && !start->second) {
+    if (ask->settings.device[0] && !start->second) {
         arguments[count++] = "--device";
-        arguments[count++] = bench->settings.device;
+        arguments[count++] = ask->settings.device;
     }
-    const struct bench_child child = {.program = "env",
-                                      .arguments = arguments,
-                                      .folder = s->peers.folder,
-                                      .out = "start.out",
-                                      .err = "start.err"};
+    struct process process = {.program = "env",
+                              .arguments = arguments,
+                              .folder = s->bench->folder,
+                              .out = "start.out",
+                              .err = "start.err"};
     if (!start->warm)
-        bench_scratch_remove(cache);
-    whit_result result = bench_child_run(&child, &times);
+        process_remove_folder(cache);
+    whit_result result = process_run(&process, &times);
     if (result == WHIT_OK && round > 0) {
         sample_add(&s->clock[side], times.clock_ms);
         sample_add(&s->cpu[side], times.cpu_ms);
     }
-    return cli_cancel ? WHIT_ERROR_CANCELLED : result;
+    return result;
 }
 
-static void put_row(struct starting *s, const char *what, const struct sample_runs *of,
+static void put_row(const struct starting *s, const char *what, const struct sample_runs *of,
                     struct goal goal)
 {
-    struct figures *figures = s->peers.figures;
-    struct sample_runs ratio = sample_ratio(&of[0], &of[1]);
-    struct figure figure = {.unit = "", .value = NAN};
+    struct figure figure = table_ratio(&of[0], &of[1], goal);
     json_t *row = document_object();
     snprintf(figure.name, sizeof figure.name, "%s, %s", s->start->label, what);
-    if (ratio.count) {
-        figure.goal = goal;
-        figure.value = sample_of(&ratio).median;
-        figure.spread = sample_of(&ratio).spread;
-    }
     document_text(row, "start", s->start->label);
     document_text(row, "time", what);
-    document_put(row, "ms", figures_times(&of[0]));
+    document_put(row, "ms", table_times(&of[0]));
     if (of[1].count)
-        document_put(row, "beside_ms", figures_times(&of[1]));
-    table_row(&figures->section.table);
-    table_cell(&figures->section.table, "%s", s->start->label);
-    table_cell(&figures->section.table, "%s", what);
-    table_ms(&figures->section.table, &of[0]);
-    if (of[1].count)
-        table_ms(&figures->section.table, &of[1]);
-    else
-        table_cell(&figures->section.table, "-");
-    figures_row(figures, &figure, row);
+        document_put(row, "beside_ms", table_times(&of[1]));
+    table_row(s->table);
+    table_cell(s->table, "%s", s->start->label);
+    table_cell(s->table, "%s", what);
+    table_ms(s->table, &of[0]);
+    table_ms(s->table, &of[1]);
+    table_figure(s->table, &figure, row);
 }
 
 static whit_result run_start(struct starting *s, const struct start *start)
 {
-    struct bench *bench = s->peers.figures->section.bench;
     s->start = start;
     memset(s->clock, 0, sizeof s->clock);
     memset(s->cpu, 0, sizeof s->cpu);
     if (start->second && !s->second[0])
         return WHIT_OK; /* said once */
-    whit_result result = bench_find(bench, start->scene, s->scene, sizeof s->scene);
-    char *whole = result == WHIT_OK ? realpath(s->scene, NULL) : NULL;
-    if (whole)
-        snprintf(s->scene, sizeof s->scene, "%s", whole);
-    free(whole);
+    whit_result result = bench_find(s->bench, start->scene, s->scene);
     if (result == WHIT_OK)
-        result = sample_in_turns(bench->against ? 2 : 1, bench->runs + 1, run_side, s);
+        result = sample_in_turns(s->peers.against[0] ? 2 : 1, s->bench->ask.runs + 1, run_side, s);
     if (result == WHIT_OK && start->clock.must > 0.0)
         put_row(s, "clock", s->clock, start->clock);
     if (result == WHIT_OK && start->cpu.must > 0.0)
         put_row(s, "processor", s->cpu, start->cpu);
-    bench_step(bench);
-    return result;
+    return result == WHIT_OK ? bench_step(s->bench) : result;
 }
 
 /* Where tools/second-driver leaves its manifest, in the checkout that the scenes are of. */
 static void find_second(struct starting *s)
 {
     char path[BENCH_PATH], manifest[BENCH_PATH + 64];
-    struct bench *bench = s->peers.figures->section.bench;
     char *whole = NULL;
-    if (bench_find(bench, "34k", path, sizeof path) == WHIT_OK && strrchr(path, '/')) {
+    if (bench_find(s->bench, "34k", path) == WHIT_OK) {
         *strrchr(path, '/') = 0;
         snprintf(manifest, sizeof manifest, "%s/../build/second-driver/lvp_icd.json", path);
         whole = realpath(manifest, NULL);
@@ -151,39 +133,27 @@ static void find_second(struct starting *s)
     if (whole)
         snprintf(s->second, sizeof s->second, "%s", whole);
     else
-        figures_leave_out(s->peers.figures, "the second driver",
-                          "./tools/second-driver has not unpacked it");
+        table_leave_out(s->table, "the second driver", "./tools/second-driver has not unpacked it");
     free(whole);
 }
 
 whit_result bench_start(struct bench *bench)
 {
     static const char *const heads[] = {"first picture", "time", "whit, ms", "beside, ms", NULL};
-    static struct figures figures;
-    struct starting s = {.peers = {.figures = &figures}};
-    whit_result result = bench_scratch_make(s.peers.folder);
-    ssize_t length = readlink("/proc/self/exe", s.own, sizeof s.own - 1);
-    if (result == WHIT_OK && length <= 0) {
-        cli_error("this program's own path cannot be read");
-        result = WHIT_ERROR_FAILED;
-    }
-    if (result != WHIT_OK)
-        return result;
-    cli_keep_what_is_done(BENCH_GRACE_MS);
-    figures_begin(&figures, bench, "start", heads, STARTS);
-    section_say(
-        &figures.section,
-        "%s, %s; whole processes with empty caches but where they are filled, in turns: %u; "
-        "medians, with half the width of the middle half. Figure: times the time of the "
-        "other whit.",
-        cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver), bench->runs);
-    if (bench->quick)
-        section_say(&figures.section,
-                    "Quick run: pictures of 32x24, not for figures to be quoted.");
+    struct table table;
+    struct starting s = {.bench = bench, .table = &table};
+    table_begin(&table, bench, "start", heads, true, STARTS);
+    table_say(&table,
+              "%s, %s; whole processes with empty caches but where they are filled, in turns: %u; "
+              "medians, with half the width of the middle half. Figure: times the time of the "
+              "other whit.",
+              cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver),
+              bench->ask.runs);
+    if (bench->ask.quick)
+        table_say(&table, "Quick run: pictures of 32x24, not for figures to be quoted.");
     find_second(&s);
-    result = peers_find_against(&s.peers);
+    whit_result result = peers_find_against(&s.peers, &table);
     for (size_t i = 0; result == WHIT_OK && i < STARTS; ++i)
         result = run_start(&s, &starts[i]);
-    bench_scratch_remove(s.peers.folder);
-    return figures_end(&figures, "First pictures", result);
+    return table_end(&table, "First pictures", result);
 }

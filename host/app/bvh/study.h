@@ -59,6 +59,8 @@ whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t 
    point light, with t 1 at the hit. They end clear of the surface. `size`: study_scene_size. */
 whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t index, double size);
 whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit);
+/* Steele, Lea and Flood 2014: splitmix64 of `index`, in [0, 1). */
+double study_random(uint64_t index);
 /* The diagonal of its bounds; 1 where they have none. */
 double study_scene_size(const whit_scene *scene);
 

@@ -170,8 +170,7 @@ static whit_ray shadow_ray(const whit_scene *scene, const struct surface *surfac
     return make_ray(surface->point, dir, LEAVE, 1.0 - LEAVE);
 }
 
-/* Steele, Lea and Flood 2014: splitmix64 of `index`, in [0, 1). */
-static double random_at(uint64_t index)
+double study_random(uint64_t index)
 {
     uint64_t z = (index + 1) * UINT64_C(0x9e3779b97f4a7c15);
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -184,7 +183,7 @@ static whit_ray diffuse_ray(const struct surface *surface, uint64_t index, doubl
     struct vector n = surface->normal;
     struct vector other = fabs(n.x) < 0.5 ? (struct vector){1, 0, 0} : (struct vector){0, 1, 0};
     struct vector a = unit(cross(n, other)), b = cross(n, a);
-    double square = random_at(2 * index), angle = 2.0 * PI * random_at(2 * index + 1);
+    double square = study_random(2 * index), angle = 2.0 * PI * study_random(2 * index + 1);
     struct vector dir = add((struct vector){0, 0, 0}, n, sqrt(1.0 - square) * size);
     dir = add(dir, a, sqrt(square) * cos(angle) * size);
     dir = add(dir, b, sqrt(square) * sin(angle) * size);

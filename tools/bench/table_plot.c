@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "app/plot.h"
-#include "figures.h"
+#include "bench/table.h"
 
 static const double WIDTH = 760.0, LEFT = 230.0, RIGHT = 150.0, TOP = 34.0, ROW = 22.0,
                     BOTTOM = 44.0;
@@ -72,12 +72,12 @@ static void put_figure(struct page *page, const struct axis *axis, const struct 
     put_text(page, WIDTH - RIGHT + 10.0, y + 4.5, "start", text);
 }
 
-static void put_drawing(struct page *page, const struct figures *figures, const char *title)
+static void put_drawing(struct page *page, const struct table *table, const char *title)
 {
     struct axis axis = {0.5, 2.0};
     uint32_t drawn = 0;
-    for (uint32_t i = 0; i < figures->count; ++i) {
-        const struct figure *figure = &figures->list[i];
+    for (uint32_t i = 0; i < table->figure_count; ++i) {
+        const struct figure *figure = &table->figures[i];
         if (!is_drawn(figure))
             continue;
         include(&axis, share_of(&figure->goal, figure->value));
@@ -95,19 +95,19 @@ static void put_drawing(struct page *page, const struct figures *figures, const 
     put_text(page, 8.0, 20.0, "start", title);
     put_axis(page, &axis, bottom);
     double y = TOP + ROW;
-    for (uint32_t i = 0; i < figures->count; ++i) {
-        if (!is_drawn(&figures->list[i]))
+    for (uint32_t i = 0; i < table->figure_count; ++i) {
+        if (!is_drawn(&table->figures[i]))
             continue;
-        put_figure(page, &axis, &figures->list[i], y);
+        put_figure(page, &axis, &table->figures[i], y);
         y += ROW;
     }
     page_markup(page, "</svg>\n");
 }
 
-whit_result figures_plot(const struct figures *figures, const char *title, const char *path)
+whit_result table_plot(const struct table *table, const char *title, const char *path)
 {
     struct page page = {0};
-    put_drawing(&page, figures, title);
+    put_drawing(&page, table, title);
     cli_set_saving();
     whit_result result = page_save(&page, path, &cli_log);
     page_finish(&page);

@@ -1,0 +1,128 @@
+/* The rays that a picture calls for, as the reference says which these are, for Embree to trace. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "bench/frame.h"
+
+static const char closest_name[] = "closest.rays", shadow_name[] = "shadow.rays";
+
+struct own_ray {
+    uint32_t light, index; /* as they are sorted */
+    whit_ray ray;
+};
+struct own_rays {
+    struct own_ray *rays;
+    uint32_t count, capacity;
+};
+
+static bool add_ray(struct own_rays *to, uint32_t light, const whit_ray *ray)
+{
+    return ARRAY_PUSH(to->rays, to->count, to->capacity, (struct own_ray){light, to->count, *ray});
+}
+
+/* A shadow ray as long as the way to its light, the others without end. */
+static whit_ray ray_of(const struct frame *frame, const whit_tree_ray *from)
+{
+    bool shadow = from->kind == WHIT_TREE_SHADOW;
+    const double *lo = frame->loaded.info.lo, *hi = frame->loaded.info.hi;
+    double size = fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2])), length = size;
+    if (shadow) {
+        whit_light_info light;
+        whit_scene_get_light(frame->loaded.scene, from->light, &light);
+        const double *p = light.position, *o = from->origin;
+        length = light.kind[0] == 'd'
+                     ? 2.0 * size
+                     : sqrt((p[0] - o[0]) * (p[0] - o[0]) + (p[1] - o[1]) * (p[1] - o[1]) +
+                            (p[2] - o[2]) * (p[2] - o[2]));
+    }
+    whit_ray ray = {.t_min = from->kind == WHIT_TREE_PRIMARY ? 0.0f : 1e-4f,
+                    .t_max = shadow ? 1.0f - 1e-4f : INFINITY};
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = (float)from->origin[k];
+        ray.dir[k] = (float)(from->dir[k] * length);
+    }
+    return ray;
+}
+
+static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struct own_rays *closest,
+                              struct own_rays *shadow)
+{
+    whit_tree_ray *rays;
+    uint32_t count;
+    whit_result result = whit_reference_rays(frame->reference, x, y, 0, &rays, &count);
+    if (result != WHIT_OK)
+        return result;
+    bool room = true;
+    for (uint32_t i = 0; room && i < count; ++i) {
+        if (rays[i].end == WHIT_TREE_DEPTH || rays[i].end == WHIT_TREE_BAILOUT)
+            continue;
+        const whit_ray ray = ray_of(frame, &rays[i]);
+        bool is_shadow = rays[i].kind == WHIT_TREE_SHADOW;
+        room = add_ray(is_shadow ? shadow : closest, is_shadow ? rays[i].light : 0, &ray);
+    }
+    whit_memory_destroy(rays);
+    return !room ? WHIT_ERROR_MEMORY : cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+static int by_light(const void *a, const void *b)
+{
+    const struct own_ray *x = a, *y = b;
+    if (x->light != y->light)
+        return x->light < y->light ? -1 : 1;
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+/* Light by light, as one would trace them. */
+static whit_result write_rays(const struct frame *frame, const char *name, struct own_rays *rays)
+{
+    whit_ray *plain = array_alloc(rays->count, sizeof *plain);
+    if (!plain)
+        return WHIT_ERROR_MEMORY;
+    if (rays->count)
+        qsort(rays->rays, rays->count, sizeof *rays->rays, by_light);
+    for (uint32_t i = 0; i < rays->count; ++i)
+        plain[i] = rays->rays[i].ray;
+    whit_result result = peer_write_rays(frame->bench, name, plain, rays->count);
+    free(plain);
+    return result;
+}
+
+whit_result frame_prepare_rays(struct frame *frame)
+{
+    struct own_rays closest = {0}, shadow = {0};
+    whit_result result = WHIT_OK;
+    for (uint32_t y = 0; result == WHIT_OK && y < frame->height; y += 8) {
+        for (uint32_t x = 0; result == WHIT_OK && x < frame->width; x += 8) {
+            for (uint32_t i = 0; result == WHIT_OK && i < 64; ++i)
+                if (x + i % 8 < frame->width && y + i / 8 < frame->height)
+                    result = take_pixel(frame, x + i % 8, y + i / 8, &closest, &shadow);
+        }
+    }
+    if (result == WHIT_OK)
+        result = write_rays(frame, closest_name, &closest);
+    if (result == WHIT_OK)
+        result = write_rays(frame, shadow_name, &shadow);
+    free(closest.rays);
+    free(shadow.rays);
+    return result == WHIT_OK
+               ? peer_begin(&frame->peer, frame->bench, frame->loaded.scene, "own.triangles")
+               : result;
+}
+
+whit_result frame_trace_rays(struct frame *frame, double *ms)
+{
+    double closest[2] = {0.0}, forth[2] = {0.0}, back[2] = {0.0};
+    whit_result result = peer_rays(&frame->peer, closest_name, false);
+    if (result == WHIT_OK)
+        result = peer_trace(&frame->peer, "single", false, false, closest);
+    if (result == WHIT_OK)
+        result = peer_rays(&frame->peer, shadow_name, true);
+    if (result == WHIT_OK)
+        result = peer_trace(&frame->peer, "single", false, false, forth);
+    if (result == WHIT_OK)
+        result = peer_trace(&frame->peer, "single", true, false, back);
+    int clock = frame->bench->is_cpu ? 0 : 1;
+    *ms = closest[clock] + fmin(forth[clock], back[clock]);
+    return result;
+}

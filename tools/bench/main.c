@@ -1,0 +1,153 @@
+/* whit-bench: all benches in one program, which `whit bench` runs in its own place. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "bench/bench.h"
+
+static whit_result (*const benches[BENCH_COUNT])(struct bench *) = {
+    [BENCH_REPORT] = bench_report, [BENCH_BUILD] = bench_build, [BENCH_VIEW] = bench_view,
+    [BENCH_RAYS] = bench_rays,     [BENCH_FRAME] = bench_frame, [BENCH_START] = bench_start,
+};
+
+/* ---- What benches share ---- */
+
+whit_result bench_step(struct bench *bench)
+{
+    ++bench->step;
+    cli_progress_update(&bench->progress, (double)bench->step / bench->step_count);
+    return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+}
+
+void bench_file(const struct bench *bench, const char *name, char path[BENCH_PATH])
+{
+    snprintf(path, BENCH_PATH, "%.2000s/%.150s", bench->folder, name);
+}
+
+whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
+{
+    /* Beside the program, where it is built or installed. */
+    static const char *const beside[] = {"../scenes", "../../scenes", "../share/whit/scenes"};
+    const char *scenes = bench->ask.scenes ? bench->ask.scenes : "scenes";
+    const char *slash = strrchr(bench->whit, '/');
+    char file[BENCH_PATH];
+    snprintf(file, sizeof file, "%s/%s.json", scenes, name);
+    char *whole = realpath(file, NULL);
+    for (size_t i = 0; !whole && slash && !bench->ask.scenes && i < 3; ++i) {
+        snprintf(file, sizeof file, "%.*s/%s/%s.json", (int)(slash - bench->whit), bench->whit,
+                 beside[i], name);
+        whole = realpath(file, NULL);
+    }
+    if (!whole) {
+        if (bench->ask.scenes)
+            cli_error("%s: cannot read: %s", file, strerror(errno));
+        else
+            cli_error("%s.json is not here: --scenes FOLDER says where whit's scenes are", name);
+        return WHIT_ERROR_INPUT;
+    }
+    snprintf(path, BENCH_PATH, "%s", whole);
+    free(whole);
+    return WHIT_OK;
+}
+
+whit_result bench_load(const char *path, struct bench_scene *scene)
+{
+    const whit_load_params params = {.cancel = &cli_cancel};
+    whit_result result = whit_scene_load(path, &params, &cli_log_errors, &scene->scene);
+    if (result == WHIT_OK)
+        whit_scene_get_info(scene->scene, &scene->info);
+    return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
+}
+
+void bench_unload(struct bench_scene *scene)
+{
+    whit_scene_destroy(scene->scene);
+    *scene = (struct bench_scene){0};
+}
+
+/* ---- The program ---- */
+
+static whit_result make_folder(struct bench *bench)
+{
+    const char *scratch = getenv("TMPDIR"), *keep = bench->ask.keep;
+    if (keep)
+        snprintf(bench->folder, sizeof bench->folder, "%s", keep);
+    else
+        snprintf(bench->folder, sizeof bench->folder, "%.480s/whit-bench-XXXXXX",
+                 scratch && scratch[0] ? scratch : "/tmp");
+    bool is_there =
+        keep ? mkdir(keep, 0777) == 0 || errno == EEXIST : mkdtemp(bench->folder) != NULL;
+    if (!is_there)
+        cli_error("%s: cannot be made: %s", bench->folder, strerror(errno));
+    return is_there ? WHIT_OK : WHIT_ERROR_OUTPUT;
+}
+
+static whit_result write_json(struct bench *bench)
+{
+    const struct bench_request *ask = &bench->ask;
+    json_t *root = document_root(), *device = document_object(), *settings = document_object();
+    document_text(root, "bench", bench_kinds[ask->which].name);
+    document_text(device, "name", bench->device_info.name);
+    document_text(device, "driver", bench->device_info.driver);
+    document_put(root, "device", device);
+    document_flag(settings, "quick", ask->quick);
+    document_count(settings, "width", ask->width);
+    document_count(settings, "height", ask->height);
+    if (bench_kinds[ask->which].is_single) {
+        document_count(settings, "samples", 1);
+        document_count(settings, "depth", 0);
+    }
+    document_count(settings, "runs", ask->runs);
+    document_put(root, "settings", settings);
+    document_put(root, "tables", json_incref(bench->tables));
+    char *text = document_line(root);
+    whit_result result =
+        text ? whit_file_write(ask->json, text, strlen(text), &cli_log) : WHIT_ERROR_MEMORY;
+    free(text);
+    return result;
+}
+
+static int work(struct bench *bench)
+{
+    const char *device = bench->ask.settings.device;
+    const whit_device_params params = {.selector = device[0] ? device : NULL};
+    whit_result result = make_folder(bench);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    cli_keep_what_is_done(BENCH_GRACE_MS);
+    bench->tables = document_array();
+    result = whit_device_create(&params, &cli_log, &bench->device);
+    if (result == WHIT_OK) {
+        whit_device_get_info(bench->device, &bench->device_info);
+        bench->is_cpu = strcmp(bench->device_info.kind, "cpu") == 0;
+        result = benches[bench->ask.which](bench);
+    }
+    if (result == WHIT_OK && bench->ask.json)
+        result = write_json(bench);
+    json_decref(bench->tables);
+    whit_device_destroy(bench->device);
+    if (!bench->ask.keep)
+        process_remove_folder(bench->folder);
+    return result == WHIT_OK ? cli_finish_stdout(EXIT_FINE) : cli_exit_of(result);
+}
+
+int main(int argc, char **argv)
+{
+    static const struct cli_command command = {
+        .name = "bench", .takes_many = true, .options = bench_options, .settings = IN_BENCH};
+    static struct bench bench;
+    struct cli_reader reader;
+    if (argc < 4) {
+        cli_error("whit-bench is called by `whit bench BENCH`");
+        return EXIT_USAGE;
+    }
+    cli_catch_interrupts();
+    bench.whit = argv[1];
+    cli_reader_init(&reader, &command, argc - 2, argv + 2);
+    if (!bench_read(&reader, &bench.ask))
+        return reader.status;
+    return work(&bench);
+}

@@ -1,0 +1,207 @@
+#include "bench/table.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+void table_begin(struct table *table, struct bench *bench, const char *name,
+                 const char *const *heads, bool has_goals, uint32_t steps)
+{
+    static const char *const last[] = {"figure", "must", "aim", "verdict", NULL};
+    *table = (struct table){.bench = bench,
+                            .object = document_object(),
+                            .rows = document_array(),
+                            .sentences = document_array(),
+                            .left_out = document_array(),
+                            .has_goals = has_goals,
+                            .column_count = TABLE_COLUMNS_MAX};
+    document_text(table->object, "table", name);
+    table_row(table);
+    for (; *heads; ++heads)
+        table_cell(table, "%s", *heads);
+    for (heads = last; has_goals && *heads; ++heads)
+        table_cell(table, "%s", *heads);
+    table->column_count = table->cell;
+    cli_progress_init(&bench->progress, bench->ask.settings.quiet);
+    bench->step = 0;
+    bench->step_count = steps;
+}
+
+void table_row(struct table *table)
+{
+    table->row_count += table->row_count < TABLE_ROWS_MAX;
+    table->cell = 0;
+}
+
+void table_cell(struct table *table, const char *format, ...)
+{
+    if (table->cell >= table->column_count)
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(table->cells[table->row_count - 1][table->cell++], TABLE_CELL, format, args);
+    va_end(args);
+}
+
+void table_ms(struct table *table, const struct sample_runs *times)
+{
+    const struct sample_summary ms = sample_of(times);
+    int decimals = ms.median < 10.0 ? 2 : ms.median < 100.0 ? 1 : 0;
+    if (times->count)
+        table_cell(table, "%.*f ± %.*f", decimals, ms.median, decimals, ms.spread);
+    else
+        table_cell(table, "-");
+}
+
+json_t *table_times(const struct sample_runs *times)
+{
+    const struct sample_summary ms = sample_of(times);
+    json_t *object = document_object();
+    document_ms(object, "median", ms.median);
+    document_ms(object, "spread", ms.spread);
+    document_count(object, "runs", times->count);
+    return object;
+}
+
+struct figure table_ratio(const struct sample_runs *a, const struct sample_runs *b,
+                          struct goal goal)
+{
+    const struct sample_runs ratio = sample_ratio(a, b);
+    const struct sample_summary sum = sample_of(&ratio);
+    if (ratio.count == 0)
+        return (struct figure){.unit = "", .value = NAN};
+    return (struct figure){.unit = "", .value = sum.median, .spread = sum.spread, .goal = goal};
+}
+
+void table_keep(struct table *table, json_t *row)
+{
+    document_append(table->rows, row);
+}
+
+void table_figure(struct table *table, const struct figure *figure, json_t *row)
+{
+    const struct goal *goal = &figure->goal;
+    const char *space = figure->unit[0] ? " " : "";
+    bool is_asked = goal->must > 0.0;
+    bool held = goal->more ? figure->value >= goal->must : figure->value <= goal->must;
+    const char *verdict = held ? "held" : "short";
+    if (isnan(figure->value))
+        table_cell(table, "-");
+    else if (figure->spread > 0.0)
+        table_cell(table, "%.3g ± %.1g%s%s", figure->value, figure->spread, space, figure->unit);
+    else
+        table_cell(table, "%.3g%s%s", figure->value, space, figure->unit);
+    table_cell(table, is_asked ? "%.3g" : "-", goal->must);
+    table_cell(table, is_asked ? "%.3g" : "-", goal->aim);
+    table_cell(table, "%s", is_asked ? verdict : "-");
+    document_number(row, "figure", figure->value);
+    document_number(row, "spread", figure->spread);
+    document_text(row, "unit", figure->unit);
+    document_number(row, "must", is_asked ? goal->must : NAN);
+    document_number(row, "aim", is_asked ? goal->aim : NAN);
+    document_flag(row, "more_is_better", goal->more);
+    document_text(row, "verdict", is_asked ? verdict : NULL);
+    table_keep(table, row);
+    if (table->figure_count < TABLE_ROWS_MAX)
+        table->figures[table->figure_count++] = *figure;
+}
+
+void table_say(struct table *table, const char *format, ...)
+{
+    if (table->said_count == TABLE_NOTES_MAX)
+        return;
+    char *text = table->said[table->said_count++];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof table->said[0], format, args);
+    va_end(args);
+    document_append(table->sentences, json_string(text));
+}
+
+void table_leave_out(struct table *table, const char *name, const char *why)
+{
+    json_t *object = document_object();
+    document_text(object, "name", name);
+    document_text(object, "why", why);
+    document_append(table->left_out, object);
+    table_say(table, "Left out: %s: %s.", cli_shown(name), cli_shown(why));
+}
+
+/* The number of characters in a UTF-8 text. */
+static size_t count_letters(const char *text)
+{
+    size_t count = 0;
+    for (; *text; ++text)
+        count += ((unsigned char)*text & 0xc0) != 0x80;
+    return count;
+}
+
+static void print_spaces(size_t count)
+{
+    for (size_t i = 0; i < count; ++i)
+        putchar(' ');
+}
+
+static void print_padded(const char *text, size_t width, bool right, bool ends)
+{
+    size_t pad = width - count_letters(text);
+    putchar(' ');
+    print_spaces(right ? pad : 0);
+    fputs(text, stdout);
+    print_spaces(right ? 0 : pad);
+    fputs(ends ? "" : " |", stdout);
+}
+
+static void print_rule(const struct table *table, const size_t *widths)
+{
+    putchar('|');
+    for (uint32_t c = 0; c < table->column_count; ++c) {
+        for (size_t i = 0; i < widths[c] + 1; ++i)
+            putchar('-');
+        putchar(c ? ':' : '-');
+        fputs(table->has_goals && c + 1 == table->column_count ? "" : "|", stdout);
+    }
+    putchar('\n');
+}
+
+static void print_table(const struct table *table)
+{
+    size_t widths[TABLE_COLUMNS_MAX] = {0};
+    for (uint32_t r = 0; r < table->row_count; ++r) {
+        for (uint32_t c = 0; c < table->column_count; ++c) {
+            size_t letters = count_letters(table->cells[r][c]);
+            widths[c] = letters > widths[c] ? letters : widths[c];
+        }
+    }
+    for (uint32_t r = 0; r < table->row_count; ++r) {
+        putchar('|');
+        for (uint32_t c = 0; c < table->column_count; ++c)
+            print_padded(table->cells[r][c], widths[c], c > 0,
+                         table->has_goals && c + 1 == table->column_count);
+        putchar('\n');
+        if (r == 0)
+            print_rule(table, widths);
+    }
+}
+
+whit_result table_end(struct table *table, const char *title, whit_result result)
+{
+    const struct bench *bench = table->bench;
+    cli_progress_finish(&table->bench->progress);
+    document_put(table->object, "rows", table->rows);
+    document_put(table->object, "sentences", table->sentences);
+    document_put(table->object, "left_out", table->left_out);
+    if (result != WHIT_OK) {
+        json_decref(table->object);
+        return result;
+    }
+    printf("\n### %s\n\n", title);
+    print_table(table);
+    putchar('\n');
+    for (uint32_t i = 0; i < table->said_count; ++i)
+        printf("- %s\n", table->said[i]);
+    fflush(stdout);
+    document_append(bench->tables, table->object);
+    return table->has_goals && bench->ask.plot ? table_plot(table, title, bench->ask.plot)
+                                               : WHIT_OK;
+}
