@@ -87,7 +87,6 @@ static const struct builder {
     {.name = "binned:16+opt", .params = {.bins = 16, .optimize = true}},
     {.name = "sweep+opt", .params = {.build = WHIT_BUILD_SWEEP, .optimize = true}},
     {.name = "spatial+opt", .params = {.build = WHIT_BUILD_SPATIAL, .optimize = true}},
-    {.name = "Embree LOW", .quality = "low"},
     {.name = "Embree MEDIUM", .quality = "medium", .in_quick = true},
     {.name = "Embree HIGH", .quality = "high"},
 };

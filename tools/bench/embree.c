@@ -8,7 +8,7 @@
                                  stream; `none`: not in this build of Embree. back: from the end of
                                  each ray, which has one, to its origin. coherent: Embree is told
                                  that neighbours go the same way
-       build QUALITY THREADS     `built WALL_MS BYTES`: a tree of low, medium or high quality, and
+       build QUALITY THREADS     `built WALL_MS BYTES`: a tree of medium or high quality, and
    the most memory that it held by Embree's own monitor hits FILE                 `hits COUNT`: of
    the last trace, written; of them t, primitive and instance mean something, where any will do only
    whether it is one
@@ -147,12 +147,11 @@ static bool on_memory(void *user, ssize_t bytes, bool post)
 static void build_anew(const struct peer *peer, const char *quality, int threads)
 {
     static struct memory memory;
-    enum RTCBuildQuality level = strcmp(quality, "low") == 0    ? RTC_BUILD_QUALITY_LOW
-                                 : strcmp(quality, "high") == 0 ? RTC_BUILD_QUALITY_HIGH
-                                                                : RTC_BUILD_QUALITY_MEDIUM;
+    bool is_high = strcmp(quality, "high") == 0;
     RTCDevice device = open_device(threads);
     rtcSetDeviceMemoryMonitorFunction(device, on_memory, &memory);
-    RTCScene scene = make_scene(peer, device, level);
+    RTCScene scene =
+        make_scene(peer, device, is_high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
     int64_t before = memory.peak = memory.now;
     double wall = clock_of(CLOCK_MONOTONIC);
     rtcCommitScene(scene);

@@ -129,10 +129,9 @@ static whit_result write_pov_scene(const struct frame *frame)
     snprintf(width, sizeof width, "%u", frame->width);
     snprintf(height, sizeof height, "%u", frame->height);
     snprintf(depth, sizeof depth, "%u", frame->depth);
-    const char *const arguments[] = {
-        "sh",  frame->peers->pov_scenes, frame->name, "colors", width, height,
-        depth, frame->bench->folder,     NULL};
-    struct process process = {.program = "sh", .arguments = arguments};
+    struct process process = {.program = "sh"};
+    process_add(&process, "sh", frame->peers->pov_scenes, frame->name, "colors", width, height,
+                depth, frame->bench->folder, NULL);
     return process_run(&process, NULL);
 }
 

@@ -9,13 +9,12 @@ static bool ask_version(const struct bench *bench, const char *program, const ch
                         char line[128])
 {
     static const char *const files[] = {"version", "version.err"};
-    const char *const arguments[] = {program, "--version", NULL};
     struct process process = {.program = program,
-                              .arguments = arguments,
                               .folder = bench->folder,
                               .is_tried = true,
                               .out = files[0],
                               .err = files[1]};
+    process_add(&process, program, "--version", NULL);
     bool runs = process_run(&process, NULL) == WHIT_OK;
     line[0] = 0;
     for (size_t i = 0; runs && !line[0] && i < 2; ++i) {

@@ -8,7 +8,7 @@
 static const char closest_name[] = "closest.rays", shadow_name[] = "shadow.rays";
 
 struct own_ray {
-    uint32_t light, index; /* as they are sorted */
+    uint32_t light; /* 0 of rays that look for none */
     whit_ray ray;
 };
 struct own_rays {
@@ -18,7 +18,7 @@ struct own_rays {
 
 static bool add_ray(struct own_rays *to, uint32_t light, const whit_ray *ray)
 {
-    return ARRAY_PUSH(to->rays, to->count, to->capacity, (struct own_ray){light, to->count, *ray});
+    return ARRAY_PUSH(to->rays, to->count, to->capacity, (struct own_ray){light, *ray});
 }
 
 /* A shadow ray as long as the way to its light, the others without end. */
@@ -65,25 +65,19 @@ static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struc
     return !room ? WHIT_ERROR_MEMORY : cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-static int by_light(const void *a, const void *b)
-{
-    const struct own_ray *x = a, *y = b;
-    if (x->light != y->light)
-        return x->light < y->light ? -1 : 1;
-    return (x->index > y->index) - (x->index < y->index);
-}
-
 /* Light by light, as one would trace them. */
-static whit_result write_rays(const struct frame *frame, const char *name, struct own_rays *rays)
+static whit_result write_rays(const struct frame *frame, const char *name,
+                              const struct own_rays *rays)
 {
+    uint32_t count = 0;
     whit_ray *plain = array_alloc(rays->count, sizeof *plain);
     if (!plain)
         return WHIT_ERROR_MEMORY;
-    if (rays->count)
-        qsort(rays->rays, rays->count, sizeof *rays->rays, by_light);
-    for (uint32_t i = 0; i < rays->count; ++i)
-        plain[i] = rays->rays[i].ray;
-    whit_result result = peer_write_rays(frame->bench, name, plain, rays->count);
+    for (uint32_t light = 0; count < rays->count; ++light)
+        for (uint32_t i = 0; i < rays->count; ++i)
+            if (rays->rays[i].light == light)
+                plain[count++] = rays->rays[i].ray;
+    whit_result result = bench_write(frame->bench, name, plain, count * sizeof *plain);
     free(plain);
     return result;
 }

@@ -55,68 +55,39 @@ static double now_ms(const struct frame *frame)
 static whit_result run_whit(const struct frame *frame, enum frame_side side, uint32_t width,
                             uint32_t height, double *ms)
 {
-    const struct settings *settings = &frame->bench->ask.settings;
     bool is_other = side == FRAME_AGAINST;
+    const char *program = is_other ? frame->peers->against : frame->bench->whit;
     char size[32], depth[16];
+    struct process process = {
+        .program = program, .folder = frame->bench->folder, .err = "whit.err"};
     snprintf(size, sizeof size, "%ux%u", width, height);
     snprintf(depth, sizeof depth, "%u", frame->depth);
-    const char *arguments[32] = {is_other ? frame->peers->against : "whit",
-                                 "render",
-                                 frame->path,
-                                 "-o",
-                                 "whit.pfm",
-                                 "--size",
-                                 size,
-                                 "--aa",
-                                 "1",
-                                 "--depth",
-                                 depth,
-                                 "--bailout",
-                                 frame->bailout,
-                                 "--light-samples",
-                                 "16",
-                                 "--quiet"};
-    int count = 16;
-    if (side == FRAME_FAST || side == FRAME_EXACT) {
-        arguments[count++] = "--numerics";
-        arguments[count++] = side == FRAME_FAST ? "fast" : "exact";
-    }
+    process_add(&process, is_other ? program : "whit", "render", frame->path, "-o", "whit.pfm",
+                "--size", size, "--aa", "1", "--depth", depth, "--bailout", frame->bailout,
+                "--light-samples", "16", "--quiet", NULL);
+    if (side == FRAME_FAST || side == FRAME_EXACT)
+        process_add(&process, "--numerics", side == FRAME_FAST ? "fast" : "exact", NULL);
     /* For small pictures as for large ones: what is made before the first ray is to cancel out. */
-    if (!is_other) {
-        arguments[count++] = "--packets";
-        arguments[count++] = "on";
-        arguments[count++] = "--classes";
-        arguments[count++] = "many";
-    }
-    if (settings->device[0]) {
-        arguments[count++] = "--device";
-        arguments[count++] = settings->device;
-    }
-    if (settings->no_cache)
-        arguments[count++] = "--no-cache";
-    struct process process = {.program = is_other ? frame->peers->against : frame->bench->whit,
-                              .arguments = arguments,
-                              .folder = frame->bench->folder,
-                              .err = "whit.err"};
+    if (!is_other)
+        process_add(&process, "--packets", "on", "--classes", "many", NULL);
+    process_add_device(&process, frame->bench);
+    if (frame->bench->ask.settings.no_cache)
+        process_add(&process, "--no-cache", NULL);
     return run_process(frame, &process, ms);
 }
 
 static whit_result run_pov(const struct frame *frame, uint32_t width, uint32_t height, double *ms)
 {
     char home[BENCH_PATH + 8], input[64], wide[32], high[32], threads[32];
+    struct process process = {
+        .program = "env", .folder = frame->bench->folder, .out = "pov.out", .err = "pov.err"};
     snprintf(home, sizeof home, "HOME=%s", frame->bench->folder);
     snprintf(input, sizeof input, "+I%s.pov", frame->name);
     snprintf(wide, sizeof wide, "+W%u", width);
     snprintf(high, sizeof high, "+H%u", height);
     snprintf(threads, sizeof threads, "+WT%ld", sysconf(_SC_NPROCESSORS_ONLN));
-    const char *const arguments[] = {"povray",         home,  "povray", input, "+Opov.ppm",
-                                     "+FP16",          wide,  high,     "-A",  "-D",
-                                     "File_Gamma=1.0", "-GA", threads,  NULL};
-    struct process process = {.program = "env",
-                              .arguments = arguments,
-                              .folder = frame->bench->folder,
-                              .out = "pov.out",
-                              .err = "pov.err"};
+    process_add(&process, "povray", home, "povray", input, "+Opov.ppm", "+FP16", wide, high, "-A",
+                "-D", "File_Gamma=1.0", "-GA", threads, NULL);
     return run_process(frame, &process, ms);
 }
 

@@ -27,6 +27,13 @@ void bench_file(const struct bench *bench, const char *name, char path[BENCH_PAT
     snprintf(path, BENCH_PATH, "%.2000s/%.150s", bench->folder, name);
 }
 
+whit_result bench_write(const struct bench *bench, const char *name, const void *data, size_t bytes)
+{
+    char path[BENCH_PATH];
+    bench_file(bench, name, path);
+    return whit_file_write(path, data, bytes, &cli_log);
+}
+
 whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
 {
     /* Beside the program, where it is built or installed. */

@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "app/scene/listing.h"
+
 const char peer_why_not[] =
     "`whit-embree` is not beside whit-bench; the build makes it where Embree "
     "3 is installed (Debian: libembree-dev)";
@@ -27,58 +29,6 @@ bool peer_is_here(void)
     char path[BENCH_PATH];
     return find_program(path, sizeof path);
 }
-
-/* ---- Files ---- */
-
-static whit_result open_in(const struct bench *bench, const char *name, FILE **to)
-{
-    char path[BENCH_PATH];
-    bench_file(bench, name, path);
-    *to = fopen(path, "wb");
-    if (*to)
-        return WHIT_OK;
-    cli_error("%s: cannot write: %s", path, strerror(errno));
-    return WHIT_ERROR_OUTPUT;
-}
-
-static whit_result close_whole(FILE *to, const char *name)
-{
-    bool whole = !ferror(to);
-    if (fclose(to) == 0 && whole)
-        return WHIT_OK;
-    cli_error("%s: cannot write: %s", name, strerror(errno));
-    return WHIT_ERROR_OUTPUT;
-}
-
-static bool write_triangle(void *user, const whit_triangle *triangle)
-{
-    return fwrite(triangle, sizeof *triangle, 1, user) == 1 && !cli_cancel;
-}
-
-static whit_result write_triangles(const struct bench *bench, const whit_scene *scene,
-                                   const char *name)
-{
-    FILE *to;
-    whit_result result = open_in(bench, name, &to);
-    if (result != WHIT_OK)
-        return result;
-    result = whit_scene_triangles(scene, 0.0, write_triangle, to);
-    whit_result closed = close_whole(to, name);
-    return closed != WHIT_OK ? closed : result;
-}
-
-whit_result peer_write_rays(const struct bench *bench, const char *name, const whit_ray *rays,
-                            uint64_t count)
-{
-    FILE *to;
-    whit_result result = open_in(bench, name, &to);
-    if (result != WHIT_OK)
-        return result;
-    fwrite(rays, sizeof *rays, (size_t)count, to);
-    return close_whole(to, name);
-}
-
-/* ---- The program ---- */
 
 /* Waits for its end, which may be on its way already. */
 static whit_result lost(struct peer *peer)
@@ -116,9 +66,10 @@ whit_result peer_begin(struct peer *peer, const struct bench *bench, const whit_
                        const char *triangles)
 {
     int ends[2];
-    char answer[128];
+    char answer[128], path[BENCH_PATH];
     *peer = (struct peer){.socket = -1};
-    whit_result result = write_triangles(bench, scene, triangles);
+    bench_file(bench, triangles, path);
+    whit_result result = triangles_write(scene, 0.0, path);
     if (result != WHIT_OK)
         return result;
     if (!find_program(peer->program, sizeof peer->program) ||
@@ -126,12 +77,9 @@ whit_result peer_begin(struct peer *peer, const struct bench *bench, const whit_
         cli_error("no `whit-embree`, or no socket for it: %s", strerror(errno));
         return WHIT_ERROR_MEMORY;
     }
-    peer->arguments[0] = "whit-embree";
-    peer->arguments[1] = triangles;
-    peer->process = (struct process){.program = peer->program,
-                                     .arguments = peer->arguments,
-                                     .folder = bench->folder,
-                                     .socket = ends[1]};
+    peer->process =
+        (struct process){.program = peer->program, .folder = bench->folder, .socket = ends[1]};
+    process_add(&peer->process, "whit-embree", triangles, NULL);
     peer->socket = ends[0];
     peer->answers = fdopen(ends[0], "r");
     result = peer->answers ? process_start(&peer->process) : WHIT_ERROR_MEMORY;

@@ -8,14 +8,11 @@ struct peer {
     int socket;
     FILE *answers;
     struct process process;
-    const char *arguments[3];
     char program[BENCH_PATH], version[32];
 };
 
 /* Whether there is one beside this program. */
 bool peer_is_here(void);
-WHIT_CHECK whit_result peer_write_rays(const struct bench *bench, const char *name,
-                                       const whit_ray *rays, uint64_t count);
 /* Writes the triangles of a scene, as it works on them, and as whit names them, into a file of the
    bench's folder, and starts it on these. End it in any case, also a zeroed one. */
 WHIT_CHECK whit_result peer_begin(struct peer *peer, const struct bench *bench,

@@ -4,6 +4,7 @@
 #include <ftw.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdarg.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -26,6 +27,22 @@ void process_remove_folder(const char *folder)
 }
 
 /* ---- Start ---- */
+
+void process_add(struct process *process, ...)
+{
+    va_list args;
+    va_start(args, process);
+    for (const char *text; (text = va_arg(args, const char *)) != NULL;)
+        if (process->argument_count + 1 < PROCESS_ARGUMENTS)
+            process->arguments[process->argument_count++] = text;
+    va_end(args);
+}
+
+void process_add_device(struct process *process, const struct bench *bench)
+{
+    if (bench->ask.settings.device[0])
+        process_add(process, "--device", bench->ask.settings.device, NULL);
+}
 
 static int prepare(const struct process *process, posix_spawn_file_actions_t *actions)
 {

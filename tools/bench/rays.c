@@ -152,7 +152,7 @@ static whit_result begin_peer(struct model *model, char file[96])
     snprintf(file, 96, "%s.triangles", model->name);
     model->has_peer = true;
     whit_result result = peer_begin(&model->peer, model->bench, model->loaded.scene, file);
-    if (result == WHIT_OK && model->table->figure_count == 0)
+    if (result == WHIT_OK && model->table->row_count == 1)
         table_say(model->table, "Beside Embree %s.", model->peer.version);
     return result;
 }
@@ -189,23 +189,22 @@ static whit_result run_usual(struct table *table)
 {
     static const char *const names[] = {"54k", "atrium"};
     const struct bench *bench = table->bench;
-    char path[BENCH_PATH];
+    char path[BENCH_PATH], text[256];
     whit_result result = WHIT_OK;
     for (size_t i = 0; result == WHIT_OK && i < 2; ++i) {
         result = bench_find(bench, names[i], path);
         if (result == WHIT_OK)
             result = run_model(table, path);
     }
+    snprintf(text, sizeof text,
+             "{\"camera\": {\"eye\": [0, 4, 6], \"target\": [0, 0, 0], \"fov\": 40}, \"objects\": "
+             "[{\"shape\": \"terrain\", \"size\": 12, \"height\": 2, \"steps\": %d, "
+             "\"seed\": 3}]}\n",
+             bench->ask.quick ? 74 : 742);
     bench_file(bench, "terrain.json", path);
-    FILE *to = result == WHIT_OK ? fopen(path, "w") : NULL;
-    if (!to)
-        return result == WHIT_OK ? WHIT_ERROR_OUTPUT : result;
-    fprintf(to,
-            "{\"camera\": {\"eye\": [0, 4, 6], \"target\": [0, 0, 0], \"fov\": 40}, \"objects\": "
-            "[{\"shape\": \"terrain\", \"size\": 12, \"height\": 2, \"steps\": %d, "
-            "\"seed\": 3}]}\n",
-            bench->ask.quick ? 74 : 742);
-    return fclose(to) == 0 ? run_model(table, path) : WHIT_ERROR_OUTPUT;
+    if (result == WHIT_OK)
+        result = bench_write(bench, "terrain.json", text, strlen(text));
+    return result == WHIT_OK ? run_model(table, path) : result;
 }
 
 static void say_how(struct table *table)

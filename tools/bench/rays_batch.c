@@ -93,7 +93,8 @@ const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_sid
 
 static whit_result run_sides(struct model *model, const char *file)
 {
-    whit_result result = peer_write_rays(model->bench, file, model->rays, model->count);
+    whit_result result =
+        bench_write(model->bench, file, model->rays, (size_t)model->count * sizeof(whit_ray));
     if (result == WHIT_OK && model->has_peer)
         result = peer_rays(&model->peer, file, model->batch->any);
     if (result == WHIT_OK)
@@ -140,9 +141,8 @@ static whit_result keep_hits(struct model *model, const char *own, const char *o
 {
     char path[BENCH_PATH];
     double ms[2];
-    bench_file(model->bench, own, path);
     whit_result result =
-        whit_file_write(path, model->traced, (size_t)model->count * sizeof(whit_hit), &cli_log);
+        bench_write(model->bench, own, model->traced, (size_t)model->count * sizeof(whit_hit));
     if (result != WHIT_OK || !model->has_peer)
         return result;
     whit_hit *theirs = malloc((size_t)(model->count + 1) * sizeof *theirs);

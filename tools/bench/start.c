@@ -5,7 +5,7 @@
 
 #include "bench/frame.h"
 
-enum { SIDES = 2, ARGUMENTS_MAX = 24 };
+enum { SIDES = 2 };
 
 /* Goals are times the time of the other whit; 77b2e52 is what they were set beside. */
 static const struct start {
@@ -42,38 +42,27 @@ static whit_result run_side(void *user, uint32_t side, uint32_t round)
 {
     struct starting *s = user;
     const struct start *start = s->start;
-    const struct bench_request *ask = &s->bench->ask;
     char cache[BENCH_PATH], home[BENCH_PATH + 64], drivers[2][BENCH_PATH + 32];
-    const char *arguments[ARGUMENTS_MAX] = {"env", "-u", "MESA_SHADER_CACHE_DIR", "-u",
-                                            "MESA_SHADER_CACHE_MAX_SIZE"};
-    int count = 5;
     struct process_times times;
+    struct process process = {
+        .program = "env", .folder = s->bench->folder, .out = "start.out", .err = "start.err"};
     bench_file(s->bench, side ? "cache1" : "cache0", cache);
     snprintf(home, sizeof home, "XDG_CACHE_HOME=%s", cache);
-    arguments[count++] = home;
     snprintf(drivers[0], sizeof drivers[0], "VK_DRIVER_FILES=%s", s->second);
     snprintf(drivers[1], sizeof drivers[1], "VK_ICD_FILENAMES=%s", s->second);
-    for (int i = 0; start->second && i < 2; ++i)
-        arguments[count++] = drivers[i];
-    arguments[count++] = side ? s->peers.against : s->bench->whit;
-    arguments[count++] = start->size ? "render" : "probe";
-    arguments[count++] = s->scene;
-    arguments[count++] = start->size ? "-o" : "--pixel";
-    arguments[count++] = start->size ? "start.png" : "320,240";
-    if (start->size) {
-        arguments[count++] = "--size";
-        arguments[count++] = ask->quick ? "32x24" : start->size;
-    }
-    arguments[count++] = "--quiet";
-    if (ask->settings.device[0] && !start->second) {
-        arguments[count++] = "--device";
-        arguments[count++] = ask->settings.device;
-    }
-    struct process process = {.program = "env",
-                              .arguments = arguments,
-                              .folder = s->bench->folder,
-                              .out = "start.out",
-                              .err = "start.err"};
+    process_add(&process, "env", "-u", "MESA_SHADER_CACHE_DIR", "-u", "MESA_SHADER_CACHE_MAX_SIZE",
+                home, NULL);
+    if (start->second)
+        process_add(&process, drivers[0], drivers[1], NULL);
+    process_add(&process, side ? s->peers.against : s->bench->whit, NULL);
+    if (start->size)
+        process_add(&process, "render", s->scene, "-o", "start.png", "--size",
+                    s->bench->ask.quick ? "32x24" : start->size, NULL);
+    else
+        process_add(&process, "probe", s->scene, "--pixel", "320,240", NULL);
+    process_add(&process, "--quiet", NULL);
+    if (!start->second)
+        process_add_device(&process, s->bench);
     if (!start->warm)
         process_remove_folder(cache);
     whit_result result = process_run(&process, &times);

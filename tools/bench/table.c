@@ -102,7 +102,7 @@ void table_figure(struct table *table, const struct figure *figure, json_t *row)
     document_flag(row, "more_is_better", goal->more);
     document_text(row, "verdict", is_asked ? verdict : NULL);
     table_keep(table, row);
-    if (table->figure_count < TABLE_ROWS_MAX)
+    if (is_asked && figure->value > 0.0 && table->figure_count < TABLE_ROWS_MAX)
         table->figures[table->figure_count++] = *figure;
 }
 

@@ -27,7 +27,7 @@ struct table {
     char cells[TABLE_ROWS_MAX][TABLE_COLUMNS_MAX][TABLE_CELL];
     char said[TABLE_NOTES_MAX][400];
     uint32_t said_count;
-    struct figure figures[TABLE_ROWS_MAX];
+    struct figure figures[TABLE_ROWS_MAX]; /* that can be drawn: of which something is asked */
     uint32_t figure_count;
 };
 

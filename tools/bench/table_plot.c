@@ -28,11 +28,6 @@ static void include(struct axis *axis, double share)
     axis->high = fmax(axis->high, share);
 }
 
-static bool is_drawn(const struct figure *figure)
-{
-    return figure->goal.must > 0.0 && figure->value > 0.0 && isfinite(figure->value);
-}
-
 static void put_text(struct page *page, double x, double y, const char *anchor, const char *text)
 {
     page_markup(page, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
@@ -75,17 +70,13 @@ static void put_figure(struct page *page, const struct axis *axis, const struct 
 static void put_drawing(struct page *page, const struct table *table, const char *title)
 {
     struct axis axis = {0.5, 2.0};
-    uint32_t drawn = 0;
     for (uint32_t i = 0; i < table->figure_count; ++i) {
         const struct figure *figure = &table->figures[i];
-        if (!is_drawn(figure))
-            continue;
         include(&axis, share_of(&figure->goal, figure->value));
         include(&axis, share_of(&figure->goal, figure->goal.aim));
-        ++drawn;
     }
     plot_widen(&axis.low, &axis.high, true);
-    double bottom = TOP + ROW * (drawn + 1);
+    double bottom = TOP + ROW * (table->figure_count + 1);
     page_markup(page,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\">\n<style>"
                 "text{font:13px sans-serif;fill:#222}.grid{stroke:#ddd}.must{stroke:#222}"
@@ -94,13 +85,8 @@ static void put_drawing(struct page *page, const struct table *table, const char
                 WIDTH, bottom + BOTTOM);
     put_text(page, 8.0, 20.0, "start", title);
     put_axis(page, &axis, bottom);
-    double y = TOP + ROW;
-    for (uint32_t i = 0; i < table->figure_count; ++i) {
-        if (!is_drawn(&table->figures[i]))
-            continue;
-        put_figure(page, &axis, &table->figures[i], y);
-        y += ROW;
-    }
+    for (uint32_t i = 0; i < table->figure_count; ++i)
+        put_figure(page, &axis, &table->figures[i], TOP + ROW * (i + 1));
     page_markup(page, "</svg>\n");
 }
 

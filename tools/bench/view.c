@@ -16,13 +16,13 @@ struct view_case {
     json_t *whole, *moving, *idle; /* "measure" of states */
 };
 
-static whit_result write_replay(const struct bench *bench, const char *path, bool only_first)
+static whit_result write_replay(const struct bench *bench, bool only_first)
 {
-    FILE *to = fopen(path, "w");
-    if (!to) {
-        cli_error("%s cannot be written", path);
-        return WHIT_ERROR_OUTPUT;
-    }
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *to = open_memstream(&text, &bytes);
+    if (!to)
+        return WHIT_ERROR_MEMORY;
     fprintf(to, "clock real\nstill\nstate first\n");
     for (uint32_t i = 0; i < bench->ask.runs && !only_first; ++i)
         fprintf(to, "wheel 0 %d\nstill\n", i % 2 ? -1 : 1);
@@ -35,35 +35,28 @@ static whit_result write_replay(const struct bench *bench, const char *path, boo
                 "button left up\nstate moving\nstill\nwait 300\nstate rest\nwait %d\nstate idle\n",
                 bench->ask.quick ? IDLE_MS_QUICK : IDLE_MS);
     }
-    if (fclose(to) == 0)
-        return WHIT_OK;
-    cli_error("%s cannot be written", path);
-    return WHIT_ERROR_OUTPUT;
+    whit_result result =
+        fclose(to) == 0 ? bench_write(bench, "replay", text, bytes) : WHIT_ERROR_MEMORY;
+    free(text);
+    return result;
 }
 
 /* Runs `whit view`; what it prints goes into the file `out`. */
 static whit_result run_viewer(const struct bench *bench, const struct view_case *c,
                               const char *replay, const char *out)
 {
-    const char *device = bench->ask.settings.device;
+    struct process process = {.program = bench->whit, .out = out};
     char scene[BENCH_PATH], size[32];
     whit_result result = bench_find(bench, c->scene, scene);
     if (result != WHIT_OK)
         return result;
     snprintf(size, sizeof size, "%ux%u", c->width, c->height);
-    const char *arguments[16] = {"whit",    "view",     scene,  "--size",    size,
-                                 "--quiet", "--replay", replay, "--no-vsync"};
-    int count = 9;
-    if (c->depth) {
-        arguments[count++] = "--depth";
-        arguments[count++] = c->depth;
-    }
-    if (device[0]) {
-        arguments[count++] = "--device";
-        arguments[count++] = device;
-    }
-    struct process viewer = {.program = bench->whit, .arguments = arguments, .out = out};
-    return process_run(&viewer, NULL);
+    process_add(&process, "whit", "view", scene, "--size", size, "--quiet", "--replay", replay,
+                "--no-vsync", NULL);
+    if (c->depth)
+        process_add(&process, "--depth", c->depth, NULL);
+    process_add_device(&process, bench);
+    return process_run(&process, NULL);
 }
 
 /* The "measure" of the state with this name, NULL: none. */
@@ -94,11 +87,11 @@ static whit_result measure(const struct bench *bench, struct view_case *c)
     char replay[BENCH_PATH], out[BENCH_PATH];
     bench_file(bench, "replay", replay);
     bench_file(bench, "states", out);
-    whit_result result = write_replay(bench, replay, true);
+    whit_result result = write_replay(bench, true);
     if (result == WHIT_OK)
         result = run_viewer(bench, c, replay, out); /* fills caches */
     if (result == WHIT_OK)
-        result = write_replay(bench, replay, false);
+        result = write_replay(bench, false);
     double start_ms = whit_clock_ms();
     if (result == WHIT_OK)
         result = run_viewer(bench, c, replay, out);

@@ -9,8 +9,8 @@ int listing_print_text(const struct job *job, const whit_scene_info *info, bool 
 /* listing_output.c */
 int listing_print_json(const struct job *job, const whit_scene_info *info);
 
-/* triangles.c: all triangles of the scene at the job's time, into the file `path`. Failures were
+/* triangles.c: all triangles of the scene at a time, into the file `path`. Failures were
    said. */
-WHIT_CHECK whit_result triangles_write(const struct job *job, const char *path);
+WHIT_CHECK whit_result triangles_write(const whit_scene *scene, double time_s, const char *path);
 
 #endif

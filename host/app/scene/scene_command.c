@@ -33,7 +33,7 @@ static int work(struct job *job, const struct scene_request *request)
     whit_scene_info info;
     whit_result result = job_load(job);
     if (result == WHIT_OK && request->triangles)
-        result = triangles_write(job, request->triangles);
+        result = triangles_write(job->scene, job->settings.picture.time_s, request->triangles);
     if (result != WHIT_OK)
         return cli_exit_of(result);
     if (request->effects)

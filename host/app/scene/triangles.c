@@ -30,7 +30,7 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
     return writer->used < TRIANGLE_BATCH || write_batch(writer);
 }
 
-whit_result triangles_write(const struct job *job, const char *path)
+whit_result triangles_write(const whit_scene *scene, double time_s, const char *path)
 {
     struct triangle_writer *writer = calloc(1, sizeof *writer);
     if (!writer) {
@@ -40,7 +40,7 @@ whit_result triangles_write(const struct job *job, const char *path)
     whit_result result = whit_file_begin(path, &cli_log, &writer->file);
     if (result != WHIT_OK)
         goto done;
-    result = whit_scene_triangles(job->scene, job->settings.picture.time_s, write_triangle, writer);
+    result = whit_scene_triangles(scene, time_s, write_triangle, writer);
     if (result == WHIT_ERROR_CANCELLED && writer->result != WHIT_OK)
         result = writer->result;
     if (result == WHIT_OK && !write_batch(writer))
