@@ -12,7 +12,7 @@
 
 /* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
    default, but for `bins` of BVH_BINNED: 0 lets the number follow the size of the node. They fill
-   *out up to bvh_complete; on failure the caller releases what is in it. */
+   *out up to build_complete; on failure the caller releases what is in it. */
 whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
@@ -20,40 +20,53 @@ whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint
 whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 
-/* A box with the primitive it belongs to. Records are moved, not indices to them, so that a subtree
-   is one run of memory. */
+/* bvh_complete by several threads: the same bits for any number of them. */
+void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);
+
+/* A box with the primitive it belongs to: a reference. Records are moved, not indices to them, so
+   that a subtree is one run of memory. */
 struct build_record {
     alignas(32) float lo[3];
     uint32_t primitive;
     float hi[3];
-    uint32_t pad;
+    uint32_t flags; /* SPATIAL_* */
+};
+
+struct build_box {
+    f4 lo, hi;
 };
 
 /* Bounds of some records. Centroids are quartered sums lo / 4 + hi / 4: neither they nor their
    differences overflow. */
 struct build_bounds {
-    f4 lo, hi;
-    f4 centroid_lo, centroid_hi;
+    struct build_box box, centroids;
 };
 
-/* Records [first, first + count) and where their subtree goes: node `node`, and pairs of children
-   from pair slot `pair` on, of which it may use count - 1. */
+/* ---- Top-down building (topdown.c) ---- */
+
+/* Records [first, first + count) with room for `spare` more behind them, and where their subtree
+   goes: node `node`, and pairs of children from pair slot `pair` on, of which it may use count +
+   spare - 1. */
 struct build_range {
     struct build_bounds bounds;
-    uint32_t node, pair, first, count, depth;
+    uint32_t node, pair, first, count, spare, depth;
+};
+
+/* The two runs that the records of a range were split into, the second behind the first. A record
+   that was split itself is in both: together they are at most count + spare. */
+struct build_halves {
+    struct build_bounds bounds[2];
+    uint32_t count[2];
 };
 
 enum build_choice {
-    BUILD_SPLIT, /* the records are in two runs, the bounds of both are known */
+    BUILD_SPLIT, /* the records are in two runs */
     BUILD_LEAF,  /* a leaf costs less; allowed by the leaf limit */
     BUILD_NONE,  /* no plane separates anything */
-    BUILD_STOP,  /* the caller does not want the tree any more */
 };
 
 /* The depth from which nodes are split at the median: 28 more levels for 2^28 primitives. */
 enum { BUILD_DEPTH_OF_MEDIANS = 96 };
-
-/* ---- Top-down building (topdown.c) ---- */
 
 /* The nodes while a tree grows. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */
 struct build_output {
@@ -63,29 +76,33 @@ struct build_output {
 
 /* What differs between builders. Ranges that do not overlap are given to several threads at once.
    `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
-struct build_methods {
-    void *context;
-    /* With thread_count > 1 the work on this one range is to be spread over threads. */
-    enum build_choice (*split)(void *context, const struct build_range *range,
-                               uint32_t thread_count, void *scratch, uint32_t *left_count,
-                               struct build_bounds halves[2]);
+struct builder {
+    const struct bvh_params *params;
+    struct build_record *records;
+    void *context; /* the builder's own */
+    /* With thread_count > 1, which only a `threaded` one meets, the work on this one range is to be
+       spread over threads. NULL: always `halve`. */
+    enum build_choice (*split)(const struct builder *builder, const struct build_range *range,
+                               uint32_t thread_count, void *scratch, struct build_halves *halves);
+    bool threaded;
     /* The same without a choice, and without fail: for BUILD_NONE above the leaf limit. */
-    void (*halve)(void *context, const struct build_range *range, void *scratch,
-                  uint32_t *left_count, struct build_bounds halves[2]);
+    void (*halve)(const struct builder *builder, const struct build_range *range, void *scratch,
+                  struct build_halves *halves);
     /* Builds the whole subtree of a range of at most small_count records. */
-    void (*small)(void *context, const struct build_output *output,
+    void (*small)(const struct builder *builder, const struct build_output *output,
                   const struct build_range *range);
     uint32_t small_count;
 };
 
-/* Grows the tree over `count` items within `bounds`; fills all of *out but `order`, which it
-   allocates. WHIT_ERROR_CANCELLED, without a message, after BUILD_STOP. */
-whit_result topdown_grow(const struct log *log, const struct build_methods *methods,
-                         const struct bvh_params *params, const struct build_bounds *bounds,
-                         uint32_t count, struct bvh *out);
+/* Grows the tree over `count` records within `bounds`, with room for `spare` more behind them.
+   Allocates out->order, for all of them, and gives out->nodes, of which leaves name runs of
+   records: the order, and what follows from nodes, are the builder's to fill in. */
+whit_result topdown_grow(const struct log *log, const struct builder *builder,
+                         const struct build_bounds *bounds, uint32_t count, uint32_t spare,
+                         struct bvh *out);
 
-/* bvh_complete by several threads: the same bits for any number of them. */
-void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);
+/* Not zeroed: slots that stay empty should cost no memory. */
+void *build_alloc_lines(size_t count, size_t element_bytes);
 
 /* ---- Records (records.c) ---- */
 
@@ -94,57 +111,148 @@ whit_result records_make(const struct log *log, const struct bvh_box *boxes, uin
                          uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds);
 
-/* Chooses the best of equally spaced planes on each axis by surface area, and partitions. */
-enum build_choice split_binned(struct build_record *records, const struct build_range *range,
-                               const struct bvh_params *params, uint32_t thread_count,
-                               struct build_record *scratch, uint32_t *left_count,
-                               struct build_bounds halves[2]);
+/* The bounds of the first halves->count[0] records, and of the rest of `count`. */
+void records_bound(const struct build_record *records, uint32_t count, struct build_halves *halves);
 
-/* Halves the records along the axis of the widest centroids; equal centroids by primitive. */
-void split_median(struct build_record *records, const struct build_range *range,
-                  uint32_t *left_count, struct build_bounds halves[2]);
+/* ---- Equal bins (split_binned.c) ---- */
+
+/* Bin of a centroid: (centroid - origin) * scale, truncated. Partitioning evaluates the very same
+   expression, so a record never lands on the other side of where it was counted. */
+struct bin_grid {
+    f4 origin, scale, last;
+    uint32_t bins;
+};
+
+struct bin_plane {
+    struct bin_grid grid;
+    uint32_t axis, bin;  /* records of bins below `bin` go left */
+    float cost;          /* relative to one primitive of the node's scaled area */
+    uint32_t left_count; /* and the boxes of both sides, if the cost is below infinity */
+    struct build_box side[2];
+};
+
+/* The best of equally spaced planes on all axes; of infinite cost where none separates anything. */
+void bins_find(const struct build_record *records, const struct build_range *range, uint32_t bins,
+               f4 scale, uint32_t thread_count, struct bin_plane *plane);
+
+static inline f4 bin_grid_position(const struct bin_grid *grid, f4 centroid)
+{
+    return f4_min(f4_mul(f4_sub(centroid, grid->origin), grid->scale), grid->last);
+}
+
+/* 1: a record of this centroid goes left, else 0. */
+static inline uint32_t bin_plane_left(const struct bin_plane *plane, f4 centroid)
+{
+    f4 position = bin_grid_position(&plane->grid, centroid);
+    return f4_below(position, f4_splat((float)plane->bin)) >> plane->axis & 1u;
+}
+
+/* ---- The ways to split ---- */
+
+/* builder->split: bins_find, and partitions. */
+enum build_choice split_binned(const struct builder *builder, const struct build_range *range,
+                               uint32_t thread_count, void *scratch, struct build_halves *halves);
+
+/* builder->halve: along the axis of the widest centroids; equal centroids by primitive. */
+void split_median(const struct builder *builder, const struct build_range *range, void *scratch,
+                  struct build_halves *halves);
 
 /* ---- Small subtrees (sweep_small.c) ---- */
 
 /* At most BUILD_SMALL boxes, and their order along each axis. */
 enum { BUILD_SMALL = 16 };
 struct small {
-    f4 lo[BUILD_SMALL], hi[BUILD_SMALL];
+    struct build_box box[BUILD_SMALL];
     alignas(16) float centroid[BUILD_SMALL][4];
     uint8_t order[2][3]
                  [BUILD_SMALL];  /* nodes read one side and write the other for their children */
     uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
 };
 
+struct small_cut {
+    uint32_t axis, left_count; /* of order[0][axis] */
+    float cost;
+};
+
+void small_put(struct small *small, uint32_t index, const struct build_record *record);
 /* Fills order[0]: by centroid, equal ones by position. */
 void small_sort(struct small *small, uint32_t count);
-/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0]. */
-void small_grow(struct small *small, const struct build_output *output,
-                const struct bvh_params *params, const struct build_range *range);
+/* The best cut of `count` boxes, not at infinite cost, at any position of order[0] on an axis along
+   which not all are equal. */
+struct small_cut small_find(const struct small *small, uint32_t count, f4 scale);
+/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0] that
+   separates centroids. */
+void small_grow(struct small *small, const struct builder *builder,
+                const struct build_output *output, const struct build_range *range);
 
-/* ---- */
+/* ---- Boxes ---- */
 
-static inline f4 build_record_lo(const struct build_record *r)
+static inline struct build_box build_box_empty(void)
 {
-    return f4_xyz(f4_load(r->lo));
-}
-static inline f4 build_record_hi(const struct build_record *r)
-{
-    return f4_xyz(f4_load(r->hi));
+    return (struct build_box){f4_set(FLT_MAX, FLT_MAX, FLT_MAX, 0.0f),
+                              f4_set(-FLT_MAX, -FLT_MAX, -FLT_MAX, 0.0f)};
 }
 
-static inline f4 build_centroid(f4 lo, f4 hi)
+static inline struct build_box build_box_unite(struct build_box a, struct build_box b)
+{
+    return (struct build_box){f4_min(a.lo, b.lo), f4_max(a.hi, b.hi)};
+}
+
+static inline struct build_box build_record_box(const struct build_record *r)
+{
+    return (struct build_box){f4_xyz(f4_load(r->lo)), f4_xyz(f4_load(r->hi))};
+}
+
+static inline struct build_box build_node_box(const struct gpu_bvh_node *node)
+{
+    return (struct build_box){f4_xyz(f4_load(node->lo)), f4_xyz(f4_load(node->hi))};
+}
+
+static inline void build_node_write(struct gpu_bvh_node *node, struct build_box box, uint32_t first,
+                                    uint32_t count)
+{
+    alignas(16) float lo[4], hi[4];
+    f4_store(lo, box.lo);
+    f4_store(hi, box.hi);
+    memcpy(node->lo, lo, sizeof node->lo);
+    memcpy(node->hi, hi, sizeof node->hi);
+    node->first = first;
+    node->count = count;
+}
+
+static inline f4 build_centroid(struct build_box box)
 {
     f4 quarter = f4_splat(0.25f);
-    return f4_add(f4_mul(lo, quarter), f4_mul(hi, quarter));
+    return f4_add(f4_mul(box.lo, quarter), f4_mul(box.hi, quarter));
 }
+
+/* The same of one axis. */
+static inline float build_centroid_along(const struct build_record *record, uint32_t axis)
+{
+    return record->lo[axis] * 0.25f + record->hi[axis] * 0.25f;
+}
+
+static inline struct build_bounds build_bounds_empty(void)
+{
+    return (struct build_bounds){build_box_empty(), build_box_empty()};
+}
+
+static inline void build_bounds_add(struct build_bounds *b, const struct build_record *record)
+{
+    struct build_box box = build_record_box(record);
+    f4 centroid = build_centroid(box);
+    b->box = build_box_unite(b->box, box);
+    b->centroids = build_box_unite(b->centroids, (struct build_box){centroid, centroid});
+}
+
+/* ---- Costs ---- */
 
 /* A power of two that brings the largest extent into [0.5, 1], or near it at the ends of the range
    of floats: areas neither overflow nor vanish, whatever the scene's unit. */
-static inline f4 build_scale_of(f4 lo, f4 hi)
+static inline f4 build_scale(struct build_box box)
 {
     alignas(16) float e[4];
-    f4_store(e, f4_sub(hi, lo));
+    f4_store(e, f4_sub(box.hi, box.lo));
     float extent = e[0] > e[1] ? e[0] : e[1];
     extent = extent > e[2] ? extent : e[2];
     uint32_t bits;
@@ -157,50 +265,48 @@ static inline f4 build_scale_of(f4 lo, f4 hi)
     return f4_splat(scale);
 }
 
-static inline f4 build_area_scale(const struct build_bounds *bounds)
+static inline float build_area(struct build_box box, f4 scale)
 {
-    return build_scale_of(bounds->lo, bounds->hi);
+    return f4_half_area(f4_sub(f4_mul(box.hi, scale), f4_mul(box.lo, scale)));
 }
 
-static inline float build_scaled_area(f4 lo, f4 hi, f4 scale)
+/* build_area of each of the three, in the first three lanes. */
+static inline f4 build_areas(const struct build_box box[3], f4 scale)
 {
-    return f4_half_area(f4_sub(f4_mul(hi, scale), f4_mul(lo, scale)));
+    f4 d[3];
+    for (int a = 0; a < 3; ++a)
+        d[a] = f4_sub(f4_mul(box[a].hi, scale), f4_mul(box[a].lo, scale));
+    return f4_half_areas(d[0], d[1], d[2]);
 }
 
-static inline struct build_bounds build_bounds_empty(void)
+/* Whether a leaf is allowed, and costs no more than a split of this cost. */
+static inline bool build_leaf_pays(const struct bvh_params *params, uint32_t count, float area,
+                                   float split_cost)
 {
-    f4 big = f4_set(FLT_MAX, FLT_MAX, FLT_MAX, 0.0f);
-    f4 small = f4_set(-FLT_MAX, -FLT_MAX, -FLT_MAX, 0.0f);
-    return (struct build_bounds){big, small, big, small};
+    return count <= params->leaf_limit &&
+           area * (float)count <= area * params->traversal_cost + split_cost;
 }
 
-static inline void build_bounds_add(struct build_bounds *b, f4 lo, f4 hi)
+static inline uint32_t build_widest_axis(const float extent[3])
 {
-    f4 centroid = build_centroid(lo, hi);
-    b->lo = f4_min(b->lo, lo);
-    b->hi = f4_max(b->hi, hi);
-    b->centroid_lo = f4_min(b->centroid_lo, centroid);
-    b->centroid_hi = f4_max(b->centroid_hi, centroid);
+    uint32_t axis = extent[1] > extent[0] ? 1 : 0;
+    return extent[2] > extent[axis] ? 2 : axis;
 }
 
-static inline void build_bounds_merge(struct build_bounds *a, const struct build_bounds *b)
+/* Floats in the order of unsigned integers. */
+static inline uint32_t build_ordered_bits(float value)
 {
-    a->lo = f4_min(a->lo, b->lo);
-    a->hi = f4_max(a->hi, b->hi);
-    a->centroid_lo = f4_min(a->centroid_lo, b->centroid_lo);
-    a->centroid_hi = f4_max(a->centroid_hi, b->centroid_hi);
+    uint32_t bits;
+    value += 0.0f; /* one zero */
+    memcpy(&bits, &value, sizeof bits);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-static inline void build_node_write(struct gpu_bvh_node *node, f4 lo, f4 hi, uint32_t first,
-                                    uint32_t count)
+static inline void build_records_swap(struct build_record *a, struct build_record *b)
 {
-    alignas(16) float low[4], high[4];
-    f4_store(low, lo);
-    f4_store(high, hi);
-    memcpy(node->lo, low, sizeof node->lo);
-    memcpy(node->hi, high, sizeof node->hi);
-    node->first = first;
-    node->count = count;
+    struct build_record moved = *a;
+    *a = *b;
+    *b = moved;
 }
 
 #endif

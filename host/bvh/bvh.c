@@ -82,6 +82,8 @@ whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32
         return WHIT_ERROR_INPUT;
     }
     result = build(log, boxes, count, &resolved, out);
+    if (result == WHIT_OK)
+        build_complete(out, (double)resolved.traversal_cost, resolved.thread_count);
     if (result == WHIT_OK && resolved.optimize)
         result = bvh_optimize(log, resolved.thread_count, (double)resolved.traversal_cost, out);
     out->build_ms = clock_ms() - begin_ms;

@@ -66,8 +66,17 @@ static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
     return node->count & BVH_COUNT_MASK;
 }
 
+/* Half the area of its box. */
+static inline double bvh_half_area(const struct gpu_bvh_node *node)
+{
+    double x = (double)node->hi[0] - (double)node->lo[0];
+    double y = (double)node->hi[1] - (double)node->lo[1];
+    double z = (double)node->hi[2] - (double)node->lo[2];
+    return x * y + y * z + z * x;
+}
+
 /* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
-   and depth (bvh_complete.c). Every builder ends with it. */
+   and depth. Whatever builds a tree ends with it. */
 void bvh_complete(struct bvh *bvh, double traversal_cost);
 /* Sets only the axis bits of the pair of sibling nodes at `first`. */
 void bvh_set_axis(struct gpu_bvh_node *first);

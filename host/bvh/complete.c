@@ -4,14 +4,6 @@
 #include "base/threads.h"
 #include "bvh/build.h"
 
-static double half_area(const struct gpu_bvh_node *node)
-{
-    double x = (double)node->hi[0] - (double)node->lo[0];
-    double y = (double)node->hi[1] - (double)node->lo[1];
-    double z = (double)node->hi[2] - (double)node->lo[2];
-    return x * y + y * z + z * x;
-}
-
 void bvh_set_axis(struct gpu_bvh_node *first)
 {
     const struct gpu_bvh_node *second = first + 1;
@@ -37,10 +29,10 @@ static void node_tally(const struct gpu_bvh_node *node, struct tally *tally)
 {
     uint32_t count = bvh_count(node);
     if (count == 0) {
-        tally->area_inner += half_area(node);
+        tally->area_inner += bvh_half_area(node);
         return;
     }
-    tally->area_leaves += half_area(node) * count;
+    tally->area_leaves += bvh_half_area(node) * count;
     ++tally->leaf_count;
     if (count > tally->leaf_largest)
         tally->leaf_largest = count;
@@ -105,7 +97,7 @@ static struct tally nodes_complete(struct bvh *bvh, uint32_t thread_count)
 void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count)
 {
     struct tally tally = nodes_complete(bvh, thread_count);
-    double root = bvh->node_count > 0 ? half_area(&bvh->nodes[0]) : 0.0;
+    double root = bvh->node_count > 0 ? bvh_half_area(&bvh->nodes[0]) : 0.0;
     bvh->sah_cost =
         root > 0.0 ? (tally.area_inner * traversal_cost + tally.area_leaves) / root : 0.0;
     bvh->leaf_count = tally.leaf_count;

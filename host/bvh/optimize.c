@@ -39,39 +39,12 @@ struct optimizer {
 
 /* ---- Boxes ---- */
 
-struct extent {
-    f4 lo, hi;
-};
-
-static inline struct extent node_extent(const struct gpu_bvh_node *node)
-{
-    return (struct extent){f4_xyz(f4_load(node->lo)), f4_xyz(f4_load(node->hi))};
-}
-
-static inline struct extent extent_unite(struct extent a, struct extent b)
-{
-    return (struct extent){f4_min(a.lo, b.lo), f4_max(a.hi, b.hi)};
-}
-
-static inline float extent_area(struct extent e, f4 scale)
-{
-    return build_scaled_area(e.lo, e.hi, scale);
-}
-
-static double node_area(const struct gpu_bvh_node *node)
-{
-    double x = (double)node->hi[0] - (double)node->lo[0];
-    double y = (double)node->hi[1] - (double)node->lo[1];
-    double z = (double)node->hi[2] - (double)node->lo[2];
-    return x * y + y * z + z * x;
-}
-
 /* True: the box is another one now. */
-static bool node_set_extent(struct gpu_bvh_node *node, struct extent e)
+static bool node_set_box(struct gpu_bvh_node *node, struct build_box box)
 {
     alignas(16) float lo[4], hi[4];
-    f4_store(lo, e.lo);
-    f4_store(hi, e.hi);
+    f4_store(lo, box.lo);
+    f4_store(hi, box.hi);
     bool same =
         memcmp(node->lo, lo, sizeof node->lo) == 0 && memcmp(node->hi, hi, sizeof node->hi) == 0;
     memcpy(node->lo, lo, sizeof node->lo);
@@ -82,7 +55,7 @@ static bool node_set_extent(struct gpu_bvh_node *node, struct extent e)
 /* ---- Where to ---- */
 
 struct candidate {
-    struct extent extent;
+    struct build_box extent;
     float area;
     uint32_t node, visits;
     struct move best;
@@ -106,11 +79,11 @@ static void search_subtree(const struct optimizer *o, struct candidate *c, uint3
             continue;
         ++c->visits;
         const struct gpu_bvh_node *node = &o->nodes[at];
-        struct extent own = node_extent(node);
-        float gain = gained - extent_area(extent_unite(own, c->extent), o->scale);
+        struct build_box own = build_node_box(node);
+        float gain = gained - build_area(build_box_unite(own, c->extent), o->scale);
         if (gain > c->best.gain)
             c->best = (struct move){gain, c->node, at};
-        float below = gain + extent_area(own, o->scale);
+        float below = gain + build_area(own, o->scale);
         if (node->count > 0 || below - c->area <= c->best.gain || top + 2 > STACK_SIZE)
             continue;
         stack[top].node = node->first + 1;
@@ -123,20 +96,21 @@ static void search_subtree(const struct optimizer *o, struct candidate *c, uint3
 /* Up the path to the root: what hangs beside it, and above which of its nodes. */
 static struct move search(const struct optimizer *o, uint32_t node)
 {
-    struct candidate c = {.extent = node_extent(&o->nodes[node]), .node = node};
-    c.area = extent_area(c.extent, o->scale);
+    struct candidate c = {.extent = build_node_box(&o->nodes[node]), .node = node};
+    c.area = build_area(c.extent, o->scale);
     uint32_t at = o->parents[node / 2];
-    struct extent left = node_extent(&o->nodes[node ^ 1]); /* of the path without the candidate */
-    float gained = extent_area(node_extent(&o->nodes[at]), o->scale);
+    struct build_box left =
+        build_node_box(&o->nodes[node ^ 1]); /* of the path without the candidate */
+    float gained = build_area(build_node_box(&o->nodes[at]), o->scale);
     search_subtree(o, &c, node ^ 1, gained);
     while (at != 0 && c.visits < SEARCH_MAX) {
         search_subtree(o, &c, at ^ 1, gained);
-        left = extent_unite(left, node_extent(&o->nodes[at ^ 1]));
+        left = build_box_unite(left, build_node_box(&o->nodes[at ^ 1]));
         at = o->parents[at / 2];
-        gained -= extent_area(left, o->scale);
+        gained -= build_area(left, o->scale);
         if (gained > c.best.gain)
             c.best = (struct move){gained, node, at};
-        gained += extent_area(node_extent(&o->nodes[at]), o->scale);
+        gained += build_area(build_node_box(&o->nodes[at]), o->scale);
     }
     return c.best;
 }
@@ -164,12 +138,12 @@ static double refit(struct optimizer *o, uint32_t node)
     double grown = 0.0;
     while (node != 0) {
         uint32_t above = o->parents[node / 2];
-        double before = node_area(&o->nodes[above]);
-        struct extent sum =
-            extent_unite(node_extent(&o->nodes[node]), node_extent(&o->nodes[node ^ 1]));
-        if (!node_set_extent(&o->nodes[above], sum))
+        double before = bvh_half_area(&o->nodes[above]);
+        struct build_box sum =
+            build_box_unite(build_node_box(&o->nodes[node]), build_node_box(&o->nodes[node ^ 1]));
+        if (!node_set_box(&o->nodes[above], sum))
             break;
-        grown += node_area(&o->nodes[above]) - before;
+        grown += bvh_half_area(&o->nodes[above]) - before;
         node = above;
     }
     return grown;
@@ -179,7 +153,7 @@ static double refit(struct optimizer *o, uint32_t node)
 static double detach(struct optimizer *o, uint32_t from)
 {
     uint32_t above = o->parents[from / 2];
-    double grown = -node_area(&o->nodes[above]);
+    double grown = -bvh_half_area(&o->nodes[above]);
     o->nodes[above] = o->nodes[from ^ 1];
     adopt(o, above);
     return grown + refit(o, above);
@@ -189,13 +163,13 @@ static double attach(struct optimizer *o, uint32_t from, uint32_t to)
 {
     o->nodes[from ^ 1] = o->nodes[to];
     adopt(o, from ^ 1);
-    struct extent sum =
-        extent_unite(node_extent(&o->nodes[from]), node_extent(&o->nodes[from ^ 1]));
+    struct build_box sum =
+        build_box_unite(build_node_box(&o->nodes[from]), build_node_box(&o->nodes[from ^ 1]));
     o->nodes[to].first = from & ~1u;
     o->nodes[to].count = 0;
     o->parents[from / 2] = to;
-    (void)node_set_extent(&o->nodes[to], sum);
-    return node_area(&o->nodes[to]) + refit(o, to);
+    (void)node_set_box(&o->nodes[to], sum);
+    return bvh_half_area(&o->nodes[to]) + refit(o, to);
 }
 
 static bool is_below(const struct optimizer *o, uint32_t node, uint32_t above)
@@ -261,8 +235,7 @@ static bool optimizer_init(struct optimizer *o, const struct bvh *bvh, uint32_t 
         if (i != 1)
             adopt(o, i);
     }
-    struct extent root = node_extent(&o->nodes[0]);
-    o->scale = build_area_scale(&(struct build_bounds){.lo = root.lo, .hi = root.hi});
+    o->scale = build_scale(build_node_box(&o->nodes[0]));
     return true;
 }
 
@@ -277,7 +250,7 @@ static double inner_area(const struct gpu_bvh_node *nodes, uint32_t node_count)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < node_count; ++i)
-        sum += i != 1 && bvh_count(&nodes[i]) == 0 ? node_area(&nodes[i]) : 0.0;
+        sum += i != 1 && bvh_count(&nodes[i]) == 0 ? bvh_half_area(&nodes[i]) : 0.0;
     return sum;
 }
 

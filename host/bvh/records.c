@@ -46,8 +46,8 @@ static void make_chunk(void *user, uint32_t index)
             record->hi[a] = box->hi[a] + 0.0f;
         }
         record->primitive = i;
-        record->pad = 0;
-        build_bounds_add(&chunk.bounds, build_record_lo(record), build_record_hi(record));
+        record->flags = 0;
+        build_bounds_add(&chunk.bounds, record);
     }
     context->chunks[index] = chunk;
 }
@@ -58,7 +58,8 @@ static bool chunks_unite(const struct record_chunk *chunks, uint32_t count,
     bool bad = false;
     *bounds = build_bounds_empty();
     for (uint32_t i = 0; i < count; ++i) {
-        build_bounds_merge(bounds, &chunks[i].bounds);
+        bounds->box = build_box_unite(bounds->box, chunks[i].bounds.box);
+        bounds->centroids = build_box_unite(bounds->centroids, chunks[i].bounds.centroids);
         bad |= chunks[i].bad;
     }
     return !bad;
@@ -71,10 +72,9 @@ whit_result records_make(const struct log *log, const struct bvh_box *boxes, uin
     uint32_t chunk_count = (count - 1) / RECORD_CHUNK + 1;
     struct record_context context = {
         .boxes = boxes,
-        .records =
-            aligned_alloc(64, (((size_t)count + spare) * sizeof **records + 63) & ~(size_t)63),
+        .records = build_alloc_lines((size_t)count + spare, sizeof **records),
         .count = count,
-        .chunks = aligned_alloc(64, chunk_count * ((sizeof *context.chunks + 63) & ~(size_t)63)),
+        .chunks = build_alloc_lines(chunk_count, sizeof *context.chunks),
     };
     whit_result result = WHIT_OK;
     if (!context.records || !context.chunks) {
@@ -96,53 +96,41 @@ whit_result records_make(const struct log *log, const struct bvh_box *boxes, uin
     return result;
 }
 
-/* ---- Methods ---- */
-
-struct context {
-    const struct bvh_params *params;
-    struct build_record *records;
-};
-
-static enum build_choice split(void *user, const struct build_range *range, uint32_t thread_count,
-                               void *scratch, uint32_t *left_count, struct build_bounds halves[2])
+void records_bound(const struct build_record *records, uint32_t count, struct build_halves *halves)
 {
-    const struct context *c = user;
-    return split_binned(c->records, range, c->params, thread_count, scratch, left_count, halves);
+    uint32_t left = halves->count[0];
+    halves->count[1] = count - left;
+    halves->bounds[0] = halves->bounds[1] = build_bounds_empty();
+    for (uint32_t i = 0; i < count; ++i)
+        build_bounds_add(&halves->bounds[i >= left], &records[i]);
 }
 
-static void halve(void *user, const struct build_range *range, void *scratch, uint32_t *left_count,
-                  struct build_bounds halves[2])
-{
-    (void)scratch;
-    split_median(((const struct context *)user)->records, range, left_count, halves);
-}
+/* ---- Builders ---- */
 
 /* Without trees: the records stay where they are, in leaves that are full but for the last, and
    every box is that of everything. */
-static void halve_nothing(void *user, const struct build_range *range, void *scratch,
-                          uint32_t *left_count, struct build_bounds halves[2])
+static void halve_nothing(const struct builder *builder, const struct build_range *range,
+                          void *scratch, struct build_halves *halves)
 {
-    uint32_t limit = ((const struct context *)user)->params->leaf_limit;
+    uint32_t limit = builder->params->leaf_limit;
     uint32_t leaves = (range->count - 1) / limit + 1;
     (void)scratch;
-    *left_count = leaves / 2 * limit;
-    halves[0] = halves[1] = range->bounds;
+    halves->count[0] = leaves / 2 * limit;
+    halves->count[1] = range->count - halves->count[0];
+    halves->bounds[0] = halves->bounds[1] = range->bounds;
 }
 
-static void grow_small(void *user, const struct build_output *output,
+static void grow_small(const struct builder *builder, const struct build_output *output,
                        const struct build_range *range)
 {
-    const struct context *c = user;
-    struct build_record *own = c->records + range->first, moved[BUILD_SMALL];
+    struct build_record *own = builder->records + range->first, moved[BUILD_SMALL];
     struct small small;
     for (uint32_t i = 0; i < range->count; ++i) {
         moved[i] = own[i];
-        small.lo[i] = build_record_lo(&own[i]);
-        small.hi[i] = build_record_hi(&own[i]);
-        f4_store(small.centroid[i], build_centroid(small.lo[i], small.hi[i]));
+        small_put(&small, i, &own[i]);
     }
     small_sort(&small, range->count);
-    small_grow(&small, output, c->params, range);
+    small_grow(&small, builder, output, range);
     for (uint32_t i = 0; i < range->count; ++i)
         own[i] = moved[small.leaves[i]];
 }
@@ -150,23 +138,23 @@ static void grow_small(void *user, const struct build_output *output,
 whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out)
 {
-    struct context context = {.params = resolved};
+    struct builder builder = {.params = resolved, .halve = split_median};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, 0, resolved->thread_count, &context.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->thread_count, &builder.records, &bounds);
     if (result != WHIT_OK)
         return result;
-    struct build_methods methods = {.context = &context, .halve = halve};
     if (resolved->builder == BVH_BINNED) {
-        methods.split = split;
-        methods.small = grow_small;
-        methods.small_count = resolved->bins ? SMALL_OF_BINS : BUILD_SMALL;
+        builder.split = split_binned;
+        builder.threaded = true;
+        builder.small = grow_small;
+        builder.small_count = resolved->bins ? SMALL_OF_BINS : BUILD_SMALL;
     }
     if (resolved->builder == BVH_NONE)
-        methods.halve = halve_nothing;
-    result = topdown_grow(log, &methods, resolved, &bounds, count, out);
+        builder.halve = halve_nothing;
+    result = topdown_grow(log, &builder, &bounds, count, 0, out);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
-        out->order[i] = context.records[i].primitive;
-    free(context.records);
+        out->order[i] = builder.records[i].primitive;
+    free(builder.records);
     return result;
 }

@@ -4,28 +4,11 @@
 
 #include "bvh/build.h"
 
-/* Floats in the order of unsigned integers. */
-static uint32_t ordered_bits(float value)
-{
-    uint32_t bits;
-    value += 0.0f; /* one zero */
-    memcpy(&bits, &value, sizeof bits);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
 /* All keys differ, so the median is the same whatever the order of the records. */
 static uint64_t record_key(const struct build_record *record, uint32_t axis)
 {
-    float centroid = record->lo[axis] * 0.25f + record->hi[axis] * 0.25f;
-    return (uint64_t)ordered_bits(centroid) << 32 | record->primitive;
-}
-
-static uint32_t widest_axis(const struct build_bounds *bounds)
-{
-    alignas(16) float extent[4];
-    f4_store(extent, f4_sub(bounds->centroid_hi, bounds->centroid_lo));
-    uint32_t axis = extent[1] > extent[0] ? 1 : 0;
-    return extent[2] > extent[axis] ? 2 : axis;
+    return (uint64_t)build_ordered_bits(build_centroid_along(record, axis)) << 32 |
+           record->primitive;
 }
 
 static void insertion_sort(struct build_record *records, uint32_t count, uint32_t axis)
@@ -65,29 +48,27 @@ static void partition(struct build_record *records, uint32_t count, uint32_t axi
 {
     uint32_t i = 0, j = count;
     while (i < j) {
-        if (record_key(&records[i], axis) < key) {
+        if (record_key(&records[i], axis) < key)
             ++i;
-            continue;
-        }
-        --j;
-        struct build_record moved = records[j];
-        records[j] = records[i];
-        records[i] = moved;
+        else
+            build_records_swap(&records[i], &records[--j]);
     }
 }
 
-void split_median(struct build_record *records, const struct build_range *range,
-                  uint32_t *left_count, struct build_bounds halves[2])
+void split_median(const struct builder *builder, const struct build_range *range, void *scratch,
+                  struct build_halves *halves)
 {
     enum { SMALL = 24 };
-    struct build_record *own = records + range->first;
-    uint32_t axis = widest_axis(&range->bounds), left = range->count / 2;
-    if (range->count <= SMALL)
-        insertion_sort(own, range->count, axis);
+    struct build_record *own = builder->records + range->first;
+    uint32_t count = range->count, left = count / 2;
+    alignas(16) float extent[4];
+    f4_store(extent, f4_sub(range->bounds.centroids.hi, range->bounds.centroids.lo));
+    uint32_t axis = build_widest_axis(extent);
+    (void)scratch;
+    if (count <= SMALL)
+        insertion_sort(own, count, axis);
     else
-        partition(own, range->count, axis, select_key(own, range->count, axis, left));
-    halves[0] = halves[1] = build_bounds_empty();
-    for (uint32_t i = 0; i < range->count; ++i)
-        build_bounds_add(&halves[i >= left], build_record_lo(&own[i]), build_record_hi(&own[i]));
-    *left_count = left;
+        partition(own, count, axis, select_key(own, count, axis, left));
+    halves->count[0] = left;
+    records_bound(own, count, halves);
 }

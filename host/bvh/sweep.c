@@ -12,35 +12,15 @@
 enum { THREADED_MIN = 4096 }; /* records from which the axes of one node are given to threads */
 
 struct sweep {
-    const struct bvh_params *params;
-    struct build_record *records; /* by primitive */
-    uint32_t *list[3];            /* primitives by centroid, equal ones by primitive */
+    const struct build_record *records; /* by primitive */
+    uint32_t *list[3];                  /* primitives by centroid, equal ones by primitive */
     /* For each primitive: 1 if it goes left, else 0; in a small subtree, its index there. */
     uint8_t *mark;
 };
 
-static inline f4 record_centroid(const struct build_record *record)
-{
-    return build_centroid(build_record_lo(record), build_record_hi(record));
-}
-
-static inline float centroid_along(const struct build_record *record, uint32_t axis)
-{
-    return record->lo[axis] * 0.25f + record->hi[axis] * 0.25f;
-}
-
 /* ---- Sorting ---- */
 
 enum { DIGIT_BITS = 11, DIGITS = 3, BUCKETS = 1 << DIGIT_BITS };
-
-/* Floats in the order of unsigned integers. */
-static uint32_t ordered_bits(float value)
-{
-    uint32_t bits;
-    value += 0.0f; /* one zero */
-    memcpy(&bits, &value, sizeof bits);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
 
 struct sorting {
     struct sweep *sweep;
@@ -57,8 +37,8 @@ static void items_make(const struct sorting *sorting, uint32_t axis, uint64_t *i
                        uint32_t (*histogram)[BUCKETS])
 {
     for (uint32_t i = 0; i < sorting->count; ++i) {
-        float centroid = centroid_along(&sorting->sweep->records[i], axis);
-        items[i] = (uint64_t)ordered_bits(centroid) << 32 | i;
+        float centroid = build_centroid_along(&sorting->sweep->records[i], axis);
+        items[i] = (uint64_t)build_ordered_bits(centroid) << 32 | i;
         for (uint32_t d = 0; d < DIGITS; ++d)
             ++histogram[d][digit_of(items[i], d)];
     }
@@ -106,7 +86,7 @@ static void sort_axis(void *user, uint32_t axis)
 struct cut {
     uint32_t left_count;
     float cost;
-    f4 lo, hi; /* of the left side */
+    struct build_box left;
 };
 
 struct node_sweep {
@@ -117,12 +97,6 @@ struct node_sweep {
     struct cut best[3];
 };
 
-static inline void union_add(f4 *lo, f4 *hi, const struct build_record *record)
-{
-    *lo = f4_min(*lo, build_record_lo(record));
-    *hi = f4_max(*hi, build_record_hi(record));
-}
-
 /* A plane cannot part equal centroids. */
 static void sweep_axis(void *user, uint32_t axis)
 {
@@ -131,21 +105,20 @@ static void sweep_axis(void *user, uint32_t axis)
     const uint32_t *list = n->sweep->list[axis] + n->range->first;
     uint32_t count = n->range->count;
     float *right_cost = n->right_cost[axis];
-    struct build_bounds empty = build_bounds_empty();
-    struct cut best = {0, INFINITY, empty.lo, empty.hi};
-    f4 lo = empty.lo, hi = empty.hi;
+    struct build_box side = build_box_empty();
+    struct cut best = {0, INFINITY, side};
     for (uint32_t i = count - 1; i > 0; --i) {
-        union_add(&lo, &hi, &records[list[i]]);
-        right_cost[i] = build_scaled_area(lo, hi, n->scale) * (float)(count - i);
+        side = build_box_unite(side, build_record_box(&records[list[i]]));
+        right_cost[i] = build_area(side, n->scale) * (float)(count - i);
     }
-    lo = empty.lo, hi = empty.hi;
-    float before = centroid_along(&records[list[0]], axis);
+    side = build_box_empty();
+    float before = build_centroid_along(&records[list[0]], axis);
     for (uint32_t i = 1; i < count; ++i) {
-        union_add(&lo, &hi, &records[list[i - 1]]);
-        float cost = build_scaled_area(lo, hi, n->scale) * (float)i + right_cost[i];
-        float key = centroid_along(&records[list[i]], axis);
+        side = build_box_unite(side, build_record_box(&records[list[i - 1]]));
+        float cost = build_area(side, n->scale) * (float)i + right_cost[i];
+        float key = build_centroid_along(&records[list[i]], axis);
         if (cost < best.cost && before < key)
-            best = (struct cut){i, cost, lo, hi};
+            best = (struct cut){i, cost, side};
         before = key;
     }
     n->best[axis] = best;
@@ -179,7 +152,8 @@ static void part_axis(void *user, uint32_t axis)
 
 /* `scratch` is free again after sweeping. */
 static void part(const struct sweep *sweep, const struct build_range *range, uint32_t axis,
-                 uint32_t left_count, uint32_t thread_count, void *scratch)
+                 uint32_t left_count, uint32_t thread_count, void *scratch,
+                 struct build_halves *halves)
 {
     struct parting parting = {sweep, range, axis, left_count, {NULL}};
     const uint32_t *list = sweep->list[axis] + range->first;
@@ -188,16 +162,27 @@ static void part(const struct sweep *sweep, const struct build_range *range, uin
     for (uint32_t a = 0; a < 3; ++a)
         parting.right[a] = (uint32_t *)scratch + a * (size_t)range->count;
     threads_for(range->count < THREADED_MIN ? 1 : thread_count, 3, part_axis, &parting);
+    halves->count[0] = left_count;
+    halves->count[1] = range->count - left_count;
 }
 
-static enum build_choice split(void *user, const struct build_range *range, uint32_t thread_count,
-                               void *scratch, uint32_t *left_count, struct build_bounds halves[2])
+/* The box of positions [begin, end) of the range along an axis; no centroids are wanted. */
+static struct build_bounds run_bounds(const struct sweep *sweep, const struct build_range *range,
+                                      uint32_t axis, uint32_t begin, uint32_t end)
 {
-    struct sweep *sweep = user;
-    const struct bvh_params *params = sweep->params;
-    struct node_sweep n = {
-        .sweep = sweep, .range = range, .scale = build_area_scale(&range->bounds)};
-    float area = build_scaled_area(range->bounds.lo, range->bounds.hi, n.scale);
+    const uint32_t *list = sweep->list[axis] + range->first;
+    struct build_bounds bounds = build_bounds_empty();
+    for (uint32_t i = begin; i < end; ++i)
+        bounds.box = build_box_unite(bounds.box, build_record_box(&sweep->records[list[i]]));
+    return bounds;
+}
+
+static enum build_choice split(const struct builder *builder, const struct build_range *range,
+                               uint32_t thread_count, void *scratch, struct build_halves *halves)
+{
+    const struct sweep *sweep = builder->context;
+    struct node_sweep n = {.sweep = sweep, .range = range, .scale = build_scale(range->bounds.box)};
+    float area = build_area(range->bounds.box, n.scale);
     for (uint32_t a = 0; a < 3; ++a) {
         n.right_cost[a] = (float *)scratch + a * (size_t)range->count;
         n.best[a].cost = INFINITY;
@@ -207,71 +192,58 @@ static enum build_choice split(void *user, const struct build_range *range, uint
     uint32_t axis = n.best[1].cost < n.best[0].cost ? 1 : 0;
     axis = n.best[2].cost < n.best[axis].cost ? 2 : axis;
     const struct cut *best = &n.best[axis];
-    if (range->count <= params->leaf_limit &&
-        area * (float)range->count <= area * params->traversal_cost + best->cost)
+    if (build_leaf_pays(builder->params, range->count, area, best->cost))
         return BUILD_LEAF;
     if (!(best->cost < INFINITY))
         return BUILD_NONE;
-    halves[0] = halves[1] = build_bounds_empty();
-    halves[0].lo = best->lo;
-    halves[0].hi = best->hi;
-    for (uint32_t i = best->left_count; i < range->count; ++i)
-        union_add(&halves[1].lo, &halves[1].hi,
-                  &sweep->records[sweep->list[axis][range->first + i]]);
-    part(sweep, range, axis, best->left_count, thread_count, scratch);
-    *left_count = best->left_count;
+    halves->bounds[0] = (struct build_bounds){best->left, build_box_empty()};
+    halves->bounds[1] = run_bounds(sweep, range, axis, best->left_count, range->count);
+    part(sweep, range, axis, best->left_count, thread_count, scratch, halves);
     return BUILD_SPLIT;
 }
 
-static void halve(void *user, const struct build_range *range, void *scratch, uint32_t *left_count,
-                  struct build_bounds halves[2])
+static void halve(const struct builder *builder, const struct build_range *range, void *scratch,
+                  struct build_halves *halves)
 {
-    struct sweep *sweep = user;
+    const struct sweep *sweep = builder->context;
     float extent[3];
     for (uint32_t a = 0; a < 3; ++a) {
         const uint32_t *list = sweep->list[a] + range->first;
-        extent[a] = centroid_along(&sweep->records[list[range->count - 1]], a) -
-                    centroid_along(&sweep->records[list[0]], a);
+        extent[a] = build_centroid_along(&sweep->records[list[range->count - 1]], a) -
+                    build_centroid_along(&sweep->records[list[0]], a);
     }
-    uint32_t axis = extent[1] > extent[0] ? 1 : 0, left = range->count / 2;
-    axis = extent[2] > extent[axis] ? 2 : axis;
-    halves[0] = halves[1] = build_bounds_empty();
-    for (uint32_t i = 0; i < range->count; ++i) {
-        struct build_bounds *half = &halves[i >= left];
-        union_add(&half->lo, &half->hi, &sweep->records[sweep->list[axis][range->first + i]]);
-    }
-    part(sweep, range, axis, left, 1, scratch);
-    *left_count = left;
+    uint32_t axis = build_widest_axis(extent), left = range->count / 2;
+    halves->bounds[0] = run_bounds(sweep, range, axis, 0, left);
+    halves->bounds[1] = run_bounds(sweep, range, axis, left, range->count);
+    part(sweep, range, axis, left, 1, scratch, halves);
 }
 
-static void grow_small(void *user, const struct build_output *output,
+static void grow_small(const struct builder *builder, const struct build_output *output,
                        const struct build_range *range)
 {
-    struct sweep *sweep = user;
+    const struct sweep *sweep = builder->context;
     uint32_t *list[3], own[BUILD_SMALL];
     struct small small;
     for (uint32_t a = 0; a < 3; ++a)
         list[a] = sweep->list[a] + range->first;
     for (uint32_t i = 0; i < range->count; ++i) {
-        const struct build_record *record = &sweep->records[list[0][i]];
         own[i] = list[0][i];
         sweep->mark[own[i]] = (uint8_t)i;
-        small.lo[i] = build_record_lo(record);
-        small.hi[i] = build_record_hi(record);
-        f4_store(small.centroid[i], record_centroid(record));
+        small_put(&small, i, &sweep->records[own[i]]);
     }
     for (uint32_t a = 0; a < 3; ++a) {
         for (uint32_t i = 0; i < range->count; ++i)
             small.order[0][a][i] = sweep->mark[list[a][i]];
     }
-    small_grow(&small, output, sweep->params, range);
+    small_grow(&small, builder, output, range);
     for (uint32_t i = 0; i < range->count; ++i)
         list[0][i] = own[small.leaves[i]];
 }
 
 /* ---- */
 
-static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uint32_t count)
+static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uint32_t count,
+                                 uint32_t thread_count)
 {
     struct sorting sorting = {.sweep = sweep, .count = count};
     atomic_init(&sorting.failed, false);
@@ -282,7 +254,7 @@ static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uin
         allocated &= sweep->list[a] != NULL;
     }
     if (allocated)
-        threads_for(count < THREADED_MIN ? 1 : sweep->params->thread_count, 3, sort_axis, &sorting);
+        threads_for(count < THREADED_MIN ? 1 : thread_count, 3, sort_axis, &sorting);
     if (allocated && !atomic_load(&sorting.failed))
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", count);
@@ -292,22 +264,25 @@ static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uin
 whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
                         const struct bvh_params *resolved, struct bvh *out)
 {
-    struct sweep sweep = {.params = resolved};
-    struct build_methods methods = {.context = &sweep,
-                                    .split = split,
-                                    .halve = halve,
-                                    .small = grow_small,
-                                    .small_count = BUILD_SMALL};
+    struct sweep sweep = {.mark = NULL};
+    struct builder builder = {.params = resolved,
+                              .context = &sweep,
+                              .split = split,
+                              .threaded = true,
+                              .halve = halve,
+                              .small = grow_small,
+                              .small_count = BUILD_SMALL};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, 0, resolved->thread_count, &sweep.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->thread_count, &builder.records, &bounds);
+    sweep.records = builder.records;
     if (result == WHIT_OK)
-        result = sweep_prepare(log, &sweep, count);
+        result = sweep_prepare(log, &sweep, count, resolved->thread_count);
     if (result == WHIT_OK)
-        result = topdown_grow(log, &methods, resolved, &bounds, count, out);
+        result = topdown_grow(log, &builder, &bounds, count, 0, out);
     if (result == WHIT_OK)
         memcpy(out->order, sweep.list[0], count * sizeof *out->order);
-    free(sweep.records);
+    free(builder.records);
     free(sweep.mark);
     for (uint32_t a = 0; a < 3; ++a)
         free(sweep.list[a]);

@@ -4,20 +4,16 @@
 #include "bvh/build.h"
 
 struct small_range {
-    f4 lo, hi;
+    struct build_box box;
     uint32_t node, pair, first, count, depth; /* `first` counts from the range's first record */
     uint32_t side;                            /* of `order` */
 };
 
-struct cut {
-    uint32_t axis, left_count;
-    float cost;
-};
-
-/* For each axis the union of the boxes met so far along it. */
-struct sides {
-    f4 lo[3], hi[3];
-};
+void small_put(struct small *small, uint32_t index, const struct build_record *record)
+{
+    small->box[index] = build_record_box(record);
+    f4_store(small->centroid[index], build_centroid(small->box[index]));
+}
 
 void small_sort(struct small *small, uint32_t count)
 {
@@ -37,22 +33,12 @@ void small_sort(struct small *small, uint32_t count)
     }
 }
 
-static inline void sides_add(struct sides *sides, const struct small *s, const uint8_t *order[3],
-                             uint32_t i)
+/* For each axis the union of the boxes met so far along it. */
+static inline void sides_add(struct build_box sides[3], const struct small *s,
+                             const uint8_t *order[3], uint32_t i)
 {
-    for (int a = 0; a < 3; ++a) {
-        uint32_t box = order[a][i];
-        sides->lo[a] = f4_min(sides->lo[a], s->lo[box]);
-        sides->hi[a] = f4_max(sides->hi[a], s->hi[box]);
-    }
-}
-
-static inline f4 sides_areas(const struct sides *sides, f4 scale)
-{
-    f4 d[3];
     for (int a = 0; a < 3; ++a)
-        d[a] = f4_sub(f4_mul(sides->hi[a], scale), f4_mul(sides->lo[a], scale));
-    return f4_half_areas(d[0], d[1], d[2]);
+        sides[a] = build_box_unite(sides[a], s->box[order[a][i]]);
 }
 
 static inline f4 keys_at(const struct small *s, const uint8_t *order[3], uint32_t i)
@@ -61,32 +47,27 @@ static inline f4 keys_at(const struct small *s, const uint8_t *order[3], uint32_
                   s->centroid[order[2][i]][2], 0.0f);
 }
 
-static inline struct sides sides_none(void)
-{
-    struct build_bounds empty = build_bounds_empty();
-    return (struct sides){{empty.lo, empty.lo, empty.lo}, {empty.hi, empty.hi, empty.hi}};
-}
-
-/* A plane cannot part equal centroids. */
-static void sweep_all(const struct small *s, const struct small_range *r, f4 scale,
-                      struct cut *best)
+/* A plane cannot part equal centroids: only where `equal_too` may a cut be between them. */
+static void sweep_all(const struct small *s, const struct small_range *r, f4 scale, bool equal_too,
+                      struct small_cut *best)
 {
     const uint8_t *order[3];
     for (int a = 0; a < 3; ++a)
         order[a] = s->order[r->side][a] + r->first;
     f4 right_cost[BUILD_SMALL], best_cost = f4_splat(INFINITY), best_at = f4_splat(0.0f);
-    struct sides sides = sides_none();
+    struct build_box empty = build_box_empty(), sides[3] = {empty, empty, empty};
     for (uint32_t i = r->count - 1; i > 0; --i) {
-        sides_add(&sides, s, order, i);
-        right_cost[i] = f4_mul(sides_areas(&sides, scale), f4_splat((float)(r->count - i)));
+        sides_add(sides, s, order, i);
+        right_cost[i] = f4_mul(build_areas(sides, scale), f4_splat((float)(r->count - i)));
     }
-    sides = sides_none();
-    f4 before = keys_at(s, order, 0);
+    sides[0] = sides[1] = sides[2] = empty;
+    f4 before = keys_at(s, order, 0), differs = f4_less(before, keys_at(s, order, r->count - 1));
     for (uint32_t i = 1; i < r->count; ++i) {
-        sides_add(&sides, s, order, i - 1);
-        f4 left_cost = f4_mul(sides_areas(&sides, scale), f4_splat((float)i));
+        sides_add(sides, s, order, i - 1);
+        f4 left_cost = f4_mul(build_areas(sides, scale), f4_splat((float)i));
         f4 cost = f4_add(left_cost, right_cost[i]), key = keys_at(s, order, i);
-        f4 better = f4_both(f4_less(before, key), f4_less(cost, best_cost));
+        f4 allowed = equal_too ? differs : f4_less(before, key);
+        f4 better = f4_both(allowed, f4_less(cost, best_cost));
         best_cost = f4_select(better, cost, best_cost);
         best_at = f4_select(better, f4_splat((float)i), best_at);
         before = key;
@@ -97,13 +78,13 @@ static void sweep_all(const struct small *s, const struct small_range *r, f4 sca
     f4_truncate(best_at, at);
     for (uint32_t a = 0; a < 3; ++a) {
         if (cost[a] < best->cost)
-            *best = (struct cut){a, (uint32_t)at[a], cost[a]};
+            *best = (struct small_cut){a, (uint32_t)at[a], cost[a]};
     }
 }
 
 /* What sweep_all finds for two: the same cost on every axis that parts them. */
 static void sweep_two(const struct small *s, const struct small_range *r, f4 scale,
-                      struct cut *best)
+                      struct small_cut *best)
 {
     uint32_t i = s->order[r->side][0][r->first], j = s->order[r->side][0][r->first + 1];
     f4 ci = f4_load(s->centroid[i]), cj = f4_load(s->centroid[j]);
@@ -112,8 +93,18 @@ static void sweep_two(const struct small *s, const struct small_range *r, f4 sca
         return;
     best->axis = differ & 1u ? 0 : differ & 2u ? 1 : 2;
     best->left_count = 1;
-    best->cost =
-        build_scaled_area(s->lo[i], s->hi[i], scale) + build_scaled_area(s->lo[j], s->hi[j], scale);
+    best->cost = build_area(s->box[i], scale) + build_area(s->box[j], scale);
+}
+
+struct small_cut small_find(const struct small *small, uint32_t count, f4 scale)
+{
+    struct small_cut cut = {.cost = INFINITY};
+    const struct small_range all = {.count = count};
+    if (count == 2)
+        sweep_two(small, &all, scale, &cut);
+    else
+        sweep_all(small, &all, scale, true, &cut);
+    return cut;
 }
 
 static uint32_t widest_axis(const struct small *s, const struct small_range *r)
@@ -123,24 +114,22 @@ static uint32_t widest_axis(const struct small *s, const struct small_range *r)
         const uint8_t *order = s->order[r->side][a] + r->first;
         extent[a] = s->centroid[order[r->count - 1]][a] - s->centroid[order[0]][a];
     }
-    uint32_t axis = extent[1] > extent[0] ? 1 : 0;
-    return extent[2] > extent[axis] ? 2 : axis;
+    return build_widest_axis(extent);
 }
 
 /* False: a leaf. */
 static bool choose(const struct small *s, const struct small_range *r,
-                   const struct bvh_params *params, struct cut *cut)
+                   const struct bvh_params *params, struct small_cut *cut)
 {
-    *cut = (struct cut){.cost = INFINITY};
+    *cut = (struct small_cut){.cost = INFINITY};
     if (r->depth < BUILD_DEPTH_OF_MEDIANS) {
-        f4 scale = build_scale_of(r->lo, r->hi);
-        float area = build_scaled_area(r->lo, r->hi, scale);
+        f4 scale = build_scale(r->box);
+        float area = build_area(r->box, scale);
         if (area > 0.0f && r->count == 2)
             sweep_two(s, r, scale, cut);
         else if (area > 0.0f)
-            sweep_all(s, r, scale, cut);
-        if (r->count <= params->leaf_limit &&
-            area * (float)r->count <= area * params->traversal_cost + cut->cost)
+            sweep_all(s, r, scale, false, cut);
+        if (build_leaf_pays(params, r->count, area, cut->cost))
             return false;
     }
     if (cut->cost < INFINITY)
@@ -172,17 +161,15 @@ static void lists_part(struct small *s, const struct small_range *r, uint32_t le
 static uint32_t half_unite(const struct small *s, const uint8_t *order, struct small_range *half)
 {
     uint32_t set = 1u << order[0];
-    half->lo = s->lo[order[0]];
-    half->hi = s->hi[order[0]];
+    half->box = s->box[order[0]];
     for (uint32_t i = 1; i < half->count; ++i) {
-        half->lo = f4_min(half->lo, s->lo[order[i]]);
-        half->hi = f4_max(half->hi, s->hi[order[i]]);
+        half->box = build_box_unite(half->box, s->box[order[i]]);
         set |= 1u << order[i];
     }
     return set;
 }
 
-static void part(struct small *s, const struct small_range *r, const struct cut *cut,
+static void part(struct small *s, const struct small_range *r, const struct small_cut *cut,
                  struct small_range halves[2])
 {
     uint32_t child = 2 + 2 * r->pair, left = cut->left_count, side = !r->side;
@@ -201,12 +188,12 @@ static void part(struct small *s, const struct small_range *r, const struct cut 
 }
 
 /* Two boxes that come apart: two leaves. */
-static void part_two(struct small *s, const struct small_range *r, const struct cut *cut,
+static void part_two(struct small *s, const struct small_range *r, const struct small_cut *cut,
                      struct gpu_bvh_node *pair, uint32_t first)
 {
     const uint8_t *order = s->order[r->side][cut->axis] + r->first;
     for (uint32_t i = 0; i < 2; ++i) {
-        build_node_write(&pair[i], s->lo[order[i]], s->hi[order[i]], first + r->first + i, 1);
+        build_node_write(&pair[i], s->box[order[i]], first + r->first + i, 1);
         s->leaves[r->first + i] = order[i];
     }
 }
@@ -214,29 +201,26 @@ static void part_two(struct small *s, const struct small_range *r, const struct 
 static void leaf_write(struct small *s, const struct small_range *r, struct gpu_bvh_node *node,
                        uint32_t first)
 {
-    build_node_write(node, r->lo, r->hi, first + r->first, r->count);
+    build_node_write(node, r->box, first + r->first, r->count);
     for (uint32_t i = 0; i < r->count; ++i)
         s->leaves[r->first + i] = s->order[r->side][0][r->first + i];
 }
 
-void small_grow(struct small *small, const struct build_output *output,
-                const struct bvh_params *params, const struct build_range *range)
+void small_grow(struct small *small, const struct builder *builder,
+                const struct build_output *output, const struct build_range *range)
 {
     struct small_range stack[BUILD_SMALL], halves[2];
-    struct small_range r = {range->bounds.lo,
-                            range->bounds.hi,
-                            range->node,
-                            range->pair,
-                            0,
-                            range->count,
-                            range->depth,
-                            0};
-    struct cut cut;
+    struct small_range r = {.box = range->bounds.box,
+                            .node = range->node,
+                            .pair = range->pair,
+                            .count = range->count,
+                            .depth = range->depth};
+    struct small_cut cut;
     uint32_t top = 0;
     for (;;) {
         struct gpu_bvh_node *node = &output->nodes[r.node];
-        if (r.count > 1 && choose(small, &r, params, &cut)) {
-            build_node_write(node, r.lo, r.hi, 2 + 2 * r.pair, 0);
+        if (r.count > 1 && choose(small, &r, builder->params, &cut)) {
+            build_node_write(node, r.box, 2 + 2 * r.pair, 0);
             output->slots[r.pair] = 1;
             if (r.count > 2) {
                 part(small, &r, &cut, halves);

@@ -1,7 +1,9 @@
-/* Top-down building, whatever chooses the splits. While it grows, a subtree over n records owns n -
-   1 pair slots in depth-first order; what it does not use is squeezed out at the end. So subtrees
-   can be built by any thread at any time, and the nodes are the same for any number of threads. */
-#include <stdatomic.h>
+/* Top-down building, whatever chooses the splits. While it grows, a subtree over n records owns a
+   run of memory: their places and pair slots in depth-first order, and as much more as the
+   references that splits of records may add to it. What is left of these after a split is shared by
+   the halves in proportion to their records; what is not used is squeezed out at the end. So
+   subtrees can be built by any thread at any time, the nodes are the same for any number of
+   threads, and the spare references are never exceeded. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,18 +12,17 @@
 #include "bvh/build.h"
 
 enum {
-    TASK_MIN = 2048,      /* smaller subtrees are not worth a task of their own */
-    TASKS_PER_THREAD = 4, /* evens out subtrees of unequal cost */
+    TASK_MIN = 2048,       /* smaller subtrees are not worth a task of their own */
+    TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
     TASKS_MAX = 4096,
 };
 
 struct build {
     struct build_output output;
-    const struct build_methods *methods;
-    uint32_t count, leaf_limit, thread_count;
+    const struct builder *builder;
+    uint32_t count, spare, thread_count;
     struct build_task *tasks;
     uint32_t task_count;
-    _Atomic bool stopped;
 };
 
 /* A subtree still to be built. */
@@ -33,59 +34,66 @@ struct build_task {
 
 /* ---- Subtrees ---- */
 
-static void node_write(struct gpu_bvh_node *node, const struct build_bounds *bounds, uint32_t first,
-                       uint32_t count)
+/* Gives each half its memory. */
+static void halves_place(const struct build *build, const struct build_range *range,
+                         const struct build_halves *split, struct build_range halves[2])
 {
-    build_node_write(node, bounds->lo, bounds->hi, first, count);
+    uint32_t left = split->count[0], right = split->count[1], child = 2 + 2 * range->pair;
+    uint32_t spare = range->count + range->spare - (left + right), depth = range->depth + 1;
+    uint32_t left_spare = (uint32_t)((uint64_t)spare * left / (left + right));
+    uint32_t room = left + left_spare;
+    struct build_record *from = build->builder->records + range->first + left;
+    if (left_spare > 0) { /* order is kept only as far as it must be */
+        uint32_t moved = left_spare < right ? left_spare : right;
+        memmove(from + (left_spare < right ? right : left_spare), from, moved * sizeof *from);
+    }
+    halves[0] = (struct build_range){split->bounds[0], child, range->pair + 1, range->first, left,
+                                     left_spare,       depth};
+    halves[1] = (struct build_range){
+        split->bounds[1],   child + 1, range->pair + room, range->first + room, right,
+        spare - left_spare, depth};
 }
 
 /* True: *range became an inner node with the two halves below it. False: it is a leaf now. */
 static bool range_split(struct build *build, const struct build_range *range, uint32_t thread_count,
                         struct build_range halves[2])
 {
-    struct gpu_bvh_node *nodes = build->output.nodes;
-    const struct build_methods *methods = build->methods;
-    struct build_bounds bounds[2];
-    uint32_t left = 0, child = 2 + 2 * range->pair;
+    struct gpu_bvh_node *nodes = build->output.nodes, *node = &nodes[range->node];
+    const struct builder *builder = build->builder;
+    struct build_halves split;
+    uint32_t child = 2 + 2 * range->pair;
     enum build_choice choice = range->count <= 1 ? BUILD_LEAF : BUILD_NONE;
-    if (choice == BUILD_NONE && methods->split && range->depth < BUILD_DEPTH_OF_MEDIANS)
-        choice =
-            methods->split(methods->context, range, thread_count, &nodes[child], &left, bounds);
-    if (choice == BUILD_NONE && range->count <= build->leaf_limit)
+    if (choice == BUILD_NONE && builder->split && range->depth < BUILD_DEPTH_OF_MEDIANS)
+        choice = builder->split(builder, range, thread_count, &nodes[child], &split);
+    if (choice == BUILD_NONE && range->count <= builder->params->leaf_limit)
         choice = BUILD_LEAF;
-    if (choice == BUILD_STOP)
-        atomic_store(&build->stopped, true);
-    if (choice == BUILD_LEAF || choice == BUILD_STOP) {
-        node_write(&nodes[range->node], &range->bounds, range->first, range->count);
+    if (choice == BUILD_LEAF) {
+        build_node_write(node, range->bounds.box, range->first, range->count);
         return false;
     }
     if (choice == BUILD_NONE)
-        methods->halve(methods->context, range, &nodes[child], &left, bounds);
-
-    node_write(&nodes[range->node], &range->bounds, child, 0);
+        builder->halve(builder, range, &nodes[child], &split);
+    build_node_write(node, range->bounds.box, child, 0);
     build->output.slots[range->pair] = 1;
-    halves[0] = (struct build_range){bounds[0],    child, range->pair + 1,
-                                     range->first, left,  range->depth + 1};
-    halves[1] = (struct build_range){bounds[1],           child + 1,           range->pair + left,
-                                     range->first + left, range->count - left, range->depth + 1};
+    halves_place(build, range, &split, halves);
     return true;
 }
 
 static void build_subtree(void *context, uint32_t index)
 {
     struct build *build = context;
-    const struct build_methods *methods = build->methods;
+    const struct builder *builder = build->builder;
     struct build_range stack[BVH_DEPTH_MAX], halves[2], range = build->tasks[index].range;
     uint32_t top = 0;
     for (;;) {
-        bool small = range.count <= methods->small_count;
+        bool small = range.count <= builder->small_count;
         if (!small && range_split(build, &range, 1, halves)) {
             stack[top++] = halves[1];
             range = halves[0];
             continue;
         }
         if (small)
-            methods->small(methods->context, &build->output, &range);
+            builder->small(builder, &build->output, &range);
         if (top == 0)
             return;
         range = stack[--top];
@@ -103,7 +111,7 @@ static void split_task(void *context, uint32_t index)
 static void split_tasks(struct build *build, uint32_t large)
 {
     uint32_t threads = build->thread_count;
-    if (large >= threads) {
+    if (large >= threads || !build->builder->threaded) {
         threads_for(threads, large, split_task, build);
     } else {
         for (uint32_t i = 0; i < large; ++i) {
@@ -132,12 +140,13 @@ static int larger_first(const void *a, const void *b)
 static void build_tree(struct build *build, const struct build_bounds *bounds)
 {
     uint32_t threads = build->thread_count;
-    build->tasks[0] = (struct build_task){.range = {.bounds = *bounds, .count = build->count}};
+    build->tasks[0] = (struct build_task){
+        .range = {.bounds = *bounds, .count = build->count, .spare = build->spare}};
     build->task_count = 1;
     uint32_t limit = build->count / (threads * TASKS_PER_THREAD);
     if (limit < TASK_MIN)
         limit = TASK_MIN;
-    while (threads > 1 && !atomic_load(&build->stopped)) {
+    while (threads > 1) {
         qsort(build->tasks, build->task_count, sizeof *build->tasks, larger_first);
         uint32_t large = 0;
         while (large < build->task_count && build->tasks[large].range.count > limit)
@@ -182,44 +191,37 @@ static uint32_t squeeze(const struct build_output *output, uint32_t slot_count)
     return 2 + 2 * pair_count;
 }
 
-/* Not zeroed: slots that stay empty should cost no memory. */
-static void *alloc_lines(size_t count, size_t element_bytes)
+void *build_alloc_lines(size_t count, size_t element_bytes)
 {
     return aligned_alloc(64, (count * element_bytes + 63) & ~(size_t)63);
 }
 
 static whit_result grow_alloc(const struct log *log, struct build *build, struct bvh *out)
 {
-    build->output.slots = array_alloc_zeroed(build->count, sizeof *build->output.slots);
-    build->tasks = alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
-    build->output.nodes = out->nodes = alloc_lines(2 * (size_t)build->count, sizeof *out->nodes);
-    out->order = array_alloc(build->count, sizeof *out->order);
+    size_t room = (size_t)build->count + build->spare;
+    build->output.slots = array_alloc_zeroed(room, sizeof *build->output.slots);
+    build->tasks = build_alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
+    build->output.nodes = out->nodes = build_alloc_lines(2 * room, sizeof *out->nodes);
+    out->order = array_alloc(room, sizeof *out->order);
     if (build->output.slots && build->tasks && out->nodes && out->order)
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", build->count);
     return WHIT_ERROR_MEMORY;
 }
 
-whit_result topdown_grow(const struct log *log, const struct build_methods *methods,
-                         const struct bvh_params *params, const struct build_bounds *bounds,
-                         uint32_t count, struct bvh *out)
+whit_result topdown_grow(const struct log *log, const struct builder *builder,
+                         const struct build_bounds *bounds, uint32_t count, uint32_t spare,
+                         struct bvh *out)
 {
-    struct build build = {.methods = methods,
+    struct build build = {.builder = builder,
                           .count = count,
-                          .leaf_limit = params->leaf_limit,
-                          .thread_count = count <= TASK_MIN ? 1 : params->thread_count};
-    atomic_init(&build.stopped, false);
+                          .spare = spare,
+                          .thread_count = count <= TASK_MIN ? 1 : builder->params->thread_count};
     whit_result result = grow_alloc(log, &build, out);
-    if (result != WHIT_OK)
-        goto done;
-    build_tree(&build, bounds);
-    if (atomic_load(&build.stopped)) {
-        result = WHIT_ERROR_CANCELLED;
-        goto done;
+    if (result == WHIT_OK) {
+        build_tree(&build, bounds);
+        out->node_count = squeeze(&build.output, count + spare - 1);
     }
-    out->node_count = squeeze(&build.output, count - 1);
-    build_complete(out, (double)params->traversal_cost, build.thread_count);
-done:
     free(build.output.slots);
     free(build.tasks);
     return result;
