@@ -1,6 +1,5 @@
 /* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "accel/accel.h"
 #include "accel/accel_inside.h"
@@ -118,14 +117,6 @@ static bool spans_add(struct creation *creation, uint32_t mesh, uint32_t count)
     return true;
 }
 
-static struct bvh_box node_box(const struct gpu_bvh_node *node)
-{
-    struct bvh_box box;
-    memcpy(box.lo, node->lo, sizeof box.lo);
-    memcpy(box.hi, node->hi, sizeof box.hi);
-    return box;
-}
-
 /* Gives every mesh its place; the totals must fit the bits of a ref. */
 static whit_result meshes_place(struct creation *creation)
 {
@@ -134,18 +125,10 @@ static whit_result meshes_place(struct creation *creation)
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         const struct bvh *tree = &creation->trees[i];
         struct accel_mesh *mesh = &accel->meshes[i];
-        *mesh = (struct accel_mesh){
-            .root = BVH_EMPTY_REF,
-            .first_node = (uint32_t)nodes,
-            .node_count = tree->node_count,
-            .first_triangle = (uint32_t)records,
-            .record_count = tree->reference_count,
-            .triangle_count = tree->primitive_count,
-            .shade_base = (uint32_t)triangles,
-            .depth = tree->depth,
-            .sah_cost = tree->sah_cost,
-            .build_ms = tree->build_ms,
-        };
+        *mesh = accel_mesh_over(tree);
+        mesh->first_node = (uint32_t)nodes;
+        mesh->first_triangle = (uint32_t)records;
+        mesh->shade_base = (uint32_t)triangles;
         nodes += tree->node_count;
         records += tree->reference_count;
         triangles += tree->primitive_count;
@@ -155,8 +138,6 @@ static whit_result meshes_place(struct creation *creation)
                       accel->scene->name, BVH_FIRST_MASK);
             return WHIT_ERROR_INPUT;
         }
-        if (tree->node_count > 0)
-            mesh->box = node_box(&tree->nodes[0]);
         if (tree->depth > accel->mesh_depth)
             accel->mesh_depth = tree->depth;
         uint32_t larger =

@@ -14,22 +14,15 @@ struct opening {
     uint32_t pair, at, depth;
 };
 
-static double half_area(const struct gpu_bvh_node *node)
-{
-    double x = (double)node->hi[0] - node->lo[0], y = (double)node->hi[1] - node->lo[1],
-           z = (double)node->hi[2] - node->lo[2];
-    return x * y + y * z + z * x;
-}
-
 /* -1: all of them are leaves. */
 static int largest_inner(const struct gpu_bvh_node *children, int count)
 {
     int largest = -1;
     double area = -1.0;
     for (int i = 0; i < count; ++i) {
-        if (bvh_count(&children[i]) == 0 && half_area(&children[i]) > area) {
+        if (bvh_count(&children[i]) == 0 && bvh_half_area(&children[i]) > area) {
             largest = i;
-            area = half_area(&children[i]);
+            area = bvh_half_area(&children[i]);
         }
     }
     return largest;

@@ -56,6 +56,21 @@ static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
     return bvh_count(node) << BVH_COUNT_SHIFT | node->first;
 }
 
+/* What a tree of its own says of its mesh: among others both have yet to find their place. */
+static inline struct accel_mesh accel_mesh_over(const struct bvh *tree)
+{
+    return (struct accel_mesh){
+        .root = tree->node_count > 0 ? accel_node_ref(&tree->nodes[0]) : BVH_EMPTY_REF,
+        .node_count = tree->node_count,
+        .record_count = tree->reference_count,
+        .triangle_count = tree->primitive_count,
+        .depth = tree->depth,
+        .sah_cost = tree->sah_cost,
+        .build_ms = tree->build_ms,
+        .box = tree->node_count > 0 ? bvh_node_box(&tree->nodes[0]) : (struct bvh_box){{0}, {0}},
+    };
+}
+
 /* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes that enter the
    sums, which is what rounding them is relative to. */
 struct accel_extent {

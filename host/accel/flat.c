@@ -342,23 +342,11 @@ static void world_commit(struct flattening *f)
     struct accel_mesh *mesh = &accel->meshes[0];
     free(accel->nodes);
     free(accel->triangles);
+    *mesh = accel_mesh_over(tree);
     accel->nodes = tree->nodes;
     accel->triangles = f->triangles;
     tree->nodes = NULL;
     f->triangles = NULL;
-    *mesh = (struct accel_mesh){
-        .root = tree->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF,
-        .node_count = tree->node_count,
-        .record_count = tree->reference_count,
-        .triangle_count = tree->primitive_count,
-        .depth = tree->depth,
-        .sah_cost = tree->sah_cost,
-        .build_ms = tree->build_ms,
-    };
-    if (tree->node_count > 0) {
-        memcpy(mesh->box.lo, accel->nodes[0].lo, sizeof mesh->box.lo);
-        memcpy(mesh->box.hi, accel->nodes[0].hi, sizeof mesh->box.hi);
-    }
     accel->node_count = tree->node_count;
     accel->record_count = tree->reference_count;
     accel->triangle_count = tree->primitive_count;

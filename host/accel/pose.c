@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "base/threads.h"
+#include "base/vec.h"
 
 enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
 
@@ -31,18 +32,6 @@ struct accel_extent accel_transformed_box(const double rows[12], const struct bv
         }
     }
     return out;
-}
-
-static float float_below(double value)
-{
-    float rounded = (float)value;
-    return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
-}
-
-static float float_above(double value)
-{
-    float rounded = (float)value;
-    return (double)rounded < value ? nextafterf(rounded, INFINITY) : rounded;
 }
 
 /* A point p reaches object space as inverse * (p - origin): errors relative to |p - origin| on one
@@ -84,6 +73,16 @@ static float box_reach(const struct bvh_box *box)
     return reach;
 }
 
+/* The tree that the instance's rays enter. */
+static void instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh)
+{
+    out->root = mesh->root;
+    out->center_x = mesh->box.lo[0] * 0.5f + mesh->box.hi[0] * 0.5f;
+    out->center_y = mesh->box.lo[1] * 0.5f + mesh->box.hi[1] * 0.5f;
+    out->center_z = mesh->box.lo[2] * 0.5f + mesh->box.hi[2] * 0.5f;
+    out->reach = box_reach(&mesh->box);
+}
+
 /* False when floats cannot hold it. */
 static bool instance_fill(const struct affine *forward, const struct affine *inverse,
                           const struct accel_mesh *mesh, uint32_t mesh_index,
@@ -93,14 +92,10 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
         .origin_x = (float)forward->m[3],
         .origin_y = (float)forward->m[7],
         .origin_z = (float)forward->m[11],
-        .root = mesh->root,
         .shade_base = mesh->shade_base,
         .mesh = mesh_index,
-        .center_x = mesh->box.lo[0] * 0.5f + mesh->box.hi[0] * 0.5f,
-        .center_y = mesh->box.lo[1] * 0.5f + mesh->box.hi[1] * 0.5f,
-        .center_z = mesh->box.lo[2] * 0.5f + mesh->box.hi[2] * 0.5f,
-        .reach = box_reach(&mesh->box),
     };
+    instance_enter(out, mesh);
     bool good = isfinite(out->origin_x) && isfinite(out->origin_y) && isfinite(out->origin_z);
     good &= row_store(out->inverse0, &inverse->m[0]);
     good &= row_store(out->inverse1, &inverse->m[4]);
@@ -269,19 +264,6 @@ static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
     }
 }
 
-/* All of them are in one tree then; what follows from it is the same for each. */
-static void instances_join(const struct accel_mesh *world, uint32_t count,
-                           struct gpu_instance *instances)
-{
-    for (uint32_t i = 0; i < count; ++i) {
-        instances[i].root = world->root;
-        instances[i].center_x = world->box.lo[0] * 0.5f + world->box.hi[0] * 0.5f;
-        instances[i].center_y = world->box.lo[1] * 0.5f + world->box.hi[1] * 0.5f;
-        instances[i].center_z = world->box.lo[2] * 0.5f + world->box.hi[2] * 0.5f;
-        instances[i].reach = box_reach(&world->box);
-    }
-}
-
 static void instances_exchange(struct accel *accel)
 {
     struct gpu_instance *before = accel->instances;
@@ -299,7 +281,8 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
         result = accel_flat_build(accel, pose);
     if (result != WHIT_OK)
         return result;
-    instances_join(&accel->meshes[0], accel->instance_count, posing->instances);
+    for (uint32_t i = 0; i < accel->instance_count; ++i)
+        instance_enter(&posing->instances[i], &accel->meshes[0]);
     instances_exchange(accel);
     return WHIT_OK;
 }

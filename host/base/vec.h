@@ -1,9 +1,38 @@
-/* Small vectors. Every operation is written out, one rounding each, so that C built with
+/* Floats and small vectors. Every operation is written out, one rounding each, so that C built with
    contraction off gives the bits that the shaders give (docs/numerics.md). */
 #ifndef BASE_VEC_H
 #define BASE_VEC_H
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+static inline uint32_t float_bits(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static inline float float_of_bits(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Floats that are not above, not below. */
+static inline float float_below(double x)
+{
+    float f = (float)x;
+    return (double)f > x ? nextafterf(f, -INFINITY) : f;
+}
+
+static inline float float_above(double x)
+{
+    float f = (float)x;
+    return (double)f < x ? nextafterf(f, INFINITY) : f;
+}
 
 struct vec3 {
     float x, y, z;

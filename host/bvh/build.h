@@ -7,6 +7,7 @@
 #include <stdalign.h>
 #include <string.h>
 
+#include "base/vec.h"
 #include "bvh/bvh.h"
 #include "bvh/f4.h"
 
@@ -255,14 +256,9 @@ static inline f4 build_scale(struct build_box box)
     f4_store(e, f4_sub(box.hi, box.lo));
     float extent = e[0] > e[1] ? e[0] : e[1];
     extent = extent > e[2] ? extent : e[2];
-    uint32_t bits;
-    memcpy(&bits, &extent, sizeof bits);
-    int exponent = (int)(bits >> 23) - 126;
+    int exponent = (int)(float_bits(extent) >> 23) - 126;
     exponent = exponent > 126 ? 126 : exponent;
-    bits = (uint32_t)(127 - exponent) << 23;
-    float scale;
-    memcpy(&scale, &bits, sizeof scale);
-    return f4_splat(scale);
+    return f4_splat(float_of_bits((uint32_t)(127 - exponent) << 23));
 }
 
 static inline float build_area(struct build_box box, f4 scale)
@@ -296,9 +292,7 @@ static inline uint32_t build_widest_axis(const float extent[3])
 /* Floats in the order of unsigned integers. */
 static inline uint32_t build_ordered_bits(float value)
 {
-    uint32_t bits;
-    value += 0.0f; /* one zero */
-    memcpy(&bits, &value, sizeof bits);
+    uint32_t bits = float_bits(value + 0.0f); /* one zero */
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 

@@ -75,6 +75,12 @@ static inline double bvh_half_area(const struct gpu_bvh_node *node)
     return x * y + y * z + z * x;
 }
 
+static inline struct bvh_box bvh_node_box(const struct gpu_bvh_node *node)
+{
+    return (struct bvh_box){{node->lo[0], node->lo[1], node->lo[2]},
+                            {node->hi[0], node->hi[1], node->hi[2]}};
+}
+
 /* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
    and depth. Whatever builds a tree ends with it. */
 void bvh_complete(struct bvh *bvh, double traversal_cost);

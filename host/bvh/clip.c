@@ -1,18 +1,14 @@
 /* Sutherland and Hodgman 1974, "Reentrant polygon clipping", one plane of the box after the other.
-   In double: points of edges are off by less than a float can tell. */
+ */
 #include "bvh/clip.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { CORNERS_MAX = 16 }; /* each of six planes adds one to the three, more if rounding bends it */
-
-struct polygon {
-    double at[CORNERS_MAX][3];
-    uint32_t count;
-};
+#include "base/vec.h"
 
 static void polygon_cross(const double a[3], const double b[3], int axis, double plane,
-                          struct polygon *out)
+                          struct clip_polygon *out)
 {
     double *p = out->at[out->count++];
     double s = (plane - a[axis]) / (b[axis] - a[axis]);
@@ -22,8 +18,8 @@ static void polygon_cross(const double a[3], const double b[3], int axis, double
 }
 
 /* What lies on one side of a plane, or in it. */
-static void polygon_clip(const struct polygon *in, int axis, double plane, bool above,
-                         struct polygon *out)
+static void polygon_clip(const struct clip_polygon *in, int axis, double plane, bool above,
+                         struct clip_polygon *out)
 {
     out->count = 0;
     for (uint32_t i = 0; i < in->count; ++i) {
@@ -36,12 +32,12 @@ static void polygon_clip(const struct polygon *in, int axis, double plane, bool 
         }
         if (a_in != b_in)
             polygon_cross(a, b, axis, plane, out);
-        if (out->count + 2 > CORNERS_MAX)
+        if (out->count + 2 > CLIP_CORNERS_MAX)
             return;
     }
 }
 
-static void polygon_range(const struct polygon *polygon, int axis, double *lo, double *hi)
+static void polygon_range(const struct clip_polygon *polygon, int axis, double *lo, double *hi)
 {
     *lo = *hi = polygon->at[0][axis];
     for (uint32_t i = 1; i < polygon->count; ++i) {
@@ -50,10 +46,10 @@ static void polygon_range(const struct polygon *polygon, int axis, double *lo, d
     }
 }
 
-bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_box *cell,
-                       struct bvh_box *out)
+const struct clip_polygon *clip_triangle(const struct clip_triangle *triangle,
+                                         const struct bvh_box *cell, struct clip_polygon room[2])
 {
-    struct polygon polygons[2], *polygon = &polygons[0], *other = &polygons[1];
+    struct clip_polygon *polygon = &room[0], *other = &room[1];
     polygon->count = 3;
     for (int i = 0; i < 3; ++i) {
         for (int k = 0; k < 3; ++k)
@@ -67,17 +63,27 @@ bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_bo
         if (above ? lo >= plane : hi <= plane)
             continue;
         polygon_clip(polygon, axis, plane, above, other);
-        struct polygon *clipped = other;
+        struct clip_polygon *clipped = other;
         other = polygon;
         polygon = clipped;
         if (polygon->count == 0)
-            return false;
+            return NULL;
     }
+    return polygon;
+}
+
+bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_box *cell,
+                       struct bvh_box *out)
+{
+    struct clip_polygon room[2];
+    const struct clip_polygon *polygon = clip_triangle(triangle, cell, room);
+    if (!polygon)
+        return false;
     for (int axis = 0; axis < 3; ++axis) {
         double lo, hi;
         polygon_range(polygon, axis, &lo, &hi);
-        out->lo[axis] = fmaxf(clip_float_below(lo), cell->lo[axis]) + 0.0f;
-        out->hi[axis] = fminf(clip_float_above(hi), cell->hi[axis]) + 0.0f;
+        out->lo[axis] = fmaxf(float_below(lo), cell->lo[axis]) + 0.0f;
+        out->hi[axis] = fminf(float_above(hi), cell->hi[axis]) + 0.0f;
         if (!(out->lo[axis] <= out->hi[axis]))
             return false;
     }
@@ -92,8 +98,8 @@ struct bvh_box clip_widen(const struct bvh_box *part, const struct bvh_box *own)
     double margin = extent * CLIP_PART_MARGIN;
     struct bvh_box box;
     for (int k = 0; k < 3; ++k) {
-        box.lo[k] = fmaxf(clip_float_below((double)part->lo[k] - margin), own->lo[k]) + 0.0f;
-        box.hi[k] = fminf(clip_float_above((double)part->hi[k] + margin), own->hi[k]) + 0.0f;
+        box.lo[k] = fmaxf(float_below((double)part->lo[k] - margin), own->lo[k]) + 0.0f;
+        box.hi[k] = fminf(float_above((double)part->hi[k] + margin), own->hi[k]) + 0.0f;
     }
     return box;
 }

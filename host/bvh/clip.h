@@ -2,7 +2,6 @@
 #ifndef BVH_CLIP_H
 #define BVH_CLIP_H
 
-#include <math.h>
 #include <stdbool.h>
 
 #include "bvh/bvh.h"
@@ -21,17 +20,17 @@ static inline struct clip_triangle clip_fetch(const struct bvh_triangles *triang
                                    &triangles->positions[3 * (size_t)corner[2]]}};
 }
 
-/* Floats that are not above, not below. */
-static inline float clip_float_below(double x)
-{
-    float f = (float)x;
-    return (double)f > x ? nextafterf(f, -INFINITY) : f;
-}
-static inline float clip_float_above(double x)
-{
-    float f = (float)x;
-    return (double)f < x ? nextafterf(f, INFINITY) : f;
-}
+/* Each of six planes adds a corner to the three, or more if rounding bends it. */
+enum { CLIP_CORNERS_MAX = 16 };
+struct clip_polygon {
+    double at[CLIP_CORNERS_MAX][3];
+    uint32_t count;
+};
+
+/* What the closed box leaves of the triangle, which is one of the two; NULL: nothing. In double:
+   points of edges are off by less than a float can tell. */
+const struct clip_polygon *clip_triangle(const struct clip_triangle *triangle,
+                                         const struct bvh_box *cell, struct clip_polygon room[2]);
 
 /* The bounds of the part of the triangle in `cell`, rounded outwards to floats, within the cell.
    They hold that part but for what doubles round: some 2^-50 of the coordinates. False when nothing

@@ -4,7 +4,6 @@
 #include <gmp.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 #include "accel/accel.h"
@@ -196,18 +195,16 @@ static int compare_root(struct quadratic *f, bool far, double at)
    go on there, so that its middle with the largest is where keys become infinite. */
 #define INFINITE_BITS 0x7f800000u
 
-static double float_of_bits(uint32_t bits)
+static double value_of_bits(uint32_t bits)
 {
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return bits == INFINITE_BITS ? 0x1p128 : (double)value;
+    return bits == INFINITE_BITS ? 0x1p128 : (double)float_of_bits(bits);
 }
 
 /* Whether the root rounds to a float above this one: it is beyond the middle of this one and the
    next, or at it where the next one is even. A double holds the middle. */
 static bool is_above(struct quadratic *f, bool far, uint32_t bits)
 {
-    double middle = 0.5 * (float_of_bits(bits) + float_of_bits(bits + 1));
+    double middle = 0.5 * (value_of_bits(bits) + value_of_bits(bits + 1));
     int side = compare_root(f, far, middle);
     return side > 0 || (side == 0 && bits % 2 == 1);
 }
@@ -235,15 +232,12 @@ static float estimate_root(struct quadratic *f, bool far, mpz_t rest)
    the root is, and the signs of integers say so: bits of the estimate only make that short. */
 static float round_root(struct quadratic *f, bool far, mpz_t rest)
 {
-    float key = estimate_root(f, far, rest);
-    uint32_t bits;
-    memcpy(&bits, &key, sizeof bits);
+    uint32_t bits = float_bits(estimate_root(f, far, rest));
     while (bits < INFINITE_BITS && is_above(f, far, bits))
         ++bits;
     while (bits > 0 && !is_above(f, far, bits - 1))
         --bits;
-    memcpy(&key, &bits, sizeof key);
-    return key;
+    return float_of_bits(bits);
 }
 
 static void set_quadratic(struct rational *r, struct vec3 origin, struct vec3 dir,

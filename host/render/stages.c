@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/threads.h"
+#include "base/vec.h"
 #include "render/renderer.h"
 
 /* Generations of the first tile, before it is known how many there are. */
@@ -376,13 +377,6 @@ static whit_result trace_generations(struct tile_run *run, uint32_t first, uint3
     if (result == WHIT_OK)
         result = record_resolve(run, end);
     return result == WHIT_OK ? finish_submission(run) : result;
-}
-
-static float float_of_bits(uint32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
 }
 
 static whit_result take_tally(struct target *target)

@@ -1,87 +1,40 @@
 /* End-point overlap: how much surface lies in boxes that it does not belong to. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/array.h"
 #include "base/threads.h"
+#include "base/vec.h"
+#include "bvh/clip.h"
 #include "twin/report.h"
 
-/* ---- Clipping ---- */
+/* ---- Areas ---- */
 
-/* A pass over n corners leaves at most 1.5 n, however they are rounded: 3, 4, 6, 9, 13, 19, 28. */
-enum { CORNERS_MAX = 28 };
-
-struct polygon {
-    double corners[CORNERS_MAX][3];
-    uint32_t count;
-};
-
-static void polygon_add(struct polygon *polygon, const double corner[3])
-{
-    memcpy(polygon->corners[polygon->count++], corner, 3 * sizeof(double));
-}
-
-/* Keeps the part with sign * corner[axis] >= sign * bound (Sutherland and Hodgman 1974). */
-static void polygon_clip(struct polygon *polygon, int axis, double sign, double bound)
-{
-    double height[CORNERS_MAX];
-    uint32_t inside = 0;
-    for (uint32_t i = 0; i < polygon->count; ++i) {
-        height[i] = sign * (polygon->corners[i][axis] - bound);
-        inside += height[i] >= 0.0;
-    }
-    if (inside == polygon->count)
-        return;
-    struct polygon out = {.count = 0};
-    for (uint32_t i = 0; inside && i < polygon->count; ++i) {
-        uint32_t next = i + 1 < polygon->count ? i + 1 : 0;
-        const double *a = polygon->corners[i], *b = polygon->corners[next];
-        if (height[i] >= 0.0)
-            polygon_add(&out, a);
-        if ((height[i] >= 0.0) == (height[next] >= 0.0))
-            continue;
-        double along = height[i] / (height[i] - height[next]), cut[3];
-        for (int k = 0; k < 3; ++k)
-            cut[k] = a[k] + along * (b[k] - a[k]);
-        cut[axis] = bound;
-        polygon_add(&out, cut);
-    }
-    *polygon = out;
-}
-
-static double polygon_area(const struct polygon *polygon)
+static double polygon_area(const struct clip_polygon *polygon)
 {
     double sum[3] = {0};
-    const double *o = polygon->corners[0];
+    const double *o = polygon->at[0];
     for (uint32_t i = 1; i + 1 < polygon->count; ++i) {
-        const double *p = polygon->corners[i], *q = polygon->corners[i + 1];
-        double a[3], b[3];
+        const double *p = polygon->at[i], *q = polygon->at[i + 1];
+        double a[3], b[3], twice[3];
         for (int k = 0; k < 3; ++k) {
             a[k] = p[k] - o[k];
             b[k] = q[k] - o[k];
         }
-        sum[0] += a[1] * b[2] - a[2] * b[1];
-        sum[1] += a[2] * b[0] - a[0] * b[2];
-        sum[2] += a[0] * b[1] - a[1] * b[0];
+        double3_cross(a, b, twice);
+        for (int k = 0; k < 3; ++k)
+            sum[k] += twice[k];
     }
-    return 0.5 * sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    return 0.5 * sqrt(double3_dot(sum, sum));
 }
 
 double epo_clipped_area(const float a[3], const float b[3], const float c[3],
                         const struct bvh_box *box)
 {
-    const float *vertices[3] = {a, b, c};
-    struct polygon polygon = {.count = 3};
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k)
-            polygon.corners[i][k] = (double)vertices[i][k];
-    }
-    for (int axis = 0; axis < 3 && polygon.count; ++axis) {
-        polygon_clip(&polygon, axis, 1.0, (double)box->lo[axis]);
-        polygon_clip(&polygon, axis, -1.0, (double)box->hi[axis]);
-    }
-    return polygon_area(&polygon);
+    const struct clip_triangle triangle = {{a, b, c}};
+    struct clip_polygon room[2];
+    const struct clip_polygon *polygon = clip_triangle(&triangle, box, room);
+    return polygon ? polygon_area(polygon) : 0.0;
 }
 
 /* The area of a sphere inside the box, to a few percent: the share of points inside, out of points
@@ -89,7 +42,7 @@ double epo_clipped_area(const float a[3], const float b[3], const float c[3],
 static double epo_sphere_area(const float center[3], float radius, const struct bvh_box *box)
 {
     enum { POINTS = 256 };
-    const double golden_angle = 2.399963229728653, pi = 3.141592653589793;
+    const double golden_angle = 2.399963229728653;
     double r = (double)radius;
     uint32_t inside = 0;
     for (int i = 0; i < POINTS; ++i) {
@@ -102,7 +55,7 @@ static double epo_sphere_area(const float center[3], float radius, const struct 
         }
         inside += in;
     }
-    return 4.0 * pi * r * r * inside / POINTS;
+    return 4.0 * M_PI * r * r * inside / POINTS;
 }
 
 static double epo_area(const struct gpu_triangle *record, const struct bvh_box *box)
@@ -190,9 +143,7 @@ static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t nod
 {
     const struct gpu_bvh_node *at = &walk->nodes[node];
     const struct gpu_triangle *t = &walk->triangles[walk->places[walk->firsts[triangle]].record];
-    struct bvh_box box;
-    memcpy(box.lo, at->lo, sizeof box.lo);
-    memcpy(box.hi, at->hi, sizeof box.hi);
+    struct bvh_box box = bvh_node_box(at);
     double area = epo_area(t, &box);
     if (area == 0.0)
         return;

@@ -1,14 +1,8 @@
 #include "twin/exact.h"
 
 #include <stdint.h>
-#include <string.h>
 
 /* ---- The filter: shaders/lib/exact.glsl, exact_filter ---- */
-
-static float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
 
 void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, struct vec3 c,
                   struct exact_bounds *out)
@@ -32,7 +26,8 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     out->u = s.eb * inv_det;
     out->v = s.ec * inv_det;
     out->t = ((s.ea * inv_det) * az + out->u * bz) + out->v * cz;
-    float z_lo = smaller(az, smaller(bz, cz)), z_hi = float_larger(az, float_larger(bz, cz));
+    float z_lo = float_smaller(az, float_smaller(bz, cz)),
+          z_hi = float_larger(az, float_larger(bz, cz));
     float z_error = 40.0f * EXACT_UNIT * float_larger(fabsf(z_lo), fabsf(z_hi)) + EXACT_TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
@@ -65,14 +60,8 @@ struct wide {
 static void decode_point(struct wide *w, int at, struct vec3 p)
 {
     const float values[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {
-        uint32_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        uint32_t exponent = bits >> 23 & 255u;
-        w->mantissa[at][i] =
-            (bits & 0x80000000u) | (bits & 0x7fffffu) | (exponent != 0 ? 0x800000u : 0u);
-        w->exponent[at][i] = exponent != 0 ? (int32_t)exponent : 1;
-    }
+    for (int i = 0; i < 3; ++i)
+        w->mantissa[at][i] = exact_decode(values[i], &w->exponent[at][i]);
 }
 
 /* Finds the range of digits that nonzero values need, by exponents; clears the digits. */
@@ -162,11 +151,6 @@ static void add_determinants(struct wide *w)
     }
 }
 
-static int32_t sign_of(int32_t carry, int32_t some)
-{
-    return carry < 0 ? -1 : some != 0 ? 1 : 0;
-}
-
 /* Carries; digits are 0..65535 then, of two's complement. The first integer, e_a so far, becomes
    D = e_a + e_b + e_c. */
 static void carry_digits(struct wide *w)
@@ -184,9 +168,9 @@ static void carry_digits(struct wide *w)
             some[k] |= sum & 0xffff;
         }
     }
-    w->sign_a = sign_of(carry_a, some_a);
+    w->sign_a = exact_sign(carry_a, some_a);
     for (int k = 0; k < WIDE_COUNT; ++k)
-        w->sign[k] = sign_of(carry[k], some[k]);
+        w->sign[k] = exact_sign(carry[k], some[k]);
 }
 
 /* Negates negative numbers. *top_d, *top_n: the highest nonzero digits of D and N. */
@@ -275,9 +259,7 @@ static float round_quotient(const struct wide *w, int32_t top_n, int32_t top_d)
     uint32_t bits = biased < 1 ? mantissa : (uint32_t)biased << 23 | (mantissa & 0x7fffffu);
     bits += up ? 1u : 0u;
     bits = biased > 254 ? 0x7f800000u : bits;
-    float key;
-    memcpy(&key, &bits, sizeof key);
-    return key;
+    return float_of_bits(bits);
 }
 
 void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,

@@ -33,4 +33,20 @@ struct exact_candidate {
 void exact_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
                 struct exact_candidate *out);
 
+/* ---- In integers ---- */
+
+/* The value is m 2^(*exponent - 150), where the mantissa m has its sign in the top bit. */
+static inline uint32_t exact_decode(float value, int32_t *exponent)
+{
+    uint32_t bits = float_bits(value), biased = bits >> 23 & 255u;
+    *exponent = biased != 0 ? (int32_t)biased : 1;
+    return (bits & 0x807fffffu) | (biased != 0 ? 0x800000u : 0u);
+}
+
+/* Of an integer in digits: what is carried out of the last, and the bits of the digits. */
+static inline int32_t exact_sign(int32_t carry, int32_t some)
+{
+    return carry < 0 ? -1 : (carry | some) != 0 ? 1 : 0;
+}
+
 #endif

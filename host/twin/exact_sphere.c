@@ -3,7 +3,6 @@
 #include "twin/exact.h"
 
 #include <stdint.h>
-#include <string.h>
 
 /* ---- The filter: shaders/lib/exact_sphere.glsl, bound_sphere ---- */
 
@@ -71,13 +70,8 @@ static void decode_values(struct ball *w, const float values[VALUES])
 {
     int32_t min[2] = {254, 254}, max[2] = {1, 1};
     for (int i = 0; i < VALUES; ++i) {
-        uint32_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        uint32_t exponent = bits >> 23 & 255u;
         int of = i < 3 ? 0 : 1;
-        w->mantissa[i] =
-            (bits & 0x80000000u) | (bits & 0x7fffffu) | (exponent != 0 ? 0x800000u : 0u);
-        w->exponent[i] = exponent != 0 ? (int32_t)exponent : 1;
+        w->mantissa[i] = exact_decode(values[i], &w->exponent[i]);
         bool some = (w->mantissa[i] & 0x7fffffffu) != 0;
         min[of] = some && w->exponent[i] < min[of] ? w->exponent[i] : min[of];
         max[of] = some && w->exponent[i] > max[of] ? w->exponent[i] : max[of];
@@ -122,11 +116,6 @@ static void add_products(struct ball *w)
     add_product(w, WIDE_Q, 9, 9, false, true);
 }
 
-static int32_t sign_of(int32_t carry, int32_t some)
-{
-    return carry < 0 ? -1 : (carry | some) != 0 ? 1 : 0;
-}
-
 /* Digits are 0..4095 then, but for the last. */
 static void carry_digits(struct ball *w, int32_t sign[WIDE_COUNT])
 {
@@ -139,7 +128,7 @@ static void carry_digits(struct ball *w, int32_t sign[WIDE_COUNT])
             some |= sum & DIGIT_MASK;
         }
         w->digits[k][w->last] = carry;
-        sign[k] = sign_of(carry, some);
+        sign[k] = exact_sign(carry, some);
     }
 }
 
@@ -154,7 +143,7 @@ static int32_t sign_of_discriminant(const struct ball *w)
         some |= carry & DIGIT_MASK;
         carry >>= DIGIT_BITS;
     }
-    return sign_of(carry, some);
+    return exact_sign(carry, some);
 }
 
 static int32_t digit_at(const int32_t *digits, int32_t last, int32_t i)
@@ -197,7 +186,7 @@ static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
         carry >>= DIGIT_BITS;
     }
     w->product[last] = carry;
-    int32_t slope = sign_of(slope_carry, slope_some), twice_digits = 2 * down / DIGIT_BITS;
+    int32_t slope = exact_sign(slope_carry, slope_some), twice_digits = 2 * down / DIGIT_BITS;
     int32_t end = at_least(last + up_digits + 2, w->last + twice_digits) + 1;
     carry = 0;
     for (int32_t i = 0; i < end; ++i) { /* t (P t - 2 S) + Q */
@@ -207,7 +196,7 @@ static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
         some |= carry & DIGIT_MASK;
         carry >>= DIGIT_BITS;
     }
-    int32_t f = sign_of(carry, some);
+    int32_t f = exact_sign(carry, some);
     if (far)
         return f < 0 || slope < 0 ? 1 : f == 0 ? 0 : -1;
     return f < 0 || slope > 0 ? -1 : f == 0 ? 0 : 1;
@@ -222,9 +211,7 @@ static bool is_beyond(struct ball *w, uint32_t bits, bool far)
 
 static uint32_t bits_within(float x)
 {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return x > 0.0f ? bits : 0u;
+    return x > 0.0f ? float_bits(x) : 0u;
 }
 
 /* The least float from lo to hi that the key is not above. */
@@ -238,9 +225,7 @@ static float find_key(struct ball *w, float lo, float hi, bool far)
         else
             max = middle;
     }
-    float key;
-    memcpy(&key, &min, sizeof key);
-    return key;
+    return float_of_bits(min);
 }
 
 void exact_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,

@@ -4,9 +4,6 @@
 #ifndef TWIN_FF_NUMBERS_H
 #define TWIN_FF_NUMBERS_H
 
-#include <stdint.h>
-#include <string.h>
-
 #include "twin/intersect.h"
 
 #define FF_RELATIVE (1.0f / 2199023255552.0f)             /* 2^-41 */
@@ -90,18 +87,13 @@ static inline struct ff ff_dot(const struct ff_vector *a, const struct ff_vector
 
 static inline int length_exponent(float largest)
 {
-    uint32_t bits;
-    memcpy(&bits, &largest, sizeof bits);
-    int exponent = (int)(bits >> 23 & 255) - 127;
+    int exponent = (int)(float_bits(largest) >> 23 & 255) - 127;
     return exponent < -100 ? -100 : exponent > 100 ? 100 : exponent;
 }
 
 static inline float power_of_two(int exponent)
 {
-    uint32_t bits = (uint32_t)(exponent + 127) << 23;
-    float power;
-    memcpy(&power, &bits, sizeof power);
-    return power;
+    return float_of_bits((uint32_t)(exponent + 127) << 23);
 }
 
 static inline void ff_scale(struct ff_vector *v, float power)
@@ -127,11 +119,8 @@ static inline bool round_ratio(struct bounded_ff top, struct bounded_ff bottom, 
     struct ff both = ff_sum(first, rest / bottom.value.high);
     float size = fabsf(bottom.value.high);
     float error = top.error / size + fabsf(both.high) * (bottom.error / size + FF_RELATIVE);
-    uint32_t bits;
-    memcpy(&bits, &both.high, sizeof bits);
-    bits = both.low > 0.0f ? bits + 1 : bits - 1; /* t > 0 */
-    float next;
-    memcpy(&next, &bits, sizeof next);
+    uint32_t bits = float_bits(both.high); /* t > 0 */
+    float next = float_of_bits(both.low > 0.0f ? bits + 1 : bits - 1);
     *t = both.high;
     return both.high > PAIR_MIN && size > PAIR_MIN &&
            fabsf(both.low) + error < 0.5f * fabsf(next - both.high);

@@ -47,13 +47,26 @@ static inline struct ray_setup make_ray_setup(struct vec3 origin, struct vec3 di
     return ray;
 }
 
+static inline float float_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float float_smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float vec3_largest_magnitude(struct vec3 p)
+{
+    return float_larger(fabsf(p.x), float_larger(fabsf(p.y), fabsf(p.z)));
+}
+
 /* For NUMERICS_EXACT: quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp).
    With others no filter decides. */
 static inline void bound_ray_setup(struct ray_setup *ray)
 {
-    float size = fabsf(ray->dir.x);
-    size = fabsf(ray->dir.y) > size ? fabsf(ray->dir.y) : size;
-    size = fabsf(ray->dir.z) > size ? fabsf(ray->dir.z) : size;
+    float size = vec3_largest_magnitude(ray->dir);
     if (!(size > 7.8886090522101181e-31f && size < 1.2676506002282294e+30f))
         ray->shear = vec3_make(NAN, NAN, NAN);
 }
@@ -62,10 +75,7 @@ static inline void bound_ray_setup(struct ray_setup *ray)
 
 static inline void widen_ray_setup(struct ray_setup *ray, struct vec3 center, float reach)
 {
-    struct vec3 away = vec3_sub(ray->origin, center);
-    float x = fabsf(away.x), y = fabsf(away.y), z = fabsf(away.z);
-    float farthest = x > y ? x : y;
-    farthest = z > farthest ? z : farthest;
+    float farthest = vec3_largest_magnitude(vec3_sub(ray->origin, center));
     float margin = (farthest + reach) * CLIP_MARGIN;
     ray->above = vec3_add(ray->origin, vec3_make(margin, margin, margin));
     ray->below = vec3_sub(ray->origin, vec3_make(margin, margin, margin));
@@ -93,24 +103,14 @@ static inline void slab_interval(const struct ray_setup *ray, struct vec3 lo, st
     *t_far = end * ray->far_scale;
 }
 
-static inline float float_larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float vec3_largest_magnitude(struct vec3 p)
-{
-    return float_larger(fabsf(p.x), float_larger(fabsf(p.y), fabsf(p.z)));
-}
-
 static inline struct vec3 vec3_smaller(struct vec3 a, struct vec3 b)
 {
-    return vec3_make(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
+    return vec3_make(float_smaller(a.x, b.x), float_smaller(a.y, b.y), float_smaller(a.z, b.z));
 }
 
 static inline struct vec3 vec3_larger(struct vec3 a, struct vec3 b)
 {
-    return vec3_make(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
+    return vec3_make(float_larger(a.x, b.x), float_larger(a.y, b.y), float_larger(a.z, b.z));
 }
 
 struct sheared {
