@@ -277,6 +277,19 @@ static bool stated(const struct view *view, const char *what, uint32_t said, uin
     return false;
 }
 
+/* The same, and what is stated of the tree elsewhere. */
+static whit_result tree_check(const struct view *view, uint32_t depth, uint32_t root)
+{
+    struct walk found;
+    whit_result result = view_check(view, &found);
+    if (result != WHIT_OK)
+        return result;
+    uint32_t true_root =
+        view->node_count ? accel_node_ref(&view->nodes[view->first_node]) : BVH_EMPTY_REF;
+    bool same = stated(view, "depth", depth, found.depth) && stated(view, "root", root, true_root);
+    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+}
+
 /* ---- One tree ---- */
 
 struct bvh_user {
@@ -329,7 +342,7 @@ whit_result bvh_validate(const struct log *log, const struct bvh *bvh, const str
 
 struct mesh_user {
     const struct accel *accel;
-    const struct scene_mesh *mesh;
+    const struct scene_mesh *mesh; /* NULL: one tree for all */
 };
 
 static uint32_t mesh_primitive(const void *user, uint32_t slot)
@@ -360,66 +373,6 @@ static bool record_matches(const struct scene_mesh *mesh, const struct gpu_trian
     }
     return same;
 }
-
-static bool triangles_match(const struct view *view, const struct mesh_user *user)
-{
-    for (uint32_t i = 0; i < view->slot_count; ++i) {
-        const struct gpu_triangle *t = &user->accel->triangles[view->first_slot + i];
-        if (!record_matches(user->mesh, t))
-            REFUSE(view, "a record is not its triangle", view->first_slot + i);
-    }
-    return true;
-}
-
-static whit_result parts_check(const struct view *view, const struct accel *accel)
-{
-    if (!view->split)
-        return WHIT_OK;
-    return accel_validate_parts(view->log, view->name, &view->nodes[view->first_node],
-                                view->node_count, accel->triangles, view->primitive_count,
-                                view->primitive, view->user);
-}
-
-static whit_result validate_mesh(const struct accel *accel, uint32_t index)
-{
-    const struct accel_mesh *m = &accel->meshes[index];
-    struct mesh_user user = {accel, &accel->scene->meshes[index]};
-    struct view view = {
-        .log = &accel->log,
-        .name = user.mesh->name ? user.mesh->name : "mesh",
-        .nodes = accel->nodes,
-        .first_node = m->first_node,
-        .node_count = m->node_count,
-        .first_slot = m->first_triangle,
-        .slot_count = m->record_count,
-        .primitive_count = m->triangle_count,
-        .split = m->record_count > m->triangle_count,
-        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
-        .primitive = mesh_primitive,
-        .box = mesh_primitive_box,
-        .user = &user,
-    };
-    bool placed = m->first_node >= accel->instance_node_capacity &&
-                  m->first_node <= accel->node_count &&
-                  m->node_count <= accel->node_count - m->first_node &&
-                  m->first_triangle <= accel->record_count &&
-                  m->record_count <= accel->record_count - m->first_triangle &&
-                  m->triangle_count == scene_mesh_primitives(user.mesh);
-    if (!placed) {
-        refuse(&view, "its nodes or triangles are out of range, mesh", index);
-        return WHIT_ERROR_FAILED;
-    }
-    struct walk found;
-    whit_result result = view_check(&view, &found);
-    if (result != WHIT_OK)
-        return result;
-    uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[m->first_node]) : BVH_EMPTY_REF;
-    bool same = stated(&view, "depth", m->depth, found.depth) &&
-                stated(&view, "root", m->root, root) && triangles_match(&view, &user);
-    return same ? parts_check(&view, accel) : WHIT_ERROR_FAILED;
-}
-
-/* ---- One tree for all ---- */
 
 /* Among all triangles; out of range: names none. */
 static uint32_t flat_primitive(const void *user, uint32_t slot)
@@ -453,9 +406,11 @@ static bool is_placed(const struct gpu_instance *in, const float *p, const float
     return placed;
 }
 
-static bool record_is_placed(const struct gpu_instance *in, const struct scene_mesh *mesh,
-                             const struct gpu_triangle *t)
+/* Of one tree for all; the record names a triangle. */
+static bool record_is_placed(const struct accel *accel, const struct gpu_triangle *t)
 {
+    const struct gpu_instance *in = &accel->instances[t->flags >> TRIANGLE_INSTANCE_SHIFT];
+    const struct scene_mesh *mesh = &accel->scene->meshes[in->mesh];
     if (!(t->flags & TRIANGLE_SPHERE) != !mesh->sphere_count)
         return false;
     if (mesh->sphere_count) {
@@ -469,63 +424,104 @@ static bool record_is_placed(const struct gpu_instance *in, const struct scene_m
            is_placed(in, &mesh->positions[3 * (size_t)corner[2]], t->v2);
 }
 
-static bool flat_records_match(const struct view *view, const struct accel *accel)
+static bool records_match(const struct view *view, const struct mesh_user *user)
 {
-    for (uint32_t i = 0; i < accel->record_count; ++i) {
-        const struct gpu_triangle *t = &accel->triangles[i];
-        uint32_t instance = t->flags >> TRIANGLE_INSTANCE_SHIFT;
-        const struct gpu_instance *in = &accel->instances[instance];
-        const struct scene_mesh *mesh = &accel->scene->meshes[in->mesh];
-        if (!record_is_placed(in, mesh, t))
-            REFUSE(view, "a record is not its triangle", i);
+    for (uint32_t i = 0; i < view->slot_count; ++i) {
+        const struct gpu_triangle *t = &user->accel->triangles[view->first_slot + i];
+        if (!(user->mesh ? record_matches(user->mesh, t) : record_is_placed(user->accel, t)))
+            REFUSE(view, "a record is not its triangle", view->first_slot + i);
     }
     return true;
+}
+
+static whit_result parts_check(const struct view *view, const struct accel *accel)
+{
+    if (!view->split)
+        return WHIT_OK;
+    return accel_validate_parts(view->log, view->name, &view->nodes[view->first_node],
+                                view->node_count, accel->triangles, view->primitive_count,
+                                view->primitive, view->user);
+}
+
+static struct view view_over(const struct accel_mesh *m, const struct mesh_user *user)
+{
+    const struct accel *accel = user->accel;
+    const struct view view = {
+        .log = &accel->log,
+        .name = !user->mesh        ? "the tree over all triangles"
+                : user->mesh->name ? user->mesh->name
+                                   : "mesh",
+        .nodes = accel->nodes,
+        .first_node = m->first_node,
+        .node_count = m->node_count,
+        .first_slot = m->first_triangle,
+        .slot_count = m->record_count,
+        .primitive_count = m->triangle_count,
+        .split = m->record_count > m->triangle_count,
+        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
+        .primitive = user->mesh ? mesh_primitive : flat_primitive,
+        .box = mesh_primitive_box,
+        .user = user,
+    };
+    return view;
+}
+
+static whit_result validate_mesh(const struct accel *accel, uint32_t index)
+{
+    const struct accel_mesh *m = &accel->meshes[index];
+    const struct mesh_user user = {accel, &accel->scene->meshes[index]};
+    const struct view view = view_over(m, &user);
+    bool placed = m->first_node >= accel->instance_node_capacity &&
+                  m->first_node <= accel->node_count &&
+                  m->node_count <= accel->node_count - m->first_node &&
+                  m->first_triangle <= accel->record_count &&
+                  m->record_count <= accel->record_count - m->first_triangle &&
+                  m->triangle_count == scene_mesh_primitives(user.mesh);
+    if (!placed) {
+        refuse(&view, "its nodes or triangles are out of range, mesh", index);
+        return WHIT_ERROR_FAILED;
+    }
+    whit_result result = tree_check(&view, m->depth, m->root);
+    if (result == WHIT_OK && !records_match(&view, &user))
+        result = WHIT_ERROR_FAILED;
+    return result == WHIT_OK ? parts_check(&view, accel) : result;
+}
+
+static bool flat_instances_match(const struct view *view, const struct accel *accel)
+{
+    for (uint32_t i = 0; i < accel->instance_count; ++i) {
+        if (accel->instances[i].mesh != accel->scene->instances[i].mesh)
+            REFUSE(view, "an instance does not refer to its mesh", i);
+    }
+    return true;
+}
+
+static bool flat_records_match(const struct view *view, const struct mesh_user *user)
+{
+    for (uint32_t i = 0; i < view->slot_count; ++i) {
+        if (flat_primitive(user, i) == UINT32_MAX)
+            REFUSE(view, "a record names no triangle", i);
+    }
+    return records_match(view, user);
 }
 
 static whit_result validate_flat(const struct accel *accel)
 {
     const struct accel_mesh *m = &accel->meshes[0];
-    struct mesh_user user = {accel, NULL};
-    struct view view = {
-        .log = &accel->log,
-        .name = "the tree over all triangles",
-        .nodes = accel->nodes,
-        .node_count = m->node_count,
-        .slot_count = m->record_count,
-        .primitive_count = m->triangle_count,
-        .split = m->record_count > m->triangle_count,
-        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
-        .primitive = flat_primitive,
-        .box = mesh_primitive_box,
-        .user = &user,
-    };
-    if (m->node_count > accel->node_count || m->record_count != accel->record_count ||
-        m->triangle_count > m->record_count) {
+    const struct mesh_user user = {accel, NULL};
+    const struct view view = view_over(m, &user);
+    if (m->first_node != 0 || m->first_triangle != 0 || m->node_count > accel->node_count ||
+        m->record_count != accel->record_count || m->triangle_count > m->record_count) {
         refuse(&view, "its nodes or records are out of range; records", m->record_count);
         return WHIT_ERROR_FAILED;
     }
-    for (uint32_t i = 0; i < accel->instance_count; ++i) {
-        if (accel->instances[i].mesh != accel->scene->instances[i].mesh) {
-            refuse(&view, "an instance does not refer to its mesh", i);
-            return WHIT_ERROR_FAILED;
-        }
-    }
-    struct walk found;
-    whit_result result = view_check(&view, &found);
-    if (result != WHIT_OK)
-        return result;
-    uint32_t root = m->node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
-    for (uint32_t i = 0; i < m->record_count; ++i) {
-        if (flat_primitive(&user, i) == UINT32_MAX) {
-            refuse(&view, "a record names no triangle", i);
-            return WHIT_ERROR_FAILED;
-        }
-    }
-    bool same = m->first_node == 0 && m->first_triangle == 0 &&
-                stated(&view, "depth", m->depth, found.depth) &&
-                stated(&view, "depth of all meshes", accel->mesh_depth, found.depth) &&
-                stated(&view, "root", m->root, root) && flat_records_match(&view, accel);
-    return same ? parts_check(&view, accel) : WHIT_ERROR_FAILED;
+    if (!flat_instances_match(&view, accel))
+        return WHIT_ERROR_FAILED;
+    whit_result result = tree_check(&view, m->depth, m->root);
+    if (result == WHIT_OK && !(stated(&view, "depth of all meshes", accel->mesh_depth, m->depth) &&
+                               flat_records_match(&view, &user)))
+        result = WHIT_ERROR_FAILED;
+    return result == WHIT_OK ? parts_check(&view, accel) : result;
 }
 
 /* ---- The tree over instances ---- */
@@ -597,19 +593,13 @@ static whit_result validate_instances(const struct accel *accel)
         .user = &user,
     };
     whit_result result = WHIT_ERROR_FAILED;
-    struct walk found;
     if (accel->instance_node_count > accel->instance_node_capacity ||
         accel->instance_node_capacity > accel->node_count)
         refuse(&view, "nodes out of range", accel->instance_node_count);
     else if (instances_number(accel, dense, &view.primitive_count))
-        result = view_check(&view, &found);
+        result = tree_check(&view, accel->instance_depth, accel->instance_root);
     free(dense);
-    if (result != WHIT_OK)
-        return result;
-    uint32_t root = view.node_count ? accel_node_ref(&accel->nodes[0]) : BVH_EMPTY_REF;
-    bool same = stated(&view, "depth", accel->instance_depth, found.depth) &&
-                stated(&view, "root", accel->instance_root, root);
-    return same ? WHIT_OK : WHIT_ERROR_FAILED;
+    return result;
 }
 
 whit_result accel_validate(const struct accel *accel)
