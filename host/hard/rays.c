@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "accel/accel.h"
+#include "base/random.h"
 #include "hard/hard.h"
 
 const char *hard_rays_name(enum hard_rays rays)
@@ -20,15 +21,9 @@ const char *hard_rays_name(enum hard_rays rays)
 
 /* ---- Numbers ---- */
 
-/* splitmix64 (Steele, Lea and Flood 2014). No expression draws twice: compilers differ in which
-   operand or argument they evaluate first, and rays are the same everywhere. */
 static uint32_t draw(uint64_t *state)
 {
-    *state += UINT64_C(0x9e3779b97f4a7c15);
-    uint64_t z = *state;
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (uint32_t)((z ^ z >> 31) >> 32);
+    return (uint32_t)(splitmix64(state) >> 32);
 }
 
 /* [0, 1) */

@@ -1,15 +1,14 @@
 /* Shape of the mesh trees, and visits of random lines: predicted by areas, measured on the CPU. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/array.h"
+#include "base/random.h"
 #include "base/threads.h"
 #include "twin/report.h"
 #include "twin/traverse.h"
 
 enum { RAYS_A_TASK = 1024 };
-static const double TURN = 6.28318530717958647692;
 
 /* ---- Shape ---- */
 
@@ -18,30 +17,16 @@ struct tally {
     double inner, leaves, shared; /* half areas; of leaves: times triangles */
 };
 
-static double half_area(const double lo[3], const double hi[3])
-{
-    double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
-    return x < 0.0 || y < 0.0 || z < 0.0 ? 0.0 : x * y + y * z + z * x;
-}
-
-static double node_area(const struct gpu_bvh_node *node)
-{
-    double lo[3], hi[3];
-    for (int i = 0; i < 3; ++i) {
-        lo[i] = (double)node->lo[i];
-        hi[i] = (double)node->hi[i];
-    }
-    return half_area(lo, hi);
-}
-
 static double shared_area(const struct gpu_bvh_node *a, const struct gpu_bvh_node *b)
 {
-    double lo[3], hi[3];
+    struct gpu_bvh_node shared = {.count = 0};
+    bool some = true;
     for (int i = 0; i < 3; ++i) {
-        lo[i] = (double)(a->lo[i] > b->lo[i] ? a->lo[i] : b->lo[i]);
-        hi[i] = (double)(a->hi[i] < b->hi[i] ? a->hi[i] : b->hi[i]);
+        shared.lo[i] = a->lo[i] > b->lo[i] ? a->lo[i] : b->lo[i];
+        shared.hi[i] = a->hi[i] < b->hi[i] ? a->hi[i] : b->hi[i];
+        some &= shared.lo[i] <= shared.hi[i];
     }
-    return half_area(lo, hi);
+    return some ? bvh_half_area(&shared) : 0.0;
 }
 
 static void add_leaf(struct accel_report *report, uint32_t count, uint32_t depth)
@@ -57,11 +42,11 @@ static void add_nodes(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t 
     const struct gpu_bvh_node *at = &nodes[node], *children = &nodes[at->first];
     uint32_t count = bvh_count(at);
     if (count > 0) {
-        tally->leaves += node_area(at) * count;
+        tally->leaves += bvh_half_area(at) * count;
         add_leaf(report, count, depth);
         return;
     }
-    tally->inner += node_area(at);
+    tally->inner += bvh_half_area(at);
     tally->shared += shared_area(&children[0], &children[1]);
     add_nodes(nodes, at->first, depth + 1, tally, report);
     add_nodes(nodes, at->first + 1, depth + 1, tally, report);
@@ -69,24 +54,10 @@ static void add_nodes(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t 
 
 /* ---- Random lines ---- */
 
-struct random {
-    uint64_t state;
-};
-
-/* Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators": splitmix64. In
-   [0, 1). */
-static double random_next(struct random *random)
-{
-    uint64_t z = random->state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 /* A line from the uniform measure on all that meet the box: it enters at a point that is uniform
    over the surface, along a direction by the cosine with the normal there (Santalo 1976, "Integral
    geometry and geometric probability"). The ray starts before the box. */
-static struct gpu_ray random_line(const struct bvh_box *box, struct random *random)
+static struct gpu_ray random_line(const struct bvh_box *box, uint64_t *random)
 {
     double size[3], faces[3], length = 0.0;
     for (int i = 0; i < 3; ++i)
@@ -95,16 +66,16 @@ static struct gpu_ray random_line(const struct bvh_box *box, struct random *rand
         faces[i] = size[(i + 1) % 3] * size[(i + 2) % 3];
         length += size[i];
     }
-    double choice = random_next(random) * (faces[0] + faces[1] + faces[2]);
+    double choice = splitmix64_unit(random) * (faces[0] + faces[1] + faces[2]);
     int axis = choice < faces[0] ? 0 : choice < faces[0] + faces[1] ? 1 : 2;
-    double up = random_next(random) < 0.5 ? 1.0 : -1.0;
-    double square = random_next(random), angle = TURN * random_next(random);
+    double up = splitmix64_unit(random) < 0.5 ? 1.0 : -1.0;
+    double square = splitmix64_unit(random), angle = 2.0 * M_PI * splitmix64_unit(random);
     double dir[3], at[3];
     dir[axis] = up * sqrt(1.0 - square);
     dir[(axis + 1) % 3] = sqrt(square) * cos(angle);
     dir[(axis + 2) % 3] = sqrt(square) * sin(angle);
     for (int i = 0; i < 3; ++i)
-        at[i] = (double)box->lo[i] + size[i] * random_next(random);
+        at[i] = (double)box->lo[i] + size[i] * splitmix64_unit(random);
     at[axis] = (double)(up > 0.0 ? box->lo[axis] : box->hi[axis]);
     struct gpu_ray ray = {.t_min = 0.0f, .t_max = INFINITY};
     for (int i = 0; i < 3; ++i) {
@@ -151,7 +122,7 @@ static void measure_line(const struct measuring *measuring, uint32_t index, stru
         alone.instance_root = mesh->root;
         alone.single_identity = true;
     }
-    struct random random = {(uint64_t)index << 20};
+    uint64_t random = (uint64_t)index << 20;
     struct gpu_ray ray = random_line(&mesh->box, &random);
     struct gpu_hit hit;
     traverse_float(&alone, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, cost, status);
@@ -229,7 +200,7 @@ static whit_result add_mesh(const struct accel *accel, uint32_t index, struct to
     whit_result result = accel_mesh_epo(accel, index, &epo);
     if (result != WHIT_OK)
         return result;
-    totals->area += node_area(&accel->nodes[mesh->first_node]);
+    totals->area += bvh_half_area(&accel->nodes[mesh->first_node]);
     totals->inner += tally.inner;
     totals->leaves += tally.leaves;
     totals->shared += tally.shared;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/bvh/study.h"
+#include "base/random.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -172,10 +173,8 @@ static whit_ray shadow_ray(const whit_scene *scene, const struct surface *surfac
 
 double study_random(uint64_t index)
 {
-    uint64_t z = (index + 1) * UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+    uint64_t state = index * SPLITMIX64_STEP;
+    return splitmix64_unit(&state);
 }
 
 static whit_ray diffuse_ray(const struct surface *surface, uint64_t index, double size)
