@@ -38,6 +38,7 @@
 
 #include "accel/accel.h"
 #include "accel/extent.h"
+#include "accel/hit_order.h"
 #include "oracle/conservative.h"
 #include "oracle/oracle.h"
 #include "twin/ray.h"
@@ -364,10 +365,8 @@ static void keep_nearest(struct search *s, const struct verdict *v, uint32_t ins
 {
     if (instance == s->instance && primitive == s->primitive)
         return; /* another part of it */
-    bool nearer = v->t < s->best.t ||
-                  (v->t == s->best.t && (instance < s->instance ||
-                                         (instance == s->instance && primitive < s->primitive)));
-    if (nearer) {
+    if (hit_comes_before((struct hit_place){v->t, instance, primitive},
+                         (struct hit_place){s->best.t, s->instance, s->primitive})) {
         s->second_t = s->primitive == HIT_NONE ? INFINITY : s->best.t;
         s->best = *v;
         s->instance = instance;

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "accel/accel.h"
+#include "accel/hit_order.h"
 #include "oracle/conservative.h"
 #include "twin/ray.h"
 
@@ -404,12 +405,9 @@ struct search {
     struct rational_hit best;
 };
 
-static bool is_before(float t, uint32_t instance, uint32_t primitive,
-                      const struct rational_hit *hit)
+static struct hit_place place_of(const struct rational_hit *hit)
 {
-    if (t != hit->t)
-        return t < hit->t;
-    return instance != hit->instance ? instance < hit->instance : primitive < hit->primitive;
+    return (struct hit_place){(double)hit->t, hit->instance, hit->primitive};
 }
 
 static bool is_same(uint32_t instance, uint32_t primitive, const struct rational_hit *hit)
@@ -418,23 +416,19 @@ static bool is_same(uint32_t instance, uint32_t primitive, const struct rational
 }
 
 /* The far end of a sphere comes behind its near one, unless their keys are the same. */
-static bool is_behind(float t, uint32_t instance, uint32_t primitive,
-                      const struct rational_hit *hit)
-{
-    return !is_before(t, instance, primitive, hit) &&
-           !(t == hit->t && is_same(instance, primitive, hit));
-}
-
 static bool may_count(const struct search *s, float t, uint32_t instance, uint32_t primitive)
 {
     return t >= s->world->t_min && t <= s->t_max &&
-           (!s->query->behind || is_behind(t, instance, primitive, s->query->behind));
+           (!s->query->behind ||
+            hit_comes_before(place_of(s->query->behind),
+                             (struct hit_place){(double)t, instance, primitive}));
 }
 
 static void offer_hit(struct search *s, float t, uint32_t edges, uint32_t instance,
                       uint32_t primitive)
 {
-    if (!may_count(s, t, instance, primitive) || !is_before(t, instance, primitive, &s->best))
+    if (!may_count(s, t, instance, primitive) ||
+        !hit_comes_before((struct hit_place){(double)t, instance, primitive}, place_of(&s->best)))
         return;
     s->best = (struct rational_hit){t, primitive, instance, edges};
     s->walk.limit = (double)t;

@@ -3,6 +3,7 @@
    then primitive. */
 #include <string.h>
 
+#include "accel/hit_order.h"
 #include "oracle/conservative.h"
 #include "reference/inside.h"
 
@@ -45,11 +46,9 @@ static bool enter_instance(struct conservative_walk *walk, uint32_t instance)
     return true;
 }
 
-static bool comes_before(double t, uint32_t instance, uint32_t primitive, const struct hit *other)
+static struct hit_place place_of(const struct hit *hit)
 {
-    if (t != other->t)
-        return t < other->t;
-    return instance != other->instance ? instance < other->instance : primitive < other->primitive;
+    return (struct hit_place){hit->t, hit->instance, hit->primitive};
 }
 
 /* In reach, nearer than what is known, and there for rays of this kind at all. */
@@ -62,14 +61,9 @@ static bool is_reached(const struct search *s, const struct candidate *m,
         return !(record->flags & TRIANGLE_NO_SHADOW);
     if (!m->front && (record->flags & TRIANGLE_ONE_SIDED))
         return false;
-    if (s->mode == MODE_NEXT) {
-        const struct hit *known = s->known;
-        bool same = m->t == known->t && instance == known->instance &&
-                    record->primitive == known->primitive;
-        if (same || comes_before(m->t, instance, record->primitive, known))
-            return false;
-    }
-    return comes_before(m->t, instance, record->primitive, &s->best);
+    struct hit_place place = {m->t, instance, record->primitive};
+    return (s->mode != MODE_NEXT || hit_comes_before(place_of(s->known), place)) &&
+           hit_comes_before(place, place_of(&s->best));
 }
 
 static bool is_solid(const struct search *s, const struct candidate *m,

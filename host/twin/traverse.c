@@ -5,6 +5,7 @@
 #include <float.h>
 
 #include "accel/extent.h"
+#include "accel/hit_order.h"
 #include "twin/exact.h"
 #include "twin/exact_sphere.h"
 #include "twin/ff_sphere.h"
@@ -25,12 +26,12 @@ struct walk {
     const struct gpu_ray *ray; /* world space */
     uint32_t order, numerics;
     bool any;
-    bool next; /* TRAVERSE_NEXT */
-    float t_min, hit_before;
+    bool next;               /* TRAVERSE_NEXT */
+    float t_min, hit_before; /* the latter is -infinity but at TRAVERSE_NEXT */
     uint32_t skip_instance, skip_primitive;
     struct gpu_hit *hit; /* t is the largest that still counts */
-    float lo, hi;        /* NUMERICS_EXACT: bounds of the hit's key */
-    bool at_exit;        /* NUMERICS_EXACT: the hit is the far end of a sphere */
+    float lo, hi;        /* bounds of the hit's key */
+    bool at_exit;        /* the hit is the far end of a sphere */
     uint32_t triangle;   /* record of the hit */
     struct gpu_cost cost;
     uint32_t status;
@@ -89,9 +90,8 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     ++walk->cost.inner_nodes;
     if (walk->level > walk->cost.depth)
         walk->cost.depth = walk->level;
-    float t = walk->numerics == NUMERICS_EXACT ? walk->hi : walk->hit->t;
-    bool hit_a = a_near <= a_far && a_near <= t;
-    bool hit_b = b_near <= b_far && b_near <= t;
+    bool hit_a = a_near <= a_far && a_near <= walk->hi;
+    bool hit_b = b_near <= b_far && b_near <= walk->hi;
     uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
     bool b_nearer = b_near < a_near;
     if (walk->order == ORDER_SIGN)
@@ -107,73 +107,64 @@ static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float 
     return b_first ? ref_b : ref_a;
 }
 
-/* Where a ray meets a primitive, if it does. At NUMERICS_EXACT what decides is the key, the exact t
-   rounded to nearest, in lo..hi; it is the t of a finished hit. */
+/* Where a ray meets a primitive, if it does. What decides is the key, in lo..hi: t itself, but at
+   NUMERICS_EXACT the exact t rounded to nearest, which is the t of a finished hit. */
 struct candidate {
-    bool met;
+    bool met; /* or may be, where not `sure` */
     float t, u, v;
+    float lo, hi;
+    bool sure, rounded; /* NUMERICS_EXACT: met at t_min or beyond; t, u and v are good */
+    bool at_exit;       /* the far end of a sphere */
 };
 
 static struct candidate meet_triangle(const struct walk *walk, const struct ray_setup *ray,
                                       const struct gpu_triangle *triangle)
 {
-    struct candidate m;
-    if (walk->numerics == NUMERICS_FAST) {
-        m.met = intersect_moller(ray->origin, ray->dir, vec3_load(triangle->v0),
-                                 vec3_load(triangle->v1), vec3_load(triangle->v2), walk->t_min,
-                                 &m.t, &m.u, &m.v);
-        return m;
+    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
+                v2 = vec3_load(triangle->v2);
+    struct vec3 a = vec3_sub(v0, ray->origin), b = vec3_sub(v1, ray->origin),
+                c = vec3_sub(v2, ray->origin);
+    struct candidate m = {.at_exit = false};
+    if (walk->numerics == NUMERICS_EXACT) {
+        struct exact_bounds bounds;
+        exact_filter(ray, a, b, c, &bounds);
+        return (struct candidate){.met = !bounds.outside && !(bounds.hi < walk->t_min),
+                                  .t = bounds.t > walk->t_min ? bounds.t : walk->t_min,
+                                  .u = bounds.u,
+                                  .v = bounds.v,
+                                  .lo = bounds.lo,
+                                  .hi = bounds.hi,
+                                  .sure = bounds.inside && bounds.lo >= walk->t_min,
+                                  .rounded = bounds.inside};
     }
-    m.met = intersect_triangle(ray, vec3_sub(vec3_load(triangle->v0), ray->origin),
-                               vec3_sub(vec3_load(triangle->v1), ray->origin),
-                               vec3_sub(vec3_load(triangle->v2), ray->origin), walk->t_min, &m.t,
-                               &m.u, &m.v);
+    if (walk->numerics == NUMERICS_FAST)
+        m.met = intersect_moller(ray->origin, ray->dir, v0, v1, v2, walk->t_min, &m.t, &m.u, &m.v);
+    else
+        m.met = intersect_triangle(ray, a, b, c, walk->t_min, &m.t, &m.u, &m.v);
+    m.lo = m.hi = m.t;
     return m;
 }
 
-static struct candidate meet_sphere(const struct walk *walk, const struct ray_setup *ray,
-                                    const struct chord *chord, bool at_exit, bool own)
+/* One end of a chord. `own`: the ray starts on the sphere, and meets it only if it goes inwards. */
+static struct candidate meet_end(const struct walk *walk, const struct ray_setup *ray,
+                                 const struct chord *chord, const struct sphere_bounds *bounds,
+                                 bool at_exit, bool own)
 {
-    struct candidate m;
     float at = at_exit ? chord->t_far : chord->t_near;
-    m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
-    m.t = at > chord->t_box ? at : chord->t_box;
+    struct candidate m = {.t = at > chord->t_box ? at : chord->t_box, .at_exit = at_exit};
     square_from_dir(chord_end(ray, chord, at_exit), &m.u, &m.v);
+    m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
+    m.lo = m.hi = m.t;
+    if (walk->numerics == NUMERICS_EXACT) {
+        bool end_known = at_exit || bounds->near_lo >= walk->t_min;
+        m.lo = at_exit ? bounds->far_lo : bounds->near_lo;
+        m.hi = at_exit || !end_known ? bounds->far_hi : bounds->near_hi;
+        m.met = !bounds->outside && !(own && bounds->inward_known && !chord->inward) &&
+                !(m.hi < walk->t_min);
+        m.rounded = bounds->inside && end_known;
+        m.sure = m.rounded && m.lo >= walk->t_min && (!own || bounds->inward_known);
+    }
     return m;
-}
-
-/* Whether t, or the least that it may be, comes before `farthest`, or with it. */
-static bool is_nearer(const struct gpu_hit *hit, float farthest, float t, uint32_t instance,
-                      uint32_t primitive)
-{
-    return t < farthest ||
-           (t == farthest && (instance < hit->instance ||
-                              (instance == hit->instance && primitive < hit->primitive)));
-}
-
-/* TRAVERSE_NEXT: whether a hit comes after the known one. */
-static bool is_behind(const struct walk *walk, float t, uint32_t instance, uint32_t primitive)
-{
-    return t > walk->hit_before ||
-           (t == walk->hit_before &&
-            (instance > walk->skip_instance ||
-             (instance == walk->skip_instance && primitive > walk->skip_primitive)));
-}
-
-static bool accept_candidate(struct walk *walk, const struct candidate *m, uint32_t record,
-                             uint32_t instance)
-{
-    uint32_t primitive = walk->accel->triangles[record].primitive;
-    if (!m->met || !is_nearer(walk->hit, walk->hit->t, m->t, instance, primitive) ||
-        (walk->next && !is_behind(walk, m->t, instance, primitive)))
-        return false;
-    walk->hit->t = m->t;
-    walk->hit->u = m->u;
-    walk->hit->v = m->v;
-    walk->hit->primitive = primitive;
-    walk->hit->instance = instance;
-    walk->triangle = record;
-    return true;
 }
 
 /* ---- NUMERICS_EXACT ---- */
@@ -219,127 +210,89 @@ static void settle_hit(struct walk *walk)
     walk->hit->t = m.key;
 }
 
-/* Whether a hit with a known key is nearer than the hit so far, whose key is settled if needed. */
-static bool is_nearer_key(struct walk *walk, float key, uint32_t instance, uint32_t primitive)
+/* Replaces the bounds of a candidate by what is exact; finds the key of the hit so far too, where
+   it takes both to tell which comes first. */
+static void settle(struct walk *walk, const struct ray_setup *ray,
+                   const struct gpu_triangle *record, bool own, struct candidate *m)
 {
-    if (key >= walk->lo && key <= walk->hi && walk->lo < walk->hi)
-        settle_hit(walk);
-    return is_nearer(walk->hit, walk->hi, key, instance, primitive);
-}
-
-/* Whether a primitive with a key of lo..hi may be what is looked for. */
-static bool may_count(const struct walk *walk, float lo, float hi, uint32_t instance,
-                      uint32_t primitive)
-{
-    return !(hi < walk->t_min) && is_nearer(walk->hit, walk->hi, lo, instance, primitive) &&
-           (!walk->next || is_behind(walk, hi, instance, primitive));
-}
-
-static bool keep_exact(struct walk *walk, const struct candidate *m, float lo, float hi,
-                       uint32_t record, uint32_t instance, bool at_exit)
-{
-    if (!walk->any) {
-        walk->lo = lo;
-        walk->hi = hi;
+    if (record->flags & TRIANGLE_SPHERE) {
+        struct sphere_candidate exact;
+        meet_sphere_exactly(ray, record, m->at_exit, walk->t_min, &exact);
+        struct vec3 to_center = vec3_sub(vec3_load(record->v0), ray->origin);
+        if (!m->rounded || exact.at_exit != m->at_exit)
+            square_from_dir(vec3_sub(vec3_scale(ray->dir, exact.key), to_center), &m->u, &m->v);
+        m->met = exact.met && (!own || exact.inward);
+        m->at_exit = exact.at_exit;
+        m->t = exact.key;
+    } else {
+        struct exact_candidate exact;
+        meet_exactly(ray, record, false, &exact);
+        m->met = exact.met && exact.key >= walk->t_min;
+        m->u = m->rounded ? m->u : exact.u;
+        m->v = m->rounded ? m->v : exact.v;
+        m->t = exact.key;
     }
-    walk->at_exit = at_exit;
+    m->lo = m->hi = m->t;
+    if (m->met && m->t >= walk->lo && m->t <= walk->hi && walk->lo < walk->hi)
+        settle_hit(walk);
+}
+
+/* ---- */
+
+/* Whether a candidate is met, comes before the hit so far and behind the known one: or may, unless
+   both keys are known. */
+static bool is_reached(const struct walk *walk, const struct candidate *m, uint32_t instance,
+                       uint32_t primitive)
+{
+    const struct hit_place lo = {(double)m->lo, instance, primitive};
+    const struct hit_place hi = {(double)m->hi, instance, primitive};
+    const struct hit_place so_far = {(double)walk->hi, walk->hit->instance, walk->hit->primitive};
+    const struct hit_place known = {(double)walk->hit_before, walk->skip_instance,
+                                    walk->skip_primitive};
+    return m->met && hit_comes_before(lo, so_far) && hit_comes_before(known, hi);
+}
+
+static bool accept_candidate(struct walk *walk, const struct ray_setup *ray, struct candidate *m,
+                             uint32_t record, uint32_t instance, bool own)
+{
+    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
+    if (!is_reached(walk, m, instance, triangle->primitive))
+        return false;
+    bool sure = m->sure && m->hi < walk->lo && m->lo > walk->hit_before;
+    if (walk->numerics == NUMERICS_EXACT && !sure) {
+        settle(walk, ray, triangle, own, m);
+        if (!is_reached(walk, m, instance, triangle->primitive))
+            return false;
+    }
+    walk->lo = m->lo;
+    walk->hi = m->hi;
+    walk->at_exit = m->at_exit;
     walk->hit->t = m->t;
     walk->hit->u = m->u;
     walk->hit->v = m->v;
-    walk->hit->primitive = walk->accel->triangles[record].primitive;
+    walk->hit->primitive = triangle->primitive;
     walk->hit->instance = instance;
     walk->triangle = record;
     return true;
-}
-
-static bool test_triangle_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
-                                uint32_t instance)
-{
-    const struct gpu_triangle *triangle = &walk->accel->triangles[record];
-    struct vec3 v0 = vec3_load(triangle->v0), v1 = vec3_load(triangle->v1),
-                v2 = vec3_load(triangle->v2);
-    struct exact_bounds bounds;
-    exact_filter(ray, vec3_sub(v0, ray->origin), vec3_sub(v1, ray->origin),
-                 vec3_sub(v2, ray->origin), &bounds);
-    if (bounds.outside || !may_count(walk, bounds.lo, bounds.hi, instance, triangle->primitive))
-        return false;
-    struct candidate m = {true, bounds.t > walk->t_min ? bounds.t : walk->t_min, bounds.u,
-                          bounds.v};
-    if (bounds.inside && bounds.lo >= walk->t_min && bounds.hi < walk->lo &&
-        (!walk->next || bounds.lo > walk->hit_before))
-        return keep_exact(walk, &m, bounds.lo, bounds.hi, record, instance, false);
-    struct exact_candidate exact;
-    meet_exactly(ray, triangle, false, &exact);
-    m.t = exact.key;
-    if (!bounds.inside)
-        m = (struct candidate){true, exact.key, exact.u, exact.v};
-    if (!exact.met || exact.key < walk->t_min ||
-        !is_nearer_key(walk, exact.key, instance, triangle->primitive) ||
-        (walk->next && !is_behind(walk, exact.key, instance, triangle->primitive)))
-        return false;
-    return keep_exact(walk, &m, exact.key, exact.key, record, instance, false);
-}
-
-/* One end of a chord; *at_exit becomes true where only the far one counts. */
-static bool test_end_exact(struct walk *walk, const struct ray_setup *ray,
-                           const struct sphere_bounds *bounds, const struct chord *chord,
-                           uint32_t record, uint32_t instance, bool own, bool *at_exit)
-{
-    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
-    bool near_known = *at_exit || bounds->near_lo >= walk->t_min;
-    float lo = *at_exit ? bounds->far_lo : bounds->near_lo;
-    float hi = *at_exit || !near_known ? bounds->far_hi : bounds->near_hi;
-    if (bounds->outside || (own && bounds->inward_known && !chord->inward) ||
-        !may_count(walk, lo, hi, instance, sphere->primitive))
-        return false;
-    struct candidate m = meet_sphere(walk, ray, chord, *at_exit, own);
-    bool rounded = bounds->inside && near_known;
-    if (rounded && lo >= walk->t_min && (!own || bounds->inward_known) && hi < walk->lo &&
-        (!walk->next || lo > walk->hit_before))
-        return keep_exact(walk, &m, lo, hi, record, instance, *at_exit);
-    struct sphere_candidate exact;
-    meet_sphere_exactly(ray, sphere, *at_exit, walk->t_min, &exact);
-    m.t = exact.key;
-    if (!rounded || exact.at_exit != *at_exit)
-        square_from_dir(
-            vec3_sub(vec3_scale(ray->dir, exact.key), vec3_sub(vec3_load(sphere->v0), ray->origin)),
-            &m.u, &m.v);
-    *at_exit = exact.at_exit;
-    if (!exact.met || (own && !exact.inward) ||
-        !is_nearer_key(walk, exact.key, instance, sphere->primitive) ||
-        (walk->next && !is_behind(walk, exact.key, instance, sphere->primitive)))
-        return false;
-    return keep_exact(walk, &m, exact.key, exact.key, record, instance, exact.at_exit);
-}
-
-static bool test_sphere_exact(struct walk *walk, const struct ray_setup *ray, uint32_t record,
-                              uint32_t instance, bool own)
-{
-    const struct gpu_triangle *sphere = &walk->accel->triangles[record];
-    struct vec3 center = vec3_load(sphere->v0);
-    struct chord chord = intersect_sphere(ray, center, sphere->v1[0], walk->t_min);
-    struct sphere_bounds bounds;
-    bound_sphere(ray, center, sphere->v1[0], &bounds);
-    bool at_exit = own || bounds.near_hi < walk->t_min;
-    bool accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
-    if (walk->next && !accepted && !at_exit) {
-        at_exit = true;
-        accepted = test_end_exact(walk, ray, &bounds, &chord, record, instance, own, &at_exit);
-    }
-    return accepted;
 }
 
 static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
                         uint32_t instance, bool own)
 {
     const struct gpu_triangle *sphere = &walk->accel->triangles[record];
-    struct chord chord = intersect_sphere(ray, vec3_load(sphere->v0), sphere->v1[0], walk->t_min);
+    struct vec3 center = vec3_load(sphere->v0);
+    struct chord chord = intersect_sphere(ray, center, sphere->v1[0], walk->t_min);
+    struct sphere_bounds bounds;
     bool at_exit = own || !(chord.t_near >= walk->t_min);
-    struct candidate m = meet_sphere(walk, ray, &chord, at_exit, own);
-    bool accepted = accept_candidate(walk, &m, record, instance);
-    if (walk->next && !accepted && !at_exit) {
-        m = meet_sphere(walk, ray, &chord, true, own);
-        accepted = accept_candidate(walk, &m, record, instance);
+    if (walk->numerics == NUMERICS_EXACT) {
+        bound_sphere(ray, center, sphere->v1[0], &bounds);
+        at_exit = own || bounds.near_hi < walk->t_min;
+    }
+    struct candidate m = meet_end(walk, ray, &chord, &bounds, at_exit, own);
+    bool accepted = accept_candidate(walk, ray, &m, record, instance, own);
+    if (walk->next && !accepted && !m.at_exit) {
+        m = meet_end(walk, ray, &chord, &bounds, true, own);
+        accepted = accept_candidate(walk, ray, &m, record, instance, own);
     }
     return accepted;
 }
@@ -354,15 +307,11 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
     bool own = !walk->next && triangle->primitive == walk->skip_primitive &&
                instance == walk->skip_instance;
     if (triangle->flags & TRIANGLE_SPHERE)
-        return (walk->numerics == NUMERICS_EXACT
-                    ? test_sphere_exact(walk, ray, record, instance, own)
-                    : test_sphere(walk, ray, record, instance, own)) &&
-               walk->any;
-    if (walk->numerics == NUMERICS_EXACT)
-        return !own && test_triangle_exact(walk, ray, record, instance) && walk->any;
+        return test_sphere(walk, ray, record, instance, own) && walk->any;
+    if (own)
+        return false;
     struct candidate m = meet_triangle(walk, ray, triangle);
-    m.met &= !own;
-    return accept_candidate(walk, &m, record, instance) && walk->any;
+    return accept_candidate(walk, ray, &m, record, instance, false) && walk->any;
 }
 
 static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32_t root,
@@ -532,6 +481,7 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
     walk->numerics = params->numerics;
     walk->any = params->any;
     walk->next = false;
+    walk->hit_before = -INFINITY;
     walk->t_min = ray->t_min;
     if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
         walk->t_min = 0.0f;

@@ -216,7 +216,7 @@ change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
   [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
 
 mutation(ties_undecided accel_stack RED duplicates_give_the_first)
-change(host/twin/traverse.c is_nearer [[[a-z]+ == farthest]] [[false]])
+change(host/accel/hit_order.h hit_comes_before [[[a-z]\.t == [a-z]\.t]] [[false]])
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
@@ -320,7 +320,7 @@ mutation(waiting_rays_leave_children render_deferred RED pictures_are_those_of_l
 change(shaders/kernel/shade.comp [[alive = alive && !must_wait(status);]] [[;]])
 
 mutation(hits_unsettled accel_hard RED cases_are_what_they_say)
-change(host/twin/traverse.c is_nearer_key [[if \([^()]*->lo < [^()]*->hi\)]] [[if (false)]])
+change(host/twin/traverse.c settle [[[a-z]+->lo < [a-z]+->hi]] [[false]])
 
 mutation(hits_unsettled_in_kernels render_numerics RED ties)
 change(shaders/bind/settle.glsl [[again = m.met && hit.lo < hit.hi &&]] [[again = false &&]])

@@ -1,0 +1,23 @@
+/* The order of the hits of a ray, which decides between those that are equally near. */
+#ifndef ACCEL_HIT_ORDER_H
+#define ACCEL_HIT_ORDER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Where a ray meets a primitive of an instance. */
+struct hit_place {
+    double t;
+    uint32_t instance, primitive;
+};
+
+/* Equal t goes to the smaller instance, then to the smaller primitive: so a hit depends neither on
+   the tree nor on the order in which it is walked, whoever walks it. False for the same place, and
+   where a t is NaN. shaders/bind/traverse.glsl has the same rule in is_nearer and is_behind. */
+static inline bool hit_comes_before(struct hit_place a, struct hit_place b)
+{
+    return a.t < b.t || (a.t == b.t && (a.instance < b.instance ||
+                                        (a.instance == b.instance && a.primitive < b.primitive)));
+}
+
+#endif
