@@ -1,10 +1,11 @@
-/* glTF 2.0: triangles come from assimp, everything else from the JSON itself. */
+/* glTF 2.0, read out of its JSON and buffers; what Draco has packed is unpacked by assimp. */
 #ifndef LOAD_GLTF_H
 #define LOAD_GLTF_H
 
 #include <jansson.h>
 
 #include "load/model.h"
+#include "load/part.h"
 
 struct gltf_bytes {
     const uint8_t *data; /* NULL: the buffer has no data in this file */
@@ -105,19 +106,56 @@ char *gltf_uri_path(const struct gltf *gltf, const char *uri);
 /* --- gltf_accessor.c ---------------------------------------------------------------------------
  */
 
-enum { GLTF_FLOAT = 5126 };
+enum { GLTF_UNSIGNED_SHORT = 5123, GLTF_FLOAT = 5126 };
 
 struct gltf_accessor {
+    uint32_t index; /* its own */
     uint32_t component, components, count, view;
     uint64_t offset;
-    bool normalized, sparse;
+    const json_t *sparse; /* or NULL */
+    bool normalized;
 };
 
 bool gltf_accessor(const struct gltf *gltf, uint32_t index, struct gltf_accessor *out);
-/* All elements as floats, normalized integers in [-1, 1]; `components` must be what the accessor
-   has (0: any). *out is malloc'ed. */
+/* Whether its components are unsigned integers. */
+bool gltf_is_whole(const struct gltf_accessor *accessor);
+/* Whether all elements lie within the accessor's view. What follows takes only such. */
+bool gltf_check_elements(const struct gltf *gltf, const struct gltf_accessor *accessor);
+/* All elements as floats, normalized integers in [-1, 1], in rows of `width`, which is at least
+   what an element has and is filled up with ones. */
+bool gltf_read_rows(const struct gltf *gltf, const struct gltf_accessor *accessor, uint32_t width,
+                    float *out);
+/* All elements of one unsigned integer each. */
+bool gltf_read_whole(const struct gltf *gltf, const struct gltf_accessor *accessor, uint32_t *out);
+/* All elements as floats; `components` must be what the accessor has. *out is malloc'ed. */
 bool gltf_read_floats(const struct gltf *gltf, uint32_t index, uint32_t components, float **out,
                       uint32_t *count);
+
+/* --- triangles ---------------------------------------------------------------------------------
+ */
+
+struct gltf_primitive {
+    struct gltf_place at;
+    uint32_t mode, material, vertex_count, corner_count;
+    /* By enum import_array; a count of 0: absent. */
+    struct gltf_accessor accessors[IMPORT_ARRAY_COUNT];
+    const json_t *draco; /* the extension, or NULL */
+};
+
+struct gltf_attribute {
+    const char *name, *type;
+    uint32_t least; /* components that the file must give */
+};
+extern const struct gltf_attribute gltf_attributes[IMPORT_INDICES];
+
+/* --- gltf_draco.c ------------------------------------------------------------------------------
+ */
+
+/* Whether the array comes from Draco, and not from its accessor. */
+bool gltf_is_packed(const struct gltf_primitive *primitive, enum import_array array);
+/* Fills `part` with the arrays that Draco has packed, and the indices. */
+whit_result gltf_unpack(const struct gltf *gltf, const struct gltf_primitive *primitive,
+                        struct part *part);
 
 /* --- the rest ----------------------------------------------------------------------------------
  */

@@ -3,6 +3,9 @@
 
 #include "base/array.h"
 #include "load/gltf.h"
+#include "scene/afford.h"
+
+#define OFFSET_LIMIT (UINT64_C(1) << 40)
 
 static uint32_t component_bytes(uint32_t component)
 {
@@ -37,25 +40,56 @@ static uint32_t components_of(const char *type)
 bool gltf_accessor(const struct gltf *gltf, uint32_t index, struct gltf_accessor *out)
 {
     struct gltf_place at;
-    json_t *object;
+    json_t *object, *sparse;
     const char *type;
     uint64_t component = 0, count = 0;
-    *out = (struct gltf_accessor){.view = SCENE_NONE};
+    *out = (struct gltf_accessor){.view = SCENE_NONE, .index = index};
     if (!gltf_item(gltf, "accessors", index, &at, &object) ||
         !gltf_string(gltf, object, &at, "type", &type) ||
         !gltf_whole(gltf, object, &at, "componentType", 65535, &component) ||
         !gltf_whole(gltf, object, &at, "count", UINT32_MAX - 1, &count) ||
-        !gltf_whole(gltf, object, &at, "byteOffset", UINT64_C(1) << 40, &out->offset) ||
+        !gltf_whole(gltf, object, &at, "byteOffset", OFFSET_LIMIT, &out->offset) ||
         !gltf_bool(gltf, object, &at, "normalized", &out->normalized) ||
+        !gltf_object(gltf, object, &at, "sparse", &sparse) ||
         !gltf_index(gltf, object, &at, "bufferView", gltf_count(gltf, "bufferViews"), &out->view))
         return false;
     out->component = (uint32_t)component;
     out->components = components_of(type);
     out->count = (uint32_t)count;
-    out->sparse = json_object_get(object, "sparse") != NULL;
+    out->sparse = sparse;
     if (!component_bytes(out->component) || !out->components)
         return gltf_fail(gltf, &at, "its componentType or type is unknown");
     return count > 0 || gltf_fail(gltf, &at, "is empty");
+}
+
+bool gltf_is_whole(const struct gltf_accessor *accessor)
+{
+    uint32_t component = accessor->component;
+    return component == 5121 || component == 5123 || component == 5125;
+}
+
+/* --- elements ------------------------------------------------------------------------------- */
+
+/* Elements in a buffer view, which lie `stride` bytes apart. */
+struct elements {
+    const uint8_t *data;
+    size_t stride;
+};
+
+/* Finds `accessor`'s elements, which all lie within its view. */
+static bool find_elements(const struct gltf *gltf, const struct gltf_place *at,
+                          const struct gltf_accessor *accessor, struct elements *out)
+{
+    size_t size, element = (size_t)component_bytes(accessor->component) * accessor->components;
+    uint32_t step;
+    if (!gltf_view(gltf, accessor->view, &out->data, &size, &step))
+        return false;
+    out->stride = step ? step : element;
+    uint64_t needed = (uint64_t)(accessor->count - 1) * out->stride + element;
+    if (out->stride < element || accessor->offset > size || needed > size - accessor->offset)
+        return gltf_fail(gltf, at, "runs past the end of bufferViews[%u]", accessor->view);
+    out->data += accessor->offset;
+    return true;
 }
 
 static float component_value(const uint8_t *at, uint32_t component, bool normalized)
@@ -86,48 +120,126 @@ static float component_value(const uint8_t *at, uint32_t component, bool normali
     }
 }
 
-/* Where the elements are, checked against the view; *stride in bytes. */
-static bool elements(const struct gltf *gltf, uint32_t index, const struct gltf_accessor *accessor,
-                     const uint8_t **data, size_t *stride)
+static uint32_t whole_value(const uint8_t *at, uint32_t component)
 {
-    struct gltf_place at = gltf_place("accessors[%u]", index);
-    size_t size, element = (size_t)component_bytes(accessor->component) * accessor->components;
-    uint32_t step;
-    if (accessor->sparse || accessor->view == SCENE_NONE)
-        return gltf_fail(gltf, &at, "sparse values are not supported here");
-    if (!gltf_view(gltf, accessor->view, data, &size, &step))
+    uint32_t value = 0;
+    memcpy(&value, at, component_bytes(component)); /* of the lowest byte first, as the format */
+    return value;
+}
+
+/* Rows of `width` words, longer than an element where the file may give less: a row is filled up
+   with ones. */
+struct rows {
+    float *floats; /* or NULL: */
+    uint32_t *whole;
+    uint32_t width;
+};
+
+static void store(const struct gltf_accessor *accessor, const uint8_t *from, size_t row,
+                  const struct rows *to)
+{
+    size_t first = row * to->width;
+    uint32_t component = accessor->component, bytes = component_bytes(component);
+    for (uint32_t k = 0; to->whole && k < accessor->components; k++)
+        to->whole[first + k] = whole_value(from + (size_t)k * bytes, component);
+    for (uint32_t k = 0; to->floats && k < accessor->components; k++)
+        to->floats[first + k] =
+            component_value(from + (size_t)k * bytes, component, accessor->normalized);
+}
+
+/* Some of the elements, by their numbers, in place of those of the view. */
+static bool store_sparse(const struct gltf *gltf, const struct gltf_accessor *accessor,
+                         const struct rows *to)
+{
+    struct gltf_place at = gltf_place("accessors[%u].sparse", accessor->index);
+    struct gltf_accessor numbers = {.components = 1}, values = *accessor;
+    struct elements from_numbers, from_values;
+    uint32_t views = gltf_count(gltf, "bufferViews");
+    uint64_t count = 0, component = 0;
+    json_t *indices, *replaced;
+    values.offset = 0;
+    if (!gltf_whole(gltf, accessor->sparse, &at, "count", accessor->count, &count) ||
+        !gltf_object(gltf, accessor->sparse, &at, "indices", &indices) ||
+        !gltf_object(gltf, accessor->sparse, &at, "values", &replaced) ||
+        !gltf_whole(gltf, indices, &at, "componentType", 65535, &component) ||
+        !gltf_whole(gltf, indices, &at, "byteOffset", OFFSET_LIMIT, &numbers.offset) ||
+        !gltf_index(gltf, indices, &at, "bufferView", views, &numbers.view) ||
+        !gltf_whole(gltf, replaced, &at, "byteOffset", OFFSET_LIMIT, &values.offset) ||
+        !gltf_index(gltf, replaced, &at, "bufferView", views, &values.view))
         return false;
-    *stride = step ? step : element;
-    uint64_t needed = (uint64_t)(accessor->count - 1) * *stride + element;
-    if (*stride < element || accessor->offset > size || needed > size - accessor->offset)
-        return gltf_fail(gltf, &at, "runs past the end of bufferViews[%u]", accessor->view);
-    *data += accessor->offset;
+    numbers.component = (uint32_t)component;
+    numbers.count = values.count = (uint32_t)count;
+    if (count == 0 || numbers.view == SCENE_NONE || values.view == SCENE_NONE ||
+        !gltf_is_whole(&numbers))
+        return gltf_fail(gltf, &at, "has no indices that are unsigned integers, or no values");
+    if (!find_elements(gltf, &at, &numbers, &from_numbers) ||
+        !find_elements(gltf, &at, &values, &from_values))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = whole_value(from_numbers.data + i * from_numbers.stride, numbers.component);
+        if (row >= accessor->count)
+            return gltf_fail(gltf, &at, "index %u is out of range, there are %u", row,
+                             accessor->count);
+        store(accessor, from_values.data + i * from_values.stride, row, to);
+    }
     return true;
+}
+
+static bool store_all(const struct gltf *gltf, const struct gltf_accessor *accessor,
+                      const struct rows *to)
+{
+    struct gltf_place at = gltf_place("accessors[%u]", accessor->index);
+    static const uint8_t zeros[16 * 4];
+    struct elements from = {zeros, 0};
+    if (accessor->view != SCENE_NONE && !find_elements(gltf, &at, accessor, &from))
+        return false;
+    for (size_t i = 0; i < accessor->count; i++) {
+        for (uint32_t k = accessor->components; k < to->width; k++)
+            to->floats[i * to->width + k] = 1.0f;
+        store(accessor, from.data + i * from.stride, i, to);
+    }
+    return !accessor->sparse || store_sparse(gltf, accessor, to);
+}
+
+bool gltf_read_rows(const struct gltf *gltf, const struct gltf_accessor *accessor, uint32_t width,
+                    float *out)
+{
+    return store_all(gltf, accessor, &(struct rows){.floats = out, .width = width});
+}
+
+bool gltf_read_whole(const struct gltf *gltf, const struct gltf_accessor *accessor, uint32_t *out)
+{
+    return store_all(gltf, accessor, &(struct rows){.whole = out, .width = 1});
+}
+
+bool gltf_check_elements(const struct gltf *gltf, const struct gltf_accessor *accessor)
+{
+    struct gltf_place at = gltf_place("accessors[%u]", accessor->index);
+    struct elements elements;
+    if (accessor->view != SCENE_NONE)
+        return find_elements(gltf, &at, accessor, &elements);
+    return accessor->sparse || gltf_fail(gltf, &at, "has neither a bufferView nor sparse values");
 }
 
 bool gltf_read_floats(const struct gltf *gltf, uint32_t index, uint32_t components, float **out,
                       uint32_t *count)
 {
     struct gltf_accessor accessor;
-    const uint8_t *data;
-    size_t stride = 0;
     struct gltf_place at = gltf_place("accessors[%u]", index);
     *out = NULL;
     if (!gltf_accessor(gltf, index, &accessor))
         return false;
-    if (components && accessor.components != components)
+    if (accessor.components != components)
         return gltf_fail(gltf, &at, "has %u components where %u are needed", accessor.components,
                          components);
-    if (!elements(gltf, index, &accessor, &data, &stride))
+    uint64_t bytes = (uint64_t)accessor.count * components * sizeof **out;
+    if (!gltf_check_elements(gltf, &accessor) ||
+        !scene_afford(gltf->scene, bytes, "accessors[%u] as floats", index))
         return false;
-    uint32_t bytes = component_bytes(accessor.component);
-    *out = array_alloc(accessor.count, accessor.components * sizeof **out);
+    scene_give_back(gltf->scene, bytes); /* what is made of them counts */
+    *out = array_alloc(accessor.count, components * sizeof **out);
     if (!*out)
         return gltf_fail(gltf, &at, "out of memory");
-    for (size_t i = 0; i < accessor.count; i++)
-        for (size_t k = 0; k < accessor.components; k++)
-            (*out)[i * accessor.components + k] = component_value(
-                data + i * stride + k * bytes, accessor.component, accessor.normalized);
     *count = accessor.count;
-    return true;
+    return gltf_read_rows(gltf, &accessor, components, *out);
 }

@@ -65,7 +65,6 @@ static bool check_record(const uint8_t *data, size_t size_bytes, const struct im
         if (!check_array(data, size_bytes, record, (enum import_array)i, spent, &arrays[i]))
             return false;
     *part = (struct import_part){
-        .group = record->group,
         .vertex_count = record->vertex_count,
         .triangle_count = record->triangle_count,
         .positions = arrays[IMPORT_POSITIONS],

@@ -28,7 +28,6 @@ struct import_request {
 struct import_part {
     const char *name;
     const char *material; /* name, "" when there is none */
-    uint32_t group;       /* parts of one group have normals all or none (glTF: the mesh) */
     uint32_t vertex_count, triangle_count;
     const float *positions, *normals; /* 3 per vertex */
     const float *uvs[2];              /* 2 per vertex, v upwards as assimp has it */
@@ -90,7 +89,7 @@ enum import_array {
 struct import_record {
     uint64_t name, material; /* offsets of zero-terminated strings */
     uint32_t name_bytes, material_bytes;
-    uint32_t group, vertex_count, triangle_count, unused;
+    uint32_t vertex_count, triangle_count;
     uint64_t arrays[IMPORT_ARRAY_COUNT];
 };
 

@@ -46,7 +46,8 @@ static float take_float(bool raw)
     return value;
 }
 
-/* All of the file, through the callbacks. Of a glTF the first buffer: its JSON is made by whit. */
+/* All of the file, through the callbacks. Of a glTF what Draco has packed: its JSON is made by
+ * whit. */
 static bool open_stream(const char *name, struct aiFileIO *io)
 {
     struct aiFile *file = NULL;
@@ -107,8 +108,8 @@ static struct aiMesh *make_mesh(uint32_t number)
     bool raw_floats = odd & 1, raw_faces = odd & 2;
     mesh->mNumVertices = take();
     mesh->mMaterialIndex = odd >> 4;
-    mesh->mName.length = (ai_uint32)snprintf(mesh->mName.data, sizeof mesh->mName.data, "m%up%u",
-                                             odd & 4 ? 0 : number, odd & 4 ? number : 0);
+    mesh->mName.length =
+        (ai_uint32)snprintf(mesh->mName.data, sizeof mesh->mName.data, "m%u", number);
     uint32_t count = mesh->mNumVertices;
     make_faces(mesh, raw_faces);
     if (!(odd & 8))

@@ -1,4 +1,5 @@
-/* glTF and GLB: all that whit reads of it by itself, and any answer of assimp to the triangles. */
+/* glTF and GLB: all that whit reads of it by itself, and any answer of assimp to what Draco packs.
+ */
 #include "fuzz.h"
 
 #include <string.h>

@@ -50,13 +50,20 @@ static inline int fixture_begin(void **state)
     return roots_allow(&fixture->log, &fixture->scene->roots, fixture->folder) == WHIT_OK ? 0 : -1;
 }
 
-static inline int fixture_end(void **state)
+/* Removes the files that it has written. */
+static inline void fixture_forget(struct fixture *fixture)
 {
-    struct fixture *fixture = *state;
     for (uint32_t i = 0; i < fixture->file_count; i++) {
         unlink(fixture->files[i]);
         free(fixture->files[i]);
     }
+    fixture->file_count = 0;
+}
+
+static inline int fixture_end(void **state)
+{
+    struct fixture *fixture = *state;
+    fixture_forget(fixture);
     scene_destroy(fixture->scene);
     int result = rmdir(fixture->folder);
     free(fixture);

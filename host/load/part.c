@@ -1,0 +1,247 @@
+#include "load/part.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+void part_finish(struct part *part)
+{
+    for (int i = 0; i < IMPORT_ARRAY_COUNT; i++)
+        free(part->arrays[i]);
+    free(part->name);
+    free(part->material);
+}
+
+size_t part_count(const struct part *part, enum import_array array)
+{
+    return array == IMPORT_INDICES ? part->triangle_count : part->vertex_count;
+}
+
+void *part_add(struct part *part, enum import_array array)
+{
+    part->arrays[array] = array_alloc(part_count(part, array), importer_array_words(array) * 4);
+    return part->arrays[array];
+}
+
+struct import_part part_view(const struct part *part)
+{
+    return (struct import_part){
+        .vertex_count = part->vertex_count,
+        .triangle_count = part->triangle_count,
+        .positions = part->arrays[IMPORT_POSITIONS],
+        .normals = part->arrays[IMPORT_NORMALS],
+        .uvs = {part->arrays[IMPORT_UV0], part->arrays[IMPORT_UV1]},
+        .colors = part->arrays[IMPORT_COLORS],
+        .tangents = part->arrays[IMPORT_TANGENTS],
+        .indices = part->arrays[IMPORT_INDICES],
+    };
+}
+
+/* --- normals ------------------------------------------------------------------------------- */
+
+static void triangle_cross(const struct part *part, uint32_t triangle, double out[3])
+{
+    const float *positions = part->arrays[IMPORT_POSITIONS];
+    const uint32_t *index = (const uint32_t *)part->arrays[IMPORT_INDICES] + (size_t)triangle * 3;
+    double a[3], b[3];
+    for (int i = 0; i < 3; i++) {
+        double origin = positions[(size_t)index[0] * 3 + (size_t)i];
+        a[i] = positions[(size_t)index[1] * 3 + (size_t)i] - origin;
+        b[i] = positions[(size_t)index[2] * 3 + (size_t)i] - origin;
+    }
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int i = 0; i < 3; i++)
+        out[i] = length > 0 && isfinite(length) ? out[i] / length : 0;
+}
+
+static bool usable_normal(const float *n)
+{
+    double length = (double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2];
+    return length > 1e-20 && isfinite(length);
+}
+
+/* Vertices whose file gives no direction (assimp leaves zeros) get that of their faces. */
+static bool repair_normals(struct part *part)
+{
+    float *normals = part->arrays[IMPORT_NORMALS];
+    uint32_t vertex_count = part->vertex_count, bad = 0;
+    uint8_t *is_bad = normals ? array_alloc_zeroed(vertex_count, 1) : NULL;
+    if (!is_bad)
+        return !normals;
+    for (uint32_t i = 0; i < vertex_count; i++) {
+        if (usable_normal(normals + (size_t)i * 3))
+            continue;
+        memset(normals + (size_t)i * 3, 0, 3 * sizeof *normals);
+        is_bad[i] = 1;
+        bad++;
+    }
+    const uint32_t *indices = part->arrays[IMPORT_INDICES];
+    for (uint32_t i = 0; bad && i < part->triangle_count; i++) {
+        double cross[3];
+        triangle_cross(part, i, cross);
+        for (int corner = 0; corner < 3; corner++) {
+            uint32_t vertex = indices[(size_t)i * 3 + (size_t)corner];
+            for (int k = 0; is_bad[vertex] && k < 3; k++)
+                normals[(size_t)vertex * 3 + (size_t)k] += (float)cross[k];
+        }
+    }
+    for (uint32_t i = 0; bad && i < vertex_count; i++)
+        if (!usable_normal(normals + (size_t)i * 3))
+            memcpy(normals + (size_t)i * 3, (float[3]){0, 1, 0}, 3 * sizeof *normals);
+    free(is_bad);
+    return true;
+}
+
+/* One vertex for each corner. */
+static bool expand(struct part *part)
+{
+    const uint32_t *old = part->arrays[IMPORT_INDICES];
+    uint32_t corners = part->triangle_count * 3;
+    if (part->triangle_count > UINT32_MAX / 3)
+        return false;
+    for (int array = 0; array < IMPORT_INDICES; array++) {
+        const uint32_t *from = part->arrays[array];
+        size_t words = importer_array_words((enum import_array)array);
+        uint32_t *to = from ? array_alloc(corners, words * 4) : NULL;
+        if (from && !to)
+            return false;
+        for (size_t i = 0; to && i < corners; i++)
+            memcpy(to + i * words, from + old[i] * words, words * 4);
+        free(part->arrays[array]);
+        part->arrays[array] = to;
+    }
+    uint32_t *indices = part->arrays[IMPORT_INDICES];
+    for (uint32_t i = 0; i < corners; i++)
+        indices[i] = i;
+    part->vertex_count = corners;
+    return true;
+}
+
+/* Flat normals for a part whose siblings have smooth ones. */
+static bool add_flat_normals(struct part *part)
+{
+    if (!expand(part))
+        return false;
+    float *normals = part_add(part, IMPORT_NORMALS);
+    for (uint32_t i = 0; normals && i < part->triangle_count; i++) {
+        double cross[3];
+        triangle_cross(part, i, cross);
+        for (size_t k = 0; k < 9; k++)
+            normals[(size_t)i * 9 + k] = (float)cross[k % 3];
+    }
+    return normals;
+}
+
+/* --- welding ------------------------------------------------------------------------------- */
+
+struct weld {
+    uint32_t stride; /* words per record */
+    uint32_t *records;
+    uint32_t *table; /* index + 1 of a record; 0: free */
+    size_t mask;
+};
+
+static size_t hash_words(const uint32_t *words, uint32_t count)
+{
+    uint64_t h = 0x9e3779b97f4a7c15u;
+    for (uint32_t i = 0; i < count; i++) {
+        h = (h ^ words[i]) * 0xff51afd7ed558ccdu;
+        h ^= h >> 32;
+    }
+    return (size_t)h;
+}
+
+static bool weld_init(struct weld *weld, const struct part *part)
+{
+    uint32_t count = part->vertex_count;
+    size_t slots = 16;
+    *weld = (struct weld){0};
+    for (int array = 0; array < IMPORT_INDICES; array++)
+        if (part->arrays[array])
+            weld->stride += importer_array_words((enum import_array)array);
+    while (slots < (size_t)count * 2)
+        slots *= 2;
+    weld->mask = slots - 1;
+    weld->records = array_alloc(count, weld->stride * sizeof *weld->records);
+    weld->table = array_alloc_zeroed(slots, sizeof *weld->table);
+    return weld->records && weld->table;
+}
+
+/* Copies between the part's arrays and the records, in which a vertex is one run of words. */
+static void interleave(struct weld *weld, struct part *part, bool back)
+{
+    uint32_t at = 0;
+    for (int array = 0; array < IMPORT_INDICES; array++) {
+        uint32_t words = importer_array_words((enum import_array)array);
+        uint32_t *plain = part->arrays[array];
+        if (!plain)
+            continue;
+        for (size_t i = 0; i < part->vertex_count; i++) {
+            uint32_t *record = weld->records + i * weld->stride + at;
+            for (uint32_t k = 0; k < words; k++)
+                *(back ? &plain[i * words + k] : &record[k]) =
+                    back ? record[k] : plain[i * words + k];
+        }
+        at += words;
+    }
+}
+
+static uint32_t weld_find(struct weld *weld, uint32_t vertex, uint32_t unique_count)
+{
+    const uint32_t *record = weld->records + (size_t)vertex * weld->stride;
+    size_t slot = hash_words(record, weld->stride) & weld->mask;
+    for (; weld->table[slot]; slot = (slot + 1) & weld->mask) {
+        uint32_t other = weld->table[slot] - 1;
+        if (!memcmp(weld->records + (size_t)other * weld->stride, record, weld->stride * 4))
+            return other;
+    }
+    weld->table[slot] = unique_count + 1;
+    memmove(weld->records + (size_t)unique_count * weld->stride, record, weld->stride * 4);
+    return unique_count;
+}
+
+/* Makes bit-identical vertices one; the first use decides the order. */
+static bool weld_part(struct part *part)
+{
+    struct weld weld;
+    uint32_t *indices = part->arrays[IMPORT_INDICES], unique_count = 0;
+    uint32_t *moved = array_alloc(part->vertex_count, sizeof *moved);
+    bool ok = weld_init(&weld, part) && moved;
+    if (ok) {
+        interleave(&weld, part, false);
+        for (uint32_t i = 0; i < part->vertex_count; i++) {
+            moved[i] = weld_find(&weld, i, unique_count);
+            unique_count += moved[i] == unique_count;
+        }
+        for (size_t i = 0; i < (size_t)part->triangle_count * 3; i++)
+            indices[i] = moved[indices[i]];
+        part->vertex_count = unique_count;
+        interleave(&weld, part, true);
+    }
+    free(weld.records);
+    free(weld.table);
+    free(moved);
+    return ok;
+}
+
+/* --- parts of a mesh ------------------------------------------------------------------------- */
+
+bool parts_complete(struct part *parts, uint32_t count, bool corners)
+{
+    bool shaded = false;
+    for (uint32_t i = 0; i < count; i++)
+        shaded |= parts[i].arrays[IMPORT_NORMALS] != NULL;
+    for (uint32_t i = 0; i < count; i++) {
+        bool flat = shaded && !parts[i].arrays[IMPORT_NORMALS];
+        if (flat ? !add_flat_normals(&parts[i]) : !repair_normals(&parts[i]))
+            return false;
+        if ((corners || flat) && !weld_part(&parts[i]))
+            return false;
+    }
+    return true;
+}
