@@ -182,6 +182,8 @@ static whit_result load_plain(struct scene *scene, const struct model_request *r
     scene->file_bytes += size;
     if (kind == IMPORT_PLY)
         result = ply_check(&scene->log, request->path, data, size);
+    if (result == WHIT_OK && kind == IMPORT_PLY)
+        result = ply_replace_strips(&scene->log, request->path, &data, &size);
     if (result == WHIT_OK && kind == IMPORT_PLY && !ply_repair(&data, &size))
         result = WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)

@@ -226,6 +226,83 @@ static void binary_data_that_looks_like_a_line_end(void **state)
     assert_memory_equal(mesh->positions + 3 * mesh->indices[0], positions, sizeof *positions);
 }
 
+#define STRIPS_HEADER(format, vertices)                                                            \
+    "ply\nformat " format " 1.0\nelement vertex " #vertices "\nproperty float x\n"                 \
+    "property float y\nproperty float z\nelement tristrips 2\n"                                    \
+    "property list uchar int vertex_indices\nelement tag 1\nproperty uchar value\nend_header\n"
+
+/* Every second triangle is turned, -1 begins anew, and triangles on one line only lead on. */
+static const int32_t strip_numbers[2][9] = {{9 - 1, 0, 1, 2, 3, -1, 3, 1, 0}, {4, 0, 1, 1, 2}};
+
+static void append_strip_file(FILE *file, const char *format)
+{
+    static const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    bool ascii = *format == 'a', big = strstr(format, "big") != NULL;
+    for (int i = 0; i < 12; i++) {
+        uint32_t bits;
+        memcpy(&bits, &positions[i], 4);
+        for (int k = 0; k < 4 && !ascii; k++)
+            fputc((int)(bits >> 8 * (big ? 3 - k : k) & 255), file);
+        if (ascii)
+            fprintf(file, "%g%c", (double)positions[i], i % 3 == 2 ? '\n' : ' ');
+    }
+    for (int strip = 0; strip < 2; strip++)
+        for (int i = 0; i <= strip_numbers[strip][0]; i++) {
+            int32_t number = strip_numbers[strip][i];
+            if (ascii)
+                fprintf(file, "%d%c", number, i == strip_numbers[strip][0] ? '\n' : ' ');
+            for (int k = 0; k < (i ? 4 : 1) && !ascii; k++)
+                fputc((int)((uint32_t)number >> 8 * (i && big ? 3 - k : k) & 255), file);
+        }
+    fputs(ascii ? "7\n" : "\7", file);
+}
+
+static void strips_become_triangles(void **state)
+{
+    static const struct {
+        const char *format, *header;
+    } rows[] = {{"ascii", STRIPS_HEADER("ascii", 4)},
+                {"little", STRIPS_HEADER("binary_little_endian", 4)},
+                {"big", STRIPS_HEADER("binary_big_endian", 4)}};
+    const uint32_t wanted[9] = {0, 1, 2, 2, 1, 3, 3, 1, 0};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct fixture *fixture = *state;
+        char *bytes = NULL;
+        size_t size;
+        FILE *file = open_memstream(&bytes, &size);
+        assert_non_null(file);
+        fputs(rows[i].header, file);
+        append_strip_file(file, rows[i].format);
+        assert_int_equal(fclose(file), 0);
+        const char *path = fixture_write(fixture, "strip.ply", bytes, size);
+        free(bytes);
+        if (fixture_load(fixture, path) != WHIT_OK)
+            fail_msg("%s: %s", rows[i].format, fixture->last_error);
+        const struct scene_mesh *mesh = &fixture->scene->meshes[i];
+        assert_int_equal(mesh->triangle_count, 3);
+        assert_memory_equal(mesh->indices, wanted, sizeof wanted);
+        fixture_forget(fixture);
+    }
+}
+
+static void damaged_strips_are_refused(void **state)
+{
+    static const char *const files[] = {
+        STRIPS_HEADER("ascii", 3) "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n3 0 1 2\n7\n",
+        STRIPS_HEADER("ascii", 3) "0 0 0\n1 0 0\n0 1 0\n3 0 1 -2\n3 0 1 2\n7\n",
+        STRIPS_HEADER("ascii", 3) "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1",
+        STRIPS_HEADER("ascii", 3) "0 0 0\n1 0 0\n0 1 0\n3 0 x 2\n3 0 1 2\n7\n",
+        STRIPS_HEADER("binary_little_endian", 1) "\1\1\1\1\1\1\1\1\1\1\1\1\1\1",
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct fixture *fixture = *state;
+        fixture->errors = 0;
+        fixture_refused(fixture, fixture_text(fixture, "strip.ply", files[i]),
+                        "strip.ply: its triangle strips are cut short, are no whole numbers");
+        fixture_forget(fixture);
+    }
+}
+
 static void facets_are_welded(void **state)
 {
     struct fixture *fixture = *state;
@@ -416,6 +493,8 @@ int main(void)
         cmocka_unit_test(reasons_are_one_line),
         TEST(colors_of_scans),
         TEST(binary_data_that_looks_like_a_line_end),
+        TEST(strips_become_triangles),
+        TEST(damaged_strips_are_refused),
         TEST(facets_are_welded),
         TEST(refusals_name_the_file),
         TEST(claims_of_endless_memory_are_refused),

@@ -1,0 +1,340 @@
+/* Triangle strips of a PLY, of which assimp 5.2 reads the last triangle: they become faces before
+   it sees the file. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "load/ply.h"
+
+/* --- the header ----------------------------------------------------------------------------- */
+
+enum { WORDS_MAX = 5, WORD_BYTES = 32 };
+
+/* In binary files. 0 bytes: a type that PLY does not have. */
+struct type {
+    uint32_t bytes;
+    bool is_signed;
+};
+
+struct property {
+    bool list;
+    struct type count, value;
+};
+
+struct element {
+    char name[WORD_BYTES];
+    unsigned long long count;
+    size_t begin, end; /* of its lines */
+    uint32_t first_property, property_count;
+};
+
+enum format { FORMAT_ASCII, FORMAT_LITTLE, FORMAT_BIG };
+
+struct header {
+    struct element *elements;
+    struct property *properties;
+    uint32_t element_count, element_capacity, property_count, property_capacity;
+    enum format format;
+    size_t end;
+};
+
+static void header_finish(struct header *header)
+{
+    free(header->elements);
+    free(header->properties);
+}
+
+static struct type type_of(const char *name)
+{
+    static const struct {
+        const char *names[2];
+        uint32_t bytes;
+    } types[] = {{{"char", "int8"}, 1},
+                 {{"short", "int16"}, 2},
+                 {{"int", "int32"}, 4},
+                 {{"float", "float32"}, 4},
+                 {{"double", "float64"}, 8}};
+    bool is_unsigned = name[0] == 'u';
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        for (int k = 0; k < 2; k++)
+            if (strcmp(types[i].names[k], name + is_unsigned) == 0)
+                return (struct type){types[i].bytes, !is_unsigned};
+    return (struct type){0, false};
+}
+
+/* One line in words; where the next begins. */
+static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
+                        char words[WORDS_MAX][WORD_BYTES])
+{
+    char line[256];
+    size_t bytes = 0;
+    while (at + bytes < size_bytes && data[at + bytes] != '\n' && data[at + bytes] != '\r')
+        bytes++;
+    snprintf(line, sizeof line, "%.*s", (int)(bytes < sizeof line ? bytes : sizeof line - 1),
+             (const char *)data + at);
+    memset(words, 0, WORDS_MAX * sizeof *words);
+    sscanf(line, "%31s %31s %31s %31s %31s", words[0], words[1], words[2], words[3], words[4]);
+    at += bytes;
+    bool wide = at + 1 < size_bytes && data[at] == '\r' && data[at + 1] == '\n';
+    return at + (wide ? 2 : 1);
+}
+
+static bool add_property(struct header *header, char words[WORDS_MAX][WORD_BYTES])
+{
+    bool list = strcmp(words[1], "list") == 0;
+    const struct property property = {
+        .list = list, .count = type_of(words[2]), .value = type_of(words[list ? 3 : 1])};
+    header->elements[header->element_count - 1].property_count++;
+    return ARRAY_PUSH(header->properties, header->property_count, header->property_capacity,
+                      property);
+}
+
+static bool add_element(struct header *header, size_t begin, char words[WORDS_MAX][WORD_BYTES])
+{
+    struct element element = {.begin = begin, .first_property = header->property_count};
+    memcpy(element.name, words[1], sizeof element.name);
+    element.count = strtoull(words[2], NULL, 10);
+    return ARRAY_PUSH(header->elements, header->element_count, header->element_capacity, element);
+}
+
+/* Of a file that ply_check has accepted, so that there is an end. False: memory ran out. */
+static bool read_header(const uint8_t *data, size_t size_bytes, struct header *header)
+{
+    char words[WORDS_MAX][WORD_BYTES];
+    bool good = true;
+    for (size_t at = 0, next; good && at < size_bytes; at = next) {
+        next = read_line(data, size_bytes, at, words);
+        header->end = next;
+        if (strcmp(words[0], "end_header") == 0)
+            break;
+        if (strcmp(words[0], "format") == 0)
+            header->format = strcmp(words[1], "binary_little_endian") == 0 ? FORMAT_LITTLE
+                             : strcmp(words[1], "binary_big_endian") == 0  ? FORMAT_BIG
+                                                                           : FORMAT_ASCII;
+        else if (strcmp(words[0], "element") == 0)
+            good = add_element(header, at, words);
+        else if (strcmp(words[0], "property") == 0 && header->element_count)
+            good = add_property(header, words);
+        if (good && header->element_count)
+            header->elements[header->element_count - 1].end = next;
+    }
+    return good;
+}
+
+/* --- numbers -------------------------------------------------------------------------------- */
+
+struct cursor {
+    const uint8_t *at, *end;
+    enum format format;
+};
+
+/* The next whole number; false where there is none. */
+static bool read_whole(struct cursor *from, struct type type, int64_t *out)
+{
+    if (from->format == FORMAT_ASCII) {
+        char *end;
+        *out = strtoll((const char *)from->at, &end, 10); /* a zero byte follows the file */
+        bool found = (const uint8_t *)end > from->at && (const uint8_t *)end <= from->end;
+        from->at = (const uint8_t *)end;
+        return found;
+    }
+    if (type.bytes == 0 || type.bytes > 4 || (size_t)(from->end - from->at) < type.bytes)
+        return false;
+    int64_t bits = 0, half = INT64_C(1) << (8 * type.bytes - 1);
+    for (uint32_t i = 0; i < type.bytes; i++)
+        bits |= (int64_t)from->at[from->format == FORMAT_BIG ? type.bytes - 1 - i : i] << 8 * i;
+    from->at += type.bytes;
+    *out = type.is_signed && bits >= half ? bits - 2 * half : bits;
+    return true;
+}
+
+static bool skip_numbers(struct cursor *from, uint32_t bytes, uint64_t count)
+{
+    if (from->format != FORMAT_ASCII) {
+        bool there = bytes && count <= (size_t)(from->end - from->at) / bytes;
+        from->at += there ? count * bytes : 0;
+        return there;
+    }
+    for (uint64_t i = 0; i < count; i++) {
+        while (from->at < from->end && *from->at <= ' ')
+            from->at++;
+        const uint8_t *start = from->at;
+        while (from->at<from->end && * from->at> ' ')
+            from->at++;
+        if (from->at == start)
+            return false;
+    }
+    return true;
+}
+
+static bool skip_property(struct cursor *from, const struct property *property)
+{
+    int64_t count = 1;
+    return (!property->list || (read_whole(from, property->count, &count) && count >= 0)) &&
+           skip_numbers(from, property->value.bytes, (uint64_t)count);
+}
+
+/* --- strips --------------------------------------------------------------------------------- */
+
+struct strips {
+    uint32_t *corners; /* of triangles */
+    uint32_t count, capacity;
+    uint64_t vertex_count;
+};
+
+/* The last two vertices of a strip, and how many it has. */
+struct strip {
+    uint32_t last[2];
+    uint32_t length;
+};
+
+/* Every second triangle is turned. Those that only lead on to the next have no area. */
+static bool add_vertex(struct strips *strips, struct strip *strip, uint32_t vertex)
+{
+    const uint32_t *last = strip->last;
+    bool odd = strip->length % 2, good = true;
+    const uint32_t triangle[3] = {last[odd], last[!odd], vertex};
+    bool flat = last[0] == last[1] || last[0] == vertex || last[1] == vertex;
+    for (int i = 0; i < 3 && strip->length > 1 && !flat && good; i++)
+        good = ARRAY_PUSH(strips->corners, strips->count, strips->capacity, triangle[i]);
+    strip->last[0] = strip->last[1];
+    strip->last[1] = vertex;
+    strip->length++;
+    return good;
+}
+
+enum outcome { READ, DAMAGED, NO_MEMORY };
+
+/* -1 begins a new strip. */
+static enum outcome read_strip(struct cursor *from, const struct property *list,
+                               struct strips *strips)
+{
+    struct strip strip = {0};
+    int64_t count, vertex;
+    if (!read_whole(from, list->count, &count) || count < 0)
+        return DAMAGED;
+    for (int64_t i = 0; i < count; i++) {
+        if (!read_whole(from, list->value, &vertex))
+            return DAMAGED;
+        bool restart = vertex == -1 || vertex == UINT32_MAX;
+        if (restart)
+            strip.length = 0;
+        else if (vertex < 0 || (uint64_t)vertex >= strips->vertex_count)
+            return DAMAGED;
+        else if (!add_vertex(strips, &strip, (uint32_t)vertex))
+            return NO_MEMORY;
+    }
+    return READ;
+}
+
+/* The instances of an element, up to what follows them. The first list of each is a strip, where
+   `strips` are asked for. */
+static enum outcome read_element(struct cursor *from, const struct header *header,
+                                 const struct element *element, struct strips *strips)
+{
+    for (unsigned long long i = 0; i < element->count; i++) {
+        bool found = false;
+        for (uint32_t k = 0; k < element->property_count; k++) {
+            const struct property *property = &header->properties[element->first_property + k];
+            enum outcome outcome = READ;
+            if (strips && property->list && !found)
+                outcome = read_strip(from, property, strips);
+            else if (!skip_property(from, property))
+                outcome = DAMAGED;
+            found |= property->list;
+            if (outcome != READ)
+                return outcome;
+        }
+    }
+    while (from->format == FORMAT_ASCII && from->at < from->end && *from->at <= ' ')
+        from->at++;
+    return READ;
+}
+
+/* --- the file that assimp gets -------------------------------------------------------------- */
+
+static void write_triangle(FILE *file, enum format format, const uint32_t *corners)
+{
+    if (format == FORMAT_ASCII) {
+        fprintf(file, "3 %u %u %u\n", corners[0], corners[1], corners[2]);
+        return;
+    }
+    fputc(3, file);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 4; k++)
+            fputc((int)(corners[i] >> 8 * (format == FORMAT_BIG ? 3 - k : k) & 255), file);
+}
+
+/* The file with faces in place of `element`, whose data are [begin, end). */
+static bool write_faces(uint8_t **data, size_t *size_bytes, const struct header *header,
+                        const struct element *element, const struct strips *strips, size_t begin,
+                        size_t end)
+{
+    char *text = NULL;
+    size_t bytes;
+    FILE *file = open_memstream(&text, &bytes);
+    if (!file)
+        return false;
+    fwrite(*data, 1, element->begin, file);
+    fprintf(file, "element face %u\nproperty list uchar int vertex_indices\n", strips->count / 3);
+    fwrite(*data + element->end, 1, begin - element->end, file);
+    for (uint32_t i = 0; i < strips->count; i += 3)
+        write_triangle(file, header->format, strips->corners + i);
+    fwrite(*data + end, 1, *size_bytes - end, file);
+    bool good = !ferror(file);
+    good = fclose(file) == 0 && good;
+    if (!good) {
+        free(text);
+        return false;
+    }
+    free(*data);
+    *data = (uint8_t *)text; /* with a zero byte behind it, as file_read has it */
+    *size_bytes = bytes;
+    return true;
+}
+
+static const struct element *find_element(const struct header *header, const char *name)
+{
+    for (uint32_t i = 0; i < header->element_count; i++)
+        if (strcmp(header->elements[i].name, name) == 0)
+            return &header->elements[i];
+    return NULL;
+}
+
+static whit_result replace(const struct log *log, const char *path, const struct header *header,
+                           const struct element *element, uint8_t **data, size_t *size_bytes)
+{
+    const struct element *vertices = find_element(header, "vertex"), *at = header->elements;
+    const struct element *faces = find_element(header, "face");
+    struct strips strips = {.vertex_count = vertices ? vertices->count : 0};
+    struct cursor from = {*data + header->end, *data + *size_bytes, header->format};
+    enum outcome outcome = faces && faces->count ? DAMAGED : READ;
+    for (; outcome == READ && at < element; at++)
+        outcome = read_element(&from, header, at, NULL);
+    const uint8_t *begin = from.at;
+    if (outcome == READ)
+        outcome = read_element(&from, header, element, &strips);
+    if (outcome == READ && !write_faces(data, size_bytes, header, element, &strips,
+                                        (size_t)(begin - *data), (size_t)(from.at - *data)))
+        outcome = NO_MEMORY;
+    free(strips.corners);
+    if (outcome == DAMAGED)
+        log_error(log, "%s: its triangle strips %s", path,
+                  faces && faces->count
+                      ? "stand beside faces"
+                      : "are cut short, are no whole numbers, or name vertices that are not there");
+    return outcome == READ ? WHIT_OK : outcome == DAMAGED ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY;
+}
+
+whit_result ply_replace_strips(const struct log *log, const char *path, uint8_t **data,
+                               size_t *size_bytes)
+{
+    struct header header = {0};
+    whit_result result = read_header(*data, *size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    const struct element *element = find_element(&header, "tristrips");
+    if (result == WHIT_OK && element && header.end <= *size_bytes)
+        result = replace(log, path, &header, element, data, size_bytes);
+    header_finish(&header);
+    return result;
+}
