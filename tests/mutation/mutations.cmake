@@ -284,7 +284,7 @@ mutation(pairs_cut_off_in_kernels render_numerics RED one_mesh)
 change(shaders/lib/ff_numbers.glsl [[vec2 both = ff_sum(first, second);]]
   [[vec2 both = ff_sum(first, 0.0);]])
 
-mutation(pairs_without_bound hard_ff RED what_is_sure_is_so)
+mutation(pairs_without_bound hard_triangle RED triangles_are_met_as_fractions_say)
 change(host/twin/ff_triangle.c triple [[FF_RELATIVE]] [[FF_RELATIVE / 128.0f]])
 change(shaders/lib/ff_triangle.glsl [[size * FF_RELATIVE + FF_ABSOLUTE]]
   [[size * FF_RELATIVE / 128.0 + FF_ABSOLUTE]])

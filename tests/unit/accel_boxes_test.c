@@ -1,15 +1,14 @@
 /* The boxes that are drawn: those of a level, with the leaves above it, in world space. */
-#include <stdlib.h>
+#include "accel_fixture.h"
 
 #include "accel/boxes.h"
-#include "render_fixture.h"
 
 struct seen {
     struct accel_box boxes[4096];
     uint32_t count, max;
 };
 
-static bool see(void *user, const struct accel_box *box)
+static bool keep_box(void *user, const struct accel_box *box)
 {
     struct seen *seen = user;
     assert_in_range(seen->count, 0, 4095);
@@ -17,9 +16,9 @@ static bool see(void *user, const struct accel_box *box)
     return seen->count < seen->max;
 }
 
-static struct scene *placed_spheres(void)
+static struct world placed_spheres(bool flatten)
 {
-    struct scene *scene = scene_begin(&fixture_log, "spheres");
+    struct scene *scene = scene_begin(&silent, "spheres");
     scene_put_mesh(scene, mesh_sphere(1.0, 16, 8));
     const double turned[4] = {0.0, 0.3826834323650898, 0.0, 0.9238795325112867};
     for (int i = 0; i < 5; ++i) {
@@ -27,37 +26,22 @@ static struct scene *placed_spheres(void)
         struct affine m = affine_from_trs(to, turned, scale);
         scene_put_again(scene, 0, &(struct put){.matrix = &m});
     }
-    return scene_ready(scene);
+    return world_of(scene, (struct accel_params){.flatten = flatten});
 }
 
-struct world {
-    struct scene *scene;
-    struct accel *accel;
-    struct scene_pose pose;
-    struct seen *seen;
-};
-
-static struct world open_world(bool flatten)
+/* The boxes of a level, of `max` at most. */
+static const struct seen *see(const struct world *world, bool instances, uint32_t level,
+                              uint32_t max)
 {
-    struct world w = {.scene = placed_spheres(), .seen = calloc(1, sizeof *w.seen)};
-    const struct accel_params params = {.flatten = flatten};
-    assert_non_null(w.seen);
-    w.seen->max = UINT32_MAX;
-    assert_int_equal(accel_create(&fixture_log, w.scene, &params, &w.accel), WHIT_OK);
-    assert_int_equal(scene_pose_init(w.scene, 0.0, &w.pose), WHIT_OK);
-    return w;
-}
-
-static void close_world(struct world *w)
-{
-    scene_pose_finish(&w->pose);
-    accel_destroy(w->accel);
-    scene_destroy(w->scene);
-    free(w->seen);
+    static struct seen seen;
+    seen.count = 0;
+    seen.max = max;
+    accel_boxes(world->accel, &world->pose, instances, level, keep_box, &seen);
+    return &seen;
 }
 
 /* Every vertex of instance `i` is in some box of it: in the box's own space, by its three edges. */
-static void check_covered(const struct world *w, uint32_t instance)
+static void check_covered(const struct world *w, const struct seen *seen, uint32_t instance)
 {
     const struct scene_mesh *mesh = &w->scene->meshes[0];
     for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
@@ -66,8 +50,8 @@ static void check_covered(const struct world *w, uint32_t instance)
         for (int k = 0; k < 3; ++k)
             p[k] = (double)mesh->positions[3 * v + (uint32_t)k];
         affine_point(&w->pose.instances[instance], p, p);
-        for (uint32_t b = 0; b < w->seen->count && !inside; ++b) {
-            const struct accel_box *box = &w->seen->boxes[b];
+        for (uint32_t b = 0; b < seen->count && !inside; ++b) {
+            const struct accel_box *box = &seen->boxes[b];
             inside = box->instance == instance || box->instance == HIT_NONE;
             for (int k = 0; k < 3 && inside; ++k) {
                 double along = 0.0, length = 0.0;
@@ -86,58 +70,47 @@ static void check_covered(const struct world *w, uint32_t instance)
 static void mesh_trees_level_by_level(void **state)
 {
     (void)state;
-    struct world w = open_world(false);
-    accel_boxes(w.accel, &w.pose, false, 0, see, w.seen);
-    assert_int_equal(w.seen->count, 5); /* a root each */
+    struct world w = placed_spheres(false);
+    assert_int_equal(see(&w, false, 0, UINT32_MAX)->count, 5); /* a root each */
     for (uint32_t level = 0; level < 6; ++level) {
-        w.seen->count = 0;
-        accel_boxes(w.accel, &w.pose, false, level, see, w.seen);
-        for (uint32_t i = 0; i < w.seen->count; ++i) {
-            const struct accel_box *box = &w.seen->boxes[i];
+        const struct seen *seen = see(&w, false, level, UINT32_MAX);
+        for (uint32_t i = 0; i < seen->count; ++i) {
+            const struct accel_box *box = &seen->boxes[i];
             assert_true(box->level == level || (box->leaf && box->level < level));
         }
         for (uint32_t i = 0; i < 5; ++i)
-            check_covered(&w, i);
+            check_covered(&w, seen, i);
     }
-    w.seen->count = 0;
-    accel_boxes(w.accel, &w.pose, false, 127, see, w.seen);
-    for (uint32_t i = 0; i < w.seen->count; ++i)
-        assert_true(w.seen->boxes[i].leaf);
-    close_world(&w);
+    const struct seen *leaves = see(&w, false, 127, UINT32_MAX);
+    for (uint32_t i = 0; i < leaves->count; ++i)
+        assert_true(leaves->boxes[i].leaf);
+    world_finish(&w);
 }
 
 static void instances_and_one_tree(void **state)
 {
     (void)state;
-    struct world w = open_world(false);
-    accel_boxes(w.accel, &w.pose, true, 0, see, w.seen);
-    assert_int_equal(w.seen->count, 1);
-    check_covered(&w, 0);
-    check_covered(&w, 4);
-    w.seen->count = 0;
-    accel_boxes(w.accel, &w.pose, true, 127, see, w.seen);
-    assert_int_equal(w.seen->count, 5); /* a leaf each */
-    close_world(&w);
-
-    struct world flat = open_world(true);
-    accel_boxes(flat.accel, &flat.pose, false, 2, see, flat.seen);
-    assert_int_equal(flat.seen->count, 4);
+    struct world w = placed_spheres(false), flat = placed_spheres(true);
+    const struct seen *root = see(&w, true, 0, UINT32_MAX);
+    assert_int_equal(root->count, 1);
+    check_covered(&w, root, 0);
+    check_covered(&w, root, 4);
+    assert_int_equal(see(&w, true, 127, UINT32_MAX)->count, 5); /* a leaf each */
+    assert_int_equal(see(&flat, true, 2, UINT32_MAX)->count, 0);
+    const struct seen *seen = see(&flat, false, 2, UINT32_MAX);
+    assert_int_equal(seen->count, 4);
     for (uint32_t i = 0; i < 5; ++i)
-        check_covered(&flat, i);
-    flat.seen->count = 0;
-    accel_boxes(flat.accel, &flat.pose, true, 2, see, flat.seen);
-    assert_int_equal(flat.seen->count, 0);
-    close_world(&flat);
+        check_covered(&flat, seen, i);
+    world_finish(&w);
+    world_finish(&flat);
 }
 
 static void who_asks_can_stop(void **state)
 {
     (void)state;
-    struct world w = open_world(false);
-    w.seen->max = 3;
-    accel_boxes(w.accel, &w.pose, false, 4, see, w.seen);
-    assert_int_equal(w.seen->count, 3);
-    close_world(&w);
+    struct world w = placed_spheres(false);
+    assert_int_equal(see(&w, false, 4, 3)->count, 3);
+    world_finish(&w);
 }
 
 int main(void)

@@ -1,187 +1,261 @@
-/* Trees over boxes that builders get wrong. */
-#include "accel_boxes_fixture.h"
+/* Trees over triangles that builders get wrong, every way to build on each of them. */
+#include "accel_build_fixture.h"
 
-static void soups_of_all_sizes(void **state)
+/* ---- Meshes ---- */
+
+/* Points at the origin where `size` is 0. */
+static struct soup soup_equal(uint32_t count, float size)
 {
-    (void)state;
-    static const uint32_t counts[] = {1, 2, 3, 4, 5, 7, 8, 9, 31, 100, 1000, 2049, 5000};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
-        random_state = i;
-        struct bvh_box *boxes = soup(counts[i], 0.1f);
-        check_all(boxes, counts[i]);
-        free(boxes);
-    }
+    struct soup soup = soup_make("equal", count);
+    for (uint32_t i = 0; i < 9 * count; ++i)
+        soup.positions[i] = size * (float)(i * 7 % 9);
+    soup_box(&soup);
+    return soup;
 }
 
-static void nothing_is_a_tree_too(void **state)
+/* Two that are each other's mirror, by turns. */
+static struct soup soup_crossing(uint32_t count)
 {
-    (void)state;
-    struct bvh bvh;
-    build_and_check(NULL, 0, NULL, &bvh);
-    assert_int_equal(bvh.node_count, 0);
-    bvh_finish(&bvh);
+    struct soup soup = soup_make("crossing", count);
+    for (uint32_t i = 0; i < 9 * count; ++i)
+        soup.positions[i] = (i / 9 % 2 ? 1.0f : -1.0f) * (float)(i * 5 % 9 - 4);
+    soup_box(&soup);
+    return soup;
 }
 
-static void one_box_is_a_leaf_at_the_root(void **state)
+static struct soup soup_nested(uint32_t count)
 {
-    (void)state;
-    struct bvh_box box = {{-1, -2, -3}, {1, 2, 3}};
-    struct bvh bvh;
-    build_and_check(&box, 1, NULL, &bvh);
-    assert_int_equal(bvh.node_count, 2);
-    assert_int_equal(bvh.depth, 0);
-    assert_int_equal(bvh_count(&bvh.nodes[0]), 1);
-    bvh_finish(&bvh);
-}
-
-static void identical_boxes(void **state)
-{
-    (void)state;
-    enum { COUNT = 10000 };
-    struct bvh_box *boxes = boxes_alloc(COUNT);
-    for (uint32_t i = 0; i < COUNT; ++i)
-        boxes[i] = (struct bvh_box){{1, 2, 3}, {4, 5, 6}};
-    check_all(boxes, COUNT);
-    memset(boxes, 0, COUNT * sizeof *boxes); /* points at the origin */
-    check_all(boxes, COUNT);
-    free(boxes);
-}
-
-static void nested_with_one_centre(void **state)
-{
-    (void)state;
-    enum { COUNT = 3000 };
-    struct bvh_box *boxes = boxes_alloc(COUNT);
-    for (uint32_t i = 0; i < COUNT; ++i) {
+    struct soup soup = soup_make("nested with one centre", count);
+    for (uint32_t i = 0; i < count; ++i) {
         float r = (float)(i + 1);
-        boxes[i] = (struct bvh_box){{-r, -r, -r}, {r, r, r}};
+        soup_set_box(&soup, i, (float[3]){-r, -r, -r}, (float[3]){r, r, r});
     }
-    check_all(boxes, COUNT);
-    free(boxes);
+    soup_box(&soup);
+    return soup;
 }
 
-static void on_a_line_and_in_a_plane(void **state)
+/* On a line or in a plane: centres differ along so many axes. */
+static struct soup soup_along(uint32_t count, int axes)
 {
-    (void)state;
-    enum { COUNT = 3000 };
-    struct bvh_box *boxes = boxes_alloc(COUNT);
-    for (int axes = 1; axes <= 2; ++axes) {
-        for (uint32_t i = 0; i < COUNT; ++i) {
-            for (int a = 0; a < 3; ++a) {
-                float x = a < axes ? random_float(&random_state) : 0.25f;
-                boxes[i].lo[a] = x;
-                boxes[i].hi[a] = a < axes ? x + 0.01f : x;
-            }
+    struct soup soup = soup_make("on a line or in a plane", count);
+    for (uint32_t i = 0; i < count; ++i) {
+        float lo[3], hi[3];
+        for (int a = 0; a < 3; ++a) {
+            lo[a] = a < axes ? random_float(&random_state) : 0.25f;
+            hi[a] = a < axes ? lo[a] + 0.01f : lo[a];
         }
-        check_all(boxes, COUNT);
+        soup_set_box(&soup, i, lo, hi);
     }
-    free(boxes);
+    soup_box(&soup);
+    return soup;
 }
 
-/* Sizes and places by powers of `ratio` over 2^-60 to 2^60. */
-static void exponential_scales(void **state)
+static struct soup soup_giants(uint32_t count)
+{
+    const float lo[3] = {-1e18f, -1e18f, -1e18f}, hi[3] = {1e18f, 1e18f, 1e18f};
+    struct soup soup = soup_scattered(count, 1e-4f);
+    soup.name = "giants and many tiny";
+    soup_set_box(&soup, count / 2, lo, hi);
+    soup_set_box(&soup, count / 3, (float[3]){9e17f, 9e17f, 9e17f}, hi);
+    soup_box(&soup);
+    return soup;
+}
+
+/* Points on multiples of `step`: extents whose reciprocal is infinite. */
+static struct soup soup_steps(float from, float step)
+{
+    struct soup soup = soup_make("points in steps", 64);
+    for (uint32_t i = 0; i < 64; ++i) {
+        float p[3];
+        for (uint32_t a = 0; a < 3; ++a)
+            p[a] = from + step * (float)(i * (a + 1) % 64);
+        soup_set(&soup, i, p, p, p);
+    }
+    soup_box(&soup);
+    return soup;
+}
+
+/* Planes that rounding puts beside a centroid: github.com/RenderKit/embree. */
+static struct soup soup_beside_planes(void)
+{
+    static const float at[] = {-6.4000024f, 25.6f, 57.6000022f};
+    struct soup soup = soup_make("planes beside centroids", 300);
+    for (uint32_t i = 0; i < 300; ++i) {
+        float lo[3], hi[3];
+        for (uint32_t a = 0; a < 3; ++a) {
+            float x = at[(i + a) % 3], y = at[i * 7 / 3 % 3];
+            lo[a] = fminf(x, y);
+            hi[a] = fmaxf(x, y);
+        }
+        soup_set_box(&soup, i, lo, hi);
+    }
+    soup_box(&soup);
+    return soup;
+}
+
+/* ---- Every way to build ---- */
+
+static void every_builder_on_every_mesh(void **state)
 {
     (void)state;
-    static const double ratios[] = {2.0, 1.3, 1.01};
-    for (size_t k = 0; k < 3; ++k) {
-        uint32_t count = (uint32_t)(120.0 / log2(ratios[k]));
-        struct bvh_box *boxes = boxes_alloc(count);
-        for (uint32_t i = 0; i < count; ++i) {
-            float at = (float)(0x1p-60 * pow(ratios[k], i));
-            boxes[i] = (struct bvh_box){{at, at, at}, {1.1f * at, 1.2f * at, 1.3f * at}};
-        }
-        check_all(boxes, count);
-        free(boxes);
+    const uint32_t many = cases_of(10000);
+    random_state = 1;
+    const struct soup soups[] = {
+        soup_sphere(40, 30),
+        soup_terrain(30),
+        soup_rooms(1500),
+        soup_hair(2000, 1e-3f),
+        soup_hair(1000, 0.0f),
+        soup_hair(300, 1e-7f),
+        soup_hair(1200, 0.02f),
+        soup_scattered(5000, 0.1f),
+        soup_equal(many, 0.0f),
+        soup_equal(many, 1.0f),
+        soup_crossing(many),
+        soup_nested(3000),
+        soup_along(3000, 1),
+        soup_along(3000, 2),
+        soup_giants(5000),
+        soup_exponential(120, 2.0),
+        soup_exponential(600, 1.3),
+        soup_exponential(8000, 1.01),
+        soup_garbage(500, 1e18f),
+        soup_garbage(500, FLT_MAX / 16),
+        soup_garbage(500, 1e-30f),
+        soup_steps(0.0f, 0x1p-149f),
+        soup_steps(0.0f, 0x1p-130f),
+        soup_steps(0.0f, 0x1p-118f),
+        soup_steps(1.0f, 0x1p-23f),
+        soup_beside_planes(),
+    };
+    for (size_t i = 0; i < sizeof soups / sizeof *soups; ++i)
+        check_all(soups[i]);
+}
+
+static void few_triangles(void **state)
+{
+    (void)state;
+    for (uint32_t count = 0; count <= 40; ++count) {
+        random_state = count;
+        check_all(soup_hair(count, 0.3f));
+    }
+    struct soup none = soup_make("none", 0), one = soup_scattered(1, 1.0f);
+    struct bvh empty = soup_build(&none, (struct bvh_params){0});
+    struct bvh leaf = soup_build(&one, (struct bvh_params){0});
+    assert_int_equal(empty.node_count, 0);
+    assert_int_equal(leaf.node_count, 2);
+    assert_int_equal(leaf.depth, 0);
+    assert_int_equal(bvh_count(&leaf.nodes[0]), 1);
+    bvh_finish(&empty);
+    bvh_finish(&leaf);
+    soup_finish(&none);
+    soup_finish(&one);
+}
+
+/* Extents and areas overflow, denormals vanish, many centroids meet. */
+static void a_thousand_trees_are_right(void **state)
+{
+    (void)state;
+    for (uint32_t round = 0; round < 1000; ++round) {
+        random_state = 5000 + round;
+        uint32_t count = 1 + random_below(&random_state, round % 10 == 0 ? 300 : 80);
+        static const float limits[] = {FLT_MAX, 1e18f, 10.0f};
+        struct soup soup = round % 2 == 0 ? soup_garbage(count, limits[round / 2 % 3])
+                                          : soup_scattered(count, round % 4 == 1 ? 0.1f : 1e-3f);
+        for (uint32_t i = 0; round % 8 == 3 && i < 9 * count; ++i)
+            soup.positions[i] = floorf(8.0f * soup.positions[i]) + (i % 9 < 3 ? 1.0f : 0.0f);
+        soup_box(&soup);
+        check_all(soup);
     }
 }
+
+/* ---- One way ---- */
 
 /* Two bins halve the extent, so each split takes off one box: deeper than any stack but for the
    medians. */
 static void depth_is_capped(void **state)
 {
     (void)state;
-    enum { COUNT = 230 };
-    struct bvh_box *boxes = boxes_alloc(COUNT);
-    for (uint32_t i = 0; i < COUNT; ++i) {
+    const struct bvh_params params = {.bins = 2, .leaf_limit = 1};
+    struct soup soup = soup_make("halves", 230);
+    for (uint32_t i = 0; i < soup.count; ++i) {
         float at = (float)ldexp(1.0, (int)i - 112);
-        boxes[i] = (struct bvh_box){{at, 0, 0}, {1.5f * at, 1.5f * at, 1.5f * at}};
+        soup_set_box(&soup, i, (float[3]){at, 0, 0}, (float[3]){1.5f * at, 1.5f * at, 1.5f * at});
     }
-    struct bvh bvh;
-    build_and_check(boxes, COUNT, &(struct bvh_params){.bins = 2, .leaf_limit = 1}, &bvh);
+    soup_box(&soup);
+    struct bvh bvh = soup_build(&soup, params);
+    assert_null(find_fault(&soup, &params, &bvh));
     assert_in_range(bvh.depth, 97, 127);
     bvh_finish(&bvh);
-    free(boxes);
-}
-
-static void one_giant_and_many_tiny(void **state)
-{
-    (void)state;
-    enum { COUNT = 5000 };
-    struct bvh_box *boxes = soup(COUNT, 1e-4f);
-    boxes[COUNT / 2] = (struct bvh_box){{-1e18f, -1e18f, -1e18f}, {1e18f, 1e18f, 1e18f}};
-    boxes[COUNT / 3] = (struct bvh_box){{9e17f, 9e17f, 9e17f}, {1e18f, 1e18f, 1e18f}};
-    check_all(boxes, COUNT);
-    free(boxes);
-}
-
-/* Extents overflow, areas overflow, denormals vanish. */
-static void garbage_bits(void **state)
-{
-    (void)state;
-    for (uint32_t round = 0; round < 100; ++round) {
-        random_state = 1000 + round;
-        uint32_t count = 1 + random_below(&random_state, 300);
-        struct bvh_box *boxes = garbage(count);
-        check_all(boxes, count);
-        free(boxes);
-    }
-}
-
-/* Extents whose reciprocal is infinite, and planes that rounding puts beside a centroid. */
-static void extents_at_the_edge_of_floats(void **state)
-{
-    (void)state;
-    static const float steps[] = {0x1p-149f, 0x1p-130f, 0x1p-118f, 0x1p-23f};
-    static const float embree[] = {-6.4000024f, 25.6f, 57.6000022f};
-    for (size_t s = 0; s < 4; ++s) {
-        struct bvh_box boxes[64];
-        for (uint32_t i = 0; i < 64; ++i) {
-            for (int a = 0; a < 3; ++a) {
-                float x = (s == 3 ? 1.0f : 0.0f) + steps[s] * (float)(i * ((uint32_t)a + 1) % 64);
-                boxes[i].lo[a] = boxes[i].hi[a] = x;
-            }
-        }
-        check_all(boxes, 64);
-    }
-    struct bvh_box boxes[300];
-    for (uint32_t i = 0; i < 300; ++i) {
-        for (int a = 0; a < 3; ++a) {
-            float x = embree[(i + (uint32_t)a) % 3], y = embree[i * 7 / 3 % 3];
-            boxes[i].lo[a] = fminf(x, y);
-            boxes[i].hi[a] = fmaxf(x, y);
-        }
-    }
-    check_all(boxes, 300);
+    soup_finish(&soup);
 }
 
 /* Points in ten heaps on a line, shuffled: what is left of a median is not right of it. */
 static void medians_separate(void **state)
 {
     (void)state;
-    enum { COUNT = 200 };
+    const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
     random_state = 13;
-    struct bvh_box boxes[COUNT];
-    for (uint32_t i = 0; i < COUNT; ++i) {
-        float x = (float)random_below(&random_state, 10);
-        boxes[i] = (struct bvh_box){{x, 0, 0}, {x, 0, 0}};
+    struct soup soup = soup_make("heaps", 200);
+    for (uint32_t i = 0; i < soup.count; ++i) {
+        const float p[3] = {(float)random_below(&random_state, 10), 0, 0};
+        soup_set(&soup, i, p, p, p);
     }
-    struct bvh bvh;
-    struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
-    build_and_check(boxes, COUNT, &params, &bvh);
+    soup_box(&soup);
+    struct bvh bvh = soup_build(&soup, params);
+    assert_null(find_fault(&soup, &params, &bvh));
     assert_int_equal(bvh.depth, 8);
     for (uint32_t i = 2; i < bvh.node_count; i += 2)
         assert_true(bvh.nodes[i].hi[0] <= bvh.nodes[i + 1].lo[0]);
     bvh_finish(&bvh);
+    soup_finish(&soup);
+}
+
+/* A tree by hand: `chain` leaves that hang beside each other on one path, the deepest first to
+   leave room for; the boxes are points of a line in an order that pays to change. */
+static void chain_make(uint32_t chain, struct bvh *bvh)
+{
+    *bvh = (struct bvh){.primitive_count = chain, .reference_count = chain};
+    bvh->node_count = 2 * chain;
+    bvh->nodes = aligned_alloc(64, 2 * (size_t)chain * sizeof *bvh->nodes);
+    bvh->order = calloc(chain, sizeof *bvh->order);
+    assert_true(bvh->nodes && bvh->order);
+    memset(bvh->nodes, 0, 2 * (size_t)chain * sizeof *bvh->nodes);
+    for (uint32_t i = 0; i < chain; ++i) {
+        struct gpu_bvh_node *leaf = &bvh->nodes[i + 1 < chain ? 2 * i + 2 : 2 * i + 1];
+        float x = (float)(i % 2 ? i : 2 * chain - i);
+        *leaf = (struct gpu_bvh_node){{x, 0, 0}, i, {x + 1, 1, 1}, 1};
+        bvh->order[i] = i;
+    }
+    for (uint32_t i = chain - 1; i-- > 0;) {
+        const struct gpu_bvh_node *a = &bvh->nodes[2 * i + 2], *b = a + 1;
+        struct bvh_box box = no_box;
+        box_unite(&box, a->lo, a->hi);
+        box_unite(&box, b->lo, b->hi);
+        struct gpu_bvh_node *node = &bvh->nodes[i == 0 ? 0 : 2 * i + 1];
+        *node = (struct gpu_bvh_node){.first = 2 * i + 2};
+        memcpy(node->lo, box.lo, sizeof node->lo);
+        memcpy(node->hi, box.hi, sizeof node->hi);
+    }
+    bvh_complete(bvh, 1.0);
+}
+
+static void optimizing_keeps_the_limit_of_depth(void **state)
+{
+    (void)state;
+    for (uint32_t depth = 2; depth <= BVH_DEPTH_MAX; ++depth) {
+        struct bvh bvh;
+        chain_make(depth + 1, &bvh);
+        assert_int_equal(bvh.depth, depth);
+        double before = bvh.sah_cost;
+        assert_int_equal(bvh_optimize(&silent, 1, 1.0, &bvh), WHIT_OK);
+        assert_int_equal(bvh_validate(&silent, &bvh, NULL, 1), WHIT_OK);
+        assert_true(bvh.depth <= BVH_DEPTH_MAX);
+        assert_true(bvh.sah_cost <= before);
+        if (depth == 64)
+            assert_true(bvh.sah_cost < 0.5 * before && bvh.depth < 32);
+        bvh_finish(&bvh);
+    }
 }
 
 static void bad_input_is_refused(void **state)
@@ -196,27 +270,27 @@ static void bad_input_is_refused(void **state)
         assert_null(bvh.nodes);
     }
     boxes[1].lo[1] = 2.0f;
-    static const struct bvh_params params[] = {
-        {.bins = 1}, {.bins = 257}, {.leaf_limit = 16}, {.traversal_cost = -1.0f}};
-    for (int k = 0; k < 4; ++k)
+    static const struct bvh_params params[] = {{.bins = 1},
+                                               {.bins = 257},
+                                               {.leaf_limit = 16},
+                                               {.traversal_cost = -1.0f},
+                                               {.builder = BVH_SPATIAL}};
+    for (int k = 0; k < 5; ++k) {
         assert_int_equal(bvh_build(&silent, boxes, 3, &params[k], &bvh), WHIT_ERROR_USAGE);
+        assert_null(bvh.nodes);
+    }
+    assert_non_null(strstr(last_error, "triangles")); /* of which there are none to split */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(soups_of_all_sizes),
-        cmocka_unit_test(nothing_is_a_tree_too),
-        cmocka_unit_test(one_box_is_a_leaf_at_the_root),
-        cmocka_unit_test(identical_boxes),
-        cmocka_unit_test(nested_with_one_centre),
-        cmocka_unit_test(on_a_line_and_in_a_plane),
-        cmocka_unit_test(exponential_scales),
+        cmocka_unit_test(every_builder_on_every_mesh),
+        cmocka_unit_test(few_triangles),
+        cmocka_unit_test(a_thousand_trees_are_right),
         cmocka_unit_test(depth_is_capped),
-        cmocka_unit_test(one_giant_and_many_tiny),
-        cmocka_unit_test(garbage_bits),
-        cmocka_unit_test(extents_at_the_edge_of_floats),
         cmocka_unit_test(medians_separate),
+        cmocka_unit_test(optimizing_keeps_the_limit_of_depth),
         cmocka_unit_test(bad_input_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,25 +1,5 @@
 /* Trees of eight children a node have the leaves of the trees of two, each once, boxes and all. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "../random.h"
-#include "../scenes.h"
-#include "accel/accel.h"
-
-static void ignore(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    (void)message;
-}
-
-static const struct log quiet = {.fn = ignore, .level = WHIT_LOG_ERROR};
+#include "accel_fixture.h"
 
 struct leaves {
     struct gpu_bvh_node all[20000];
@@ -74,21 +54,17 @@ static void leaves_are_those_of_two(void **state)
 {
     (void)state;
     for (int flat = 0; flat < 2; ++flat) {
-        struct scene *scene = scene_begin(&quiet, "wide");
+        struct scene *scene = scene_begin(&silent, "wide");
         scene_put(scene, mesh_terrain(10.0, 2.0, 60, 3), NULL);
         uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
-        uint64_t random = 5;
+        random_state = 5;
         for (int i = 0; i < 30; ++i) {
-            struct affine placed = placement_random(&random, 4.0, i % 3 == 0);
+            struct affine placed = placement_random(&random_state, 4.0, i % 3 == 0);
             scene_put_again(scene, ring, &(struct put){.matrix = &placed});
         }
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
-        const struct accel_params params = {.flatten = flat != 0};
-        struct scene_pose pose;
-        struct accel *accel;
-        assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-        assert_int_equal(accel_create(&quiet, scene, &params, &accel), WHIT_OK);
-        assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+        struct world world = world_of(scene, (struct accel_params){.flatten = flat != 0});
+        struct accel *accel = world.accel;
+        assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
         /* Again: what moves is made anew, the rest stays. */
         for (int again = 0; again < 2; ++again) {
             assert_int_equal(accel_widen(accel), WHIT_OK);
@@ -99,9 +75,7 @@ static void leaves_are_those_of_two(void **state)
                 check_tree(accel, accel->instance_root, accel->bvh8.instance_root,
                            accel->bvh8.instance_depth);
         }
-        accel_destroy(accel);
-        scene_pose_finish(&pose);
-        scene_destroy(scene);
+        world_finish(&world);
     }
 }
 

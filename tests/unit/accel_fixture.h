@@ -1,5 +1,5 @@
-/* Meshes that builders get wrong, rays that hit them where it is hardest, and the answers to hold
-   against each other. */
+/* Meshes that builders get wrong, rays that hit them where it is hardest, scenes with their trees,
+   and the answers to hold against each other. */
 #ifndef ACCEL_FIXTURE_H
 #define ACCEL_FIXTURE_H
 
@@ -24,7 +24,36 @@
 #include "twin/ray.h"
 #include "twin/traverse.h"
 
-static const struct log silent;
+/* The last error that went to `silent`. */
+static char last_error[512];
+
+static inline void keep_error(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (level == WHIT_LOG_ERROR)
+        snprintf(last_error, sizeof last_error, "%s", message);
+}
+
+static const struct log silent = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+
+/* ---- Random numbers ---- */
+
+static inline float random_within(float max)
+{
+    return max * random_float_signed(&random_state);
+}
+
+/* In a cube around the origin. */
+static inline struct vec3 random_point(float max)
+{
+    float x = random_within(max), y = random_within(max), z = random_within(max);
+    return vec3_make(x, y, z);
+}
+
+static inline float either(float a, float b)
+{
+    return random_below(&random_state, 2) ? a : b;
+}
 
 /* ---- Triangles with their boxes ---- */
 
@@ -77,28 +106,41 @@ static inline void soup_box(struct soup *soup)
                                             soup_vertex(soup, i, 2));
 }
 
-static inline struct soup soup_of_mesh(const char *name, struct scene_mesh *mesh)
+/* Takes the mesh over. */
+static inline struct soup soup_of_mesh(const char *name, struct scene_mesh mesh)
 {
-    struct soup soup = soup_make(name, mesh->triangle_count);
+    struct soup soup = soup_make(name, mesh.triangle_count);
     for (uint32_t i = 0; i < soup.count; ++i)
-        soup_set(&soup, i, &mesh->positions[3 * (size_t)mesh->indices[3 * i]],
-                 &mesh->positions[3 * (size_t)mesh->indices[3 * i + 1]],
-                 &mesh->positions[3 * (size_t)mesh->indices[3 * i + 2]]);
-    scene_mesh_finish(mesh);
+        soup_set(&soup, i, &mesh.positions[3 * (size_t)mesh.indices[3 * i]],
+                 &mesh.positions[3 * (size_t)mesh.indices[3 * i + 1]],
+                 &mesh.positions[3 * (size_t)mesh.indices[3 * i + 2]]);
+    scene_mesh_finish(&mesh);
     soup_box(&soup);
     return soup;
 }
 
 static inline struct soup soup_sphere(uint32_t segments, uint32_t rings)
 {
-    struct scene_mesh mesh = mesh_sphere(1.0, segments, rings);
-    return soup_of_mesh("sphere", &mesh);
+    return soup_of_mesh("sphere", mesh_sphere(1.0, segments, rings));
 }
 
 static inline struct soup soup_terrain(uint32_t steps)
 {
-    struct scene_mesh mesh = mesh_terrain(10.0, 2.0, steps, 5);
-    return soup_of_mesh("terrain", &mesh);
+    return soup_of_mesh("terrain", mesh_terrain(10.0, 2.0, steps, 5));
+}
+
+/* Each within a cube of side `size` of its own, whose middle is in the unit cube. */
+static inline struct soup soup_scattered(uint32_t count, float size)
+{
+    struct soup soup = soup_make("scattered", count);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct vec3 middle = random_point(1.0f);
+        for (uint32_t corner = 0; corner < 3; ++corner)
+            vec3_store(&soup.positions[9 * (size_t)i + 3 * (size_t)corner],
+                       vec3_add(middle, random_point(0.5f * size)));
+    }
+    soup_box(&soup);
+    return soup;
 }
 
 /* Long thin diagonals through each other. */
@@ -185,22 +227,77 @@ static inline struct soup soup_garbage(uint32_t count, float limit)
     return soup;
 }
 
-/* ---- Scenes and rays ---- */
+/* ---- Scenes with their trees ---- */
+
+/* `scene`, its trees and its pose at time 0; `soup` is empty where the scene is made of none. */
+struct world {
+    struct soup soup;
+    struct scene *scene;
+    struct accel *accel;
+    struct scene_pose pose;
+};
+
+/* Trees of a frozen scene, validated. */
+static inline struct accel *accel_of(const struct scene *scene, struct accel_params params)
+{
+    struct accel *accel = NULL;
+    params.validate = true;
+    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+    return accel;
+}
+
+/* Takes the scene over and freezes it. */
+static inline struct world world_of(struct scene *scene, struct accel_params params)
+{
+    struct world world = {.scene = scene_ready(scene)};
+    world.accel = accel_of(scene, params);
+    assert_int_equal(scene_pose_init(scene, 0.0, &world.pose), WHIT_OK);
+    return world;
+}
+
+static inline void world_finish(struct world *world)
+{
+    scene_pose_finish(&world->pose);
+    accel_destroy(world->accel);
+    scene_destroy(world->scene);
+    soup_finish(&world->soup);
+}
 
 /* One material, one instance at the origin. */
 static inline struct scene *soup_scene(const struct soup *soup)
 {
     struct scene *scene = scene_begin(&silent, soup->name);
     scene_put(scene, mesh_triangles(soup->positions, soup->count), NULL);
-    return scene_ready(scene);
+    return scene;
 }
 
-static inline struct accel *soup_accel(const struct scene *scene, const struct bvh_params *params)
+/* Takes the soup over. */
+static inline struct world world_of_soup(struct soup soup, struct bvh_params params)
 {
-    struct accel_params all = {.mesh = *params, .validate = true};
-    struct accel *accel = NULL;
-    assert_int_equal(accel_create(&silent, scene, &all, &accel), WHIT_OK);
-    return accel;
+    struct world world = world_of(soup_scene(&soup), (struct accel_params){.mesh = params});
+    world.soup = soup;
+    return world;
+}
+
+/* ---- Rays ---- */
+
+static inline struct gpu_ray ray_along(struct vec3 origin, struct vec3 dir)
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    vec3_store(ray.origin, origin);
+    vec3_store(ray.dir, dir);
+    return ray;
+}
+
+static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
+{
+    return ray_along(origin, vec3_sub(target, origin));
+}
+
+/* The origin is in a cube around (0, 0, 0), and is drawn after the target. */
+static inline struct gpu_ray ray_from_cube(float max, struct vec3 target)
+{
+    return ray_through(random_point(max), target);
 }
 
 /* From around the bounds: half of them to points inside, half to vertices and points of edges. */
@@ -227,28 +324,6 @@ static inline struct gpu_ray soup_ray(const struct soup *soup, const struct bvh_
     return ray;
 }
 
-/* The closest hits of `ray_count` rays, the same ones for equal seeds. `cost` may be NULL. */
-static inline void soup_trace(const struct soup *soup, const struct accel *accel, uint64_t seed,
-                              uint32_t ray_count, struct gpu_hit *hits, struct gpu_cost *cost)
-{
-    random_state = seed;
-    for (uint32_t i = 0; i < ray_count; ++i) {
-        struct gpu_ray ray = soup_ray(soup, &accel->meshes[0].box, i);
-        uint32_t status = 0;
-        traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hits[i], cost,
-                       &status);
-        assert_int_equal(status, 0);
-    }
-}
-
-static inline uint32_t hits_count(const struct gpu_hit *hits, uint32_t count)
-{
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        found += hits[i].primitive != HIT_NONE;
-    return found;
-}
-
 /* A point of an instance. */
 static inline struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
 {
@@ -257,6 +332,57 @@ static inline struct vec3 in_world(const struct accel *accel, uint32_t instance,
     const struct gpu_instance *i = &accel->instances[instance];
     return vec3_add(accel_rotate_rows(i->forward0, i->forward1, i->forward2, p),
                     vec3_make(i->origin_x, i->origin_y, i->origin_z));
+}
+
+/* A point of a random record of a random instance: by turns a vertex, a point of an edge and one of
+   the inside; of a sphere, one of the cube around it. */
+static inline struct vec3 point_of_record(const struct accel *accel, uint32_t index)
+{
+    uint32_t instance;
+    const struct accel_mesh *mesh;
+    do {
+        instance = random_below(&random_state, accel->instance_count);
+        mesh = &accel->meshes[accel->flat ? 0 : accel->instances[instance].mesh];
+    } while (mesh->record_count == 0);
+    const struct gpu_triangle *record =
+        &accel->triangles[mesh->first_triangle + random_below(&random_state, mesh->record_count)];
+    struct vec3 a = vec3_load(record->v0), b = vec3_load(record->v1), c = vec3_load(record->v2);
+    if (record->flags & TRIANGLE_SPHERE)
+        return in_world(accel, instance, vec3_add(a, random_point(record->v1[0])));
+    float s = index % 3 ? random_float(&random_state) : 0.0f,
+          t = index % 3 == 2 ? (1.0f - s) * random_float(&random_state) : 0.0f;
+    struct vec3 p = vec3_add(a, vec3_scale(vec3_sub(b, a), s));
+    return in_world(accel, instance, vec3_add(p, vec3_scale(vec3_sub(c, a), t)));
+}
+
+/* ---- Hits ---- */
+
+/* params.skip_*: nothing is skipped. `cost` may be NULL. */
+static inline struct gpu_hit trace_with(const struct accel *accel, struct traverse_params params,
+                                        const struct gpu_ray *ray, struct gpu_cost *cost)
+{
+    struct gpu_hit hit;
+    uint32_t status = 0;
+    params.skip_instance = params.skip_primitive = HIT_NONE;
+    traverse_ray(accel, &params, ray, &hit, cost, &status);
+    assert_int_equal(status, 0);
+    return hit;
+}
+
+/* The closest hit at NUMERICS_WATERTIGHT. */
+static inline struct gpu_hit trace(const struct accel *accel, const struct gpu_ray *ray)
+{
+    return trace_with(accel, (struct traverse_params){.order = ORDER_DISTANCE}, ray, NULL);
+}
+
+static inline bool hits_equal(const struct gpu_hit *a, const struct gpu_hit *b)
+{
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+static inline bool same_ids(const struct gpu_hit *a, const struct gpu_hit *b)
+{
+    return a->primitive == b->primitive && a->instance == b->instance;
 }
 
 #endif

@@ -1,19 +1,8 @@
 /* Spheres in every tree, against every sphere in turn, against double, and met again from their own
    surface. */
-#include <unistd.h>
-
 #include "accel_fixture.h"
-#include "base/array.h"
 #include "oracle/oracle.h"
 #include "sphere_fixture.h"
-#include "twin/traverse.h"
-
-static void note(void *user, whit_log_level level, const char *message)
-{
-    char *last = user;
-    if (level == WHIT_LOG_ERROR)
-        snprintf(last, 256, "%s", message);
-}
 
 /* `placed`: the mesh as several instances of every kind; else once, as it is. */
 static struct scene *sphere_scene(struct scene_mesh mesh, bool placed)
@@ -27,18 +16,17 @@ static struct scene *sphere_scene(struct scene_mesh mesh, bool placed)
     return scene_ready(scene);
 }
 
-static void check_tree(const struct accel *accel, uint32_t order, const struct gpu_ray *rays,
-                       const struct gpu_hit *wanted, uint32_t count)
+static void check_tree(const struct accel *accel, const struct gpu_ray *ray,
+                       const struct gpu_hit *wanted)
 {
-    uint32_t status = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        struct gpu_hit hit;
-        traverse_float(accel, order, &rays[i], false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-        assert_memory_equal(&hit, &wanted[i], sizeof hit);
-        traverse_float(accel, order, &rays[i], true, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-        assert_int_equal(hit.primitive == HIT_NONE, wanted[i].primitive == HIT_NONE);
+    for (uint32_t order = 0; order < 3; ++order) {
+        struct traverse_params params = {.order = order};
+        struct gpu_hit hit = trace_with(accel, params, ray, NULL);
+        assert_memory_equal(&hit, wanted, sizeof hit);
+        params.any = true;
+        hit = trace_with(accel, params, ray, NULL);
+        assert_int_equal(hit.primitive == HIT_NONE, wanted->primitive == HIT_NONE);
     }
-    assert_int_equal(status, 0);
 }
 
 static void check_builders(struct scene *scene, const char *label)
@@ -54,17 +42,16 @@ static void check_builders(struct scene *scene, const char *label)
     };
     uint32_t hits = 0;
     for (uint32_t w = 0; w < sizeof ways / sizeof ways[0]; ++w) {
-        const struct accel_params params = {.mesh = ways[w], .validate = true};
-        struct accel *accel;
-        assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
+        struct accel *accel = accel_of(scene, (struct accel_params){.mesh = ways[w]});
         assert_int_equal(accel->record_count, accel->triangle_count);
-        for (uint32_t i = 0; w == 0 && i < RAYS; ++i) {
-            rays[i] = ray_at_spheres(&scene->meshes[0], i, 100.0);
-            traverse_brute_float(accel, &rays[i], &wanted[i]);
-            hits += wanted[i].primitive != HIT_NONE;
+        for (uint32_t i = 0; i < RAYS; ++i) {
+            if (w == 0) {
+                rays[i] = ray_at_spheres(&scene->meshes[0], i, 100.0);
+                traverse_brute_float(accel, &rays[i], &wanted[i]);
+                hits += wanted[i].primitive != HIT_NONE;
+            }
+            check_tree(accel, &rays[i], &wanted[i]);
         }
-        for (uint32_t order = 0; order < 3; ++order)
-            check_tree(accel, order, rays, wanted, RAYS);
         accel_destroy(accel);
     }
     print_message("  %s: %u rays, %u hit\n", label, RAYS, hits);
@@ -133,9 +120,8 @@ static void check_double(const char *label, double spread, double radius, double
 {
     const uint32_t rays = cases_of(40000);
     struct scene *scene = sphere_scene(scattered_spheres(20, spread, radius), placed);
-    struct accel *accel;
+    struct accel *accel = accel_of(scene, (struct accel_params){0});
     struct tally tally = {0};
-    assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
     for (uint32_t i = 0; i < rays; ++i) {
         struct gpu_ray ray = ray_at_spheres(&scene->meshes[0], i, away);
         compare(accel, &ray, &tally);
@@ -228,11 +214,10 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
 static void check_own(const char *label, double at, double radius)
 {
     const uint32_t rays = cases_of(100000);
-    struct accel *accel;
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
     struct scene *scene = sphere_scene(mesh_balls(sphere, 1), false);
-    assert_int_equal(accel_create(&silent, scene, NULL, &accel), WHIT_OK);
+    struct accel *accel = accel_of(scene, (struct accel_params){0});
     for (uint32_t i = 0; i < rays; ++i)
         leave(accel, scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
     print_message("  %s: %u met again, %u left, %u wrong; t at worst %.2f of its bound\n", label,
@@ -260,8 +245,6 @@ static void rays_leave_their_sphere(void **state)
 static void flat_keeps_spheres_that_stay_spheres(void **state)
 {
     (void)state;
-    char last[256] = "";
-    const struct log log = {.fn = note, .user = last, .level = WHIT_LOG_ERROR};
     const struct accel_params flat = {
         .flatten = true, .validate = true, .mesh = {.builder = BVH_SPATIAL}};
     random_state = 5;
@@ -272,19 +255,17 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
         scene->frozen = false;
         scene_put_again(scene, 0, &(struct put){.name = "second", .matrix = &matrix});
         scene_ready(scene);
-        struct accel *one = NULL, *many = NULL;
-        whit_result result = accel_create(&log, scene, &flat, &one);
+        struct accel *one = NULL;
+        whit_result result = accel_create(&silent, scene, &flat, &one);
         assert_int_equal(result, turned ? WHIT_ERROR_INPUT : WHIT_OK);
         if (turned)
-            assert_non_null(strstr(last, "instance 1 `second`: spheres that are turned"));
-        assert_int_equal(accel_create(&silent, scene, NULL, &many), WHIT_OK);
-        uint32_t same = 0, status = 0;
+            assert_non_null(strstr(last_error, "instance 1 `second`: spheres that are turned"));
+        struct accel *many = accel_of(scene, (struct accel_params){0});
+        uint32_t same = 0;
         for (uint32_t i = 0; !turned && i < 10000; ++i) {
             struct gpu_ray ray = ray_at_spheres(&scene->meshes[0], 4 * i + 1, 20.0);
-            struct gpu_hit a, b;
-            traverse_float(one, ORDER_SIGN, &ray, false, HIT_NONE, HIT_NONE, &a, NULL, &status);
-            traverse_float(many, ORDER_SIGN, &ray, false, HIT_NONE, HIT_NONE, &b, NULL, &status);
-            same += a.primitive == b.primitive && a.instance == b.instance;
+            struct gpu_hit a = trace(one, &ray), b = trace(many, &ray);
+            same += same_ids(&a, &b);
         }
         /* Scaled by 2 and moved by few bits: all but grazing rays and ties meet the same. */
         assert_true(turned || same > 9990);

@@ -1,33 +1,21 @@
 /* How many nodes rays open in the trees of different builders, and in different orders. */
 #include "accel_fixture.h"
-#include "twin/traverse.h"
 
 enum { RAYS = 4000 };
 
-/* Random rays inside the box -1..1 that holds what is small; hits end them. */
-static struct gpu_cost cost_of_rays(const struct accel *accel, uint32_t order)
+/* Rays at a soup; without one, random rays inside the box -1..1 that holds what is small. Hits end
+   them. */
+static struct gpu_cost cost_of(const struct scene *scene, const struct soup *soup,
+                               struct bvh_params params, uint32_t order)
 {
+    struct accel *accel = accel_of(scene, (struct accel_params){.mesh = params});
     struct gpu_cost cost = {0};
-    uint32_t status = 0;
     random_state = 7;
     for (uint32_t i = 0; i < RAYS; ++i) {
-        struct gpu_ray ray = {.t_max = INFINITY};
-        for (int a = 0; a < 3; ++a) {
-            ray.origin[a] = 2.0f * random_float(&random_state) - 1.0f;
-            ray.dir[a] = 2.0f * random_float(&random_state) - 1.0f;
-        }
-        struct gpu_hit hit;
-        traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+        struct gpu_ray ray = soup ? soup_ray(soup, &accel->meshes[0].box, i)
+                                  : ray_from_cube(1.0f, random_point(1.0f));
+        trace_with(accel, (struct traverse_params){.order = order}, &ray, &cost);
     }
-    assert_int_equal(status, 0);
-    return cost;
-}
-
-static struct gpu_cost cost_of(const struct scene *scene, const struct bvh_params *params,
-                               uint32_t order)
-{
-    struct accel *accel = soup_accel(scene, params);
-    struct gpu_cost cost = cost_of_rays(accel, order);
     accel_destroy(accel);
     return cost;
 }
@@ -40,24 +28,13 @@ static void one_giant_costs_little(void **state)
     const char *many = getenv("WHIT_TEST_TRIANGLES");
     const uint32_t small_ones = many ? (uint32_t)atoi(many) : 20000;
     const float size = 0.02f * cbrtf(20000.0f / (float)small_ones);
-    struct soup soup = soup_make("giant", small_ones + 1);
     random_state = 3;
-    for (uint32_t i = 0; i < small_ones; ++i) {
-        float v[3][3], centre[3];
-        for (int a = 0; a < 3; ++a)
-            centre[a] = 2.0f * random_float(&random_state) - 1.0f;
-        for (int k = 0; k < 3; ++k) {
-            for (int a = 0; a < 3; ++a)
-                v[k][a] = centre[a] + size * random_float(&random_state);
-        }
-        soup_set(&soup, i, v[0], v[1], v[2]);
-    }
+    struct soup soup = soup_scattered(small_ones + 1, size);
     soup_set(&soup, small_ones, (float[3]){-1000, -1.1f, -1000}, (float[3]){1000, -1.1f, -1000},
              (float[3]){0, -1.2f, 1000});
-    soup_box(&soup);
-    struct scene *scene = soup_scene(&soup);
+    struct scene *scene = scene_ready(soup_scene(&soup));
     struct gpu_cost sweep =
-        cost_of(scene, &(struct bvh_params){.builder = BVH_SWEEP}, ORDER_DISTANCE);
+        cost_of(scene, NULL, (struct bvh_params){.builder = BVH_SWEEP}, ORDER_DISTANCE);
     static const struct bvh_params others[] = {
         {.builder = BVH_BINNED},
         {.builder = BVH_BINNED, .bins = 7},
@@ -65,7 +42,7 @@ static void one_giant_costs_little(void **state)
         {.builder = BVH_SPATIAL},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
-        struct gpu_cost cost = cost_of(scene, &others[i], ORDER_DISTANCE);
+        struct gpu_cost cost = cost_of(scene, NULL, others[i], ORDER_DISTANCE);
         print_message("  %u pairs, sweep %u\n", cost.inner_nodes, sweep.inner_nodes);
         assert_true(cost.inner_nodes <= 2 * sweep.inner_nodes);
         assert_true(cost.triangles <= 2 * sweep.triangles);
@@ -74,29 +51,42 @@ static void one_giant_costs_little(void **state)
     soup_finish(&soup);
 }
 
-/* The order of the source report: no order opens the most nodes. */
-static void orders_save_visits(void **state)
+/* The order of the source report, no order, opens the most nodes. Spatial splits save some where
+   boxes overlap. */
+static void orders_and_splits_save_visits(void **state)
 {
     (void)state;
-    struct soup soup = soup_terrain(64);
-    struct scene *scene = soup_scene(&soup);
-    const struct bvh_params binned = {.builder = BVH_BINNED};
-    struct gpu_cost basic = cost_of(scene, &binned, ORDER_BASIC);
-    struct gpu_cost distance = cost_of(scene, &binned, ORDER_DISTANCE);
-    struct gpu_cost sign = cost_of(scene, &binned, ORDER_SIGN);
-    print_message("  basic %u, distance %u, sign %u pairs\n", basic.inner_nodes,
-                  distance.inner_nodes, sign.inner_nodes);
-    assert_true(distance.inner_nodes < basic.inner_nodes);
-    assert_true(sign.inner_nodes < basic.inner_nodes);
-    scene_destroy(scene);
-    soup_finish(&soup);
+    random_state = 10;
+    const struct {
+        struct soup soup;
+        double spatial; /* of what the bins open, at most */
+    } rows[] = {{soup_terrain(64), 1.02},
+                {soup_sphere(30, 20), 1.02},
+                {soup_rooms(1500), 0.7},
+                {soup_hair(2500, 1e-3f), 0.99},
+                {soup_hair(1500, 0.05f), 0.99}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        struct soup soup = rows[i].soup;
+        struct scene *scene = scene_ready(soup_scene(&soup));
+        const struct bvh_params binned = {.builder = BVH_BINNED}, split = {.builder = BVH_SPATIAL};
+        uint32_t basic = cost_of(scene, &soup, binned, ORDER_BASIC).inner_nodes,
+                 distance = cost_of(scene, &soup, binned, ORDER_DISTANCE).inner_nodes,
+                 sign = cost_of(scene, &soup, binned, ORDER_SIGN).inner_nodes,
+                 spatial = cost_of(scene, &soup, split, ORDER_DISTANCE).inner_nodes;
+        print_message("  %s: basic %u, distance %u, sign %u pairs; spatial splits: %u\n", soup.name,
+                      basic, distance, sign, spatial);
+        if (distance >= basic || sign >= basic || spatial > rows[i].spatial * distance)
+            fail_msg("%s", soup.name);
+        scene_destroy(scene);
+        soup_finish(&soup);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_giant_costs_little),
-        cmocka_unit_test(orders_save_visits),
+        cmocka_unit_test(orders_and_splits_save_visits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 /* Boxes where they are hardest: a box that a ray does enter, by exact arithmetic, must be entered.
  */
 #include "hard_fixture.h"
-#include "twin/traverse.h"
 
 #include <gmp.h>
 
@@ -72,6 +71,28 @@ static bool enters_exactly(const struct gpu_ray *ray, const float lo[3], const f
 
 /* ---- Rays at boxes ---- */
 
+struct crossing {
+    bool entered;
+    float near, far;
+};
+
+static struct crossing cross_box(const struct level *level, const struct gpu_ray *ray,
+                                 const float lo[3], const float hi[3])
+{
+    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
+    float t_max = fminf(ray->t_max, FLT_MAX);
+    struct crossing out;
+    out.entered = level_enters(level, &setup, lo, hi, ray->t_min, t_max, &out.near, &out.far);
+    return out;
+}
+
+/* Ends are of the second ray; those of the first one times `scale`. */
+static bool crossings_differ(const struct crossing *a, const struct crossing *b, float scale)
+{
+    return a->entered != b->entered ||
+           (a->entered && (a->near * scale != b->near || a->far * scale != b->far));
+}
+
 struct tally {
     uint64_t rays, entered, missed, false_hits;
 };
@@ -79,10 +100,8 @@ struct tally {
 static void compare_box(const struct level *level, const struct gpu_ray *ray, const float lo[3],
                         const float hi[3], struct tally *tally)
 {
-    struct ray_setup setup = make_ray_setup(vec3_load(ray->origin), vec3_load(ray->dir));
-    float t_near, t_far, t_max = ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX;
-    bool entered = level_enters(level, &setup, lo, hi, ray->t_min, t_max, &t_near, &t_far);
-    bool exact = enters_exactly(ray, lo, hi, ray->t_min, t_max);
+    bool entered = cross_box(level, ray, lo, hi).entered;
+    bool exact = enters_exactly(ray, lo, hi, ray->t_min, fminf(ray->t_max, FLT_MAX));
     ++tally->rays;
     tally->entered += exact;
     tally->missed += exact && !entered;
@@ -125,11 +144,6 @@ static const struct box_kind box_kinds[] = {
     {"B6 box of 1e12", 0, 1e12f, 0, 0, 0, false},
 };
 
-static float pick(float a, float b)
-{
-    return random_below(&random_state, 2) ? a : b;
-}
-
 /* At a corner, a point of an edge or of a face; every fourth from inside or from the surface. */
 static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3], const float hi[3])
 {
@@ -139,14 +153,15 @@ static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3],
     float scale = kind->speed > 0.0f ? kind->speed / kind->size : 1.0f;
     for (uint32_t k = 0; k < 3; ++k) {
         float between = lo[k] + (hi[k] - lo[k]) * random_float(&random_state);
-        float target = (k + axis) % 3 < loose ? between : pick(lo[k], hi[k]);
+        float target = (k + axis) % 3 < loose ? between : either(lo[k], hi[k]);
         if (kind->wild)
             target = kind->offset + random_within(3.0f * kind->size);
         bool still = (k + axis) % 3 < (uint32_t)kind->parallel;
-        ray.origin[k] = inside ? pick(between, lo[k]) : between + random_within(3.0f * kind->size);
+        ray.origin[k] =
+            inside ? either(between, lo[k]) : between + random_within(3.0f * kind->size);
         if (still) {
-            ray.origin[k] = pick(lo[k], hi[k]);
-            ray.dir[k] = pick(0.0f, -0.0f);
+            ray.origin[k] = either(lo[k], hi[k]);
+            ray.dir[k] = either(0.0f, -0.0f);
         } else {
             ray.dir[k] = scale * (target - ray.origin[k]);
         }
@@ -225,23 +240,18 @@ static void signs_of_zeros_do_not_matter(void **state)
     uint32_t compared = 0, differ = 0;
     for (int l = 0; l < LEVELS; ++l)
         for (uint32_t i = 0; i < 27 * 8 * 4; ++i) {
-            float dir[2][3];
+            struct gpu_ray ray = {.t_max = INFINITY}, other;
             uint32_t code = i / 32;
-            for (uint32_t k = 0; k < 3; ++k, code /= 3) {
-                dir[0][k] = (float)(code % 3) - 1.0f;
-                dir[1][k] = dir[0][k] == 0.0f && (i >> k & 1) ? -0.0f : dir[0][k];
-            }
-            const float *start = starts[i / 8 % 4];
-            float t[2][2];
-            bool entered[2];
-            for (int s = 0; s < 2; ++s) {
-                struct ray_setup setup = make_ray_setup(vec3_load(start), vec3_load(dir[s]));
-                entered[s] =
-                    level_enters(&levels[l], &setup, lo, hi, 0.0f, FLT_MAX, &t[s][0], &t[s][1]);
-            }
+            memcpy(ray.origin, starts[i / 8 % 4], sizeof ray.origin);
+            for (uint32_t k = 0; k < 3; ++k, code /= 3)
+                ray.dir[k] = (float)(code % 3) - 1.0f;
+            other = ray;
+            for (uint32_t k = 0; k < 3; ++k)
+                other.dir[k] = ray.dir[k] == 0.0f && (i >> k & 1) ? -0.0f : ray.dir[k];
+            struct crossing a = cross_box(&levels[l], &ray, lo, hi),
+                            b = cross_box(&levels[l], &other, lo, hi);
             ++compared;
-            differ += entered[0] != entered[1] ||
-                      (entered[0] && (t[0][0] != t[1][0] || t[0][1] != t[1][1]));
+            differ += crossings_differ(&a, &b, 1.0f);
         }
     print_message("B4 %u of %u differ by the sign of a zero\n", differ, compared);
     assert_int_equal(differ, 0);
@@ -252,27 +262,24 @@ static void signs_of_zeros_do_not_matter_in_trees(void **state)
 {
     (void)state;
     enum { RAYS = 6000 };
-    const struct bvh_params params = {.leaf_limit = 1};
-    struct soup soup = soup_rooms(200);
-    struct scene *scene = soup_scene(&soup);
-    struct accel *accel = soup_accel(scene, &params);
+    struct world world = world_of_soup(soup_rooms(200), (struct bvh_params){.leaf_limit = 1});
+    const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t differ = 0, hits = 0;
         random_state = 4;
         for (uint32_t i = 0; i < RAYS; ++i) {
-            struct gpu_ray ray = soup_ray(&soup, &accel->meshes[0].box, 2 * i + 1);
-            struct gpu_hit plain, hit;
+            struct gpu_ray ray = soup_ray(&world.soup, &accel->meshes[0].box, 2 * i + 1);
             for (uint32_t k = 0; k < 3; ++k) /* one zero or two */
                 ray.dir[k] = k == i % 3 || (k + i) % 4 == 0 ? ray.dir[k] : 0.0f;
             ray.dir[i % 3] = ray.dir[i % 3] == 0.0f ? 1.0f : ray.dir[i % 3];
-            level_trace(&levels[l], accel, ORDER_BASIC, false, &ray, &plain, NULL);
+            struct gpu_hit plain = level_trace(&levels[l], accel, ORDER_BASIC, false, &ray);
             hits += plain.primitive != HIT_NONE;
             for (uint32_t way = 0; way < 24; ++way) {
                 struct gpu_ray turned = ray;
                 for (uint32_t k = 0; k < 3; ++k)
                     turned.dir[k] = ray.dir[k] == 0.0f && way >> k & 1 ? -0.0f : ray.dir[k];
-                level_trace(&levels[l], accel, way / 8, false, &turned, &hit, NULL);
-                differ += memcmp(&hit, &plain, sizeof hit) != 0;
+                struct gpu_hit hit = level_trace(&levels[l], accel, way / 8, false, &turned);
+                differ += !hits_equal(&hit, &plain);
             }
         }
         print_message(
@@ -281,9 +288,7 @@ static void signs_of_zeros_do_not_matter_in_trees(void **state)
         assert_int_equal(differ, 0);
         assert_true(hits > RAYS / 4);
     }
-    accel_destroy(accel);
-    scene_destroy(scene);
-    soup_finish(&soup);
+    world_finish(&world);
 }
 
 /* B6: t is that of the longer direction, times a power of two. */
@@ -295,20 +300,15 @@ static void lengths_of_directions_scale_t(void **state)
     random_state = 6;
     for (int l = 0; l < LEVELS; ++l)
         for (int r = 0; r < RAYS; ++r) {
-            float lo[3], hi[3], t[2][2];
-            bool met[2];
+            float lo[3], hi[3];
             make_box(&box_kinds[2], lo, hi);
-            struct gpu_ray ray = ray_at_box(&box_kinds[2], lo, hi);
-            int power = (int)random_below(&random_state, 120) - 60;
-            for (int s = 0; s < 2; ++s) {
-                struct vec3 dir = vec3_scale(vec3_load(ray.dir), s ? ldexpf(1.0f, power) : 1.0f);
-                struct ray_setup setup = make_ray_setup(vec3_load(ray.origin), dir);
-                met[s] =
-                    level_enters(&levels[l], &setup, lo, hi, 0.0f, FLT_MAX, &t[s][0], &t[s][1]);
-            }
-            entered += met[0];
-            differ += met[0] != met[1] || (met[0] && (t[0][0] != ldexpf(t[1][0], power) ||
-                                                      t[0][1] != ldexpf(t[1][1], power)));
+            struct gpu_ray ray = ray_at_box(&box_kinds[2], lo, hi), longer = ray;
+            float scale = ldexpf(1.0f, (int)random_below(&random_state, 120) - 60);
+            vec3_store(longer.dir, vec3_scale(vec3_load(ray.dir), scale));
+            struct crossing a = cross_box(&levels[l], &ray, lo, hi),
+                            b = cross_box(&levels[l], &longer, lo, hi);
+            entered += a.entered;
+            differ += crossings_differ(&a, &b, 1.0f / scale);
         }
     print_message("B6 %u of %u differ by more than a power of two, %u entered\n", differ,
                   LEVELS * RAYS, entered);
@@ -371,7 +371,7 @@ static struct gpu_ray integer_ray_at_box(float lo[3], float hi[3])
         hi[k] = lo[k] + (float)random_below(&random_state, 17);
         ray.origin[k] = (float)random_below(&random_state, 129) - 64.0f;
         int power = (int)random_below(&random_state, 3);
-        ray.dir[k] = pick(0.0f, ldexpf(pick(-1.0f, 1.0f), power));
+        ray.dir[k] = either(0.0f, ldexpf(either(-1.0f, 1.0f), power));
         if (ray.dir[k] == 0.0f ||
             random_below(&random_state, 4) == 0) /* in the box, or on a face */
             ray.origin[k] =
@@ -449,21 +449,17 @@ static void try_ends(const struct level *level, const struct accel *accel, uint3
                      const struct gpu_ray *ray, const struct gpu_hit *first, struct ends *ends)
 {
     struct gpu_ray cut = *ray;
-    struct gpu_hit again;
     ++ends->hits;
     ends->starts += first->t == 0.0f;
     cut.t_max = first->t;
-    level_trace(level, accel, order, false, &cut, &again, NULL);
-    ends->lost += memcmp(&again, first, sizeof again) != 0;
-    level_trace(level, accel, order, true, &cut, &again, NULL);
-    ends->lost += again.primitive == HIT_NONE;
+    struct gpu_hit again = level_trace(level, accel, order, false, &cut);
+    ends->lost += !hits_equal(&again, first);
+    ends->lost += level_trace(level, accel, order, true, &cut).primitive == HIT_NONE;
     cut.t_min = level->exact ? first->t : 0.0f;
-    level_trace(level, accel, order, false, &cut, &again, NULL);
-    ends->lost += again.primitive != first->primitive;
+    ends->lost += level_trace(level, accel, order, false, &cut).primitive != first->primitive;
     cut.t_max = nextafterf(first->t, -INFINITY);
     cut.t_min = 0.0f;
-    level_trace(level, accel, order, true, &cut, &again, NULL);
-    ends->early += again.primitive != HIT_NONE;
+    ends->early += level_trace(level, accel, order, true, &cut).primitive != HIT_NONE;
 }
 
 /* B8 in a tree: walls along the axes are boxes without a thickness, entered where they are hit, by
@@ -473,19 +469,16 @@ static void hits_at_the_entry_of_their_box_count(void **state)
 {
     (void)state;
     enum { RAYS = 12000 };
-    const struct bvh_params params = {.leaf_limit = 1};
-    struct soup soup = soup_rooms(200);
-    struct scene *scene = soup_scene(&soup);
-    struct accel *accel = soup_accel(scene, &params);
+    struct world world = world_of_soup(soup_rooms(200), (struct bvh_params){.leaf_limit = 1});
+    const struct accel *accel = world.accel;
     struct rational *rational = rational_create(accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct ends ends = {0};
         random_state = 80;
         for (uint32_t i = 0; i < RAYS; ++i) {
-            struct gpu_ray ray = ray_at_wall(&soup, &accel->meshes[0].box, i);
-            struct gpu_hit first;
+            struct gpu_ray ray = ray_at_wall(&world.soup, &accel->meshes[0].box, i);
+            struct gpu_hit first = level_trace(&levels[l], accel, i % 3, false, &ray);
             struct rational_hit exact;
-            level_trace(&levels[l], accel, i % 3, false, &ray, &first, NULL);
             rational_trace(rational, &ray, NULL, &exact);
             if (levels[l].exact) {
                 assert_int_equal(first.primitive, exact.primitive);
@@ -501,9 +494,7 @@ static void hits_at_the_entry_of_their_box_count(void **state)
         assert_true(ends.starts > RAYS / 8); /* not all at `watertight`: not promised */
     }
     rational_destroy(rational);
-    accel_destroy(accel);
-    scene_destroy(scene);
-    soup_finish(&soup);
+    world_finish(&world);
 }
 
 /* A ray that has no sense in the way `what`, made of one that has. */
@@ -530,25 +521,23 @@ static struct gpu_ray spoiled(struct gpu_ray ray, uint32_t what, uint32_t axis)
 static void senseless_rays_cost_nothing(void **state)
 {
     (void)state;
-    const struct bvh_params params = {0};
-    struct soup soup = soup_sphere(40, 20);
-    struct scene *scene = soup_scene(&soup);
-    struct accel *accel = soup_accel(scene, &params);
+    struct world world = world_of_soup(soup_sphere(40, 20), (struct bvh_params){0});
+    const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t rays = 0, hits = 0, max = 0, min = UINT32_MAX;
         random_state = 9;
         for (uint32_t i = 0; i < 300 * SENSELESS; ++i) {
             struct gpu_ray good = ray_from_cube(0.5f, random_point(2.0f));
             struct gpu_ray ray = spoiled(good, i % SENSELESS, i / SENSELESS % 3);
-            struct gpu_hit hit;
             struct gpu_cost cost = {0}, good_cost = {0};
-            level_trace(&levels[l], accel, i % 3, i % 2, &ray, &hit, &cost);
+            struct traverse_params params = {
+                .order = i % 3, .numerics = levels[l].numerics, .any = i % 2};
             ++rays;
-            hits += hit.primitive != HIT_NONE;
+            hits += trace_with(accel, params, &ray, &cost).primitive != HIT_NONE;
             max = cost.inner_nodes > max ? cost.inner_nodes : max;
-            level_trace(&levels[l], accel, i % 3, false, &good, &hit, &good_cost);
+            params.any = false;
+            assert_int_not_equal(trace_with(accel, params, &good, &good_cost).primitive, HIT_NONE);
             min = good_cost.inner_nodes < min ? good_cost.inner_nodes : min;
-            assert_int_not_equal(hit.primitive, HIT_NONE);
         }
         print_message(
             "%-10s B9, B10 %u hits of %u senseless rays, %u pairs at most; %u and more of "
@@ -557,49 +546,7 @@ static void senseless_rays_cost_nothing(void **state)
         assert_int_equal(hits, 0);
         assert_true(max <= 1 && min > 1);
     }
-    accel_destroy(accel);
-    scene_destroy(scene);
-    soup_finish(&soup);
-}
-
-/* B11: a hit's t may be less than its box's, by roundings; in which order boxes are visited must
-   not tell. */
-static void orders_do_not_matter(void **state)
-{
-    (void)state;
-    enum { RAYS = 20000 };
-    const struct bvh_params params = {.leaf_limit = 1};
-    struct soup soup = soup_rooms(200);
-    struct scene *scene = soup_scene(&soup);
-    struct accel *accel = soup_accel(scene, &params);
-    for (int l = 0; l < LEVELS; ++l) {
-        uint32_t differ = 0, hits = 0;
-        random_state = 10;
-        for (uint32_t i = 0; i < RAYS; ++i) {
-            struct gpu_ray ray = soup_ray(&soup, &accel->meshes[0].box, 2 * i + 1);
-            struct gpu_hit hit[3], every;
-            for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order)
-                level_trace(&levels[l], accel, order, false, &ray, &hit[order], NULL);
-            hits += hit[0].primitive != HIT_NONE;
-            const struct traverse_params brute = {.numerics = levels[l].numerics,
-                                                  .brute = true,
-                                                  .skip_instance = HIT_NONE,
-                                                  .skip_primitive = HIT_NONE};
-            uint32_t status = 0;
-            if (i % 4 == 0)
-                traverse_ray(accel, &brute, &ray, &every, NULL, &status);
-            differ += memcmp(&hit[0], &hit[1], sizeof *hit) != 0 ||
-                      memcmp(&hit[0], &hit[2], sizeof *hit) != 0 ||
-                      (i % 4 == 0 && memcmp(&hit[0], &every, sizeof every) != 0);
-        }
-        print_message("%-10s B11 %u of %u rays differ by order, or without a tree, %u hit\n",
-                      levels[l].name, differ, RAYS, hits);
-        assert_int_equal(differ, 0);
-        assert_true(hits > RAYS / 2);
-    }
-    accel_destroy(accel);
-    scene_destroy(scene);
-    soup_finish(&soup);
+    world_finish(&world);
 }
 
 int main(void)
@@ -613,7 +560,6 @@ int main(void)
         cmocka_unit_test(ends_that_are_floats_count),
         cmocka_unit_test(hits_at_the_entry_of_their_box_count),
         cmocka_unit_test(senseless_rays_cost_nothing),
-        cmocka_unit_test(orders_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,6 @@
 #include "twin/exact.h"
 #include "twin/intersect.h"
 #include "twin/moller.h"
-#include "twin/traverse.h"
 
 struct level {
     const char *name;
@@ -60,44 +59,19 @@ static inline bool level_meets(const struct level *level, const struct gpu_ray *
     return met && hit->t <= ray->t_max;
 }
 
-static inline void level_trace(const struct level *level, const struct accel *accel, uint32_t order,
-                               bool any, const struct gpu_ray *ray, struct gpu_hit *hit,
-                               struct gpu_cost *cost)
+static inline struct gpu_hit level_trace(const struct level *level, const struct accel *accel,
+                                         uint32_t order, bool any, const struct gpu_ray *ray)
 {
-    const struct traverse_params params = {.order = order,
-                                           .numerics = level->numerics,
-                                           .any = any,
-                                           .skip_instance = HIT_NONE,
-                                           .skip_primitive = HIT_NONE};
-    uint32_t status = 0;
-    traverse_ray(accel, &params, ray, hit, cost, &status);
-    assert_int_equal(status, 0);
+    const struct traverse_params params = {.order = order, .numerics = level->numerics, .any = any};
+    return trace_with(accel, params, ray, NULL);
 }
 
-static inline float random_within(float max)
+/* Without a tree. */
+static inline struct gpu_hit level_brute(const struct level *level, const struct accel *accel,
+                                         const struct gpu_ray *ray)
 {
-    return max * random_float_signed(&random_state);
-}
-
-/* In a cube around the origin. */
-static inline struct vec3 random_point(float max)
-{
-    float x = random_within(max), y = random_within(max), z = random_within(max);
-    return vec3_make(x, y, z);
-}
-
-static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
-{
-    struct gpu_ray ray = {.t_max = INFINITY};
-    vec3_store(ray.origin, origin);
-    vec3_store(ray.dir, vec3_sub(target, origin));
-    return ray;
-}
-
-/* Arguments are evaluated in an order of the compiler's own: the origin is drawn after them. */
-static inline struct gpu_ray ray_from_cube(float max, struct vec3 target)
-{
-    return ray_through(random_point(max), target);
+    const struct traverse_params params = {.numerics = level->numerics, .brute = true};
+    return trace_with(accel, params, ray, NULL);
 }
 
 #endif

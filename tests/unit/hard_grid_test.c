@@ -3,7 +3,6 @@
    meets, and all of these must be among its hits, and no others. Counted by a rule for ties, the
    crossings are even from outside and odd from inside (github.com/jbikker/tinybvh, issue 168). */
 #include "hard_fixture.h"
-#include "twin/traverse.h"
 
 enum { STEPS = 24, PARTS = 4 }; /* of the landscape; units of integers in one of floats */
 
@@ -77,9 +76,7 @@ static struct soup soup_block(void)
 /* A ring, its vertices moved to the nearest integers. */
 static struct soup soup_quantised(void)
 {
-    struct scene_mesh mesh;
-    assert_int_equal(shape_torus(1.0, 0.45, 40, 20, &mesh), WHIT_OK);
-    struct soup soup = soup_of_mesh("ring", &mesh);
+    struct soup soup = soup_of_mesh("ring", mesh_torus(1.0, 0.45, 40, 20));
     for (uint32_t i = 0; i < 9 * soup.count; ++i)
         soup.positions[i] = rintf(18.0f * soup.positions[i]);
     soup_box(&soup);
@@ -223,16 +220,16 @@ static void cross_mesh(const struct level *level, const struct soup *soup,
     free(marks);
 }
 
-static void assert_crossings(struct soup *soup, int64_t step, bool block)
+static void assert_crossings(struct soup made, int64_t step, bool block)
 {
-    const struct bvh_params params = {0};
-    struct scene *scene = soup_scene(soup);
-    struct accel *accel = soup_accel(scene, &params);
-    assert_int_equal(scene->triangle_total, soup->count); /* none without area: closed still */
+    struct world world = world_of_soup(made, (struct bvh_params){0});
+    const struct soup *soup = &world.soup;
+    assert_int_equal(world.scene->triangle_total,
+                     soup->count); /* none without area: closed still */
     for (int l = 0; l < LEVELS; ++l)
         for (uint32_t axis = 0; axis < 3; ++axis) {
             struct crossings tally = {0};
-            cross_mesh(&levels[l], soup, accel, axis, step, block, &tally);
+            cross_mesh(&levels[l], soup, world.accel, axis, step, block, &tally);
             print_message("%-10s W3 %s along %c: %llu of %llu crossings missed, %llu invented; "
                           "wrong parity of %llu of %llu rays, %llu at edges\n",
                           levels[l].name, soup->name, "xyz"[axis], (unsigned long long)tally.missed,
@@ -243,23 +240,19 @@ static void assert_crossings(struct soup *soup, int64_t step, bool block)
             assert_true(tally.rays > 1000 && tally.exact > tally.rays / 2);
             assert_true(tally.on_edges > tally.rays / 10);
         }
-    accel_destroy(accel);
-    scene_destroy(scene);
-    soup_finish(soup);
+    world_finish(&world);
 }
 
 static void landscapes_are_crossed_in_pairs(void **state)
 {
     (void)state;
-    struct soup soup = soup_block();
-    assert_crossings(&soup, 1, true);
+    assert_crossings(soup_block(), 1, true);
 }
 
 static void quantised_meshes_are_crossed_in_pairs(void **state)
 {
     (void)state;
-    struct soup soup = soup_quantised();
-    assert_crossings(&soup, PARTS / 2, false);
+    assert_crossings(soup_quantised(), PARTS / 2, false);
 }
 
 int main(void)

@@ -5,6 +5,7 @@
 
 #include "hard_fixture.h"
 
+#include "coordinate_fixture.h"
 #include "twin/exact_sphere.h"
 
 struct subject {
@@ -13,11 +14,6 @@ struct subject {
 };
 
 typedef struct subject (*make_fn)(void);
-
-static inline float either_sign(float x)
-{
-    return random_below(&random_state, 2) ? x : -x;
-}
 
 /* Through the sphere or past it; a third grazes it. */
 static inline struct subject aim(float radius, float away, float size)
@@ -149,8 +145,7 @@ static inline struct subject make_tangent(void)
     struct subject s = {.origin = grid_point(10000), .dir = f.x};
     float k = (float)(1 + random_below(&random_state, 50)), along = floorf(random_within(100.0f));
     s.radius = k * f.length;
-    s.center =
-        vec3_add(s.origin, vec3_add(vec3_scale(f.y, either_sign(k)), vec3_scale(f.x, along)));
+    s.center = vec3_add(s.origin, vec3_add(vec3_scale(f.y, either(k, -k)), vec3_scale(f.x, along)));
     return s;
 }
 
@@ -181,29 +176,88 @@ static inline struct subject make_on_surface(void)
     struct subject s = {.center = grid_point(10000), .radius = f.length, .dir = f.x};
     uint32_t kind = random_below(&random_state, 3);
     if (kind < 2)
-        s.dir = vec3_add(f.x, vec3_scale(f.y, either_sign((float)random_below(&random_state, 10))));
+        s.dir = vec3_add(f.x, vec3_scale(f.y, floorf(random_within(10.0f))));
     s.origin = vec3_add(s.center, f.y);
+    return s;
+}
+
+/* Along z, a sphere at height `z`, `aside` of it. */
+static inline struct subject upright(float z, float radius, float aside, float origin, float dir)
+{
+    return (struct subject){{aside, 0, origin}, {0, 0, dir}, {0, 0, z}, radius, 0.0f};
+}
+
+/* Ends at z -+ half; between 2^25 and 2^26 floats are 4 apart, and half is 2 more than a multiple
+   of that, or less than that by 2^-302 to 2^-19; from outside or inside, or touched in a middle. */
+static inline struct subject make_tie(void)
+{
+    static const struct {
+        float radius, aside, origin;
+    } shapes[] = {{6, 0, 0},         {10, 8, 0},           {26, 24, 0},
+                  {6, 0x1p-149f, 0}, {2, 0x1p-140f, 0},    {10, 0x1.000002p3f, 0},
+                  {5, 5, -2},        {0x1.7ffffep2f, 0, 0}};
+    uint32_t shape = random_below(&random_state, 9);
+    float z = 4.0f * (float)random_below(&random_state, 1u << 20);
+    int scale = (int)random_below(&random_state, 40) - 20;
+    if (shape == 8)
+        return upright(-2, 0x1.8p25f + z, either(0x1p-149f, 0.0f), 0, 1);
+    return upright(0x1p25f + 64.0f + z, shapes[shape].radius, shapes[shape].aside,
+                   shapes[shape].origin, ldexpf(1.0f, scale));
+}
+
+/* Ends at i 2^-150 and 2048 more of these. */
+static inline struct subject make_denormal_tie(void)
+{
+    float at = (float)(1024 + random_below(&random_state, 10000));
+    return upright(ldexpf(at, -100), 0x1p-90f, 0.0f, 0.0f, 0x1p50f);
+}
+
+/* Small and far away: keys of both ends are next to each other, or one. */
+static inline struct subject make_small(void)
+{
+    struct subject s = {.origin = point_of(in_cube), .center = point_of(in_cube)};
+    s.radius = ldexpf(random_float(&random_state), -15 - (int)random_below(&random_state, 12));
+    s.dir = vec3_add(vec3_sub(s.center, s.origin), vec3_make(random_within(s.radius), 0, 0));
+    return s;
+}
+
+static inline struct subject scattered(float (*coordinate)(void))
+{
+    struct subject s = {.origin = point_of(coordinate),
+                        .dir = point_of(coordinate),
+                        .center = point_of(coordinate)};
+    s.radius = fabsf(coordinate());
     return s;
 }
 
 static const struct sphere_kind {
     const char *name;
     make_fn make;
-    double filtered, sure; /* shares that the filter and pairs decide, at least */
+    float (*coordinate)(void); /* of scattered ones */
+    double filtered, sure;     /* shares that the filter and pairs decide, at least */
 } sphere_kinds[] = {
-    {"ordinary", make_ordinary, 0.6, 0.99},
-    {"grazing", make_grazing, 0.0, 0.3},
-    {"from inside", make_inside, 0.9, 0.99},
-    {"from far away", make_far, 0.0, 0.99},
-    {"tiny", make_tiny, 0.6, 0.99},
-    {"huge", make_huge, 0.6, 0.0},
-    {"denormals", make_denormal, 0.0, 0.0},
-    {"long and short directions", make_stretched, 0.0, 0.0},
-    {"directions of 2^-100", make_short, 0.03, 0.0},
-    {"exactly tangent", make_tangent, 0.0, 0.0},
-    {"tangent but for one float", make_nearly_tangent, 0.0, 0.9},
-    {"t between two floats", make_between, 0.0, 0.0},
-    {"from the surface", make_on_surface, 0.4, 0.1},
+    {"ordinary", make_ordinary, NULL, 0.6, 0.99},
+    {"grazing", make_grazing, NULL, 0.0, 0.3},
+    {"from inside", make_inside, NULL, 0.9, 0.99},
+    {"from far away", make_far, NULL, 0.0, 0.99},
+    {"tiny", make_tiny, NULL, 0.6, 0.99},
+    {"huge", make_huge, NULL, 0.6, 0.0},
+    {"denormals", make_denormal, NULL, 0.0, 0.0},
+    {"long and short directions", make_stretched, NULL, 0.0, 0.0},
+    {"directions of 2^-100", make_short, NULL, 0.03, 0.0},
+    {"exactly tangent", make_tangent, NULL, 0.0, 0.0},
+    {"tangent but for one float", make_nearly_tangent, NULL, 0.0, 0.9},
+    {"t between two floats", make_between, NULL, 0.0, 0.0},
+    {"from the surface", make_on_surface, NULL, 0.4, 0.1},
+    {"t beside the middle of floats", make_tie, NULL, 0.0, 0.0},
+    {"t between denormals", make_denormal_tie, NULL, 0.0, 0.0},
+    {"small", make_small, NULL, 0.0, 0.0},
+    {"cube", NULL, in_cube, 0.0, 0.0},
+    {"10^-8 to 10^8", NULL, of_any_size, 0.0, 0.0},
+    {"2^-100 to 2^100", NULL, of_extreme_size, 0.0, 0.0},
+    {"grid", NULL, of_grid, 0.0, 0.0},
+    {"any denormals", NULL, denormal, 0.0, 0.0},
+    {"any bits", NULL, of_any_bits, 0.0, 0.0},
 };
 
 enum { SPHERE_KINDS = sizeof sphere_kinds / sizeof *sphere_kinds };
@@ -223,7 +277,8 @@ static inline struct subject make_subject(uint32_t kind)
 {
     struct subject s;
     do
-        s = sphere_kinds[kind].make();
+        s = sphere_kinds[kind].make ? sphere_kinds[kind].make()
+                                    : scattered(sphere_kinds[kind].coordinate);
     while (s.radius == 0.0f || vec3_largest_magnitude(s.dir) == 0.0f);
     set_t_min(&s);
     return s;

@@ -1,9 +1,8 @@
-/* Spheres at `exact` beside fractions: which end of the chord is met, and the floats that its t is
-   between; and what the filter says of them. */
-#include "hard_fixture.h"
+/* Spheres beside fractions: which ends of the chord the rational oracle and the level `exact` find,
+   and the floats that t is between; and what the filter says of them. */
+#include "hard_sphere_fixture.h"
 
 #include "fraction_fixture.h"
-#include "hard_sphere_fixture.h"
 #include "twin/ff_sphere.h"
 
 /* ---- What is so ---- */
@@ -124,7 +123,8 @@ static bool counts(const struct truth *truth, float t_min, bool far)
 
 struct tally {
     uint32_t rays, met, exits, wrong, sure, wrong_pairs, inside, outside, bad_bounds;
-    double worst; /* error of the room, of its bound */
+    uint32_t touching, on_surface, equal_keys, wrong_chords; /* of the rational oracle */
+    double worst;                                            /* error of the room, of its bound */
 };
 
 static bool is_right(const struct truth *truth, const struct sphere_candidate *m, bool near,
@@ -133,6 +133,30 @@ static bool is_right(const struct truth *truth, const struct sphere_candidate *m
     return m->met == (near || far) &&
            (!m->met || (m->at_exit == far && m->inward == (mpq_sgn(truth->s) > 0) &&
                         is_key(truth, m->key, far)));
+}
+
+static bool meet(struct rational *rational, const struct subject *s, struct rational_chord *chord)
+{
+    *chord = (struct rational_chord){.near_key = NAN, .far_key = NAN};
+    return rational_meet_sphere(rational, s->origin, s->dir, s->center, s->radius, chord);
+}
+
+static void check_chord(struct rational *rational, const struct subject *s,
+                        const struct truth *truth, struct tally *tally)
+{
+    struct rational_chord chord;
+    bool met = meet(rational, s, &chord);
+    bool near = counts(truth, 0.0f, false), far = counts(truth, 0.0f, true);
+    bool right = met == (near || far);
+    if (met)
+        right &= chord.near_there == near && chord.far_there == far &&
+                 chord.inward == (mpq_sgn(truth->s) > 0) &&
+                 (!near || is_key(truth, chord.near_key, false)) &&
+                 (!far || is_key(truth, chord.far_key, true));
+    tally->touching += met && mpq_sgn(truth->room) == 0;
+    tally->on_surface += met && mpq_sgn(truth->q) == 0;
+    tally->equal_keys += near && far && chord.near_key == chord.far_key;
+    tally->wrong_chords += !right;
 }
 
 static void check_candidate(const struct subject *s, const struct truth *truth, struct tally *tally)
@@ -193,7 +217,10 @@ static void spheres_are_met_as_fractions_say(void **state)
 {
     (void)state;
     enum { SUBJECTS = 10000 };
+    struct rational *rational = rational_create(NULL);
     struct truth truth;
+    uint32_t touching = 0, on_surface = 0, equal_keys = 0;
+    assert_non_null(rational);
     truth_init(&truth);
     for (uint32_t k = 0; k < SPHERE_KINDS; ++k) {
         struct tally tally = {0};
@@ -201,27 +228,114 @@ static void spheres_are_met_as_fractions_say(void **state)
         for (int i = 0; i < SUBJECTS; ++i) {
             struct subject s = make_subject(k);
             find_truth(&s, &truth);
+            check_chord(rational, &s, &truth, &tally);
             check_candidate(&s, &truth, &tally);
             check_bounds(&s, &truth, &tally);
         }
-        print_message("%-26s %u of %u wrong, %u met, %u at the far end; pairs: %u sure, of which "
-                      "%u wrong; filter: %u inside, %u outside, %u bad bounds, error of the room "
-                      "at most %.3f of its bound\n",
-                      sphere_kinds[k].name, tally.wrong, tally.rays, tally.met, tally.exits,
-                      tally.sure, tally.wrong_pairs, tally.inside, tally.outside, tally.bad_bounds,
-                      tally.worst);
+        print_message(
+            "%-30s chords: %u wrong, %u touch, %u rays begin on it, %u equal keys; "
+            "candidates: %u of %u wrong, %u met, %u at the far end; pairs: %u sure, of which "
+            "%u wrong; filter: %u inside, %u outside, %u bad bounds, error of the room "
+            "at most %.3f of its bound\n",
+            sphere_kinds[k].name, tally.wrong_chords, tally.touching, tally.on_surface,
+            tally.equal_keys, tally.wrong, tally.rays, tally.met, tally.exits, tally.sure,
+            tally.wrong_pairs, tally.inside, tally.outside, tally.bad_bounds, tally.worst);
+        assert_int_equal(tally.wrong_chords, 0);
         assert_int_equal(tally.wrong, 0);
         assert_int_equal(tally.wrong_pairs, 0);
         assert_int_equal(tally.bad_bounds, 0);
         assert_true(tally.met > SUBJECTS / 10 && tally.exits > SUBJECTS / 20);
+        touching += tally.touching;
+        on_surface += tally.on_surface;
+        equal_keys += tally.equal_keys;
         assert_true(tally.inside + tally.outside >= sphere_kinds[k].filtered * SUBJECTS);
         assert_true(tally.sure >= sphere_kinds[k].sure * tally.rays);
     }
+    assert_true(touching > SUBJECTS * 9 / 10 && on_surface > SUBJECTS / 2 &&
+                equal_keys > SUBJECTS / 2);
     truth_clear(&truth);
+    rational_destroy(rational);
+}
+
+/* ---- Answers known beforehand ---- */
+
+struct known {
+    struct subject subject;
+    bool near_there, far_there, inward;
+    float near, far;
+};
+
+static void rays_along_axes_meet_both_ends(void **state)
+{
+    (void)state;
+    const struct known cases[] = {
+        {upright(10, 2, 0, 0, 1), true, true, true, 8, 12},
+        {upright(10, 2, 0, 0, -1), false, false, false, 0, 0}, /* away */
+        {upright(10, 2, 0, 11, 4), false, true, false, 0, 0.25f},
+        {upright(10, 2, 0, 9, 4), false, true, true, 0, 0.75f},
+        {upright(10, 2, 0, 10, 0.5f), false, true, false, 0, 4}, /* from the centre */
+        {upright(10, 5, 3, 0, 1), true, true, true, 6, 14},
+        {upright(10, 5, 5, 0, 1), true, true, true, 10, 10},              /* touched */
+        {upright(10, 5, 0x1.400002p2f, 0, 1), false, false, false, 0, 0}, /* just not */
+        {upright(10, 2, 0, 8, 1), true, true, true, 0, 4},                /* on it, inwards */
+        {upright(10, 2, 0, 8, -1), false, true, false, 0, 0},             /* on it, outwards */
+        {upright(10, 2, 0, 12, -2), true, true, true, 0, 2},              /* on the other side */
+        {upright(10, 2, 2, 10, 1), true, true, false, 0, 0},              /* on it, along it */
+        {upright(0x1p100f, 0x1p99f, 0, 0, 0x1p10f), true, true, true, 0x1p89f, 0x1.8p90f},
+        {upright(3 * 0x1p-149f, 0x1p-149f, 0, 0, 0x1p-149f), true, true, true, 2, 4},
+        {upright(0x1p-149f, 0x1p-149f, 0, 0, 1), true, true, true, 0, 0x1p-148f},
+    };
+    struct rational *rational = rational_create(NULL);
+    struct rational_chord chord;
+    assert_non_null(rational);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        const struct known *k = &cases[i];
+        bool met = meet(rational, &k->subject, &chord),
+             right = met == (k->near_there || k->far_there);
+        if (met)
+            right &= chord.near_there == k->near_there && chord.far_there == k->far_there &&
+                     chord.inward == k->inward &&
+                     (!k->near_there || (chord.near_key == k->near && !signbit(chord.near_key))) &&
+                     (!k->far_there || (chord.far_key == k->far && !signbit(chord.far_key)));
+        if (!right)
+            fail_msg("row %zu of cases", i);
+    }
+    rational_destroy(rational);
+}
+
+static void keys_end_with_the_floats(void **state)
+{
+    (void)state;
+    struct rational *rational = rational_create(NULL);
+    struct rational_chord chord;
+    assert_non_null(rational);
+    struct subject s = upright(FLT_MAX, 0x1p104f, 0, 0, 1);
+    assert_true(meet(rational, &s, &chord) && chord.near_there && !chord.far_there);
+    assert_true(chord.near_key == 0x1.fffffcp127f);
+    s.radius = 0x1p103f; /* ends in the middle of floats, the far one of FLT_MAX and what follows */
+    assert_true(meet(rational, &s, &chord) && chord.near_there && !chord.far_there);
+    assert_true(chord.near_key == 0x1.fffffcp127f);
+    s.radius = 0x1.fffffep102f;
+    assert_true(meet(rational, &s, &chord) && chord.near_there && chord.far_there);
+    assert_true(chord.near_key == FLT_MAX && chord.far_key == FLT_MAX);
+    s.dir.z = 0.5f;
+    assert_false(meet(rational, &s, &chord));
+    s = upright(0x1p-100f, 0x1p-101f, 0, 0, 0x1p60f); /* 2^-161 and 3 times as much */
+    assert_true(meet(rational, &s, &chord) && chord.near_there && chord.far_there);
+    assert_true(chord.near_key == 0.0f && chord.far_key == 0.0f);
+    s = upright(FLT_MAX, FLT_MAX, FLT_MAX, 0, 0x1p-149f); /* touched at 2^277 */
+    assert_false(meet(rational, &s, &chord));
+    s = upright(FLT_MAX, FLT_MAX, 0x1p-149f, -FLT_MAX, FLT_MAX);
+    assert_true(meet(rational, &s, &chord) && chord.near_key == 1.0f && chord.far_key == 3.0f);
+    rational_destroy(rational);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(spheres_are_met_as_fractions_say)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spheres_are_met_as_fractions_say),
+        cmocka_unit_test(rays_along_axes_meet_both_ends),
+        cmocka_unit_test(keys_end_with_the_floats),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

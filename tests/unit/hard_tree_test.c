@@ -1,26 +1,23 @@
-/* R1, R2, R8, U1, U7 and U14 of the catalogue: which tree there is, and in which order it is
+/* B11, R1, R2, R8, U1, U7 and U14 of the catalogue: which tree there is, and in which order it is
    walked, does not tell; nor whether any hit is asked for or the closest one. At every level, bit
    for bit beside no tree at all. tests/peers/equal.c does the same for scenes and devices. */
 #include "hard_fixture.h"
-#include "twin/traverse.h"
 
 static const struct bvh_params trees[] = {
     {.builder = BVH_BINNED},
     {.builder = BVH_BINNED, .leaf_limit = 1, .bins = 5},
+    {.builder = BVH_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
     {.builder = BVH_MEDIAN, .leaf_limit = 2},
+    {.builder = BVH_MEDIAN, .leaf_limit = 1, .optimize = true},
     {.builder = BVH_SWEEP},
     {.builder = BVH_SPATIAL},
+    {.builder = BVH_SPATIAL, .optimize = true},
+    {.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_budget = 4.0f, .spatial_alpha = 1e-9f},
+    {.builder = BVH_NONE},
 };
 enum { TREES = sizeof trees / sizeof *trees, ORDERS = 3 };
 
 /* ---- Scenes ---- */
-
-static struct soup soup_torus(void)
-{
-    struct scene_mesh mesh;
-    assert_int_equal(shape_torus(1.0, 0.4, 32, 16, &mesh), WHIT_OK);
-    return soup_of_mesh("torus", &mesh);
-}
 
 /* Each triangle of a terrain of integers several times, in any order: ties everywhere. */
 static struct soup soup_layers(uint32_t layers)
@@ -39,35 +36,6 @@ static struct soup soup_layers(uint32_t layers)
     return soup;
 }
 
-enum { SCENES = 10 };
-
-static struct soup make_scene(uint32_t i)
-{
-    random_state = 100 + i;
-    switch (i) {
-    case 0:
-        return soup_sphere(32, 16);
-    case 1:
-        return soup_terrain(20);
-    case 2:
-        return soup_rooms(150);
-    case 3:
-        return soup_hair(400, 0.01f);
-    case 4:
-        return soup_hair(300, 0.5f);
-    case 5:
-        return soup_exponential(200, 1.2);
-    case 6:
-        return soup_garbage(300, 1e6f);
-    case 7:
-        return soup_torus();
-    case 8:
-        return soup_layers(5);
-    default:
-        return soup_make("nothing", 0);
-    }
-}
-
 /* ---- Any tree, any order ---- */
 
 struct counts {
@@ -81,20 +49,16 @@ static void try_orders(const struct level *level, const struct accel *accel,
 {
     for (uint32_t order = 0; order < ORDERS; ++order) {
         struct gpu_ray cut = *ray;
-        struct gpu_hit hit;
         bool met = wanted->primitive != HIT_NONE;
-        level_trace(level, accel, order, false, ray, &hit, NULL);
-        counts->differ += memcmp(&hit, wanted, sizeof hit) != 0;
-        level_trace(level, accel, order, true, ray, &hit, NULL);
-        counts->ends += (hit.primitive != HIT_NONE) != met;
+        struct gpu_hit hit = level_trace(level, accel, order, false, ray);
+        counts->differ += !hits_equal(&hit, wanted);
+        counts->ends += (level_trace(level, accel, order, true, ray).primitive != HIT_NONE) != met;
         if (!met)
             continue;
         cut.t_max = wanted->t;
-        level_trace(level, accel, order, true, &cut, &hit, NULL);
-        counts->ends += hit.primitive == HIT_NONE;
+        counts->ends += level_trace(level, accel, order, true, &cut).primitive == HIT_NONE;
         cut.t_max = nextafterf(wanted->t, -INFINITY);
-        level_trace(level, accel, order, true, &cut, &hit, NULL);
-        counts->ends += hit.primitive != HIT_NONE;
+        counts->ends += level_trace(level, accel, order, true, &cut).primitive != HIT_NONE;
     }
 }
 
@@ -111,14 +75,7 @@ static void compare_trees(const struct level *level, const struct soup *soup,
     random_state = 17;
     for (uint32_t i = 0; i < rays; ++i) {
         struct gpu_ray ray = ray_at_scene(soup, &accels[0]->meshes[0].box, i);
-        const struct traverse_params brute = {.numerics = level->numerics,
-                                              .brute = true,
-                                              .skip_instance = HIT_NONE,
-                                              .skip_primitive = HIT_NONE};
-        struct gpu_hit wanted;
-        uint32_t status = 0;
-        traverse_ray(accels[0], &brute, &ray, &wanted, NULL, &status);
-        assert_int_equal(status, 0);
+        struct gpu_hit wanted = level_brute(level, accels[0], &ray);
         ++counts->rays;
         counts->hits += wanted.primitive != HIT_NONE;
         for (uint32_t t = 0; t < TREES; ++t)
@@ -126,37 +83,53 @@ static void compare_trees(const struct level *level, const struct soup *soup,
     }
 }
 
-/* R1, R8, U14 */
+/* B11, R1, R8, U14: also where a hit's t is less than its box's, by roundings. */
 static void trees_and_orders_do_not_matter(void **state)
 {
     (void)state;
-    const uint32_t rays = cases_of(600);
-    for (uint32_t s = 0; s < SCENES; ++s) {
-        struct soup soup = make_scene(s);
-        struct scene *scene = soup_scene(&soup);
-        struct accel *accels[TREES];
-        for (uint32_t t = 0; t < TREES; ++t)
-            accels[t] = soup_accel(scene, &trees[t]);
+    const uint32_t rays = cases_of(2000);
+    random_state = 100;
+    const struct soup soups[] = {
+        soup_sphere(32, 16),     soup_terrain(20),
+        soup_rooms(200),         soup_rooms(700),
+        soup_hair(400, 0.01f),   soup_hair(1000, 1e-3f),
+        soup_hair(300, 0.5f),    soup_exponential(200, 1.2),
+        soup_garbage(300, 1e6f), soup_of_mesh("torus", mesh_torus(1.0, 0.4, 32, 16)),
+        soup_layers(5),          soup_make("nothing", 0),
+    };
+    for (size_t s = 0; s < sizeof soups / sizeof *soups; ++s) {
+        struct world world = world_of_soup(soups[s], trees[0]);
+        struct accel *accels[TREES] = {world.accel};
+        for (uint32_t t = 1; t < TREES; ++t)
+            accels[t] = accel_of(world.scene, (struct accel_params){.mesh = trees[t]});
         for (int l = 0; l < LEVELS; ++l) {
             struct counts counts = {0};
-            compare_trees(&levels[l], &soup, accels, rays, &counts);
+            compare_trees(&levels[l], &world.soup, accels, rays, &counts);
             print_message("%-10s R1 %-11s %llu of %llu hits differ by tree or order; R8 %llu any "
                           "hits are unlike closest ones; %llu of %llu rays hit\n",
-                          levels[l].name, soup.name, (unsigned long long)counts.differ,
+                          levels[l].name, world.soup.name, (unsigned long long)counts.differ,
                           (unsigned long long)counts.rays * TREES * ORDERS,
                           (unsigned long long)counts.ends, (unsigned long long)counts.hits,
                           (unsigned long long)counts.rays);
             assert_int_equal(counts.differ + counts.ends, 0);
-            assert_true(soup.count == 0 ? counts.hits == 0 : counts.hits > rays / 50);
+            assert_true(world.soup.count == 0 ? counts.hits == 0 : counts.hits > rays / 50);
         }
-        for (uint32_t t = 0; t < TREES; ++t)
+        for (uint32_t t = 1; t < TREES; ++t)
             accel_destroy(accels[t]);
-        scene_destroy(scene);
-        soup_finish(&soup);
+        world_finish(&world);
     }
 }
 
 static const float equal[3][3] = {{-1, -1, 0.5f}, {1.25f, -1, 0.25f}, {0, 1.5f, 0.125f}};
+
+static struct soup soup_equal(uint32_t count)
+{
+    struct soup soup = soup_make("equal", count);
+    for (uint32_t i = 0; i < count; ++i)
+        soup_set(&soup, i, equal[0], equal[1], equal[2]);
+    soup_box(&soup);
+    return soup;
+}
 
 /* At a vertex, the middle of an edge or a point inside, from all eight sides, so that `sign` meets
    the second of every pair first: t is 1. */
@@ -179,24 +152,16 @@ static void the_first_of_equal_triangles_is_hit(void **state)
     const uint32_t counts[] = {2, 3, 10, 100, 1000};
     uint32_t rays[LEVELS] = {0}, others[LEVELS] = {0};
     for (size_t n = 0; n < sizeof counts / sizeof *counts * TREES; ++n) {
-        struct soup soup = soup_make("equal", counts[n / TREES]);
-        for (uint32_t i = 0; i < soup.count; ++i)
-            soup_set(&soup, i, equal[0], equal[1], equal[2]);
-        soup_box(&soup);
-        struct scene *scene = soup_scene(&soup);
-        struct accel *accel = soup_accel(scene, &trees[n % TREES]);
+        struct world world = world_of_soup(soup_equal(counts[n / TREES]), trees[n % TREES]);
         for (int l = 0; l < LEVELS; ++l)
             for (uint32_t i = 0; i < 24 * ORDERS; ++i) {
                 struct gpu_ray ray = ray_at_equal(i % 24);
-                struct gpu_hit hit;
-                level_trace(&levels[l], accel, i / 24, false, &ray, &hit, NULL);
+                struct gpu_hit hit = level_trace(&levels[l], world.accel, i / 24, false, &ray);
                 ++rays[l];
                 others[l] += hit.primitive != 0 || fabsf(hit.t - 1.0f) > FLT_EPSILON ||
                              (levels[l].exact && hit.t != 1.0f);
             }
-        accel_destroy(accel);
-        scene_destroy(scene);
-        soup_finish(&soup);
+        world_finish(&world);
     }
     for (int l = 0; l < LEVELS; ++l) {
         print_message("%-10s R2 %u of %u rays at equal triangles hit another than the first\n",
@@ -210,13 +175,11 @@ static void equal_triangles_are_shared_out(void **state)
 {
     (void)state;
     const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
-    struct soup soup = soup_make("equal", count);
-    for (uint32_t i = 0; i < count; ++i)
-        soup_set(&soup, i, equal[0], equal[1], equal[2]);
-    soup_box(&soup);
-    struct scene *scene = soup_scene(&soup);
     for (uint32_t t = 0; t < TREES; ++t) {
-        struct accel *accel = soup_accel(scene, &trees[t]);
+        if (trees[t].spatial_budget > 0.0f || trees[t].builder == BVH_NONE)
+            continue; /* more than one record a triangle; no tree */
+        struct world world = world_of_soup(soup_equal(count), trees[t]);
+        const struct accel *accel = world.accel;
         uint32_t limit = trees[t].leaf_limit ? trees[t].leaf_limit : 4, largest = 0, held = 0;
         for (uint32_t n = 0; n < accel->meshes[0].node_count; ++n) {
             uint32_t in_leaf = bvh_count(&accel->nodes[accel->meshes[0].first_node + n]);
@@ -228,10 +191,8 @@ static void equal_triangles_are_shared_out(void **state)
         assert_true(largest >= 1 && largest <= limit);
         assert_int_equal(held, count);
         assert_true(accel->meshes[0].depth <= 2 + (uint32_t)log2(count));
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_destroy(scene);
-    soup_finish(&soup);
 }
 
 /* Any bits, NaN and infinity among them. */
@@ -276,7 +237,7 @@ static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
         *usable += count_usable(&mesh);
         scene_put(scene, mesh, NULL);
     }
-    return scene_ready(scene);
+    return scene;
 }
 
 /* U5, U6, U7: a thousand scenes (label long) of twenty meshes of any bits: what cannot be used is
@@ -288,27 +249,22 @@ static void any_bits_have_trees(void **state)
     uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
     for (uint32_t s = 0; s < scenes; ++s) {
-        struct scene *scene = scene_of_bits(20, &usable);
-        struct accel *accel = soup_accel(scene, &trees[s % TREES]);
+        struct world world =
+            world_of(scene_of_bits(20, &usable), (struct accel_params){.mesh = trees[s % TREES]});
+        const struct scene *scene = world.scene;
         kept += scene->triangle_total;
         for (uint32_t m = 0; m < scene->mesh_count; ++m)
             assert_int_equal(count_usable(&scene->meshes[m]), scene->meshes[m].triangle_count);
         for (uint32_t i = 0; i < 40; ++i) {
             struct gpu_ray ray = ray_from_cube(2.0f, random_point(1.0f));
-            struct traverse_params params = {.numerics = levels[i % LEVELS].numerics,
-                                             .brute = true,
-                                             .skip_instance = HIT_NONE,
-                                             .skip_primitive = HIT_NONE};
-            struct gpu_hit wanted, hit;
-            uint32_t status = 0;
-            traverse_ray(accel, &params, &ray, &wanted, NULL, &status);
-            level_trace(&levels[i % LEVELS], accel, i % ORDERS, false, &ray, &hit, NULL);
+            struct gpu_hit wanted = level_brute(&levels[i % LEVELS], world.accel, &ray);
+            struct gpu_hit hit =
+                level_trace(&levels[i % LEVELS], world.accel, i % ORDERS, false, &ray);
             ++rays;
             hits += wanted.primitive != HIT_NONE;
-            differ += memcmp(&hit, &wanted, sizeof hit) != 0;
+            differ += !hits_equal(&hit, &wanted);
         }
-        accel_destroy(accel);
-        scene_destroy(scene);
+        world_finish(&world);
     }
     print_message(
         "U7 %u scenes of any bits, %llu of %llu triangles kept: %llu of %llu rays differ by tree, "
