@@ -1,36 +1,10 @@
 /* The arrays of a whole scene: where each mesh lies, what its triangles say, and instances posed
    anywhere. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "accel_fixture.h"
 
-#include <cmocka.h>
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "../random.h"
-#include "../scenes.h"
-#include "accel/accel.h"
-#include "twin/traverse.h"
-
-static const struct log silent;
-static char last_error[256];
-
-static void keep_error(void *user, whit_log_level level, const char *message)
+static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings)
 {
-    (void)user;
-    if (level == WHIT_LOG_ERROR)
-        snprintf(last_error, sizeof last_error, "%s", message);
-}
-
-static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings,
-                           uint32_t material)
-{
-    return scene_put_mesh(scene, mesh_wearing(mesh_sphere(1.0, segments, rings), material));
+    return scene_put_mesh(scene, mesh_sphere(1.0, segments, rings));
 }
 
 static struct affine placed(double x, double y, double z, double angle, double sx, double sy,
@@ -41,15 +15,10 @@ static struct affine placed(double x, double y, double z, double angle, double s
     return affine_from_trs(at, rotation, scale);
 }
 
-static struct accel *build(struct scene *scene, uint32_t threads)
+static struct accel_params by_threads(uint32_t count)
 {
-    struct accel_params params = {.mesh = {.thread_count = threads},
-                                  .instances = {.thread_count = threads},
-                                  .validate = true};
-    struct accel *accel = NULL;
-    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
-    assert_non_null(accel);
-    return accel;
+    return (struct accel_params){.mesh = {.thread_count = count},
+                                 .instances = {.thread_count = count}};
 }
 
 /* Two large meshes, three small ones, one without triangles; turned, mirrored, far away. */
@@ -58,7 +27,7 @@ static struct scene *mixed_scene(void)
     struct scene *scene = scene_begin(&silent, "test");
     static const uint32_t sizes[] = {4, 90, 7, 80, 3};
     for (size_t i = 0; i < 5; ++i)
-        add_sphere(scene, sizes[i], sizes[i], 0);
+        add_sphere(scene, sizes[i], sizes[i]);
     uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
     scene_put_again(scene, empty, NULL);
     for (uint32_t i = 0; i < 40; ++i) {
@@ -67,14 +36,15 @@ static struct scene *mixed_scene(void)
         if (i % 10 == 0)
             scene_put_again(scene, empty, &(struct put){.matrix = &m});
     }
-    return scene_ready(scene);
+    return scene;
 }
 
 static void meshes_lie_side_by_side(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
-    struct accel *accel = build(scene, 2);
+    struct world world = world_of(mixed_scene(), by_threads(2));
+    const struct scene *scene = world.scene;
+    const struct accel *accel = world.accel;
     uint32_t nodes = accel->instance_node_capacity, triangles = 0;
     assert_int_equal(accel->mesh_count, scene->mesh_count);
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
@@ -96,17 +66,16 @@ static void meshes_lie_side_by_side(void **state)
     assert_int_equal(accel->triangle_count, triangles);
     assert_int_equal((uintptr_t)accel->nodes % 64, 0);
     assert_true(accel_bytes(accel) >= 32 * (uint64_t)nodes + 48 * (uint64_t)triangles);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void same_bytes_for_any_thread_count(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
-    struct accel *one = build(scene, 1);
+    struct world world = world_of(mixed_scene(), by_threads(1));
+    const struct accel *one = world.accel;
     for (uint32_t threads = 2; threads <= 4; threads += 2) {
-        struct accel *other = build(scene, threads);
+        struct accel *other = accel_of(world.scene, by_threads(threads));
         assert_int_equal(other->node_count, one->node_count);
         assert_memory_equal(other->nodes, one->nodes, one->node_count * sizeof *one->nodes);
         assert_memory_equal(other->triangles, one->triangles,
@@ -115,8 +84,7 @@ static void same_bytes_for_any_thread_count(void **state)
                             one->instance_count * sizeof *one->instances);
         accel_destroy(other);
     }
-    accel_destroy(one);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 /* Leaf of the tree over instances that holds `instance`. */
@@ -157,32 +125,30 @@ static void assert_posed(const struct accel *accel, const struct scene_pose *pos
 static void instances_are_boxed_wherever_they_are(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
-    struct accel *accel = build(scene, 1);
-    struct scene_pose pose;
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-    assert_posed(accel, &pose);
+    struct world world = world_of(mixed_scene(), by_threads(1));
+    struct accel *accel = world.accel;
+    struct scene_pose *pose = &world.pose;
+    assert_posed(accel, pose);
     assert_false(accel->single_identity);
     struct gpu_bvh_node mesh_node = accel->nodes[accel->meshes[1].first_node + 2];
-    for (uint32_t i = 0; i < pose.instance_count; ++i) {
-        pose.instances[i].m[3] += 1e5 + 17.0 * (i % 5);
-        pose.instances[i].m[7] -= 3.0 * i;
+    for (uint32_t i = 0; i < pose->instance_count; ++i) {
+        pose->instances[i].m[3] += 1e5 + 17.0 * (i % 5);
+        pose->instances[i].m[7] -= 3.0 * i;
     }
-    assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+    assert_int_equal(accel_pose(accel, pose), WHIT_OK);
     assert_int_equal(accel_validate(accel), WHIT_OK);
-    assert_posed(accel, &pose);
+    assert_posed(accel, pose);
     assert_memory_equal(&mesh_node, &accel->nodes[accel->meshes[1].first_node + 2],
                         sizeof mesh_node);
-    scene_pose_finish(&pose);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void inverse_and_forward_are_inverse(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
-    struct accel *accel = build(scene, 1);
+    struct world world = world_of(mixed_scene(), by_threads(1));
+    const struct scene *scene = world.scene;
+    const struct accel *accel = world.accel;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
         const struct gpu_instance *in = &accel->instances[i];
         const float *f[3] = {in->forward0, in->forward1, in->forward2};
@@ -201,8 +167,7 @@ static void inverse_and_forward_are_inverse(void **state)
         assert_int_equal(in->root, accel->meshes[in->mesh].root);
         assert_int_equal(in->shade_base, accel->meshes[in->mesh].shade_base);
     }
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void one_instance_at_the_origin_is_told_apart(void **state)
@@ -214,25 +179,12 @@ static void one_instance_at_the_origin_is_told_apart(void **state)
     for (int k = 0; k < 3; ++k) {
         struct scene *scene = scene_begin(&silent, "test");
         scene_put(scene, mesh_sphere(1.0, 8, 8), &(struct put){.matrix = matrices[k]});
-        scene_ready(scene);
-        struct accel *accel = build(scene, 1);
+        struct world world = world_of(scene, by_threads(1));
+        const struct accel *accel = world.accel;
         assert_int_equal(accel->single_identity, k < 2);
         assert_int_equal(accel->instance_root, 1u << BVH_COUNT_SHIFT);
         assert_int_equal(accel->instance_depth, 0);
-        accel_destroy(accel);
-        scene_destroy(scene);
-    }
-}
-
-static void assert_missed(const struct accel *accel)
-{
-    const struct gpu_ray ray = {.dir = {0.1f, 0.2f, -1}, .t_max = INFINITY};
-    for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order) {
-        struct gpu_hit hit;
-        uint32_t status = 0;
-        traverse_float(accel, order, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-        assert_int_equal(hit.primitive, HIT_NONE);
-        assert_int_equal(status, 0);
+        world_finish(&world);
     }
 }
 
@@ -246,14 +198,17 @@ static void scenes_without_anything(void **state)
             for (int i = 1; i < k; ++i)
                 scene_put_again(scene, mesh, NULL);
         }
-        scene_ready(scene);
-        struct accel *accel = build(scene, 2);
+        struct world world = world_of(scene, by_threads(2));
+        const struct accel *accel = world.accel;
         assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
         assert_int_equal(accel->instance_node_count, 0);
         assert_false(accel->single_identity);
-        assert_missed(accel);
-        accel_destroy(accel);
-        scene_destroy(scene);
+        const struct gpu_ray ray = {.dir = {0.1f, 0.2f, -1}, .t_max = INFINITY};
+        for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order)
+            assert_int_equal(
+                trace_with(accel, (struct traverse_params){.order = order}, &ray, NULL).primitive,
+                HIT_NONE);
+        world_finish(&world);
     }
 }
 
@@ -262,33 +217,30 @@ static void many_instances_in_one_place(void **state)
     (void)state;
     enum { COUNT = 3000 };
     struct scene *scene = scene_begin(&silent, "test");
-    uint32_t mesh = add_sphere(scene, 4, 3, 0);
+    uint32_t mesh = add_sphere(scene, 4, 3);
     for (int i = 0; i < COUNT; ++i)
         scene_put_again(scene, mesh, NULL);
-    scene_ready(scene);
-    struct accel *accel = build(scene, 2);
+    struct world world = world_of(scene, by_threads(2));
+    const struct accel *accel = world.accel;
     assert_int_equal(accel->instance_node_count, 2 * COUNT);
     assert_true(accel->instance_depth <= 12);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void matrices_without_inverse_are_refused(void **state)
 {
     (void)state;
     struct scene *scene = scene_begin(&silent, "test");
-    uint32_t mesh = add_sphere(scene, 4, 3, 0);
+    uint32_t mesh = add_sphere(scene, 4, 3);
     scene_put_again(scene, mesh, NULL);
     scene_put_again(scene, mesh, NULL);
-    scene_ready(scene);
-    struct accel *accel = build(scene, 1);
-    struct scene_pose pose;
-    accel->log = (struct log){.fn = keep_error, .level = WHIT_LOG_ERROR};
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    struct world world = world_of(scene, by_threads(1));
+    struct accel *accel = world.accel;
+    struct scene_pose *pose = &world.pose;
     const double bad[] = {0.0, (double)NAN, (double)INFINITY, 1e-60, 1e60};
     for (int k = 0; k < 5; ++k) {
-        pose.instances[1].m[0] = bad[k];
-        assert_int_equal(accel_pose(accel, &pose), WHIT_ERROR_INPUT);
+        pose->instances[1].m[0] = bad[k];
+        assert_int_equal(accel_pose(accel, pose), WHIT_ERROR_INPUT);
         assert_string_equal(last_error,
                             "test: instance 1 ``: its matrix has no inverse in range at 0 s");
         assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
@@ -301,15 +253,13 @@ static void matrices_without_inverse_are_refused(void **state)
                                {0, 0, 0, 0, 0, 0, 0, 0, 0}};
     for (int k = 0; k < 4; ++k) {
         for (int i = 0; i < 9; ++i)
-            pose.instances[1].m[i / 3 * 4 + i % 3] = flat[k][i];
-        assert_int_equal(accel_pose(accel, &pose), WHIT_ERROR_INPUT);
+            pose->instances[1].m[i / 3 * 4 + i % 3] = flat[k][i];
+        assert_int_equal(accel_pose(accel, pose), WHIT_ERROR_INPUT);
     }
-    pose.instances[1] = affine_identity();
-    pose.instances[1].m[0] = -1.0;
-    assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
-    scene_pose_finish(&pose);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    pose->instances[1] = affine_identity();
+    pose->instances[1].m[0] = -1.0;
+    assert_int_equal(accel_pose(accel, pose), WHIT_OK);
+    world_finish(&world);
 }
 
 /* ---- Moving instances ---- */
@@ -327,12 +277,12 @@ enum { WAYS = sizeof ways / sizeof *ways };
 static struct scene *moving_scene(void)
 {
     struct scene *scene = scene_begin(&silent, "test");
-    add_sphere(scene, 12, 8, 0);
-    add_sphere(scene, 6, 5, 0);
+    add_sphere(scene, 12, 8);
+    add_sphere(scene, 6, 5);
     uint32_t empty = scene_put_mesh(scene, (struct scene_mesh){0});
     for (uint32_t i = 0; i < MOVING; ++i)
         scene_put_again(scene, i % 16 == 7 ? empty : i % 2, NULL);
-    return scene_ready(scene);
+    return scene;
 }
 
 /* Things of all sizes, shapes and hands that fly through each other. */
@@ -345,31 +295,17 @@ static void move_all(struct scene_pose *pose, double t)
     }
 }
 
-static struct gpu_ray random_ray(uint64_t *state)
-{
-    struct gpu_ray ray = {.t_max = INFINITY};
-    for (int i = 0; i < 3; ++i) {
-        double from = 20.0 * random_unit(state) - 10.0, to = 16.0 * random_unit(state) - 8.0;
-        ray.origin[i] = (float)from;
-        ray.dir[i] = (float)(to - from);
-    }
-    return ray;
-}
-
 /* How many rays of `count` met something. */
-static uint32_t same_hits(const struct accel *a, const struct accel *b, uint64_t seed,
-                          uint32_t count)
+static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t count)
 {
-    uint32_t status = 0, met = 0;
+    uint32_t met = 0;
     for (uint32_t i = 0; i < count; ++i) {
-        struct gpu_ray ray = random_ray(&seed);
-        struct gpu_hit x, y;
-        traverse_float(a, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &x, NULL, &status);
-        traverse_float(b, ORDER_SIGN, &ray, false, HIT_NONE, HIT_NONE, &y, NULL, &status);
+        struct gpu_ray ray = ray_from_cube(10.0f, random_point(8.0f));
+        struct gpu_hit x = trace(a, &ray);
+        struct gpu_hit y = trace_with(b, (struct traverse_params){.order = ORDER_SIGN}, &ray, NULL);
         assert_memory_equal(&x, &y, sizeof x);
         met += x.primitive != HIT_NONE;
     }
-    assert_int_equal(status, 0);
     return met;
 }
 
@@ -377,24 +313,22 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint64_t
 static void moved_instances_are_hit_alike_whatever_the_tree(void **state)
 {
     (void)state;
-    struct scene *scene = moving_scene();
-    struct accel *all[WAYS], *fresh = NULL;
-    struct scene_pose pose;
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    struct world fresh = world_of(moving_scene(), (struct accel_params){0});
+    struct accel *all[WAYS];
     for (size_t w = 0; w < WAYS; ++w)
-        assert_int_equal(accel_create(&silent, scene, &ways[w], &all[w]), WHIT_OK);
+        all[w] = accel_of(fresh.scene, ways[w]);
     size_t mesh_nodes = all[0]->node_count - all[0]->instance_node_capacity;
     struct gpu_bvh_node *kept = malloc(mesh_nodes * sizeof *kept);
     assert_non_null(kept);
     memcpy(kept, all[2]->nodes + all[2]->instance_node_capacity, mesh_nodes * sizeof *kept);
-    assert_int_equal(accel_create(&silent, scene, NULL, &fresh), WHIT_OK);
     uint32_t met = 0;
     for (int step = 0; step < 1000; ++step) {
-        move_all(&pose, 0.01 * step);
-        assert_int_equal(accel_pose(fresh, &pose), WHIT_OK);
+        move_all(&fresh.pose, 0.01 * step);
+        assert_int_equal(accel_pose(fresh.accel, &fresh.pose), WHIT_OK);
         for (size_t w = 0; w < WAYS; ++w) {
-            assert_int_equal(accel_pose(all[w], &pose), WHIT_OK);
-            met += same_hits(fresh, all[w], (uint64_t)step, 40);
+            random_state = (uint64_t)step;
+            assert_int_equal(accel_pose(all[w], &fresh.pose), WHIT_OK);
+            met += same_hits(fresh.accel, all[w], 40);
             if (step % 50 == 0)
                 assert_int_equal(accel_validate(all[w]), WHIT_OK);
         }
@@ -405,27 +339,22 @@ static void moved_instances_are_hit_alike_whatever_the_tree(void **state)
     free(kept);
     for (size_t w = 0; w < WAYS; ++w)
         accel_destroy(all[w]);
-    accel_destroy(fresh);
-    scene_pose_finish(&pose);
-    scene_destroy(scene);
+    world_finish(&fresh);
 }
 
 /* The shape of a refitted tree is that of its first pose; a rebuilt one follows the instances. */
 static void only_a_rebuild_changes_the_tree(void **state)
 {
     (void)state;
-    struct scene *scene = moving_scene();
-    struct scene_pose pose;
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     for (size_t w = 0; w < WAYS; ++w) {
-        struct accel *accel;
-        assert_int_equal(accel_create(&silent, scene, &ways[w], &accel), WHIT_OK);
+        struct world world = world_of(moving_scene(), ways[w]);
+        struct accel *accel = world.accel;
         struct gpu_bvh_node before[2 * MOVING];
         uint32_t count = accel->instance_node_count, links = 0, boxes = 0, axes = 0;
         assert_true(count <= 2 * MOVING);
         memcpy(before, accel->nodes, count * sizeof *before);
-        move_all(&pose, 3.0);
-        assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
+        move_all(&world.pose, 3.0);
+        assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
         assert_int_equal(accel->instance_node_count, count);
         for (uint32_t i = 0; i < count; ++i) {
             links += before[i].first != accel->nodes[i].first;
@@ -435,10 +364,8 @@ static void only_a_rebuild_changes_the_tree(void **state)
         assert_true(boxes > count / 2);
         assert_true(axes > 0);
         assert_int_equal(links == 0, ways[w].update == ACCEL_REFIT);
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 /* The source report drew the first object alone. */
@@ -446,126 +373,83 @@ static void every_instance_is_hit(void **state)
 {
     (void)state;
     enum { SIDE = 12 };
-    struct scene *scene = scene_begin(&silent, "test");
-    uint32_t mesh = add_sphere(scene, 8, 6, 0);
-    for (int i = 0; i < SIDE * SIDE; ++i)
-        scene_put_again(scene, mesh, NULL);
-    scene_ready(scene);
-    struct scene_pose pose;
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-    for (size_t w = 0; w < WAYS; ++w) {
-        struct accel *accel;
-        assert_int_equal(accel_create(&silent, scene, &ways[w], &accel), WHIT_OK);
-        for (int turn = 0; turn < 2; ++turn) {
-            for (int i = 0; i < SIDE * SIDE; ++i)
-                pose.instances[i] = placed(3.0 * (turn ? i / SIDE : i % SIDE),
-                                           3.0 * (turn ? i % SIDE : i / SIDE), 0, i, 1, 1, 1);
-            assert_int_equal(accel_pose(accel, &pose), WHIT_OK);
-            for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-                const double *m = pose.instances[i].m;
-                struct gpu_ray ray = {.origin = {(float)m[3] + 0.1f, (float)m[7] + 0.2f, -9.0f},
-                                      .dir = {0, 0, 1},
-                                      .t_max = INFINITY};
-                struct gpu_hit hit;
-                uint32_t status = 0;
-                traverse_float(accel, ORDER_BASIC, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
-                               &status);
-                assert_int_equal(hit.instance, i);
-            }
+    for (size_t w = 0; w < 2 * WAYS; ++w) {
+        struct scene *scene = scene_begin(&silent, "test");
+        uint32_t mesh = add_sphere(scene, 8, 6);
+        for (int i = 0; i < SIDE * SIDE; ++i)
+            scene_put_again(scene, mesh, NULL);
+        struct world world = world_of(scene, ways[w / 2]);
+        for (int i = 0; i < SIDE * SIDE; ++i)
+            world.pose.instances[i] = placed(3.0 * (w % 2 ? i / SIDE : i % SIDE),
+                                             3.0 * (w % 2 ? i % SIDE : i / SIDE), 0, i, 1, 1, 1);
+        assert_int_equal(accel_pose(world.accel, &world.pose), WHIT_OK);
+        for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+            const double *m = world.pose.instances[i].m;
+            struct gpu_ray ray = ray_along(vec3_make((float)m[3] + 0.1f, (float)m[7] + 0.2f, -9.0f),
+                                           vec3_make(0, 0, 1));
+            const struct traverse_params basic = {.order = ORDER_BASIC};
+            assert_int_equal(trace_with(world.accel, basic, &ray, NULL).instance, i);
         }
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 /* ---- What triangles say to shadow rays ---- */
 
-static const struct gpu_triangle *bits_of(struct scene *scene, uint32_t material,
-                                          struct accel **accel)
-{
-    scene_put(scene, mesh_wearing(mesh_sphere(1.0, 4, 3), material), NULL);
-    scene_ready(scene);
-    *accel = build(scene, 1);
-    return &(*accel)->triangles[0];
-}
-
-static void assert_bits(void (*set)(struct scene_material *m), uint32_t flags, uint32_t shadow)
-{
-    struct scene *scene = scene_begin(&silent, "test");
-    uint32_t material = scene_put_material(scene, material_grey("m"));
-    scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
-    set(&scene->materials[material]);
-    struct accel *accel;
-    const struct gpu_triangle *triangle = bits_of(scene, material, &accel);
-    assert_int_equal(triangle->flags, flags);
-    assert_int_equal(triangle->shadow, shadow);
-    accel_destroy(accel);
-    scene_destroy(scene);
-}
-
-static void set_plain(struct scene_material *m)
-{
-    (void)m;
-}
-
-static void set_glass(struct scene_material *m)
-{
-    m->transmission[0] = 0.5f; /* one halving: 64 */
-    m->transmission[1] = 1.0f;
-}
-
-static void set_blend(struct scene_material *m)
-{
-    m->alpha = SCENE_ALPHA_BLEND;
-    m->opacity = 0.75f;
-}
-
-static void set_blend_glass(struct scene_material *m)
-{
-    set_blend(m);
-    m->transmission[2] = 1.0f; /* a quarter beside it, the rest through it */
-}
-
-static void set_blend_opaque(struct scene_material *m)
-{
-    m->alpha = SCENE_ALPHA_BLEND;
-}
-static void set_opacity_ignored(struct scene_material *m)
-{
-    m->opacity = 0.25f;
-}
-
-static void set_mask(struct scene_material *m)
-{
-    m->alpha = SCENE_ALPHA_MASK;
-    m->alpha_cutoff = 0.5f;
-    m->textures[SCENE_SLOT_DIFFUSE].texture = 0;
-}
-
-static void set_mask_solid(struct scene_material *m)
-{
-    m->alpha = SCENE_ALPHA_MASK;
-    m->alpha_cutoff = 0.5f;
-}
-
-static void set_lamp(struct scene_material *m)
-{
-    m->emission[0] = m->emission[1] = m->emission[2] = 10.0f;
-}
+/* Of a material that is grey but for what is named. */
+static const struct {
+    const char *name;
+    float transmission[3], opacity; /* 0: 1 */
+    enum scene_alpha alpha;
+    bool texture, lamp;
+    uint32_t flags, shadow;
+} materials[] = {
+    {.name = "plain"},
+    {.name = "glass", /* one halving: 64 */
+     .transmission = {0.5f, 1.0f, 0.0f},
+     .flags = TRIANGLE_FILTER | TRIANGLE_GLASS,
+     .shadow = 64u | 0u << 10 | 1023u << 20},
+    {.name = "blended",
+     .alpha = SCENE_ALPHA_BLEND,
+     .opacity = 0.75f,
+     .flags = TRIANGLE_FILTER,
+     .shadow = 128u | 128u << 10 | 128u << 20},
+    {.name = "blended glass", /* a quarter beside it, the rest through it */
+     .alpha = SCENE_ALPHA_BLEND,
+     .opacity = 0.75f,
+     .transmission = {0.0f, 0.0f, 1.0f},
+     .flags = TRIANGLE_FILTER | TRIANGLE_GLASS,
+     .shadow = 128u | 128u << 10 | 0u << 20},
+    {.name = "blended, opaque", .alpha = SCENE_ALPHA_BLEND},
+    {.name = "opacity ignored", .opacity = 0.25f},
+    {.name = "mask", .alpha = SCENE_ALPHA_MASK, .texture = true, .flags = TRIANGLE_CUTOUT},
+    {.name = "mask, solid", .alpha = SCENE_ALPHA_MASK},
+    {.name = "lamp", .lamp = true, .flags = TRIANGLE_NO_SHADOW},
+};
 
 static void materials_become_bits(void **state)
 {
     (void)state;
-    assert_bits(set_plain, 0, 0);
-    assert_bits(set_glass, TRIANGLE_FILTER | TRIANGLE_GLASS, 64u | 0u << 10 | 1023u << 20);
-    assert_bits(set_blend, TRIANGLE_FILTER, 128u | 128u << 10 | 128u << 20);
-    assert_bits(set_blend_glass, TRIANGLE_FILTER | TRIANGLE_GLASS, 128u | 128u << 10 | 0u << 20);
-    assert_bits(set_blend_opaque, 0, 0);
-    assert_bits(set_opacity_ignored, 0, 0);
-    assert_bits(set_mask, TRIANGLE_CUTOUT, 0);
-    assert_bits(set_mask_solid, 0, 0);
-    assert_bits(set_lamp, TRIANGLE_NO_SHADOW, 0);
+    for (size_t i = 0; i < sizeof materials / sizeof *materials; ++i) {
+        struct scene *scene = scene_begin(&silent, "test");
+        struct scene_material material = material_grey("m");
+        memcpy(material.transmission, materials[i].transmission, sizeof material.transmission);
+        material.opacity = materials[i].opacity > 0.0f ? materials[i].opacity : material.opacity;
+        material.alpha = materials[i].alpha;
+        material.alpha_cutoff = 0.5f;
+        if (materials[i].texture)
+            material.textures[SCENE_SLOT_DIFFUSE].texture = 0;
+        for (int c = 0; c < 3 && materials[i].lamp; ++c)
+            material.emission[c] = 10.0f;
+        scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
+        scene_put(scene, mesh_sphere(1.0, 4, 3), &(struct put){.material = &material});
+        struct world world = world_of(scene, by_threads(1));
+        const struct gpu_triangle *triangle = &world.accel->triangles[0];
+        if (triangle->flags != materials[i].flags || triangle->shadow != materials[i].shadow)
+            fail_msg("%s: flags %x, shadow %x", materials[i].name, triangle->flags,
+                     triangle->shadow);
+        world_finish(&world);
+    }
 }
 
 /* ---- Broken ones ---- */
@@ -573,9 +457,9 @@ static void materials_become_bits(void **state)
 static void broken_scenes_are_refused(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
     for (int k = 0; k < 12; ++k) {
-        struct accel *accel = build(scene, 2);
+        struct world world = world_of(mixed_scene(), by_threads(2));
+        struct accel *accel = world.accel;
         struct accel_mesh *mesh = &accel->meshes[1];
         switch (k) {
         case 0:
@@ -616,9 +500,8 @@ static void broken_scenes_are_refused(void **state)
         }
         if ((accel_validate(accel) == WHIT_OK) != (k == 0))
             fail_msg("case %d was misjudged", k);
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_destroy(scene);
 }
 
 int main(void)

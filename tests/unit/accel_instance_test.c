@@ -1,38 +1,14 @@
 /* What transforms cost in accuracy: hits in instances against the same triangles placed in double.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "accel_fixture.h"
 
-#include <cmocka.h>
-#include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "../random.h"
-#include "../scenes.h"
-#include "accel/accel.h"
-#include "twin/traverse.h"
-
-static const struct log silent;
-
-static struct scene *sphere_scene(const struct affine *matrices, uint32_t count)
+static struct world sphere_world(const struct affine *matrices, uint32_t count)
 {
     struct scene *scene = scene_begin(&silent, "instances");
     uint32_t sphere = scene_put_mesh(scene, mesh_sphere(1.0, 48, 32));
     for (uint32_t i = 0; i < count; ++i)
         scene_put_again(scene, sphere, &(struct put){.matrix = &matrices[i]});
-    return scene_ready(scene);
-}
-
-static struct accel *build(const struct scene *scene)
-{
-    const struct accel_params params = {.validate = true};
-    struct accel *accel = NULL;
-    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
-    return accel;
+    return world_of(scene, (struct accel_params){0});
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -98,23 +74,18 @@ enum { RAYS = 20000 };
 
 static struct errors measure(const struct affine *matrix, uint32_t numerics)
 {
-    const struct traverse_params params = {
-        .numerics = numerics, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-    struct scene *scene = sphere_scene(matrix, 1);
-    struct accel *accel = build(scene);
+    struct world world = sphere_world(matrix, 1);
     struct errors errors = {0};
     uint64_t state = 1;
     for (int i = 0; i < RAYS; ++i) {
         struct gpu_ray ray = aimed_ray(matrix, &state);
-        struct gpu_hit hit;
-        uint32_t status = 0;
-        traverse_ray(accel, &params, &ray, &hit, NULL, &status);
-        assert_int_equal(status, 0);
+        struct gpu_hit hit =
+            trace_with(world.accel, (struct traverse_params){.numerics = numerics}, &ray, NULL);
         if (hit.primitive == HIT_NONE)
             continue;
         double at[3], normal[3], d[3], across[3], to[3];
         double ng[3] = {(double)hit.ng_x, (double)hit.ng_y, (double)hit.ng_z};
-        world_plane(scene, matrix, hit.primitive, at, normal);
+        world_plane(world.scene, matrix, hit.primitive, at, normal);
         for (int k = 0; k < 3; ++k) {
             d[k] = (double)ray.dir[k];
             to[k] = at[k] - (double)ray.origin[k];
@@ -128,8 +99,7 @@ static struct errors measure(const struct affine *matrix, uint32_t numerics)
         ++errors.met;
     }
     errors.t_mean /= errors.met ? errors.met : 1;
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
     return errors;
 }
 
@@ -143,51 +113,44 @@ static const char *const level_names[] = {
     [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_EXACT] = "exact"};
 static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
 
+/* `stretch` is how much longer the world's longest axis is than the shortest one, where these are
+   turned: each coordinate of the object is then a difference of the world's longest. */
+static void assert_precision(const char *what, struct affine matrix, double stretch)
+{
+    for (int l = 0; l < 2; ++l) {
+        struct errors errors = measure(&matrix, levels[l]);
+        print_message(
+            "  %s, %s: t off by %.2g on average, %.2g at most, normals by %.2g rad, of %u "
+            "hits\n",
+            level_names[levels[l]], what, errors.t_mean, errors.t_max, errors.normal_max,
+            errors.met);
+        if (errors.met <= RAYS * 9 / 10 || errors.t_mean > 2e-7 * stretch ||
+            errors.t_max > fmin(1e-4 * stretch, 4.0 * 0x1p-24 * stretch + 1e-4))
+            fail_msg("%s", what);
+    }
+}
+
 static void far_translations_keep_their_precision(void **state)
 {
     (void)state;
-    static const double far[] = {0, 1e3, 1e5, 1e6};
-    for (size_t i = 0; i < 2 * sizeof far / sizeof *far; ++i) {
-        double at = far[i / 2];
-        struct affine matrix = turned(at, -at, 0.5 * at, 1, 1, 1);
-        struct errors errors = measure(&matrix, levels[i % 2]);
-        print_message("  %s, at %g: t off by %.2g on average, %.2g at most, of %u hits\n",
-                      level_names[levels[i % 2]], at, errors.t_mean, errors.t_max, errors.met);
-        assert_true(errors.met > RAYS * 9 / 10);
-        assert_true(errors.t_mean <= 2e-7);
-        assert_true(errors.t_max <= 1e-4);
-    }
+    assert_precision("at 0", turned(0, 0, 0, 1, 1, 1), 1);
+    assert_precision("at 1e3", turned(1e3, -1e3, 0.5e3, 1, 1, 1), 1);
+    assert_precision("at 1e5", turned(1e5, -1e5, 0.5e5, 1, 1, 1), 1);
+    assert_precision("at 1e6", turned(1e6, -1e6, 0.5e6, 1, 1, 1), 1);
 }
 
-static void assert_scale(const char *what, const struct affine *matrix, double stretch)
-{
-    for (int l = 0; l < 2; ++l) {
-        struct errors errors = measure(matrix, levels[l]);
-        print_message("  %s, %s: t off by %.2g on average, %.2g at most, of %u hits\n",
-                      level_names[levels[l]], what, errors.t_mean, errors.t_max, errors.met);
-        assert_true(errors.met > RAYS * 9 / 10);
-        assert_true(errors.t_mean <= 2e-7 * stretch);
-        assert_true(errors.t_max <= fmin(1e-4 * stretch, 4.0 * 0x1p-24 * stretch + 1e-4));
-    }
-}
-
-/* `stretch` is how much longer the world's longest axis is than the shortest one, where these are
-   turned: each coordinate of the object is then a difference of the world's longest. */
 static void scales_keep_their_precision(void **state)
 {
     (void)state;
-    struct affine small = turned(1e-6, 2e-6, 3e-6, 1e-6, 1e-6, 1e-6);
-    struct affine large = turned(1e6, 2e6, 3e6, 1e6, 1e6, 1e6);
-    struct affine straight = affine_identity(), stretched = turned(1, 2, 3, 1, 1e2, 1e4);
-    struct affine mirrored = turned(1, 2, 3, -1, 1, 1), twice = turned(1, 2, 3, -2, -1, 3);
+    struct affine straight = affine_identity();
     straight.m[5] = 1e2;
     straight.m[10] = 1e4;
-    assert_scale("1e-6", &small, 1);
-    assert_scale("1e6", &large, 1);
-    assert_scale("1, 1e2, 1e4", &straight, 1);
-    assert_scale("1, 1e2, 1e4, turned", &stretched, 1e4);
-    assert_scale("mirrored", &mirrored, 1);
-    assert_scale("mirrored twice", &twice, 3);
+    assert_precision("1e-6", turned(1e-6, 2e-6, 3e-6, 1e-6, 1e-6, 1e-6), 1);
+    assert_precision("1e6", turned(1e6, 2e6, 3e6, 1e6, 1e6, 1e6), 1);
+    assert_precision("1, 1e2, 1e4", straight, 1);
+    assert_precision("1, 1e2, 1e4, turned", turned(1, 2, 3, 1, 1e2, 1e4), 1e4);
+    assert_precision("mirrored", turned(1, 2, 3, -1, 1, 1), 1);
+    assert_precision("mirrored twice", turned(1, 2, 3, -2, -1, 3), 3);
 }
 
 /* diag(2, 1, 1) puts a normal that goes by the matrix itself off by 36.87 degrees at worst. */
@@ -215,23 +178,18 @@ static void an_identity_is_no_transform(void **state)
 {
     (void)state;
     struct affine identity = affine_identity();
-    struct scene *scene = sphere_scene(&identity, 1);
-    struct accel *accel = build(scene);
+    struct world world = sphere_world(&identity, 1);
     uint64_t random = 3;
     uint32_t met = 0;
     for (int i = 0; i < 2 * RAYS; ++i) {
         struct gpu_ray ray = aimed_ray(&identity, &random);
-        struct gpu_hit plain, moved;
-        uint32_t status = 0;
-        const struct traverse_params params = {
-            .numerics = levels[i / 2 % 2], .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+        const struct traverse_params params = {.numerics = levels[i / 2 % 2]};
         if (i % 4 == 0)
             ray.dir[i / 4 % 3] = -0.0f;
-        accel->single_identity = true;
-        traverse_ray(accel, &params, &ray, &plain, NULL, &status);
-        accel->single_identity = false;
-        traverse_ray(accel, &params, &ray, &moved, NULL, &status);
-        assert_int_equal(status, 0);
+        world.accel->single_identity = true;
+        struct gpu_hit plain = trace_with(world.accel, params, &ray, NULL);
+        world.accel->single_identity = false;
+        struct gpu_hit moved = trace_with(world.accel, params, &ray, NULL);
         assert_memory_equal(&plain, &moved, offsetof(struct gpu_hit, ng_x));
         assert_true(plain.ng_x == moved.ng_x && plain.ng_y == moved.ng_y &&
                     plain.ng_z == moved.ng_z);
@@ -239,8 +197,7 @@ static void an_identity_is_no_transform(void **state)
     }
     print_message("  I9 0 of %u rays differ, %u hit\n", 2 * RAYS, met);
     assert_true(met > RAYS);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 /* What is hit first of all that stand in one place, at every order; and that all were looked at. */
@@ -251,16 +208,10 @@ static void assert_all_are_entered(const struct accel *accel, uint32_t count, ui
     uint64_t random = 5, entered = 0;
     uint32_t depth = 0;
     for (uint32_t i = 0; i < rays; ++i) {
-        const struct traverse_params params = {.order = i % 3,
-                                               .numerics = numerics,
-                                               .skip_instance = HIT_NONE,
-                                               .skip_primitive = HIT_NONE};
+        const struct traverse_params params = {.order = i % 3, .numerics = numerics};
         struct gpu_ray ray = aimed_ray(&identity, &random);
-        struct gpu_hit hit;
         struct gpu_cost cost = {0};
-        uint32_t status = 0;
-        traverse_ray(accel, &params, &ray, &hit, &cost, &status);
-        assert_int_equal(status, 0);
+        struct gpu_hit hit = trace_with(accel, params, &ray, &cost);
         assert_int_not_equal(hit.primitive, HIT_NONE);
         assert_int_equal(hit.instance, 0);
         assert_int_equal(cost.instances, count);
@@ -284,16 +235,15 @@ static void instances_in_one_place_are_all_entered(void **state)
     assert_non_null(matrices);
     for (uint32_t i = 0; i < count; ++i)
         matrices[i] = affine_identity();
-    struct scene *scene = sphere_scene(matrices, count);
-    struct accel *accel = build(scene);
+    struct world world = sphere_world(matrices, count);
+    const struct accel *accel = world.accel;
     /* Halved each time, and the tree of the mesh below. */
     assert_int_equal(accel->instance_node_count, 2 * count);
     assert_true(accel->instance_depth <= 1 + (uint32_t)ceil(log2(count)));
     const uint32_t rays = count > 100000 ? 6 : 21;
     assert_all_are_entered(accel, count, NUMERICS_WATERTIGHT, rays);
     assert_all_are_entered(accel, count, NUMERICS_EXACT, rays);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
     free(matrices);
 }
 

@@ -1,35 +1,16 @@
 /* Reports on trees against other ways to the same numbers: by hand, by brute force, by rays. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "accel_fixture.h"
 
-#include <cmocka.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "../random.h"
-#include "../scenes.h"
 #include "twin/report.h"
 
 #define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
 
-static const struct log silent;
-
-static struct scene *scene_of(struct scene_mesh mesh)
+static struct accel_report report_of(const struct world *world, uint32_t rays)
 {
-    struct scene *scene = scene_begin(&silent, "test");
-    scene_put(scene, mesh, NULL);
-    return scene_ready(scene);
-}
-
-static struct accel *build(struct scene *scene, const struct bvh_params *mesh)
-{
-    struct accel_params params = {.mesh = *mesh, .validate = true};
-    struct accel *accel = NULL;
-    assert_int_equal(accel_create(&silent, scene, &params, &accel), WHIT_OK);
-    return accel;
+    struct accel_report report;
+    memset(&report, 0, sizeof report);
+    assert_int_equal(accel_report(world->accel, rays, &report), WHIT_OK);
+    return report;
 }
 
 /* ---- Clipping ---- */
@@ -125,19 +106,17 @@ static double brute_overlap(const struct accel *accel, const struct scene_mesh *
 }
 
 /* Long triangles that cross each other, some on planes of the axes. */
-static struct scene *crossing_scene(uint32_t count, uint64_t seed)
+static struct soup soup_crossing(uint32_t count, uint64_t seed)
 {
-    float *v = malloc(9 * sizeof(float) * count);
-    assert_non_null(v);
+    struct soup soup = soup_make("crossing", count);
     for (uint32_t i = 0; i < count; ++i) {
+        float *v = &soup.positions[9 * i];
         for (uint32_t k = 0; k < 9; ++k)
-            v[9 * i + k] = (float)(random_unit(&seed) * (k % 3 == i % 3 ? 0.2 : 1.0));
+            v[k] = (float)(random_unit(&seed) * (k % 3 == i % 3 ? 0.2 : 1.0));
         for (uint32_t k = 0; i % 5 == 0 && k < 3; ++k)
-            v[9 * i + 3 * k] = 0.5f;
+            v[3 * k] = 0.5f;
     }
-    struct scene *scene = scene_of(mesh_triangles(v, count));
-    free(v);
-    return scene;
+    return soup;
 }
 
 static const struct bvh_params builds[] = {
@@ -154,17 +133,15 @@ static void overlap_is_that_of_brute_force(void **state)
     (void)state;
     static const uint32_t counts[] = {1, 2, 3, 40, 300};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
-        struct scene *scene = crossing_scene(counts[i], 7 + (uint32_t)i);
         for (size_t k = 0; k < BUILD_COUNT; ++k) {
-            struct accel *accel = build(scene, &builds[k]);
+            struct world world = world_of_soup(soup_crossing(counts[i], 7 + i), builds[k]);
             struct bvh_epo epo;
-            assert_int_equal(accel_mesh_epo(accel, 0, &epo), WHIT_OK);
-            double brute = brute_overlap(accel, &scene->meshes[0]);
+            assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);
+            double brute = brute_overlap(world.accel, &world.scene->meshes[0]);
             assert_true(counts[i] < 40 || brute > 0.0);
             assert_near(epo.overlap, brute, 1e-10 * (1.0 + brute));
-            accel_destroy(accel);
+            world_finish(&world);
         }
-        scene_destroy(scene);
     }
 }
 
@@ -175,16 +152,14 @@ static void overlap_by_hand(void **state)
 {
     (void)state;
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
-    struct scene *scene = scene_of(mesh_triangles(v, 2));
-    const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
-    struct accel *accel = build(scene, &params);
+    struct world world = world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
+                                       (struct bvh_params){.builder = BVH_MEDIAN, .leaf_limit = 1});
     struct bvh_epo epo;
-    struct accel_report report;
-    assert_int_equal(accel->meshes[0].node_count, 4);
-    assert_int_equal(accel_mesh_epo(accel, 0, &epo), WHIT_OK);
+    assert_int_equal(world.accel->meshes[0].node_count, 4);
+    assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);
     assert_near(epo.surface, 4.0, 1e-12);
     assert_near(epo.overlap, 1.0, 1e-12);
-    assert_int_equal(accel_report(accel, 0, &report), WHIT_OK);
+    struct accel_report report = report_of(&world, 0);
     assert_near(report.epo, 0.25, 1e-12);
     /* Half areas: of the root 3 x 2, of the children 2 x 2 each, of what they share 1 x 2. */
     assert_near(report.overlap, 2.0 / 6.0, 1e-12);
@@ -194,8 +169,7 @@ static void overlap_by_hand(void **state)
     assert_int_equal(report.measured_rays, 0);
     assert_int_equal(report.leaves_at_depth[1], 2);
     assert_int_equal(report.leaves_of_size[1], 2);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 /* ---- Shape ---- */
@@ -203,11 +177,10 @@ static void overlap_by_hand(void **state)
 static void report_agrees_with_the_tree(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(mesh_sphere(1.0, 60, 60));
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
-        struct accel *accel = build(scene, &builds[i]);
-        struct accel_report report;
-        assert_int_equal(accel_report(accel, 0, &report), WHIT_OK);
+        struct world world = world_of_soup(soup_sphere(60, 60), builds[i]);
+        const struct accel *accel = world.accel;
+        struct accel_report report = report_of(&world, 0);
         uint64_t leaves = 0, triangles = 0, deepest = 0, at_depth = 0;
         for (uint32_t k = 0; k < REPORT_LEAF_BINS; ++k) {
             leaves += report.leaves_of_size[k];
@@ -222,38 +195,33 @@ static void report_agrees_with_the_tree(void **state)
         assert_int_equal(2 * leaves, accel->meshes[0].node_count); /* pairs, and the unused node */
         assert_int_equal(deepest, accel->mesh_depth);
         assert_near(report.sah_cost, accel->meshes[0].sah_cost, 1e-5 * accel->meshes[0].sah_cost);
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_destroy(scene);
 }
 
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    struct scene *scene = crossing_scene(3000, 3);
     struct accel_report reports[2];
     for (uint32_t i = 0; i < 2; ++i) {
-        const struct bvh_params params = {.builder = BVH_BINNED, .thread_count = i ? 5 : 1};
-        struct accel *accel = build(scene, &params);
-        memset(&reports[i], 0, sizeof reports[i]);
-        assert_int_equal(accel_report(accel, 5000, &reports[i]), WHIT_OK);
-        accel_destroy(accel);
+        struct world world =
+            world_of_soup(soup_crossing(3000, 3), (struct bvh_params){.thread_count = i ? 5 : 1});
+        reports[i] = report_of(&world, 5000);
+        world_finish(&world);
     }
     assert_memory_equal(&reports[0], &reports[1], sizeof reports[0]);
-    scene_destroy(scene);
 }
 
 /* ---- Visits ---- */
 
 /* Triangles of hardly any area along the diagonals of their boxes: nothing ends a ray. */
-static struct scene *hair_scene(uint32_t side, double size)
+static struct soup soup_apart(uint32_t side, double size)
 {
     uint32_t count = side * side * side;
     uint64_t seed = 11;
-    float *v = malloc(9 * sizeof(float) * count);
-    assert_non_null(v);
+    struct soup soup = soup_make("hair apart", count);
     for (uint32_t i = 0; i < count; ++i) {
-        float *p = &v[9 * i];
+        float *p = &soup.positions[9 * i];
         const uint32_t cell[3] = {i % side, i / side % side, i / side / side};
         for (int k = 0; k < 3; ++k) {
             p[k] = (float)(cell[k] + 0.5 * (1.0 - size) * random_unit(&seed));
@@ -262,40 +230,32 @@ static struct scene *hair_scene(uint32_t side, double size)
         }
         p[6] = nextafterf(p[6], -1.0f);
     }
-    struct scene *scene = scene_of(mesh_triangles(v, count));
-    free(v);
-    return scene;
+    return soup;
 }
 
 static void nothing_hit_is_visited_as_predicted(void **state)
 {
     (void)state;
-    struct scene *scene = hair_scene(12, 0.6);
-    assert_int_equal(scene->meshes[0].triangle_count, 12 * 12 * 12);
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
-        struct accel *accel = build(scene, &builds[i]);
-        struct accel_report report;
-        assert_int_equal(accel_report(accel, 40000, &report), WHIT_OK);
+        struct world world = world_of_soup(soup_apart(12, 0.6), builds[i]);
+        struct accel_report report = report_of(&world, 40000);
+        assert_int_equal(world.scene->triangle_total, 12 * 12 * 12);
         assert_int_equal(report.measured_rays, 40000);
         assert_near(report.measured_inner_nodes / report.predicted_inner_nodes, 1.0, 0.02);
         assert_near(report.measured_triangles / report.predicted_triangles, 1.0, 0.02);
-        accel_destroy(accel);
+        world_finish(&world);
     }
-    scene_destroy(scene);
 }
 
 /* Behind a hit nothing is opened: a closed sphere costs less than the areas say. */
 static void hits_save_visits(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of(mesh_sphere(1.0, 80, 80));
-    struct accel *accel = build(scene, &builds[0]);
-    struct accel_report report;
-    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
+    struct world world = world_of_soup(soup_sphere(80, 80), builds[0]);
+    struct accel_report report = report_of(&world, 20000);
     assert_true(report.measured_inner_nodes < 0.9 * report.predicted_inner_nodes);
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 /* A mesh counts once however often it is placed, and by the area of its box. */
@@ -314,11 +274,10 @@ static void meshes_are_weighed_by_area(void **state)
             scene_put_again(scene, i, &(struct put){.matrix = &matrix});
         }
     }
-    scene_ready(scene);
-    struct accel *accel = build(scene, &builds[0]);
-    struct accel_report report;
+    struct world world = world_of(scene, (struct accel_params){.mesh = builds[0]});
+    const struct accel *accel = world.accel;
+    struct accel_report report = report_of(&world, 20000);
     assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */
-    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
     uint64_t leaves = 0;
     double area = 0.0, cost = 0.0;
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
@@ -337,22 +296,19 @@ static void meshes_are_weighed_by_area(void **state)
     assert_near(report.sah_cost, cost / area, 1e-5 * cost / area);
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
     assert_true(report.measured_inner_nodes < report.predicted_inner_nodes);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void nothing_has_a_report(void **state)
 {
     (void)state;
-    struct scene *scene = scene_of((struct scene_mesh){0});
-    struct accel *accel = build(scene, &builds[0]);
-    struct accel_report report, zero = {0};
+    struct world world = world_of_soup(soup_make("nothing", 0), builds[0]);
+    struct accel_report report;
     memset(&report, 1, sizeof report);
-    assert_int_equal(accel_report(accel, 20000, &report), WHIT_OK);
-    assert_near(report.sah_cost, zero.sah_cost, 0.0);
+    assert_int_equal(accel_report(world.accel, 20000, &report), WHIT_OK);
+    assert_near(report.sah_cost, 0.0, 0.0);
     assert_int_equal(report.measured_rays, 0);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 int main(void)

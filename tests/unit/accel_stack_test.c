@@ -1,15 +1,7 @@
 /* The C traversal on trees written by hand: deep ones, and what it counts. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "accel_fixture.h"
 
-#include <cmocka.h>
-
-#include "accel/accel.h"
 #include "tree_fixture.h"
-#include "twin/traverse.h"
 
 enum { ORDERS = 3, STACK_SIZE = 512 /* of the traversal */ };
 
@@ -45,15 +37,6 @@ static struct accel *caterpillar(uint32_t depth)
 static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_FAST, NUMERICS_EXACT};
 enum { LEVELS = sizeof levels / sizeof *levels };
 
-static struct traverse_params params_of(uint32_t order, uint32_t level, bool any)
-{
-    return (struct traverse_params){.order = order,
-                                    .numerics = levels[level],
-                                    .any = any,
-                                    .skip_instance = HIT_NONE,
-                                    .skip_primitive = HIT_NONE};
-}
-
 static void deep_trees_are_walked(void **state)
 {
     (void)state;
@@ -62,25 +45,21 @@ static void deep_trees_are_walked(void **state)
         uint32_t depth = depths[d];
         struct accel *accel = caterpillar(depth);
         for (uint32_t way = 0; way < 2 * ORDERS * LEVELS; ++way) {
-            uint32_t order = way / 2 % ORDERS, status = 0, nearest = way % 2 ? depth : 0;
-            uint32_t level = way / (2 * ORDERS);
+            uint32_t order = way / 2 % ORDERS, nearest = way % 2 ? depth : 0;
             struct gpu_ray ray = caterpillar_ray(depth, way % 2);
-            struct gpu_hit hit, any;
             struct gpu_cost cost = {0};
-            const struct traverse_params closest = params_of(order, level, false);
-            const struct traverse_params blocked = params_of(order, level, true);
-            traverse_ray(accel, &closest, &ray, &hit, &cost, &status);
+            struct traverse_params params = {.order = order,
+                                             .numerics = levels[way / (2 * ORDERS)]};
+            struct gpu_hit hit = trace_with(accel, params, &ray, &cost);
             assert_int_equal(hit.primitive, nearest);
             assert_true(hit.t == 1.0f);
-            assert_int_equal(status, 0);
             /* Order BASIC keeps as much from below: the rest of the chain is first in each pair. */
             bool deep = way % 2 || order == ORDER_BASIC;
             assert_int_equal(cost.stack, deep ? depth : 1);
             /* What was pushed is opened once it is popped, even behind the hit. */
             assert_int_equal(cost.depth, deep || depth == 1 ? depth : 2);
-            traverse_ray(accel, &blocked, &ray, &any, NULL, &status);
-            assert_int_not_equal(any.primitive, HIT_NONE);
-            assert_int_equal(status, 0);
+            params.any = true;
+            assert_int_not_equal(trace_with(accel, params, &ray, NULL).primitive, HIT_NONE);
         }
         accel_destroy(accel);
     }
@@ -94,7 +73,10 @@ static void too_deep_trees_are_reported(void **state)
         uint32_t status = 0;
         struct gpu_ray ray = caterpillar_ray(STACK_SIZE + 1, true);
         struct gpu_hit hit;
-        const struct traverse_params params = params_of(way % ORDERS, way / ORDERS, false);
+        const struct traverse_params params = {.order = way % ORDERS,
+                                               .numerics = levels[way / ORDERS],
+                                               .skip_instance = HIT_NONE,
+                                               .skip_primitive = HIT_NONE};
         traverse_ray(accel, &params, &ray, &hit, NULL, &status);
         assert_int_equal(status, STATUS_NODE_STACK_OVERFLOW);
     }
@@ -106,21 +88,22 @@ static void costs_are_those_of_the_chain(void **state)
 {
     (void)state;
     enum { DEPTH = 10 };
+    const struct traverse_params closest = {.order = ORDER_DISTANCE},
+                                 any = {.order = ORDER_DISTANCE, .any = true},
+                                 sign = {.order = ORDER_SIGN, .any = true};
     struct accel *accel = caterpillar(DEPTH);
-    struct gpu_ray ray = caterpillar_ray(DEPTH, true);
-    struct gpu_hit hit;
-    uint32_t status = 0;
+    struct gpu_ray above = caterpillar_ray(DEPTH, true), below = caterpillar_ray(DEPTH, false);
     struct gpu_cost cost = {0};
     /* Down to triangle DEPTH; then every leaf on the stack is popped and tested: its box was met
        when it was pushed. */
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    trace_with(accel, closest, &above, &cost);
     assert_int_equal(cost.rays, 1);
     assert_int_equal(cost.inner_nodes, DEPTH);
     assert_int_equal(cost.leaves, DEPTH + 1);
     assert_int_equal(cost.triangles, DEPTH + 1);
     assert_int_equal(cost.instances, 0);
     /* Added on top; stack and depth are the largest. */
-    traverse_float(accel, ORDER_DISTANCE, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    trace_with(accel, any, &above, &cost);
     assert_int_equal(cost.rays, 2);
     assert_int_equal(cost.inner_nodes, 2 * DEPTH);
     assert_int_equal(cost.leaves, DEPTH + 2);
@@ -128,15 +111,13 @@ static void costs_are_those_of_the_chain(void **state)
     assert_int_equal(cost.stack, DEPTH);
     assert_int_equal(cost.depth, DEPTH);
     /* From below: one pair and one leaf, the rest lies behind the hit. */
-    ray = caterpillar_ray(DEPTH, false);
     cost = (struct gpu_cost){0};
-    traverse_float(accel, ORDER_SIGN, &ray, true, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    trace_with(accel, sign, &below, &cost);
     assert_int_equal(cost.inner_nodes, 1);
     assert_int_equal(cost.leaves, 1);
     assert_int_equal(cost.triangles, 1);
     assert_int_equal(cost.stack, 1);
     assert_int_equal(cost.depth, 1);
-    assert_int_equal(status, 0);
     accel_destroy(accel);
 }
 
@@ -146,13 +127,11 @@ static void levels_come_back_with_their_nodes(void **state)
     (void)state;
     struct accel *accel = caterpillar(4);
     struct gpu_ray ray = caterpillar_ray(4, true);
-    struct gpu_hit hit;
-    uint32_t status = 0;
     struct gpu_cost cost = {0};
     /* In place of the topmost leaf, which is popped last: the deepest pair once more. */
     accel->nodes[3].first = 8;
     accel->nodes[3].count = 0;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost, &status);
+    trace_with(accel, (struct traverse_params){.order = ORDER_DISTANCE}, &ray, &cost);
     assert_int_equal(cost.inner_nodes, 5);
     assert_int_equal(cost.depth, 4);
     accel_destroy(accel);
@@ -164,21 +143,16 @@ static void clipped_boxes_get_a_margin(void **state)
     (void)state;
     struct accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {1.9999f, -0.99999f, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
-    struct gpu_hit hit;
-    uint32_t status = 0;
     accel->instances[0].reach = 2.0f;
     for (uint32_t i = 2; i < 4; ++i)
         accel->nodes[i].lo[1] = -0.99999f + 0x1.8p-18f; /* short of what the ray needs */
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-    assert_int_equal(hit.primitive, HIT_NONE);
+    assert_int_equal(trace(accel, &ray).primitive, HIT_NONE);
     accel->clipped = true;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-    assert_int_equal(hit.primitive, 0);
+    assert_int_equal(trace(accel, &ray).primitive, 0);
     /* The margin is (2 + 2) * 2^-19 = 2^-17: nothing beyond that is forgiven. */
     for (uint32_t i = 2; i < 4; ++i)
         accel->nodes[i].lo[1] = -0.99999f + 0x1.1p-17f;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
-    assert_int_equal(hit.primitive, HIT_NONE);
+    assert_int_equal(trace(accel, &ray).primitive, HIT_NONE);
     accel_destroy(accel);
 }
 
@@ -188,9 +162,8 @@ static void flat_records_name_their_instance(void **state)
     (void)state;
     struct accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {0, 0, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
-    struct gpu_hit hit, brute, plain;
+    struct gpu_hit plain = trace(accel, &ray), brute;
     uint32_t status = 0;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &plain, NULL, &status);
     accel->single_identity = false;
     accel->flat = true;
     accel->meshes[0].root = accel->nodes[0].first;
@@ -199,7 +172,7 @@ static void flat_records_name_their_instance(void **state)
     caterpillar_box(0, 0, &accel->nodes[2]);
     accel->triangles[0].flags = 7u << TRIANGLE_INSTANCE_SHIFT;
     accel->triangles[1].flags = 5u << TRIANGLE_INSTANCE_SHIFT | TRIANGLE_MIRRORED;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+    struct gpu_hit hit = trace(accel, &ray);
     traverse_brute_float(accel, &ray, &brute);
     assert_int_equal(hit.instance, 5);
     assert_true(hit.ng_z == -plain.ng_z && plain.ng_z != 0.0f);
@@ -229,13 +202,11 @@ static void duplicates_give_the_first(void **state)
         }
         for (uint32_t way = 0; way < 2 * ORDERS; ++way) {
             struct gpu_ray ray = caterpillar_ray(0, way % 2);
-            struct gpu_hit hit, brute;
-            uint32_t status = 0;
-            traverse_float(accel, way / 2, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL, &status);
+            struct gpu_hit brute,
+                hit = trace_with(accel, (struct traverse_params){.order = way / 2}, &ray, NULL);
             traverse_brute_float(accel, &ray, &brute);
             assert_int_equal(hit.primitive, 0);
             assert_memory_equal(&hit, &brute, sizeof hit);
-            assert_int_equal(status, 0);
         }
         accel_destroy(accel);
     }
