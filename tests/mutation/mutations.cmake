@@ -110,7 +110,7 @@ change(shaders/kernel/closest.comp [[(TRAVERSE_CLOSEST, 0.0,]] [[(TRAVERSE_CLOSE
 mutation(t_min_of_shadows_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
 change(shaders/kernel/shadow.comp [[(TRAVERSE_SHADOW, 0.0,]] [[(TRAVERSE_SHADOW, 1e-3,]])
 
-mutation(contracted_twin peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+mutation(contracted_twin hard_mesh RED no_ray_gets_through)
 change(host/twin/module.cmake [[LINK whit_accel m)]]
   [[LINK whit_accel m)
 set_source_files_properties(twin/traverse.c PROPERTIES COMPILE_OPTIONS
@@ -126,7 +126,7 @@ mutation(fused_edges_in_kernels spirv RED ".* float operations may be contracted
 change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
   [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
 
-mutation(fused_edges peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+mutation(fused_edges hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h shear_triangle
   [[ea = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ea = fmaf(\1, \2, -(\3));]])
 change(host/twin/intersect.h shear_triangle
@@ -142,14 +142,14 @@ mutation(t_of_areas_times_lengths_in_kernels render_scale RED pictures_do_not_de
 change(shaders/lib/intersect.glsl [[(weight_a * z.x + weight_b * z.y) + weight_c * z.z;]]
   [[((edges.x * z.x + edges.y * z.y) + edges.z * z.z) * inv_det;]])
 
-mutation(slab_factor_gone peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+mutation(slab_factor_gone hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h SLAB_FAR_SCALE [[\(1\.0f .*\)]] [[1.0f]])
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_factor_gone_in_kernels render_trace RED far_sphere_equals_twin)
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
-mutation(slab_by_fma peer_leaks RED "rays left a closed surface" GREEN "closed sphere" TARGET hits)
+mutation(slab_by_fma hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h slab_axis [[slab_axis\(float]] [[slab_axis(float o, float]])
 change(host/twin/intersect.h slab_axis [[= lo \* ([a-z_]+);]] [[= fmaf(lo + o, \1, -(o * \1));]])
 change(host/twin/intersect.h slab_axis [[= hi \* ([a-z_]+);]] [[= fmaf(hi + o, \1, -(o * \1));]])

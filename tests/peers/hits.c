@@ -1,13 +1,12 @@
 /* whit's hits beside those of others, on the same rays:
 
        hits SCENE [--rays N] [--seed S] [--list N] [--device D]
-       hits --leaks N [--seed S]
 
    The device against the float twin in C, bit for bit; the twin against the oracle in double; both
    against Embree (robust), where it was built in. N rays of each kind (rays.c). Exit status 1 when
    the device and the twin differ anywhere, or when the twin and the oracle disagree where the
    oracle's error bounds say that they may not. On a GPU, whose division may be off by 2.5 ulp, bits
-   are counted only. --leaks: rays out of closed spheres (leaks.c). */
+   are counted only. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +33,7 @@ enum agreement {
 
 struct options {
     const char *path, *device;
-    uint64_t rays, seed, list, leaks;
+    uint64_t rays, seed, list;
 };
 
 /* ---- One ray ---- */
@@ -392,15 +391,12 @@ static bool parse_options(int argc, char **argv, struct options *out)
         const struct {
             const char *name;
             uint64_t *value;
-        } counts[] = {{"--rays", &out->rays},
-                      {"--seed", &out->seed},
-                      {"--list", &out->list},
-                      {"--leaks", &out->leaks}};
+        } counts[] = {{"--rays", &out->rays}, {"--seed", &out->seed}, {"--list", &out->list}};
         size_t k = 0;
-        while (k < 4 && strcmp(argv[i], counts[k].name) != 0)
+        while (k < 3 && strcmp(argv[i], counts[k].name) != 0)
             ++k;
         bool more = i + 1 < argc;
-        if (k < 4 && more && parse_count(argv[i + 1], counts[k].value))
+        if (k < 3 && more && parse_count(argv[i + 1], counts[k].value))
             ++i;
         else if (strcmp(argv[i], "--device") == 0 && more)
             out->device = argv[++i];
@@ -409,16 +405,15 @@ static bool parse_options(int argc, char **argv, struct options *out)
         else
             return false;
     }
-    return out->rays > 0 && (out->path != NULL) != (out->leaks > 0);
+    return out->rays > 0 && out->path != NULL;
 }
 
 int main(int argc, char **argv)
 {
     struct options options;
     if (!parse_options(argc, argv, &options)) {
-        fprintf(stderr, "usage: hits SCENE [--rays N] [--seed S] [--list N] [--device D]\n"
-                        "       hits --leaks N [--seed S]\n");
+        fprintf(stderr, "usage: hits SCENE [--rays N] [--seed S] [--list N] [--device D]\n");
         return 1;
     }
-    return options.leaks > 0 ? leaks_count(options.leaks, options.seed) : compare_scene(&options);
+    return compare_scene(&options);
 }

@@ -1,4 +1,4 @@
-/* Parts of `hits`: rays, the comparison with other tracers, and the search for leaks. */
+/* Rays, and the comparison with other tracers. */
 #ifndef TESTS_PEERS_H
 #define TESTS_PEERS_H
 
@@ -36,11 +36,5 @@ struct embree *embree_create(const struct scene *scene, const struct scene_pose 
 void embree_destroy(struct embree *embree);
 /* Only t and ids of the hit are set. */
 void embree_trace(const struct embree *embree, const struct gpu_ray *ray, struct gpu_hit *hit);
-
-/* ---- leaks.c ---- */
-
-/* Rays from inside closed spheres; 0 when none gets out, and the copy of the traversal that was
-   built with contraction leaks. */
-int leaks_count(uint64_t ray_count, uint64_t seed);
 
 #endif

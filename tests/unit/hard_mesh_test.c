@@ -1,60 +1,63 @@
-/* Closed surfaces: no ray gets out of them. Other meshes with what is not promised of them. W1 and
-   W2 with more rays, and W10, are tests/peers/leaks.c. */
+/* Closed surfaces: no ray gets out of them, but where the traversal is built with a * b + c
+   contracted. Other meshes with what is not promised of them. */
 #include "hard_fixture.h"
 
-enum { RAYS = 30000 };
+enum { RAYS = 100000 };
+
+/* ---- host/twin/traverse.c under other names and with other flags ---- */
+
+#ifdef HARD_CONTRACTED
+void traverse_ray_contracted(const struct accel *accel, const struct traverse_params *params,
+                             const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
+                             uint32_t *status);
+#else
+#define traverse_ray_contracted traverse_ray /* never called */
+#endif
+
+static bool has_contracted(void)
+{
+#if !defined(HARD_CONTRACTED)
+    return false;
+#elif defined(__x86_64__)
+    return __builtin_cpu_supports("fma");
+#else
+    return true;
+#endif
+}
 
 /* ---- Rays at edges and vertices ---- */
 
+/* As well as a rounded direction can. */
+static struct gpu_ray ray_at(struct vec3 origin, const double target[3])
+{
+    return ray_along(origin, vec3_make((float)(target[0] - (double)origin.x),
+                                       (float)(target[1] - (double)origin.y),
+                                       (float)(target[2] - (double)origin.z)));
+}
+
 /* A vertex or a point of an edge, in the mesh's space. */
-static struct vec3 target_of(const struct soup *soup)
+static void target_of(const struct soup *soup, double out[3])
 {
     uint32_t triangle = random_below(&random_state, soup->count),
              corner = random_below(&random_state, 3);
-    struct vec3 a = vec3_load(soup_vertex(soup, triangle, corner));
-    struct vec3 b = vec3_load(soup_vertex(soup, triangle, (corner + 1) % 3));
-    float s = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
-    return vec3_add(a, vec3_scale(vec3_sub(b, a), s));
+    const float *a = soup_vertex(soup, triangle, corner),
+                *b = soup_vertex(soup, triangle, (corner + 1) % 3);
+    double s = random_below(&random_state, 2) ? 0.0 : random_unit(&random_state);
+    for (int k = 0; k < 3; ++k)
+        out[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
 }
 
-/* From near the middle; a fourth level with the target on one axis or two. */
-static struct gpu_ray leaving_ray(struct vec3 middle, struct vec3 target, float reach, uint32_t i)
+/* From near the middle; a fourth level with the target on one axis or two, or nearly so. */
+static struct gpu_ray leaving_ray(const float middle[3], const double target[3], float reach,
+                                  uint32_t i)
 {
-    struct vec3 origin = vec3_add(middle, random_point(reach));
-    if (i % 4 == 0) {
-        float *from[3] = {&origin.x, &origin.y, &origin.z};
-        const float to[3] = {target.x, target.y, target.z};
-        const float center[3] = {middle.x, middle.y, middle.z};
-        uint32_t axis = random_below(&random_state, 3);
-        for (uint32_t k = 0; k < 3; ++k)
-            if (k != axis && fabsf(to[k] - center[k]) < reach)
-                *from[k] = to[k];
-    }
-    return ray_through(origin, target);
-}
-
-/* A vertex of the plane, or a point of an edge, that is not at its border. */
-static struct vec3 inner_target(const struct soup *soup)
-{
-    for (;;) {
-        struct vec3 p = target_of(soup);
-        float far = 0.0f;
-        for (int k = 0; k < 3; k += 2) {
-            float middle =
-                0.5f * (soup_vertex(soup, 0, 0)[k] + soup_vertex(soup, soup->count - 1, 1)[k]);
-            far = fmaxf(far, fabsf((&p.x)[k] - middle));
-        }
-        if (far < 1.7f)
-            return p;
-    }
-}
-
-static struct vec3 placed(const struct affine *place, struct vec3 p)
-{
-    const double from[3] = {(double)p.x, (double)p.y, (double)p.z};
-    double to[3];
-    affine_point(place, from, to);
-    return vec3_make((float)to[0], (float)to[1], (float)to[2]);
+    float origin[3];
+    vec3_store(origin, vec3_add(vec3_load(middle), random_point(reach)));
+    uint32_t axis = random_below(&random_state, 3);
+    for (uint32_t k = 0; k < 3 && i % 4 == 0; ++k)
+        if (k != axis && fabs(target[k] - (double)middle[k]) < (double)reach)
+            origin[k] = (float)target[k] + (i % 8 ? random_within(1e-6f) : 0.0f);
+    return ray_at(vec3_load(origin), target);
 }
 
 /* ---- Hunts ---- */
@@ -69,15 +72,18 @@ struct hunt {
 };
 
 struct tally {
-    uint64_t rays, leaks, exact_leaks, other; /* other: not what exact arithmetic says */
+    uint64_t rays, leaks, exact_leaks, contracted_leaks;
+    uint64_t other; /* not what exact arithmetic says */
 };
 
 static void tell(const struct level *level, const char *name, const struct tally *tally)
 {
-    print_message("%-10s %-32s %llu of %llu rays leak (exactly: %llu), %llu hit another triangle\n",
-                  level->name, name, (unsigned long long)tally->leaks,
-                  (unsigned long long)tally->rays, (unsigned long long)tally->exact_leaks,
-                  (unsigned long long)tally->other);
+    print_message(
+        "%-10s %-32s %llu of %llu rays leak (exactly: %llu; if contracted: %llu), %llu hit "
+        "another triangle\n",
+        level->name, name, (unsigned long long)tally->leaks, (unsigned long long)tally->rays,
+        (unsigned long long)tally->exact_leaks, (unsigned long long)tally->contracted_leaks,
+        (unsigned long long)tally->other);
 }
 
 static void follow(const struct level *level, const struct accel *accel, struct rational *rational,
@@ -92,6 +98,12 @@ static void follow(const struct level *level, const struct accel *accel, struct 
     tally->exact_leaks += exact.primitive == HIT_NONE;
     tally->other += other;
     assert_false(level->exact && other);
+    if (level->exact || !has_contracted())
+        return;
+    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+    uint32_t status = 0;
+    traverse_ray_contracted(accel, &params, ray, &hit, NULL, &status);
+    tally->contracted_leaks += hit.primitive == HIT_NONE;
 }
 
 /* ---- The meshes ---- */
@@ -147,24 +159,28 @@ static struct affine placing(const struct hunt *hunt)
 
 static struct gpu_ray from_inside(const struct hunt *hunt, const struct soup *soup, uint32_t i)
 {
-    struct vec3 target = target_of(soup);
     const struct affine place = placing(hunt);
+    double target[3];
+    target_of(soup, target);
     if (hunt->placed)
-        target = placed(&place, target);
-    return leaving_ray(vec3_load(hunt->at), target, hunt->placed ? 0.3f : 0.4f, i);
+        affine_point(&place, target, target);
+    return leaving_ray(hunt->at, target, hunt->placed ? 0.3f : 0.4f, i);
 }
 
-/* Across edges and vertices, from both sides. */
+/* Across edges and vertices that are not at the border, from both sides. */
 static struct gpu_ray through_plane(const struct hunt *hunt, const struct soup *soup, uint32_t i)
 {
     struct vec3 from = vec3_add(vec3_load(hunt->at), random_point(1.5f));
-    struct vec3 to = inner_target(soup);
+    double to[3];
+    do
+        target_of(soup, to);
+    while (fmax(fabs(to[0] - (double)hunt->at[0]), fabs(to[2] - (double)hunt->at[2])) > 1.7);
     from.y = hunt->at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float(&random_state));
     if (i % 4 == 0) /* down along the axis, or in the planes of boxes */
-        from.x = to.x;
+        from.x = (float)to[0];
     if (i % 8 == 0)
-        from.z = to.z;
-    return ray_through(from, to);
+        from.z = (float)to[2];
+    return ray_at(from, to);
 }
 
 /* Along the axis at vertices, edges and diagonals. */
@@ -215,10 +231,11 @@ static struct world world_of_hunt(const struct hunt *hunt)
     return world;
 }
 
-/* W1 to W4, W7, W8 */
+/* W1 to W4, W7, W8; W10: the rays are hard enough for contraction to leak. */
 static void no_ray_gets_through(void **state)
 {
     (void)state;
+    uint64_t contracted_leaks = 0;
     for (size_t h = 0; h < sizeof hunts / sizeof *hunts; ++h) {
         struct world world = world_of_hunt(&hunts[h]);
         struct rational *rational = rational_create(world.accel);
@@ -232,10 +249,12 @@ static void no_ray_gets_through(void **state)
             tell(&levels[l], hunts[h].name, &tally);
             if (tally.exact_leaks > 0 || (levels[l].watertight && tally.leaks > 0))
                 fail_msg("%s: rays leak", hunts[h].name);
+            contracted_leaks += tally.contracted_leaks;
         }
         rational_destroy(rational);
         world_finish(&world);
     }
+    assert_true(contracted_leaks > 0 || !has_contracted());
 }
 
 /* ---- Crossings ---- */
@@ -288,7 +307,7 @@ static void count_crossings(const struct level *level, const struct accel *accel
 static void crossings_are_odd(void **state)
 {
     (void)state;
-    const uint32_t rays = cases_of(RAYS);
+    const uint32_t rays = cases_of(RAYS / 3);
     struct world world =
         world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (struct bvh_params){0});
     struct rational *rational = rational_create(world.accel);
@@ -330,7 +349,7 @@ static void only_t_junctions_leak(void **state)
     for (int l = 0; l < LEVELS; ++l) {
         struct tally seam = {0}, sound = {0};
         random_state = 6;
-        for (uint32_t i = 0; i < RAYS; ++i) {
+        for (uint32_t i = 0; i < RAYS / 3; ++i) {
             struct vec3 from = vec3_add(random_point(0.5f), vec3_make(0, 0, 3)), target;
             float s = random_float(&random_state);
             target = vec3_add(vec3_load(a), vec3_scale(vec3_sub(vec3_load(c), vec3_load(a)), s));
@@ -375,10 +394,14 @@ static void edges_between_instances_are_counted(void **state)
     for (int l = 0; l < LEVELS; ++l) {
         struct tally tally = {0};
         random_state = 9;
-        for (uint32_t i = 0; i < RAYS; ++i) {
-            struct vec3 target = vec3_make(0, 0.9f * random_within(1.0f), 0);
-            struct vec3 from = vec3_add(random_point(0.5f), vec3_make(0, 0, 3));
-            struct gpu_ray ray = ray_through(placed(&places[0], from), placed(&places[0], target));
+        for (uint32_t i = 0; i < RAYS / 3; ++i) {
+            double target[3] = {0, 0.9 * random_signed(&random_state), 0}, from[3];
+            random_vec3(&random_state, from);
+            from[2] += 3.0;
+            affine_point(&places[0], target, target);
+            affine_point(&places[0], from, from);
+            struct gpu_ray ray =
+                ray_at(vec3_make((float)from[0], (float)from[1], (float)from[2]), target);
             follow(&levels[l], world.accel, rational, &ray, &tally);
         }
         tell(&levels[l], "W9 edge between two instances", &tally);
