@@ -59,10 +59,10 @@ change(host/render/upload.c [[frame->uv1_row, TRIANGLE_UV_ROWS, fill_second_uvs]
 mutation(priorities_unseen render_media RED priority_hides_what_is_inside)
 change(host/render/variants.c [[!= scene->materials[0].priority)]] [[== 256)]])
 
-mutation(fallback_unsaid device_fallback RED kernels_go_to_the_driver_whole)
+mutation(fallback_unsaid device_compute RED kernels_go_to_the_driver_whole)
 change(host/device/pipeline.c prepare_kernel [[if \([^()]*specialized\)]] [[if (false)]])
 
-mutation(fallback_without_constants device_fallback RED kernels_go_to_the_driver_whole)
+mutation(fallback_without_constants device_compute RED kernels_go_to_the_driver_whole)
 change(host/device/pipeline.c make_pipeline [[[^ ]+spec_count > 0 && [^ ]+specialized]] [[false]])
 
 mutation(scan_misses_highlights scene_cube RED "--effects all gives the same picture"
@@ -146,7 +146,7 @@ mutation(slab_factor_gone hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h SLAB_FAR_SCALE [[\(1\.0f .*\)]] [[1.0f]])
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
-mutation(slab_factor_gone_in_kernels render_trace RED far_sphere_equals_twin)
+mutation(slab_factor_gone_in_kernels render_trace RED meshes_equal_twin)
 change(shaders/lib/intersect.glsl [[SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;]] [[SLAB_FAR_SCALE = 1.0;]])
 
 mutation(slab_by_fma hard_mesh RED no_ray_gets_through)
@@ -160,7 +160,7 @@ change(host/twin/intersect.h slab_interval
 change(host/twin/intersect.h slab_interval
   [[slab_axis\(([a-z.]+z, [a-z.]+z, )([a-z]+->)]] [[slab_axis(\2origin.z, \1\2]])
 
-mutation(slab_by_fma_in_kernels render_trace RED far_sphere_equals_twin)
+mutation(slab_by_fma_in_kernels render_trace RED meshes_equal_twin)
 change(shaders/lib/intersect.glsl [[first * ray.inv_dir;]]
   [[(first + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 change(shaders/lib/intersect.glsl [[last * ray.inv_dir;]]
@@ -195,7 +195,7 @@ change(host/twin/intersect.h make_ray_setup
       fmaxf(fminf(\3, 1e30f), -1e30f));]])
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
-mutation(reciprocals_clamped_in_kernels render_trace RED box_equals_twin)
+mutation(reciprocals_clamped_in_kernels render_trace RED meshes_equal_twin)
 change(shaders/lib/intersect.glsl [[vec3(1.0) / dir;]] [[clamp(vec3(1.0) / dir, vec3(-1e30), vec3(1e30));]])
 
 mutation(signs_of_directions accel_oracle RED borders_are_met_along_the_axes)
@@ -204,7 +204,7 @@ change(host/twin/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.y < 0]] [[dir.y <
 change(host/twin/intersect.h make_ray_setup [[[a-z]+\.inv_dir\.z < 0]] [[dir.z < 0]])
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
-mutation(signs_of_directions_in_kernels render_trace RED box_equals_twin)
+mutation(signs_of_directions_in_kernels render_trace RED meshes_equal_twin)
 change(shaders/lib/intersect.glsl [[lessThan(inv_dir, vec3(0.0))]] [[lessThan(dir, vec3(0.0))]])
 
 mutation(transform_by_a_sum accel_instance RED far_translations_keep_their_precision)
@@ -220,7 +220,7 @@ change(host/accel/hit_order.h hit_comes_before [[[a-z]\.t == [a-z]\.t]] [[false]
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 
-mutation(ties_undecided_in_kernels render_trace RED soup_equals_twin)
+mutation(ties_undecided_in_kernels render_trace RED meshes_equal_twin)
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])
 

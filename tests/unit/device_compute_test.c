@@ -24,32 +24,68 @@ static int close_device(void **state)
     return 0;
 }
 
+/* So that a kernel cannot be specialized (-Wl,--wrap). */
+static bool cannot_specialize;
+
+whit_result __real_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                  uint32_t spec_count, uint32_t **out, size_t *out_words);
+whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                  uint32_t spec_count, uint32_t **out, size_t *out_words);
+
+whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
+                                  uint32_t spec_count, uint32_t **out, size_t *out_words)
+{
+    *out = NULL;
+    return cannot_specialize
+               ? WHIT_ERROR_INPUT
+               : __real_spirv_evaluate(words, word_count, spec, spec_count, out, out_words);
+}
+
+/* What is known of the pipeline that was made, after its values are as they should be. */
+static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t added)
+{
+    enum { COUNT = 1000 };
+    struct buffer *buffer =
+        buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE | BUFFER_ZEROED, "values");
+    struct pipeline_params params = affine_params(spec);
+    struct kernel_run run = kernel_make(device, &params, &buffer);
+    struct pipeline_info info;
+    const uint32_t push[] = {COUNT, added};
+    uint32_t values[COUNT + 1];
+    kernel_dispatch(device, &run, push, sizeof push, (COUNT + spec[0] - 1) / spec[0]);
+    assert_int_equal(buffer_read(buffer, 0, values, sizeof values), WHIT_OK);
+    for (uint32_t j = 0; j < COUNT; ++j)
+        assert_int_equal(values[j], j * spec[1] + spec[2] + added);
+    assert_int_equal(values[COUNT], 0);
+    pipeline_get_info(run.pipeline, &info);
+    kernel_free(&run);
+    buffer_destroy(buffer);
+    return info;
+}
+
 static void constants_reach_the_shader(void **state)
 {
     (void)state;
-    enum { COUNT = 1000 };
     const uint32_t specs[][3] = {{64, 3, 7}, {16, 0xffffffffu, 5}, {1, 2, 0}};
-    for (size_t i = 0; i < 3; ++i) {
-        struct buffer *buffer =
-            buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE | BUFFER_ZEROED, "values");
-        struct pipeline_params params = affine_params(specs[i]);
-        struct kernel_run run = kernel_make(device, &params, &buffer);
-        struct commands *commands = commands_make(device);
-        const uint32_t push[] = {COUNT, 1000000 * (uint32_t)i};
-        assert_int_equal(commands_begin(commands), WHIT_OK);
-        commands_bind(commands, run.pipeline, run.set);
-        commands_push(commands, push, sizeof push);
-        commands_dispatch(commands, (COUNT + specs[i][0] - 1) / specs[i][0], 1, 1);
-        commands_finish(commands);
-        uint32_t values[COUNT + 1];
-        assert_int_equal(buffer_read(buffer, 0, values, sizeof values), WHIT_OK);
-        for (uint32_t j = 0; j < COUNT; ++j)
-            assert_int_equal(values[j], j * specs[i][1] + specs[i][2] + push[1]);
-        assert_int_equal(values[COUNT], 0);
-        commands_destroy(commands);
-        kernel_free(&run);
-        buffer_destroy(buffer);
-    }
+    for (uint32_t i = 0; i < 3; ++i)
+        assert_true(check_constants(specs[i], 1000000 * i).specialized);
+}
+
+/* A kernel that cannot be specialized still runs, and that is said. */
+static void kernels_go_to_the_driver_whole(void **state)
+{
+    (void)state;
+    const uint32_t spec[] = {64, 3, 7};
+    const struct pipeline_params params = affine_params(spec);
+    messages = (struct messages){0};
+    cannot_specialize = true;
+    struct pipeline_info info = check_constants(spec, 5);
+    assert_false(pipeline_count(&params, &(struct pipeline_info){0}));
+    cannot_specialize = false;
+    assert_non_null(strstr(messages.text, "\"affine\": its kernel cannot be specialized"));
+    assert_int_equal(messages.errors, 0);
+    assert_false(info.specialized);
+    assert_int_equal(info.bindings, 1);
 }
 
 static void texels_equal_storage(void **state)
@@ -74,16 +110,10 @@ static void texels_equal_storage(void **state)
                                      .binding_count = 4,
                                      .name = "texels"};
     struct kernel_run run = kernel_make(device, &params, buffers);
-    struct commands *commands = commands_make(device);
-    assert_int_equal(commands_begin(commands), WHIT_OK);
-    commands_bind(commands, run.pipeline, run.set);
-    commands_dispatch(commands, ROWS / 64, 1, 1);
-    commands_finish(commands);
+    kernel_dispatch(device, &run, NULL, 0, ROWS / 64);
     assert_int_equal(buffer_read(out, 0, sums, ROWS * sizeof *sums), WHIT_OK);
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
         assert_int_equal(sums[i / 4][i % 4], rows[i / 4][i % 4] * 2 + 1);
-
-    commands_destroy(commands);
     kernel_free(&run);
     buffer_destroy(in);
     buffer_destroy(out);
@@ -94,6 +124,12 @@ static void texels_equal_storage(void **state)
 static struct pipeline_params count_params(void)
 {
     return storage_params(device_count, sizeof device_count, 1, "count");
+}
+
+static struct kernel_run count_make(struct buffer *buffer)
+{
+    struct pipeline_params params = count_params();
+    return kernel_make(device, &params, &buffer);
 }
 
 static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
@@ -109,8 +145,7 @@ static void indirect_dispatch_takes_its_arguments(void **state)
     (void)state;
     struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
-    struct pipeline_params params = count_params();
-    struct kernel_run run = kernel_make(device, &params, &count);
+    struct kernel_run run = count_make(count);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_fill(commands, arguments, 16, 12, 3);
@@ -294,8 +329,7 @@ static void recording_errors_surface_at_submit(void **state)
 {
     (void)state;
     struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
-    struct pipeline_params params = count_params();
-    struct kernel_run run = kernel_make(device, &params, &buffer);
+    struct kernel_run run = count_make(buffer);
     struct commands *commands = commands_make(device);
     const uint32_t word = 0;
     for (int fault = 0; fault < 9; ++fault) {
@@ -358,8 +392,7 @@ static void later_submissions_see_earlier_ones(void **state)
 {
     (void)state;
     struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
-    struct pipeline_params params = count_params();
-    struct kernel_run run = kernel_make(device, &params, &buffer);
+    struct kernel_run run = count_make(buffer);
     struct commands *commands[2] = {commands_make(device), commands_make(device)};
     for (int i = 0; i < 20; ++i) {
         struct commands *one = commands[i & 1];
@@ -411,6 +444,7 @@ int main(void)
     setenv("WHIT_NO_CACHE", "1", 1);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constants_reach_the_shader),
+        cmocka_unit_test(kernels_go_to_the_driver_whole),
         cmocka_unit_test(texels_equal_storage),
         cmocka_unit_test(indirect_dispatch_takes_its_arguments),
         cmocka_unit_test(fill_and_copy_keep_to_their_range),

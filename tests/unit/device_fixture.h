@@ -117,6 +117,20 @@ static inline void commands_finish(struct commands *commands)
     assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
 }
 
+/* `groups` of it, once, to its end. */
+static inline void kernel_dispatch(struct device *device, const struct kernel_run *run,
+                                   const void *push, uint32_t push_bytes, uint32_t groups)
+{
+    struct commands *commands = commands_make(device);
+    assert_int_equal(commands_begin(commands), WHIT_OK);
+    commands_bind(commands, run->pipeline, run->set);
+    if (push_bytes > 0)
+        commands_push(commands, push, push_bytes);
+    commands_dispatch(commands, groups, 1, 1);
+    commands_finish(commands);
+    commands_destroy(commands);
+}
+
 /* Runs a kernel that has `count` cases in its first buffer and answers each in its second, 64 a
    group. `spec`: the first of `spec_count` specialization constants. */
 static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
@@ -131,13 +145,8 @@ static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
     params.spec = spec;
     params.spec_count = spec_count;
     struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
-    struct commands *commands = commands_make(device);
-    assert_int_equal(commands_begin(commands), WHIT_OK);
-    commands_bind(commands, run.pipeline, run.set);
-    commands_dispatch(commands, (count + 63) / 64, 1, 1);
-    commands_finish(commands);
+    kernel_dispatch(device, &run, NULL, 0, (count + 63) / 64);
     assert_int_equal(buffer_read(out, 0, answers, count * answer_bytes), WHIT_OK);
-    commands_destroy(commands);
     kernel_free(&run);
     buffer_destroy(in);
     buffer_destroy(out);

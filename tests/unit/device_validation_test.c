@@ -68,14 +68,8 @@ static void write_outside_is_reported(void **state)
             storage_params(device_overrun, sizeof device_overrun, 1, "overrun");
         params.push_bytes = 4;
         struct kernel_run run = kernel_make(device, &params, &values);
-        struct commands *commands = commands_make(device);
-        assert_int_equal(commands_begin(commands), WHIT_OK);
-        commands_bind(commands, run.pipeline, run.set);
-        commands_push(commands, &index, sizeof index);
-        commands_dispatch(commands, 1, 1, 1);
-        commands_finish(commands);
+        kernel_dispatch(device, &run, &index, sizeof index, 1);
         assert_int_equal(device_validation_messages(device) > 0, index > 3);
-        commands_destroy(commands);
         kernel_free(&run);
         buffer_destroy(values);
         device_destroy(device);
@@ -98,16 +92,13 @@ static void environment_turns_it_on(void **state)
 {
     (void)state;
     struct messages messages;
-    setenv("WHIT_VALIDATION", "1", 1);
-    struct device *device = device_open(&messages, false);
-    run_affine(device, false);
-    assert_true(device_validation_messages(device) >= 1);
-    device_destroy(device);
-    setenv("WHIT_VALIDATION", "0", 1);
-    device = device_open(&messages, false);
-    run_affine(device, false);
-    assert_int_equal(device_validation_messages(device), 0);
-    device_destroy(device);
+    for (int on = 0; on < 2; ++on) {
+        setenv("WHIT_VALIDATION", on ? "1" : "0", 1);
+        struct device *device = device_open(&messages, false);
+        run_affine(device, false);
+        assert_int_equal(device_validation_messages(device) > 0, on);
+        device_destroy(device);
+    }
     unsetenv("WHIT_VALIDATION");
 }
 

@@ -8,20 +8,12 @@
 /* Clear, without a highlight: all light is reflected or let through, by Fresnel. */
 static inline struct scene_material clear_glass(float ior, uint32_t priority)
 {
-    struct scene_material m = material_plain("clear");
-    set_rgb(m.diffuse, 0, 0, 0);
+    struct scene_material m = matte(0, 0, 0);
     set_rgb(m.transmission, 1, 1, 1);
     m.fresnel = true;
     m.ior = ior;
     m.priority = priority;
     return m;
-}
-
-static inline void set_sky(struct scene *scene, float zenith, float horizon, float ground)
-{
-    set_rgb(scene->environment.zenith, zenith, zenith, zenith);
-    set_rgb(scene->environment.horizon, horizon, horizon, horizon);
-    set_rgb(scene->environment.ground, ground, ground, ground);
 }
 
 /* A closed profile of radii and heights, turned about the y axis; on the axis the radius is 0. The
@@ -73,10 +65,7 @@ static inline void add_coordinate_wall(struct scene *scene, double z, double sid
         set_rgb(&mesh.colors[4 * i], (float)right, (float)top, 1.0f);
         mesh.colors[4 * i + 3] = 1.0f;
     }
-    struct scene_material m = material_plain("wall");
-    m.model = SCENE_MODEL_UNLIT;
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh, m, 0, 0, z);
+    add_object(scene, mesh, unlit(1, 1, 1), 0, 0, z);
 }
 
 /* Where a coordinate wall was met, by the colour that came from it. */

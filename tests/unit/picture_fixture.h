@@ -11,6 +11,38 @@ static inline void set_rgb(float *rgb, float r, float g, float b)
     rgb[2] = b;
 }
 
+static inline void set_sky(struct scene *scene, float zenith, float horizon, float ground)
+{
+    set_rgb(scene->environment.zenith, zenith, zenith, zenith);
+    set_rgb(scene->environment.horizon, horizon, horizon, horizon);
+    set_rgb(scene->environment.ground, ground, ground, ground);
+}
+
+/* ---- Materials that do one thing alone ---- */
+
+static inline struct scene_material matte(float r, float g, float b)
+{
+    struct scene_material m = material_plain("matte");
+    set_rgb(m.diffuse, r, g, b);
+    return m;
+}
+
+static inline struct scene_material unlit(float r, float g, float b)
+{
+    struct scene_material m = matte(r, g, b);
+    m.model = SCENE_MODEL_UNLIT;
+    return m;
+}
+
+static inline struct scene_material mirror(float r, float g, float b)
+{
+    struct scene_material m = matte(0, 0, 0);
+    set_rgb(m.reflection, r, g, b);
+    return m;
+}
+
+/* ---- Scenes ---- */
+
 /* A scene with nothing but a black background and a camera at `eye` looking at `target`. */
 static inline struct scene *dark_scene(const double eye[3], const double target[3])
 {
@@ -31,6 +63,29 @@ static inline uint32_t add_object(struct scene *scene, struct scene_mesh mesh,
     return scene->material_count - 1;
 }
 
+/* A white floor in y = 0, seen from `height` above. */
+static inline struct scene *floor_scene(double height)
+{
+    struct scene *scene = dark_scene((double[]){0, height, 0}, (double[]){0, 0, 0});
+    add_object(scene, mesh_plane(40), matte(1, 1, 1), 0, 0, 0);
+    return scene;
+}
+
+/* A panel in y = `height` that glows to both sides, as a light in its plane; seen from 3 above. */
+static inline struct scene *glowing_panel(double height)
+{
+    struct scene *scene = dark_scene((double[]){0, height + 3, 0}, (double[]){0, height, 0});
+    add_object(scene, mesh_plane(4), matte(1, 1, 1), 0, height, 0);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+                                                .node = SCENE_NONE,
+                                                .two_sided = true,
+                                                .position = {-2, height, -2},
+                                                .edge_u = {4, 0, 0},
+                                                .edge_v = {0, 0, 4},
+                                                .color = {1, 1, 1}});
+    return scene;
+}
+
 /* A texture of two texels side by side; see use_texture. */
 static inline uint32_t add_two_texels(struct scene *scene, uint8_t first, uint8_t second)
 {
@@ -48,19 +103,32 @@ static inline void use_texture(struct scene_material *m, enum scene_slot slot, u
     use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
 }
 
-static inline struct image render(struct fixture *f)
-{
-    struct image image = {0};
-    assert_int_equal(renderer_render(f->renderer), WHIT_OK);
-    assert_int_equal(renderer_read_color(f->renderer, &image), WHIT_OK);
-    return image;
-}
+/* ---- Pixels ---- */
 
 static const struct render_params picture_params = {.width = 33, .height = 33, .depth = 8};
 
 static inline const float *middle(const struct image *image)
 {
     return &image->pixels[4 * ((size_t)image->height / 2 * image->width + image->width / 2)];
+}
+
+/* The sum of all red. */
+static inline double red_sum(const struct image *image)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < (size_t)image->width * image->height; ++i)
+        sum += (double)image->pixels[4 * i];
+    return sum;
+}
+
+/* No colour is anything but a number from `min` to `max`; alpha is from 0 to 1. */
+static inline void assert_range(const struct image *image, double min, double max)
+{
+    for (size_t i = 0; i < (size_t)image->width * image->height * 4; ++i) {
+        double value = (double)image->pixels[i];
+        if (!(i % 4 == 3 ? value >= 0 && value <= 1 : value >= min && value <= max))
+            fail_msg("pixel %zu: %g is not between %g and %g", i / 4, value, min, max);
+    }
 }
 
 static inline void assert_near(float value, double expected, double relative)

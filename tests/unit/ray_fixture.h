@@ -1,10 +1,10 @@
-/* Rays that meet a scene where tests break. */
+/* Rays that meet a scene where tests break, and what the twin in C says of them. */
 #ifndef TESTS_RAY_FIXTURE_H
 #define TESTS_RAY_FIXTURE_H
 
+#include "render/renderer.h"
 #include "render_fixture.h"
-
-enum { RAYS = 20000 };
+#include "twin/traverse.h"
 
 /* A vertex or a point of an edge of a random triangle in world space, where tests break. */
 static inline void aim_at_scene(const struct fixture *f, const struct scene_pose *pose,
@@ -26,11 +26,12 @@ static inline void aim_at_scene(const struct fixture *f, const struct scene_pose
 }
 
 /* A quarter each: random, aimed, axis-parallel, short. */
-static inline void aim_rays(const struct fixture *f, struct gpu_ray *rays, uint64_t state)
+static inline void aim_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t count,
+                            uint64_t state)
 {
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
-    for (uint32_t i = 0; i < RAYS; ++i) {
+    for (uint32_t i = 0; i < count; ++i) {
         struct gpu_ray *ray = &rays[i];
         double target[3];
         aim_at_scene(f, &pose, &state, target);
@@ -57,6 +58,95 @@ static inline void aim_rays(const struct fixture *f, struct gpu_ray *rays, uint6
         }
     }
     scene_pose_finish(&pose);
+}
+
+/* Half of them towards random points in the scene's bounds, half anywhere. */
+static inline void aim_at_bounds(const struct fixture *f, struct gpu_ray *rays, uint32_t count,
+                                 uint64_t state)
+{
+    struct scene_pose pose;
+    assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i) {
+        rays[i] = (struct gpu_ray){.t_max = i % 8 == 7 ? 0.7f : INFINITY};
+        for (int k = 0; k < 3; ++k) {
+            double center = 0.5 * (pose.lo[k] + pose.hi[k]), size = pose.hi[k] - pose.lo[k] + 1e-3;
+            rays[i].origin[k] = (float)(center + size * 1.2 * (double)random_float_signed(&state));
+            double at = center + 0.5 * size * (double)random_float_signed(&state);
+            rays[i].dir[k] =
+                i & 1 ? random_float_signed(&state) : (float)(at - (double)rays[i].origin[k]);
+        }
+    }
+    rays[1] = (struct gpu_ray){.dir = {0, 0, 0}}; /* not even started, but a ray */
+    rays[2] = (struct gpu_ray){.dir = {0, -0.0f, 1}, .t_max = INFINITY};
+    scene_pose_finish(&pose);
+}
+
+/* ---- Device and twin ---- */
+
+/* Of the device's hits, how many are unlike the twin's, bit for bit, and of its costs, where these
+   are counted, which are added to *sum. Of any hits it counts that there is one. */
+struct unlike {
+    uint32_t hits, costs;
+};
+
+static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
+                                              const struct gpu_ray *rays, uint32_t count,
+                                              struct gpu_hit *hits, struct cost_sum *sum)
+{
+    const struct render_params *params = &f->renderer->params;
+    const struct traverse_params twin = {.order = params->order,
+                                         .numerics = params->numerics,
+                                         .any = any,
+                                         .skip_instance = HIT_NONE,
+                                         .skip_primitive = HIT_NONE};
+    struct gpu_cost *costs = params->count ? array_alloc(count, sizeof *costs) : NULL;
+    struct unlike unlike = {0};
+    uint32_t status = 0;
+    assert_int_equal(renderer_trace(f->renderer, rays, count, any, hits, costs), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_hit hit;
+        struct gpu_cost cost = {0};
+        traverse_ray(f->accel, &twin, &rays[i], &hit, &cost, &status);
+        unlike.hits += any ? (hit.primitive != HIT_NONE) != (hits[i].primitive != HIT_NONE)
+                           : memcmp(&hit, &hits[i], sizeof hit) != 0;
+        unlike.costs += costs && memcmp(&cost, &costs[i], sizeof cost) != 0;
+        if (sum)
+            cost_add(sum, &cost);
+    }
+    assert_int_equal(status, 0);
+    free(costs);
+    return unlike;
+}
+
+/* How many are met. */
+static inline uint32_t count_met(const struct gpu_hit *hits, uint32_t count)
+{
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        met += hits[i].primitive != HIT_NONE;
+    return met;
+}
+
+/* The device's closest hits, which are left in `hits`, are the twin's; there is any hit just where
+   there is a closest one; costs of both are the twin's too. */
+static inline void check_rays(const struct fixture *f, const char *label,
+                              const struct gpu_ray *rays, uint32_t count, struct gpu_hit *hits)
+{
+    struct gpu_hit *any = array_alloc(count, sizeof *any);
+    assert_non_null(any);
+    struct unlike closest = trace_beside_twin(f, false, rays, count, hits, NULL);
+    struct unlike blocked = trace_beside_twin(f, true, rays, count, any, NULL);
+    uint32_t met = count_met(hits, count), torn = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        torn += (any[i].primitive != HIT_NONE) != (hits[i].primitive != HIT_NONE);
+    print_message("  %s: %u rays, %u hit; unlike the twin %u, any hits %u, by their costs %u and "
+                  "%u; any hits unlike the closest %u\n",
+                  label, count, met, closest.hits, blocked.hits, closest.costs, blocked.costs,
+                  torn);
+    if (closest.hits + blocked.hits + closest.costs + blocked.costs + torn > 0)
+        fail_msg("%s: device and twin differ", label);
+    assert_in_range(met, count / 10, count - 1);
+    free(any);
 }
 
 #endif

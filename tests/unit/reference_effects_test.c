@@ -1,7 +1,7 @@
 /* Every effect at once, by the device and by the reference in double: what the scenes of scenes/
  * lack. */
 #include "picture_fixture.h"
-#include "reference/reference.h"
+#include "reference_fixture.h"
 
 enum { SIDE = 48 };
 
@@ -54,8 +54,7 @@ static struct scene_mesh coloured(struct scene_mesh mesh)
 
 static struct scene_material glass(float ior, uint32_t priority)
 {
-    struct scene_material m = material_plain("glass");
-    set_rgb(m.diffuse, 0, 0, 0);
+    struct scene_material m = matte(0, 0, 0);
     set_rgb(m.transmission, 0.9f, 1, 0.8f);
     set_rgb(m.absorption, 0.3f, 0.1f, 0.9f);
     m.fresnel = true;
@@ -66,8 +65,7 @@ static struct scene_material glass(float ior, uint32_t priority)
 
 static void add_ground(struct scene *scene)
 {
-    struct scene_material ground = material_plain("ground"), catcher = material_plain("catcher");
-    set_rgb(ground.diffuse, 0.8f, 0.7f, 0.6f);
+    struct scene_material ground = matte(0.8f, 0.7f, 0.6f), catcher = material_plain("catcher");
     set_rgb(ground.ambient, 1, 1, 1);
     set_rgb(ground.specular, 0.3f, 0.3f, 0.3f);
     ground.shininess = 20;
@@ -81,27 +79,23 @@ static void add_ground(struct scene *scene)
 
 static void add_bodies(struct scene *scene)
 {
-    struct scene_material metal = material_plain("metal"), sheet = material_plain("sheet"),
-                          leaf = material_plain("leaf"), paint = material_plain("paint");
+    struct scene_material metal = matte(0.9f, 0.7f, 0.3f), sheet = matte(0.2f, 0.5f, 0.9f),
+                          leaf = matte(0.3f, 0.8f, 0.2f), paint = matte(0.9f, 0.9f, 0.9f);
     metal.model = SCENE_MODEL_METAL_ROUGH;
-    set_rgb(metal.diffuse, 0.9f, 0.7f, 0.3f);
     set_rgb(metal.specular, 1, 1, 1);
     metal.metallic = 0.9f;
     metal.roughness = 0.6f;
     use_smooth(&metal, SCENE_SLOT_METAL_ROUGH, add_noise(scene, 100, false), 3, SCENE_WRAP_CLAMP);
     add_object(scene, ball(0.9), metal, 2.2, 0.95, 0);
     sheet.alpha = SCENE_ALPHA_BLEND;
-    set_rgb(sheet.diffuse, 0.2f, 0.5f, 0.9f);
     use_smooth(&sheet, SCENE_SLOT_DIFFUSE, add_noise(scene, 30, true), 2, SCENE_WRAP_REPEAT);
     add_object(scene, mesh_box(0.9, 1.5, 0.05), sheet, 1, 0.8, 2.4);
     leaf.alpha = SCENE_ALPHA_MASK;
     leaf.alpha_cutoff = 0.45f;
-    set_rgb(leaf.diffuse, 0.3f, 0.8f, 0.2f);
     set_rgb(leaf.emission, 0.05f, 0.1f, 0);
     use_smooth(&leaf, SCENE_SLOT_OPACITY, add_noise(scene, 0, true), 2, SCENE_WRAP_REPEAT);
     use_smooth(&leaf, SCENE_SLOT_BUMP, add_noise(scene, 0, false), 2, SCENE_WRAP_REPEAT);
     add_object(scene, true_ball(0.6f), leaf, 0.2, 1.9, -1);
-    set_rgb(paint.diffuse, 0.9f, 0.9f, 0.9f);
     set_rgb(paint.reflection, 0.1f, 0.1f, 0.1f);
     paint.fresnel = true;
     paint.one_sided = true;
@@ -120,31 +114,30 @@ static void add_glass(struct scene *scene)
 
 static void add_lights(struct scene *scene)
 {
-    struct scene_light spot = {.kind = SCENE_LIGHT_SPOT,
-                               .node = SCENE_NONE,
-                               .position = {3, 5, 3},
-                               .direction = {-0.5, -0.75, -0.4330127},
-                               .falloff = true,
-                               .range = 30,
-                               .cos_inner = 0.97f,
-                               .cos_outer = 0.8f};
-    struct scene_light panel = {.kind = SCENE_LIGHT_RECTANGLE,
-                                .node = SCENE_NONE,
-                                .position = {-3, 3, -2},
-                                .edge_u = {1.5, 0, 0.2},
-                                .edge_v = {0, 0.5, 1.5}};
-    struct scene_light sail = {.kind = SCENE_LIGHT_TRIANGLE,
-                               .node = SCENE_NONE,
-                               .position = {-3, 0.5, 3},
-                               .edge_u = {0, 2, 0.5},
-                               .edge_v = {1, 0.5, 0.5},
-                               .two_sided = true};
-    set_rgb(spot.color, 20, 18, 15);
-    set_rgb(panel.color, 2, 2, 3);
-    set_rgb(sail.color, 1, 0.5f, 0.5f);
-    scene_put_light(scene, spot);
-    scene_put_light(scene, panel);
-    scene_put_light(scene, sail);
+    const struct scene_light lights[] = {{.kind = SCENE_LIGHT_SPOT,
+                                          .node = SCENE_NONE,
+                                          .position = {3, 5, 3},
+                                          .direction = {-0.5, -0.75, -0.4330127},
+                                          .color = {20, 18, 15},
+                                          .falloff = true,
+                                          .range = 30,
+                                          .cos_inner = 0.97f,
+                                          .cos_outer = 0.8f},
+                                         {.kind = SCENE_LIGHT_RECTANGLE,
+                                          .node = SCENE_NONE,
+                                          .position = {-3, 3, -2},
+                                          .color = {2, 2, 3},
+                                          .edge_u = {1.5, 0, 0.2},
+                                          .edge_v = {0, 0.5, 1.5}},
+                                         {.kind = SCENE_LIGHT_TRIANGLE,
+                                          .node = SCENE_NONE,
+                                          .position = {-3, 0.5, 3},
+                                          .color = {1, 0.5f, 0.5f},
+                                          .edge_u = {0, 2, 0.5},
+                                          .edge_v = {1, 0.5, 0.5},
+                                          .two_sided = true}};
+    for (int i = 0; i < 3; ++i)
+        scene_put_light(scene, lights[i]);
     scene_put_lamp(scene, 2, 4, -3, 6);
     scene_put_sun(scene, 0.3, -1, -0.2, 0.4f);
 }
@@ -194,18 +187,6 @@ static struct difference compare(const struct image *a, const struct image *b)
     return d;
 }
 
-static struct image draw_reference(struct accel *accel, const struct reference_params *params)
-{
-    struct reference *reference = NULL;
-    struct reference_stats stats;
-    struct image image = {0};
-    assert_int_equal(reference_create(&fixture_log, accel, params, &reference), WHIT_OK);
-    assert_int_equal(reference_render(reference, &image, NULL, &stats), WHIT_OK);
-    assert_int_equal(stats.non_finite, 0);
-    reference_destroy(reference);
-    return image;
-}
-
 static void every_effect_agrees_with_the_device(void **state)
 {
     (void)state;
@@ -217,10 +198,12 @@ static void every_effect_agrees_with_the_device(void **state)
                                                   .light_samples = 4},
                                       .whole_stops = true};
     struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
-    struct image device = render(&f), whole = draw_reference(f.accel, &params);
+    struct image device = render(&f);
+    struct picture whole = reference_picture(f.accel, &params);
     params.whole_stops = false;
-    struct image ideal = draw_reference(f.accel, &params);
-    struct difference d = compare(&device, &whole), stops = compare(&whole, &ideal);
+    struct picture ideal = reference_picture(f.accel, &params);
+    struct difference d = compare(&device, &whole.color),
+                      stops = compare(&whole.color, &ideal.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
                   d.over, SIDE * SIDE, d.largest, stops.over, stops.largest);
     assert_true(d.over * 500 <= SIDE * SIDE); /* 0.2 %, for edges */
@@ -228,8 +211,8 @@ static void every_effect_agrees_with_the_device(void **state)
        than what the device is off by, or this would not tell whether it rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
     image_finish(&device);
-    image_finish(&whole);
-    image_finish(&ideal);
+    picture_finish(&whole);
+    picture_finish(&ideal);
     fixture_close(&f);
 }
 
@@ -258,12 +241,13 @@ static void touching_smooth_bodies_agree(void **state)
     struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
                                       .whole_stops = true};
     struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
-    struct image device = render(&f), reference = draw_reference(f.accel, &params);
-    struct difference d = compare(&device, &reference);
+    struct image device = render(&f);
+    struct picture reference = reference_picture(f.accel, &params);
+    struct difference d = compare(&device, &reference.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
     assert_true(d.over * 500 <= SIDE * SIDE);
     image_finish(&device);
-    image_finish(&reference);
+    picture_finish(&reference);
     fixture_close(&f);
 }
 

@@ -1,7 +1,7 @@
 /* The reference in double against formulas: its rays to 1e-12, its pictures to the rounding to
  * float. */
 #include "media_fixture.h"
-#include "reference/reference.h"
+#include "reference_fixture.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -11,16 +11,20 @@ struct drawn {
     struct reference *reference;
 };
 
-static struct drawn open_reference(struct scene *scene, const struct render_params *picture)
+static struct drawn open_with(struct scene *scene, const struct accel_params *trees,
+                              const struct reference_params *params)
 {
     struct drawn d = {.scene = scene};
-    struct reference_params params = {.picture = *picture};
-    if (params.picture.depth == 0)
-        params.picture.depth = 8;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(accel_create(&fixture_log, scene, NULL, &d.accel), WHIT_OK);
-    assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, scene, trees, &d.accel), WHIT_OK);
+    assert_int_equal(reference_create(&fixture_log, d.accel, params, &d.reference), WHIT_OK);
     return d;
+}
+
+static struct drawn open_reference(struct scene *scene, const struct render_params *picture)
+{
+    const struct reference_params params = {.picture = *picture};
+    return open_with(scene, NULL, &params);
 }
 
 static void close_reference(struct drawn *d)
@@ -37,20 +41,7 @@ static struct image draw(const struct drawn *d)
     return image;
 }
 
-/* One sample's ray tree, of a picture of one pixel. */
-struct rays {
-    struct reference_ray *all;
-    uint32_t count;
-};
-
 static const struct render_params one_pixel = {.width = 1, .height = 1, .depth = 8};
-
-static struct rays trace_pixel(const struct drawn *d)
-{
-    struct rays rays;
-    assert_int_equal(reference_ray_tree(d->reference, 0, 0, 0, &rays.all, &rays.count), WHIT_OK);
-    return rays;
-}
 
 static const struct reference_ray *find_ray(const struct rays *rays, enum reference_kind kind,
                                             uint32_t parent)
@@ -89,12 +80,11 @@ static void check_glass(double angle, double ior, bool schlick)
     struct render_params params = one_pixel;
     params.schlick = schlick;
     struct drawn d = open_reference(facing_scene(angle, clear_glass((float)ior, 0)), &params);
-    struct rays rays = trace_pixel(&d);
+    struct rays rays = reference_rays(d.reference, 0, 0, 0);
     double cos_in = -rays.all[0].dir[2], n = (double)(float)ior;
     double share = fresnel(cos_in, 1.0, n), f0 = (n - 1) * (n - 1) / ((n + 1) * (n + 1));
     if (schlick)
-        share = f0 + (1.0 - f0) * (1.0 - cos_in) * (1.0 - cos_in) * (1.0 - cos_in) *
-                         (1.0 - cos_in) * (1.0 - cos_in);
+        share = f0 + (1.0 - f0) * pow(1.0 - cos_in, 5);
     const struct reference_ray *reflected = find_ray(&rays, REFERENCE_REFLECTED, 0);
     const struct reference_ray *refracted = find_ray(&rays, REFERENCE_REFRACTED, 0);
     for (int c = 0; c < 3; ++c) {
@@ -141,7 +131,7 @@ static void light_is_reflected_whole_from_inside(void **state)
             dark_scene((double[]){0, 0, 0}, (double[]){sin(angle), 0, -cos(angle)});
         add_object(scene, mesh_box(100, 100, 8), clear_glass(1.5f, 0), 0, 0, 0);
         struct drawn d = open_reference(scene, &one_pixel);
-        struct rays rays = trace_pixel(&d);
+        struct rays rays = reference_rays(d.reference, 0, 0, 0);
         assert_int_not_equal(rays.all[0].medium, REFERENCE_NONE);
         double share = fresnel(-rays.all[0].dir[2], 1.5, 1.0);
         const struct reference_ray *reflected = find_ray(&rays, REFERENCE_REFLECTED, 0);
@@ -162,7 +152,7 @@ static void bodies_absorb_by_beer(void **state)
     struct scene *scene = facing_scene(0.5, m);
     set_sky(scene, 1, 1, 1);
     struct drawn d = open_reference(scene, &one_pixel);
-    struct rays rays = trace_pixel(&d);
+    struct rays rays = reference_rays(d.reference, 0, 0, 0);
     struct image image = draw(&d);
     double path = 2.0 / -rays.all[0].dir[2];
     for (int c = 0; c < 3; ++c) {
@@ -179,9 +169,8 @@ static void bodies_absorb_by_beer(void **state)
 /* Nothing absorbs under a sky of 1: what reaches the sky and what was cut add up to 1. */
 static void check_furnace(const struct drawn *d, uint32_t x, uint32_t y)
 {
-    struct rays rays;
+    struct rays rays = reference_rays(d->reference, x, y, 0);
     double sum = 0.0;
-    assert_int_equal(reference_ray_tree(d->reference, x, y, 0, &rays.all, &rays.count), WHIT_OK);
     for (uint32_t i = 0; i < rays.count; ++i) {
         bool cut =
             rays.all[i].end == REFERENCE_END_DEPTH || rays.all[i].end == REFERENCE_END_BAILOUT;
@@ -211,78 +200,73 @@ static void nothing_is_lost_in_a_furnace(void **state)
 
 /* ---- Light ---- */
 
-/* A white floor seen from above, at (0, 0, 0) in the middle. */
-static struct scene *floor_scene(void)
+/* Of the one pixel of a picture of the scene, which is freed. */
+static double pixel_light(struct scene *scene, const struct reference_params *params)
 {
-    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("floor");
-    set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
-    add_object(scene, mesh_plane(40), m, 0, 0, 0);
-    return scene;
-}
-
-/* Of the middle pixel of a picture of the scene, which is freed. */
-static double floor_light(struct scene *scene, const struct render_params *params)
-{
-    struct drawn d = open_reference(scene, params);
+    struct drawn d = open_with(scene, NULL, params);
     struct image image = draw(&d);
-    double light = (double)middle(&image)[0];
+    double light = (double)image.pixels[0];
     image_finish(&image);
     close_reference(&d);
     return light;
 }
 
+static const struct reference_params of_one_pixel = {
+    .picture = {.width = 1, .height = 1, .depth = 8}};
+
+/* A floor of a material, seen from above, at (0, 0, 0) in the middle. */
+static struct scene *floor_of(struct scene_material m)
+{
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    add_object(scene, mesh_plane(40), m, 0, 0, 0);
+    return scene;
+}
+
 static void light_falls_with_cosine_and_square(void **state)
 {
     (void)state;
-    struct scene *scene = floor_scene();
+    struct scene *scene = floor_scene(8);
     scene_put_lamp(scene, 3, 4, 0, 100);
-    assert_close(floor_light(scene, &one_pixel), 0.5 * 100 / 25.0 * 0.8, 1e-6);
-    scene = floor_scene();
+    assert_close(pixel_light(scene, &of_one_pixel), 100 / 25.0 * 0.8, 2e-6);
+    scene = floor_scene(8);
     scene_put_sun(scene, -3, -4, 0, 2);
-    assert_close(floor_light(scene, &one_pixel), 0.5 * 2 * 0.8, 1e-7);
+    assert_close(pixel_light(scene, &of_one_pixel), 2 * 0.8, 2e-7);
 }
 
 /* (n . h)^shininess, and GGX where light, eye and normal are one direction: 1 / (4 alpha^2). */
 static void highlights_follow_their_formulas(void **state)
 {
     (void)state;
-    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("gloss");
-    set_rgb(m.diffuse, 0, 0, 0);
+    struct scene_material m = matte(0, 0, 0);
     set_rgb(m.specular, 0.7f, 0.7f, 0.7f);
     m.shininess = 30;
-    add_object(scene, mesh_plane(40), m, 0, 0, 0);
+    struct scene *scene = floor_of(m);
     scene_put_sun(scene, -sin(0.4), -cos(0.4), 0, 1);
-    assert_close(floor_light(scene, &one_pixel), 0.7 * pow(cos(0.2), 30), 1e-7);
-
-    scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
-    m = material_plain("metal");
+    assert_close(pixel_light(scene, &of_one_pixel), 0.7 * pow(cos(0.2), 30), 1e-7);
+    m = matte(0.6f, 0.6f, 0.6f);
     m.model = SCENE_MODEL_METAL_ROUGH;
-    set_rgb(m.diffuse, 0.6f, 0.6f, 0.6f);
     set_rgb(m.specular, 1, 1, 1);
     m.metallic = 1;
     m.roughness = 0.5f;
-    add_object(scene, mesh_plane(40), m, 0, 0, 0);
+    scene = floor_of(m);
     scene_put_sun(scene, 0, -1, 0, 1);
-    assert_close(floor_light(scene, &one_pixel), 0.6 / (4 * 0.0625), 1e-6);
+    assert_close(pixel_light(scene, &of_one_pixel), 0.6 / (4 * 0.0625), 1e-6);
 }
 
 /* A rectangle above the floor, parallel to it: 4 times the closed form of a quarter. */
 static void emitters_follow_their_form_factor(void **state)
 {
     (void)state;
-    struct scene *scene = floor_scene();
-    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE,
-                                .node = SCENE_NONE,
-                                .position = {-1, 2, -1.5},
-                                .edge_u = {2, 0, 0},
-                                .edge_v = {0, 0, 3}};
-    set_rgb(light.color, 5, 5, 5);
-    scene_put_light(scene, light);
+    struct scene *scene = floor_scene(8);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+                                                .node = SCENE_NONE,
+                                                .position = {-1, 2, -1.5},
+                                                .edge_u = {2, 0, 0},
+                                                .edge_v = {0, 0, 3},
+                                                .color = {5, 5, 5}});
     double a = 0.5, b = 0.75, ra = sqrt(1 + a * a), rb = sqrt(1 + b * b);
     double factor = 4 / (2 * pi) * (a / ra * atan(b / ra) + b / rb * atan(a / rb));
-    assert_close(floor_light(scene, &one_pixel), 0.5 * 5 * factor, 1e-6);
+    assert_close(pixel_light(scene, &of_one_pixel), 5 * factor, 2e-6);
 }
 
 /* Light through sheets: (1 - opacity) each; in whole stops what kernels make of that. */
@@ -290,26 +274,19 @@ static void filters_multiply(void **state)
 {
     (void)state;
     for (int stops = 0; stops < 2; ++stops) {
-        struct scene *scene = floor_scene();
-        struct scene_material sheet = material_plain("sheet");
-        set_rgb(sheet.diffuse, 0, 0, 0);
+        struct scene *scene = floor_scene(8);
+        struct scene_material sheet = matte(0, 0, 0);
         sheet.alpha = SCENE_ALPHA_BLEND;
         sheet.opacity = 0.3f;
         add_object(scene, mesh_plane(2), sheet, 4, 1, 0);
         add_object(scene, mesh_plane(2), sheet, 6, 1.5, 0);
         scene_put_sun(scene, -4, -1, 0, 1);
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
-        struct drawn d = {.scene = scene};
-        struct reference_params params = {.picture = one_pixel, .whole_stops = stops};
-        assert_int_equal(accel_create(&fixture_log, scene, NULL, &d.accel), WHIT_OK);
-        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
-        struct image image = draw(&d);
-        double open = 0.5 / sqrt(17.0), opacity = (double)0.3f;
+        struct reference_params params = of_one_pixel;
+        params.whole_stops = stops;
+        double open = 1 / sqrt(17.0), opacity = (double)0.3f;
         double share =
             stops ? exp2(2 * -round(-64 * log2(1 - opacity)) / 64) : (1 - opacity) * (1 - opacity);
-        assert_close((double)image.pixels[0], open * share, 1e-8);
-        image_finish(&image);
-        close_reference(&d);
+        assert_close(pixel_light(scene, &params), open * share, 2e-8);
     }
 }
 
@@ -319,12 +296,11 @@ static struct scene *crowded_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 3, 9}, (double[]){0, 0.5, 0});
     set_sky(scene, 0.9f, 0.5f, 0.1f);
-    struct scene_material floor = material_plain("floor"), mirror = material_plain("mirror");
-    set_rgb(floor.diffuse, 0.6f, 0.5f, 0.4f);
-    set_rgb(mirror.reflection, 0.8f, 0.8f, 0.8f);
-    add_object(scene, mesh_plane(20), floor, 0, 0, 0);
+    struct scene_material shiny = material_plain("mirror");
+    set_rgb(shiny.reflection, 0.8f, 0.8f, 0.8f);
+    add_object(scene, mesh_plane(20), matte(0.6f, 0.5f, 0.4f), 0, 0, 0);
     add_object(scene, mesh_sphere(1.0, 16, 8), clear_glass(1.5f, 0), -1.2, 1, 0);
-    add_object(scene, mesh_torus(1.0, 0.3, 16, 8), mirror, 1.2, 1, 0);
+    add_object(scene, mesh_torus(1.0, 0.3, 16, 8), shiny, 1.2, 1, 0);
     scene_put_lamp(scene, 4, 6, 3, 30);
     scene_put_lamp(scene, -4, 6, 5, 30);
     return scene;
@@ -337,14 +313,10 @@ static void threads_draw_the_same_bytes(void **state)
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image first = draw(&d);
     for (uint32_t threads = 1; threads < 4; ++threads) {
-        struct reference *other = NULL;
-        struct image image = {0};
         const struct reference_params params = {.picture = picture, .thread_count = threads};
-        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &other), WHIT_OK);
-        assert_int_equal(reference_render(other, &image, NULL, NULL), WHIT_OK);
-        assert_memory_equal(image.pixels, first.pixels, 37 * 41 * 4 * sizeof(float));
-        image_finish(&image);
-        reference_destroy(other);
+        struct picture other = reference_picture(d.accel, &params);
+        assert_same_image("threads", &other.color, &first);
+        picture_finish(&other);
     }
     image_finish(&first);
     close_reference(&d);
@@ -375,10 +347,8 @@ static void ray_trees_add_up_to_pixels(void **state)
     struct image image = draw(&d);
     uint32_t kinds = 0, ends = 0;
     for (uint32_t i = 0; i < 256; ++i) {
-        struct rays rays;
+        struct rays rays = reference_rays(d.reference, i % 16, i / 16, 0);
         double sum[3] = {0};
-        assert_int_equal(reference_ray_tree(d.reference, i % 16, i / 16, 0, &rays.all, &rays.count),
-                         WHIT_OK);
         check_tree(rays.all, rays.count, sum);
         for (int c = 0; c < 3; ++c)
             assert_near(image.pixels[4 * i + (uint32_t)c], sum[c], 1e-6);
@@ -416,7 +386,7 @@ static void cameras_are_those_of_kernels(void **state)
         scene->cameras[0].height = 5.0f;
         scene->cameras[0].lens_radius = cameras[i].lens;
         add_object(scene, mesh_plane(10), material_plain("floor"), 0, 0, 0);
-        const struct render_params picture = {.width = 13, .height = 9, .samples = 4};
+        const struct render_params picture = {.width = 13, .height = 9, .depth = 8, .samples = 4};
         struct drawn d = open_reference(scene, &picture);
         struct gpu_frame frame;
         struct scene_pose pose;
@@ -427,12 +397,9 @@ static void cameras_are_those_of_kernels(void **state)
         for (uint32_t k = 0; k < 13 * 9 * 4; ++k) {
             struct gpu_chunk chunk = {0};
             struct gpu_ray ray;
-            struct rays rays;
             camera_sample(&frame, k % 4, &chunk);
             camera_ray(&frame, kind, k / 4 % 13, k / 52, &chunk, &ray);
-            assert_int_equal(
-                reference_ray_tree(d.reference, k / 4 % 13, k / 52, k % 4, &rays.all, &rays.count),
-                WHIT_OK);
+            struct rays rays = reference_rays(d.reference, k / 4 % 13, k / 52, k % 4);
             for (int c = 0; c < 3; ++c) {
                 assert_close(rays.all[0].origin[c], (double)ray.origin[c], 1e-6);
                 assert_close(rays.all[0].dir[c], (double)ray.dir[c], 5e-7);
@@ -456,20 +423,18 @@ static void trees_do_not_matter(void **state)
     struct drawn d = open_reference(crowded_scene(), &params.picture);
     struct image first = draw(&d);
     for (size_t i = 0; i < sizeof trees / sizeof *trees; ++i) {
-        struct drawn other = {.scene = d.scene};
+        struct accel *other = NULL;
         uint32_t over = 0;
-        assert_int_equal(accel_create(&fixture_log, d.scene, &trees[i], &other.accel), WHIT_OK);
-        assert_int_equal(reference_create(&fixture_log, other.accel, &params, &other.reference),
-                         WHIT_OK);
-        struct image image = draw(&other);
+        assert_int_equal(accel_create(&fixture_log, d.scene, &trees[i], &other), WHIT_OK);
+        struct picture picture = reference_picture(other, &params);
         for (size_t k = 0; k < 4 * 24 * 24; ++k)
-            over += fabs((double)image.pixels[k] - (double)first.pixels[k]) > 1e-4;
-        assert_true(trees[i].flatten ? over <= 4 * 3 : over == 0);
-        if (!trees[i].flatten)
-            assert_memory_equal(image.pixels, first.pixels, 24 * 24 * 4 * sizeof(float));
-        image_finish(&image);
-        reference_destroy(other.reference);
-        accel_destroy(other.accel);
+            over += fabs((double)picture.color.pixels[k] - (double)first.pixels[k]) > 1e-4;
+        if (trees[i].flatten)
+            assert_true(over <= 4 * 3);
+        else
+            assert_same_image("other trees", &picture.color, &first);
+        picture_finish(&picture);
+        accel_destroy(other);
     }
     image_finish(&first);
     close_reference(&d);
@@ -484,26 +449,9 @@ static void emitters_do_not_light_themselves(void **state)
         .picture = {.width = 9, .height = 9, .no_shadows = true}};
     const double heights[] = {1.99, 0.7, -3.3, 1001.3};
     for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
-        double h = heights[i];
-        struct scene *scene = dark_scene((double[]){0, h + 3, 0}, (double[]){0, h, 0});
-        struct scene_material m = material_plain("panel");
-        set_rgb(m.diffuse, 1, 1, 1);
-        add_object(scene, mesh_plane(4), m, 0, h, 0);
-        scene_put_light(scene, (struct scene_light){.name = string_copy("panel"),
-                                                    .kind = SCENE_LIGHT_RECTANGLE,
-                                                    .node = SCENE_NONE,
-                                                    .two_sided = true,
-                                                    .position = {-2, h, -2},
-                                                    .edge_u = {4, 0, 0},
-                                                    .edge_v = {0, 0, 4},
-                                                    .color = {1, 1, 1}});
-        assert_int_equal(scene_freeze(scene), WHIT_OK);
-        struct drawn d = {.scene = scene};
-        assert_int_equal(accel_create(&fixture_log, scene, &flat, &d.accel), WHIT_OK);
-        assert_int_equal(reference_create(&fixture_log, d.accel, &params, &d.reference), WHIT_OK);
+        struct drawn d = open_with(glowing_panel(heights[i]), &flat, &params);
         struct image image = draw(&d);
-        for (size_t k = 0; k < 9 * 9; ++k)
-            assert_true(image.pixels[4 * k] == 0.0f);
+        assert_true(red_sum(&image) == 0.0);
         image_finish(&image);
         close_reference(&d);
     }
@@ -513,22 +461,20 @@ static void what_it_cannot_draw_is_refused(void **state)
 {
     (void)state;
     static const struct log silent = {0};
-    struct drawn d = open_reference(floor_scene(), &one_pixel);
+    static const struct reference_params wrong[] = {{.picture = {.adaptive = 0.1}},
+                                                    {.picture = {.samples = 3}},
+                                                    {.picture = {.camera = "no such camera"}},
+                                                    {.picture = {.effects_removed = 1}}};
+    struct drawn d = open_reference(floor_scene(8), &one_pixel);
     struct reference *none = NULL;
     struct reference_ray *rays = NULL;
     uint32_t count = 1;
-    struct reference_params params = {.picture = {.adaptive = 0.1}};
-    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
-    params = (struct reference_params){.picture = {.samples = 3}};
-    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
-    params = (struct reference_params){.picture = {.camera = "no such camera"}};
-    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
-    params = (struct reference_params){.picture = {.effects_removed = 1}};
-    assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_ERROR_USAGE);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i)
+        assert_int_equal(reference_create(&silent, d.accel, &wrong[i], &none), WHIT_ERROR_USAGE);
     assert_null(none);
     bool cancel = true;
     struct image image = {0};
-    params = (struct reference_params){.picture = {.cancel = &cancel}};
+    const struct reference_params params = {.picture = {.cancel = &cancel}};
     assert_int_equal(reference_create(&silent, d.accel, &params, &none), WHIT_OK);
     assert_int_equal(reference_render(none, &image, NULL, NULL), WHIT_ERROR_CANCELLED);
     assert_null(image.pixels);

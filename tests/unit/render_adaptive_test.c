@@ -5,33 +5,6 @@
 
 enum { WIDTH = 29, HEIGHT = 19, PIXELS = WIDTH * HEIGHT };
 
-struct picture {
-    struct image color, ids;
-    struct render_stats stats;
-};
-
-static void draw(struct fixture *f, struct picture *out)
-{
-    memset(out, 0, sizeof *out);
-    assert_int_equal(renderer_render(f->renderer), WHIT_OK);
-    assert_int_equal(renderer_read_color(f->renderer, &out->color), WHIT_OK);
-    assert_int_equal(renderer_read_ids(f->renderer, &out->ids), WHIT_OK);
-    renderer_get_stats(f->renderer, &out->stats);
-}
-
-static void picture_finish(struct picture *picture)
-{
-    image_finish(&picture->color);
-    image_finish(&picture->ids);
-}
-
-static void renew(struct fixture *f, const struct render_params *params)
-{
-    renderer_destroy(f->renderer);
-    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
-                     WHIT_OK);
-}
-
 static float clamped(float x)
 {
     return fminf(fmaxf(x, 0.0f), 1.0f);
@@ -77,17 +50,13 @@ static void check_between(uint64_t min, uint64_t rays, uint64_t max)
 /* From the pictures of 4, 16 and 64 samples. */
 static void expect(const struct picture plain[3], float contrast, struct expected *e)
 {
-    bool marked[PIXELS];
+    uint32_t level_of[PIXELS] = {0};
     memset(e, 0, sizeof *e);
     memcpy(e->pixels, plain[0].color.pixels, sizeof e->pixels);
-    uint32_t level_of[PIXELS];
-    for (int i = 0; i < PIXELS; ++i) {
-        level_of[i] = 0;
-        e->primary += 4;
-    }
+    e->primary = 4 * PIXELS;
     e->min = e->max = plain[0].stats;
     for (uint32_t level = 1; level < 3; ++level) {
-        bool some = false;
+        bool marked[PIXELS], some = false;
         for (int i = 0; i < PIXELS; ++i)
             marked[i] = differs(&e->pixels[0][0], i % WIDTH, i / WIDTH, contrast);
         for (int i = 0; i < PIXELS; ++i) {
@@ -107,18 +76,15 @@ static void expect(const struct picture plain[3], float contrast, struct expecte
 
 static void check(struct fixture *f, const struct picture *first, const struct expected *e)
 {
-    struct picture *p = malloc(sizeof *p);
-    assert_non_null(p);
-    draw(f, p);
-    assert_memory_equal(p->color.pixels, e->pixels, sizeof e->pixels);
-    assert_memory_equal(p->ids.words, first->ids.words, PIXELS * 8);
-    assert_memory_equal(p->stats.pixels_by_samples, e->by_samples, sizeof e->by_samples);
-    assert_true(p->stats.rays_primary == e->primary);
-    check_between(e->min.rays_shadow, p->stats.rays_shadow, e->max.rays_shadow);
-    check_between(e->min.rays_reflected, p->stats.rays_reflected, e->max.rays_reflected);
-    check_between(e->min.rays_refracted, p->stats.rays_refracted, e->max.rays_refracted);
-    picture_finish(p);
-    free(p);
+    struct picture p = render_picture(f);
+    assert_memory_equal(p.color.pixels, e->pixels, sizeof e->pixels);
+    assert_same_image("ids", &p.ids, &first->ids);
+    assert_memory_equal(p.stats.pixels_by_samples, e->by_samples, sizeof e->by_samples);
+    assert_true(p.stats.rays_primary == e->primary);
+    check_between(e->min.rays_shadow, p.stats.rays_shadow, e->max.rays_shadow);
+    check_between(e->min.rays_reflected, p.stats.rays_reflected, e->max.rays_reflected);
+    check_between(e->min.rays_refracted, p.stats.rays_refracted, e->max.rays_refracted);
+    picture_finish(&p);
 }
 
 /* Pictures of 4, 16 and 64 samples, then adaptive ones in tiles and bands of several sizes. */
@@ -126,36 +92,33 @@ static void check_scene(struct scene *scene, const struct accel_params *accel, c
                         const double *contrasts, int contrast_count)
 {
     struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = camera};
-    struct picture *plain = calloc(3, sizeof *plain);
-    struct expected *e = malloc(sizeof *e);
-    assert_true(plain && e);
+    static struct expected e;
+    struct picture plain[3];
     struct fixture f = fixture_open(scene, accel, &params);
     for (int i = 0; i < 3; ++i) {
         params.samples = 4u << (2 * i);
-        renew(&f, &params);
-        draw(&f, &plain[i]);
+        fixture_renew(&f, &params);
+        plain[i] = render_picture(&f);
         assert_int_equal(plain[i].stats.pixels_by_samples[i + 1], PIXELS);
     }
     for (int i = 0; i < contrast_count; ++i) {
         params.adaptive = contrasts[i];
-        expect(plain, (float)contrasts[i], e);
+        expect(plain, (float)contrasts[i], &e);
         print_message("  contrast %g: %u, %u and %u pixels of 4, 16 and 64\n", contrasts[i],
-                      (unsigned)e->by_samples[1], (unsigned)e->by_samples[2],
-                      (unsigned)e->by_samples[3]);
+                      (unsigned)e.by_samples[1], (unsigned)e.by_samples[2],
+                      (unsigned)e.by_samples[3]);
         const uint32_t tiles[] = {0, 16}, bands[] = {0, 8};
         for (int k = 0; k < (i == 0 ? 2 : 1); ++k) {
             params.tile_size = tiles[k];
-            renew(&f, &params);
+            fixture_renew(&f, &params);
             if (bands[k])
                 f.renderer->picture.buffers.band_rows = bands[k];
-            check(&f, &plain[0], e);
+            check(&f, &plain[0], &e);
         }
         params.tile_size = 0;
     }
     for (int i = 0; i < 3; ++i)
         picture_finish(&plain[i]);
-    free(plain);
-    free(e);
     fixture_close(&f);
 }
 
@@ -231,7 +194,7 @@ static void progress_goes_on_to_the_end(void **state)
     uint32_t stop_at = 4 * 3 + 20;
     params.cancel = &stop_now;
     params.progress_user = &stop_at;
-    renew(&f, &params);
+    fixture_renew(&f, &params);
     last_done = 0.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
     assert_true(last_done > 1.0 / 3.0 && last_done < 0.9);
@@ -247,11 +210,7 @@ static void nonsense_is_refused(void **state)
     const struct render_params wrong[] = {
         {.adaptive = -0.5}, {.adaptive = 1.5}, {.adaptive = NAN}, {.adaptive = 0.1, .count = true}};
     struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-        struct renderer *renderer;
-        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &wrong[i], &renderer),
-                         WHIT_ERROR_USAGE);
-    }
+    fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);
     fixture_close(&f);
 }
 

@@ -79,26 +79,12 @@ static struct image render_specialised(struct fixture *f)
     return image;
 }
 
-static void assert_same(const struct image *a, const struct image *b)
-{
-    assert_memory_equal(a->pixels, b->pixels, (size_t)a->width * a->height * 16);
-}
-
-static void renew(struct fixture *f, const struct render_params *params)
-{
-    renderer_destroy(f->renderer);
-    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
-                     WHIT_OK);
-}
-
 /* Its rows of triangles are shorter: no normals, no colours. Of two materials, so that it shows
    when a kernel takes another row for a triangle's. */
 static struct scene *flat_scene(void)
 {
     struct scene *scene = terrain_scene();
-    struct scene_material dark = material_plain("dark");
-    set_rgb(dark.diffuse, 0.1f, 0.2f, 0.3f);
-    uint32_t index = scene_put_material(scene, dark);
+    uint32_t index = scene_put_material(scene, matte(0.1f, 0.2f, 0.3f));
     for (uint32_t t = 0; t < scene->meshes[0].triangle_count; ++t) {
         if (t % 5 < 2)
             scene->meshes[0].materials[t] = index;
@@ -117,6 +103,16 @@ static const uint64_t removed =
     UINT64_C(1) << SCENE_EFFECT_CULLING | UINT64_C(1) << SCENE_EFFECT_CATCHERS |
     UINT64_C(1) << SCENE_EFFECT_TINTED_SHADOWS;
 
+static struct render_params beside_params(const char *camera)
+{
+    return (struct render_params){.width = 50,
+                                  .height = 30,
+                                  .depth = 4,
+                                  .camera = camera,
+                                  .effects_removed = removed,
+                                  .compile_async = true};
+}
+
 static void both_kernels_draw_the_same(void **state)
 {
     (void)state;
@@ -125,13 +121,9 @@ static void both_kernels_draw_the_same(void **state)
                                           "0,6,14,0,0,0,0,1,0,40"};
     for (int i = 0; i < 3; ++i) {
         /* Packets and classes are chosen by whether kernels are for many pictures. */
-        struct render_params params = {.width = 50,
-                                       .height = 30,
-                                       .depth = 4,
-                                       .camera = cameras[i],
-                                       .packets = RENDER_PACKETS_OFF,
-                                       .classes = RENDER_CLASSES_MANY,
-                                       .compile_async = true};
+        struct render_params params = beside_params(cameras[i]);
+        params.packets = RENDER_PACKETS_OFF;
+        params.classes = RENDER_CLASSES_MANY;
         params.effects_removed = i == 0 ? 0 : removed;
         struct fixture f = fixture_open(make[i](), NULL, &params);
         struct render_stats begun = stats_of(f.renderer);
@@ -141,12 +133,12 @@ static void both_kernels_draw_the_same(void **state)
         assert_null(f.renderer->async.job);
         assert_true(done.kernel_instructions < begun.kernel_instructions);
         params.compile_async = false;
-        renew(&f, &params);
+        fixture_renew(&f, &params);
         assert_false(stats_of(f.renderer).general);
         struct image at_once = render(&f);
         assert_int_equal(stats_of(f.renderer).kernel_instructions, done.kernel_instructions);
-        assert_same(&first, &at_once);
-        assert_same(&second, &at_once);
+        assert_same_image("general", &first, &at_once);
+        assert_same_image("specialised", &second, &at_once);
         image_finish(&first);
         image_finish(&second);
         image_finish(&at_once);
@@ -158,17 +150,12 @@ static void both_kernels_draw_the_same(void **state)
 static void removed_effects_stay_removed(void **state)
 {
     (void)state;
-    struct render_params params = {.width = 50,
-                                   .height = 30,
-                                   .depth = 4,
-                                   .camera = glass_camera,
-                                   .no_shadows = true,
-                                   .effects_removed = removed | UINT64_C(1)
-                                                                    << SCENE_EFFECT_REFLECTION,
-                                   .compile_async = true};
+    struct render_params params = beside_params(glass_camera);
+    params.no_shadows = true;
+    params.effects_removed |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image first = render_general(&f), second = render_specialised(&f);
-    assert_same(&first, &second);
+    assert_same_image("specialised", &first, &second);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
     assert_int_equal(stats_of(f.renderer).rays_reflected, 0);
     image_finish(&first);
@@ -180,11 +167,10 @@ static void removed_effects_stay_removed(void **state)
 static void all_effects_need_no_thread(void **state)
 {
     (void)state;
-    struct render_params params = {
-        .width = 8, .height = 8, .effects_removed = removed, .compile_async = true};
+    struct render_params params = beside_params(NULL);
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
-    renew(&f, &params);
+    fixture_renew(&f, &params);
     struct image image = render(&f);
     assert_null(f.renderer->async.job);
     image_finish(&image);
@@ -197,13 +183,8 @@ static void anything_may_come_in_between(void **state)
 {
     (void)state;
     bool cancel = false;
-    struct render_params params = {.width = 50,
-                                   .height = 30,
-                                   .depth = 4,
-                                   .camera = "0,6,9,0,0,0,0,1,0,40",
-                                   .cancel = &cancel,
-                                   .effects_removed = removed,
-                                   .compile_async = true};
+    struct render_params params = beside_params("0,6,9,0,0,0,0,1,0,40");
+    params.cancel = &cancel;
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     /* Destroyed without a picture: before the thread begins, while it is at work, when it has
      * ended. */
@@ -212,7 +193,7 @@ static void anything_may_come_in_between(void **state)
             let_thread_begin();
         if (i == 2)
             await_thread();
-        renew(&f, &params);
+        fixture_renew(&f, &params);
     }
     cancel = true;
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
@@ -220,14 +201,14 @@ static void anything_may_come_in_between(void **state)
     struct image before = render_general(&f);
     passes_finish(f.renderer); /* as when a buffer grows */
     struct image again = render_general(&f);
-    assert_same(&before, &again);
+    assert_same_image("again", &before, &again);
     image_finish(&again);
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
     again = render_specialised(&f);
-    assert_same(&before, &again);
+    assert_same_image("again", &before, &again);
     image_finish(&again);
     /* Constants that no longer fit: what the thread makes with them is not taken. */
-    renew(&f, &params);
+    fixture_renew(&f, &params);
     f.renderer->effects.called[SCENE_EFFECT_SHADOWS] = false;
     passes_finish(f.renderer);
     image_finish(&before);

@@ -1,5 +1,7 @@
 /* Cameras: where their rays go, what a lens blurs, what a panorama sees, odd sizes and odd views.
  */
+#include <float.h>
+
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "twin/traverse.h"
@@ -9,10 +11,7 @@ static const double PI = 3.14159265358979323846;
 /* A ball that shows 1 everywhere. */
 static void add_marker(struct scene *scene, double radius, double x, double y, double z)
 {
-    struct scene_material m = material_plain("marker");
-    m.model = SCENE_MODEL_UNLIT;
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh_sphere(radius, 16, 8), m, x, y, z);
+    add_object(scene, mesh_sphere(radius, 16, 8), unlit(1, 1, 1), x, y, z);
 }
 
 static double red(const struct image *image, uint32_t x, uint32_t y)
@@ -22,8 +21,7 @@ static double red(const struct image *image, uint32_t x, uint32_t y)
 
 static void assert_finite(const struct image *image)
 {
-    for (size_t i = 0; i < (size_t)image->width * image->height * 4; ++i)
-        assert_true(isfinite(image->pixels[i]));
+    assert_range(image, 0, FLT_MAX);
 }
 
 /* ---- Sine and cosine ---- */
@@ -60,32 +58,32 @@ static struct image lens_picture(double z, float lens_radius, uint32_t samples, 
     scene->cameras[0].focus_distance = 5.0f;
     add_marker(scene, size * z, 0, 0, -z);
     const struct render_params params = {.width = 75, .height = 75, .samples = samples};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    fixture_close(&f);
-    return image;
+    return color_of(scene, NULL, &params);
 }
 
-/* Of the patch: centre of gravity, mean square and largest distance from the middle, in pixels. */
-static void measure(const struct image *image, double center[2], double *mean2, double *farthest)
+/* What is bright: its centre of gravity, and its mean square and largest distance from the middle,
+   in pixels from there. */
+struct patch {
+    double center[2], mean2, farthest;
+};
+
+static struct patch measure(const struct image *image)
 {
-    double sum = 0.0, x_sum = 0.0, y_sum = 0.0, r2_sum = 0.0;
-    *farthest = 0.0;
+    struct patch patch = {0};
+    double sum = red_sum(image);
+    assert_true(sum > 0.0);
     for (uint32_t y = 0; y < image->height; ++y) {
         for (uint32_t x = 0; x < image->width; ++x) {
-            double v = red(image, x, y), dx = x + 0.5 - 37.5, dy = y + 0.5 - 37.5;
-            sum += v;
-            x_sum += v * dx;
-            y_sum += v * dy;
-            r2_sum += v * (dx * dx + dy * dy);
+            double v = red(image, x, y) / sum;
+            double dx = x + 0.5 - 0.5 * image->width, dy = y + 0.5 - 0.5 * image->height;
+            patch.center[0] += v * dx;
+            patch.center[1] += v * dy;
+            patch.mean2 += v * (dx * dx + dy * dy);
             if (v > 0.0)
-                *farthest = fmax(*farthest, sqrt(dx * dx + dy * dy));
+                patch.farthest = fmax(patch.farthest, hypot(dx, dy));
         }
     }
-    assert_true(sum > 0.0);
-    center[0] = x_sum / sum;
-    center[1] = y_sum / sum;
-    *mean2 = r2_sum / sum;
+    return patch;
 }
 
 /* Behind, before and in the focus: the circle of confusion in a plane at distance 1 has the radius
@@ -97,16 +95,16 @@ static void blur_has_its_size(void **state)
     const double pixel = 2.0 * tan(0.3) / 75.0, ball = 1.5; /* radius of the ball, in pixels */
     const double depths[] = {10.0, 3.5, 5.0};
     for (int i = 0; i < 3; ++i) {
-        double blur = 2.0 * fabs(1.0 / depths[i] - 0.2) / pixel, center[2], mean2, farthest;
-        struct image image = lens_picture(depths[i], 2.0f, 64, ball * pixel);
-        measure(&image, center, &mean2, &farthest);
+        double blur = 2.0 * fabs(1.0 / depths[i] - 0.2) / pixel;
         double expected = sqrt(0.5 * (blur * blur + ball * ball));
+        struct image image = lens_picture(depths[i], 2.0f, 64, ball * pixel);
+        struct patch p = measure(&image);
         print_message("  at %g: radius %.2f of %.2f pixels, rms %.2f of %.2f, centre %.3f %.3f\n",
-                      depths[i], farthest, blur + ball, sqrt(mean2), expected, center[0],
-                      center[1]);
-        assert_true(fabs(farthest - (blur + ball)) <= 1.0);
-        assert_true(fabs(sqrt(mean2) - expected) <= 0.02 * expected + 0.05);
-        assert_true(hypot(center[0], center[1]) < 0.006 * blur + 0.05);
+                      depths[i], p.farthest, blur + ball, sqrt(p.mean2), expected, p.center[0],
+                      p.center[1]);
+        assert_true(fabs(p.farthest - (blur + ball)) <= 1.0);
+        assert_true(fabs(sqrt(p.mean2) - expected) <= 0.02 * expected + 0.05);
+        assert_true(hypot(p.center[0], p.center[1]) < 0.006 * blur + 0.05);
         image_finish(&image);
     }
 }
@@ -115,7 +113,7 @@ static void one_sample_is_a_pinhole(void **state)
 {
     (void)state;
     struct image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);
-    assert_memory_equal(lens.pixels, hole.pixels, 75 * 75 * 16);
+    assert_same_image("one sample", &lens, &hole);
     image_finish(&lens);
     image_finish(&hole);
 }
@@ -186,6 +184,19 @@ static void unit_of(double v[3])
         v[i] /= length;
 }
 
+static void swap_halves(struct image *image)
+{
+    uint32_t half = image->width / 2;
+    for (uint32_t i = 0; i < image->width * image->height; ++i) {
+        if (i % image->width >= half)
+            continue;
+        float *left = &image->pixels[4 * i], *right = &image->pixels[4 * (i + half)], kept[4];
+        memcpy(kept, left, sizeof kept);
+        memcpy(left, right, sizeof kept);
+        memcpy(right, kept, sizeof kept);
+    }
+}
+
 static void markers_are_where_they_should(void **state)
 {
     (void)state;
@@ -208,26 +219,16 @@ static void markers_are_where_they_should(void **state)
         struct scene *scene = panorama_scene(eye, target);
         add_marker(scene, 0.5, at[0], at[1], at[2]); /* less than 3 degrees: no seam in between */
         const struct render_params params = {.width = WIDTH, .height = HEIGHT, .samples = 4};
-        struct fixture f = fixture_open(scene, NULL, &params);
-        struct image image = render(&f);
-        double sum = 0.0, x_sum = 0.0, y_sum = 0.0;
-        for (uint32_t y = 0; y < HEIGHT; ++y) {
-            for (uint32_t x = 0; x < WIDTH; ++x) {
-                double v = red(&image, x, y);
-                /* Across the seam the picture goes on. */
-                double place = x + 0.5 - (places[p][0] > 170.0 && x < WIDTH / 2 ? -WIDTH : 0);
-                sum += v;
-                x_sum += v * place;
-                y_sum += v * (y + 0.5);
-            }
-        }
-        assert_true(sum > 0.0);
-        double x = (places[p][0] / 360.0 + 0.5) * WIDTH, y = (0.5 - places[p][1] / 180.0) * HEIGHT;
+        struct image image = color_of(scene, NULL, &params);
+        if (places[p][0] > 170.0) /* across the seam the picture goes on */
+            swap_halves(&image);
+        struct patch seen = measure(&image);
+        double x = (places[p][0] > 170.0 ? places[p][0] - 180.0 : places[p][0]) / 360.0 * WIDTH;
+        double y = -places[p][1] / 180.0 * HEIGHT;
         print_message("  %g %g: %.2f %.2f, expected %.2f %.2f\n", places[p][0], places[p][1],
-                      x_sum / sum, y_sum / sum, x, y);
-        assert_true(fabs(x_sum / sum - x) < 0.5 && fabs(y_sum / sum - y) < 0.5);
+                      seen.center[0], seen.center[1], x, y);
+        assert_true(fabs(seen.center[0] - x) < 0.5 && fabs(seen.center[1] - y) < 0.5);
         image_finish(&image);
-        fixture_close(&f);
     }
 }
 
@@ -236,19 +237,13 @@ static void panorama_sees_all_around(void **state)
 {
     (void)state;
     struct scene *scene = panorama_scene((double[]){0, 0, 0}, (double[]){1, 2, 3});
-    struct scene_material m = material_plain("wall");
-    m.model = SCENE_MODEL_UNLIT;
-    add_object(scene, mesh_box(2, 2, 2), m, 0, 0, 0);
+    add_object(scene, mesh_box(2, 2, 2), unlit(1, 1, 1), 0, 0, 0);
     for (uint32_t face = 0; face < 6; ++face) {
-        struct scene_material own = material_plain("face");
-        own.model = SCENE_MODEL_UNLIT;
-        set_rgb(own.diffuse, (float)(1 << face), 1, 1);
-        uint32_t index = scene_put_material(scene, own);
+        uint32_t index = scene_put_material(scene, unlit((float)(1 << face), 1, 1));
         scene->meshes[0].materials[2 * face] = scene->meshes[0].materials[2 * face + 1] = index;
     }
     const struct render_params params = {.width = 128, .height = 64};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &params);
     double shares[6] = {0}, all = 0.0;
     for (uint32_t y = 0; y < 64; ++y) {
         for (uint32_t x = 0; x < 128; ++x) {
@@ -262,7 +257,6 @@ static void panorama_sees_all_around(void **state)
     for (int face = 0; face < 6; ++face)
         assert_true(fabs(shares[face] / all - 1.0 / 6.0) < 0.005);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* ---- Odd views ---- */
@@ -271,43 +265,29 @@ static void view_along_up_has_a_picture(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("floor");
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh_plane(1), m, 0, 0, 0);
+    add_object(scene, mesh_plane(1), matte(1, 1, 1), 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 1.0f);
+    scene->cameras[0].up[1] = 1.0; /* as it came from a file: along the view */
+    scene->cameras[0].up[2] = 0.0;
     struct render_params params = picture_params;
     const char *views[] = {NULL, "0,5,0,0,0,0,0,1,0,40", "0,5,0,0,0,0,0,-7,0,40",
                            "0,5,0,0,0,0,0,0,0,40", "0,5,0,0,0,0,1e-30,1e30,0,40"};
+    struct fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof views / sizeof *views; ++i) {
         params.camera = views[i];
-        struct fixture f = {0};
-        if (i == 0) {
-            scene->cameras[0].up[1] = 1.0; /* as it came from a file: along the view */
-            scene->cameras[0].up[2] = 0.0;
-            f = fixture_open(scene, NULL, &params);
-        } else {
-            f.scene = scene;
-            assert_int_equal(accel_create(&fixture_log, scene, NULL, &f.accel), WHIT_OK);
-            f.device = fixture_device();
-            assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                             WHIT_OK);
-        }
+        fixture_renew(&f, &params);
         struct image image = render(&f);
         assert_finite(&image);
         assert_near(middle(&image)[0], 1.0, 2e-6);
         /* The floor is seen upright or turned by a quarter: as wide as high. */
         uint32_t lit = 0;
-        for (uint32_t y = 0; y < 33; ++y)
-            for (uint32_t x = 0; x < 33; ++x)
-                lit += red(&image, x, y) > 0.5;
+        for (uint32_t p = 0; p < 33 * 33; ++p)
+            lit += image.pixels[4 * p] > 0.5f;
         uint32_t side = (uint32_t)lround(sqrt((double)lit));
         assert_int_equal(side * side, lit);
         image_finish(&image);
-        renderer_destroy(f.renderer);
-        fixture_validate();
-        accel_destroy(f.accel);
     }
-    scene_destroy(scene);
+    fixture_close(&f);
 }
 
 /* The ray through the middle of the top row is half the angle off the view, but for half a pixel.
@@ -349,35 +329,26 @@ static void rays_along_edges_hit(void **state)
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
     scene->cameras[0].height = 2.0f;
-    struct scene_material m = material_plain("wall");
-    m.model = SCENE_MODEL_UNLIT;
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh_box(4, 4, 1), m, 0, 0, 0); /* its diagonals go through pixel middles */
+    /* Its diagonals go through pixel middles. */
+    add_object(scene, mesh_box(4, 4, 1), unlit(1, 1, 1), 0, 0, 0);
     const struct render_params params = {.width = SIDE, .height = SIDE};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    for (uint32_t y = 0; y < SIDE; ++y)
-        for (uint32_t x = 0; x < SIDE; ++x)
-            assert_true(red(&image, x, y) == 1.0);
+    struct image image = color_of(scene, NULL, &params);
+    assert_range(&image, 1, 1);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 static void faces_seen_edge_on_are_finite(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 1, 5}, (double[]){0, 1, 0});
-    struct scene_material m = material_plain("box");
-    set_rgb(m.diffuse, 1, 1, 1);
+    struct scene_material m = matte(1, 1, 1);
     set_rgb(m.specular, 1, 1, 1);
     /* Its top is in the plane of the middle row and of the light. */
     add_object(scene, mesh_box(1, 2, 1), m, 0, 0, 0);
     scene_put_sun(scene, 0, 0, -1, 1.0f);
-    struct fixture f = fixture_open(scene, NULL, &picture_params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &picture_params);
     assert_finite(&image);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* Every pixel of pictures of odd sizes sees what the C traversal of its ray hits. */
@@ -386,37 +357,31 @@ static void sizes_may_be_odd(void **state)
     (void)state;
     const uint32_t sizes[][2] = {{1, 1}, {1, 4096}, {4096, 1}, {37, 23}, {8, 9}, {65, 1}};
     struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
-    struct scene_mesh ground = mesh_terrain(10.0, 2.0, 40, 3);
-    add_object(scene, ground, material_plain("ground"), 0, 0, 0);
+    add_object(scene, mesh_terrain(10.0, 2.0, 40, 3), material_plain("ground"), 0, 0, 0);
     struct render_params params = {.width = 1, .height = 1};
     struct fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
-        renderer_destroy(f.renderer);
         params.width = sizes[i][0];
         params.height = sizes[i][1];
-        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                         WHIT_OK);
-        struct image image = render(&f), ids = {0};
-        assert_int_equal(renderer_read_ids(f.renderer, &ids), WHIT_OK);
-        assert_finite(&image);
+        fixture_renew(&f, &params);
+        struct picture picture = render_picture(&f);
+        assert_finite(&picture.color);
         uint32_t bad = 0, hits = 0, status = 0;
         struct gpu_chunk sample;
         camera_sample(&f.renderer->frame, 0, &sample);
         for (uint32_t p = 0; p < params.width * params.height; ++p) {
             struct gpu_ray ray;
             struct gpu_hit hit;
-            struct gpu_cost cost = {0};
             camera_ray(&f.renderer->frame, CAMERA_PERSPECTIVE, p % params.width, p / params.width,
                        &sample, &ray);
-            traverse_float(f.accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, &cost,
+            traverse_float(f.accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
                            &status);
-            bad += hit.primitive != ids.words[2 * p + 1];
+            bad += hit.primitive != picture.ids.words[2 * p + 1];
             hits += hit.primitive != HIT_NONE;
         }
         assert_int_equal(bad, 0);
         assert_true(hits > 0);
-        image_finish(&image);
-        image_finish(&ids);
+        picture_finish(&picture);
     }
     fixture_close(&f);
 }
@@ -426,21 +391,15 @@ static void near_and_far_share_a_picture(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-    struct scene_material near = material_plain("near"), far = material_plain("far");
-    near.model = far.model = SCENE_MODEL_UNLIT;
-    set_rgb(near.diffuse, 0.25f, 0.25f, 0.25f);
-    set_rgb(far.diffuse, 0.75f, 0.75f, 0.75f);
+    struct scene_material near = unlit(0.25f, 0.25f, 0.25f), far = unlit(0.75f, 0.75f, 0.75f);
     /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
     add_object(scene, mesh_box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
     add_object(scene, mesh_box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
-    struct render_params params = {.width = 40, .height = 20, .samples = 4};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    for (uint32_t y = 0; y < 20; ++y)
-        for (uint32_t x = 0; x < 40; ++x)
-            assert_near((float)red(&image, x, y), x < 20 ? 0.25 : 0.75, 0.0);
+    const struct render_params params = {.width = 40, .height = 20, .samples = 4};
+    struct image image = color_of(scene, NULL, &params);
+    for (uint32_t p = 0; p < 40 * 20; ++p)
+        assert_near(image.pixels[4 * p], p % 40 < 20 ? 0.25 : 0.75, 0.0);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 int main(void)

@@ -12,9 +12,8 @@ static const struct render_params small = {.width = 24, .height = 18, .depth = 5
 static struct scene *plain_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 5, 6}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("floor");
-    set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
-    add_object(scene, mesh_plane(10), m, 0.1, 0, 0); /* moved, as something is in all scenes */
+    add_object(scene, mesh_plane(10), matte(0.7f, 0.6f, 0.5f), 0.1, 0,
+               0); /* moved, as something is in all scenes */
     scene_put_lamp(scene, 2, 4, 1, 9.0f);
     return scene;
 }
@@ -28,8 +27,7 @@ static uint32_t add_chequers(struct scene *scene)
 
 static struct scene_material textured(uint32_t texture, enum scene_slot slot)
 {
-    struct scene_material m = material_plain("textured");
-    set_rgb(m.diffuse, 0.8f, 0.8f, 0.8f);
+    struct scene_material m = matte(0.8f, 0.8f, 0.8f);
     m.textures[slot].texture = texture;
     return m;
 }
@@ -49,35 +47,60 @@ static struct scene_mesh painted_box(void)
     return mesh;
 }
 
-static void add_glass(struct scene *scene, double x, double y, double z)
+static struct scene_material glass(void)
 {
     struct scene_material m = material_plain("glass");
     set_rgb(m.transmission, 0.9f, 0.9f, 0.9f);
+    return m;
+}
+
+static void add_glass(struct scene *scene, double x, double y, double z)
+{
+    struct scene_material m = glass();
     set_rgb(m.absorption, 0.1f, 0.5f, 0.9f);
     m.ior = 1.5f;
     m.fresnel = true;
     add_object(scene, ring(), m, x, y, z);
 }
 
+static void add_spot(struct scene *scene)
+{
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_SPOT,
+                                                .node = SCENE_NONE,
+                                                .position = {-3, 4, 2},
+                                                .direction = {0.6, -0.8, 0},
+                                                .color = {0.5f, 0.4f, 0.3f},
+                                                .cos_inner = 0.95f,
+                                                .cos_outer = 0.7f});
+}
+
 static void add_lights(struct scene *scene)
 {
     scene_put_lamp(scene, 2, 4, 1, 6.0f);
     scene_put_sun(scene, 0.3, -1, -0.4, 0.4f);
-    struct scene_light spot = {.kind = SCENE_LIGHT_SPOT,
-                               .node = SCENE_NONE,
-                               .position = {-3, 4, 2},
-                               .direction = {0.6, -0.8, 0},
-                               .cos_inner = 0.95f,
-                               .cos_outer = 0.7f};
-    set_rgb(spot.color, 0.5f, 0.4f, 0.3f);
-    scene_put_light(scene, spot);
-    struct scene_light area = {.kind = SCENE_LIGHT_AREA_SAMPLE,
-                               .node = SCENE_NONE,
-                               .position = {0, 6, 0},
-                               .direction = {0, -1, 0},
-                               .falloff = true};
-    set_rgb(area.color, 5, 5, 6);
-    scene_put_light(scene, area);
+    add_spot(scene);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_AREA_SAMPLE,
+                                                .node = SCENE_NONE,
+                                                .position = {0, 6, 0},
+                                                .direction = {0, -1, 0},
+                                                .color = {5, 5, 6},
+                                                .falloff = true});
+}
+
+/* Flat emitters of both shapes. */
+static void add_emitters(struct scene *scene)
+{
+    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE,
+                                .node = SCENE_NONE,
+                                .two_sided = true,
+                                .position = {-0.3, 2.4, -0.3},
+                                .edge_u = {0.6, 0, 0},
+                                .edge_v = {0, 0, 0.6},
+                                .color = {6, 6, 6}};
+    scene_put_light(scene, light);
+    light.kind = SCENE_LIGHT_TRIANGLE;
+    light.position[0] = -1.9;
+    scene_put_light(scene, light);
 }
 
 static void add_sky(struct scene *scene)
@@ -129,37 +152,6 @@ static struct scene *rich_scene(void)
 
 /* ---- Pictures ---- */
 
-struct drawn {
-    struct image color, ids;
-    struct render_stats stats;
-};
-
-static struct drawn draw(struct scene *scene, const struct render_params *params)
-{
-    struct drawn drawn = {0};
-    struct fixture f = fixture_open(scene, NULL, params);
-    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    assert_int_equal(renderer_read_color(f.renderer, &drawn.color), WHIT_OK);
-    assert_int_equal(renderer_read_ids(f.renderer, &drawn.ids), WHIT_OK);
-    renderer_get_stats(f.renderer, &drawn.stats);
-    fixture_close(&f);
-    return drawn;
-}
-
-static void drawn_finish(struct drawn *drawn)
-{
-    image_finish(&drawn->color);
-    image_finish(&drawn->ids);
-}
-
-static bool same_bytes(const struct image *a, const struct image *b)
-{
-    size_t values = (size_t)a->width * a->height * a->channels;
-    return a->width == b->width && a->height == b->height && a->channels == b->channels &&
-           (a->pixels ? memcmp(a->pixels, b->pixels, values * sizeof *a->pixels)
-                      : memcmp(a->words, b->words, values * sizeof *a->words)) == 0;
-}
-
 static uint64_t bit(enum scene_effect effect)
 {
     return UINT64_C(1) << effect;
@@ -170,18 +162,13 @@ static struct render_stats assert_auto_is_all(struct scene *(*make)(void))
 {
     struct render_params all = small;
     all.all_effects = true;
-    struct drawn a = draw(make(), &small), b = draw(make(), &all);
-    assert_true(same_bytes(&a.color, &b.color));
-    assert_true(same_bytes(&a.ids, &b.ids));
-    assert_int_equal(a.stats.rays_shadow, b.stats.rays_shadow);
-    assert_int_equal(a.stats.rays_reflected, b.stats.rays_reflected);
-    assert_int_equal(a.stats.rays_refracted, b.stats.rays_refracted);
+    struct picture a = picture_of(make(), NULL, &small), b = picture_of(make(), NULL, &all);
+    assert_same_picture("with every effect", &a, &b);
     print_message("  %u of %u instructions\n", a.stats.kernel_instructions,
                   b.stats.kernel_instructions);
-    struct render_stats stats = a.stats;
-    drawn_finish(&a);
-    drawn_finish(&b);
-    return stats;
+    picture_finish(&a);
+    picture_finish(&b);
+    return a.stats;
 }
 
 static void kernels_for_a_scene_draw_the_same(void **state)
@@ -243,15 +230,14 @@ static void the_driver_draws_the_same(void **state)
     (void)state;
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
         skip();
-    struct drawn a = draw(rich_scene(), &small);
+    struct picture a = picture_of(rich_scene(), NULL, &small);
     assert_int_equal(setenv("WHIT_NO_SPECIALIZE", "1", 1), 0);
-    struct drawn b = draw(rich_scene(), &small);
+    struct picture b = picture_of(rich_scene(), NULL, &small);
     assert_int_equal(unsetenv("WHIT_NO_SPECIALIZE"), 0);
-    assert_true(same_bytes(&a.color, &b.color));
-    assert_true(same_bytes(&a.ids, &b.ids));
+    assert_same_picture("whole kernels", &a, &b);
     assert_int_not_equal(a.stats.kernel_instructions, b.stats.kernel_instructions);
-    drawn_finish(&a);
-    drawn_finish(&b);
+    picture_finish(&a);
+    picture_finish(&b);
 }
 
 /* Which effect alone is added to the plain scene. */
@@ -259,13 +245,12 @@ static enum scene_effect alone;
 
 static struct scene_material alone_material(struct scene *scene)
 {
-    struct scene_material m = material_plain("alone");
-    set_rgb(m.diffuse, 0.5f, 0.4f, 0.3f);
+    struct scene_material m = matte(0.5f, 0.4f, 0.3f);
     if (alone == SCENE_EFFECT_TEXTURES)
         m.textures[SCENE_SLOT_DIFFUSE].texture = add_chequers(scene);
     if (alone == SCENE_EFFECT_NORMAL_MAPS)
         m.textures[SCENE_SLOT_BUMP].texture = add_chequers(scene);
-    if (alone == SCENE_EFFECT_CUTOUTS) {
+    if (alone == SCENE_EFFECT_CUTOUTS || alone == SCENE_EFFECT_SPHERES) {
         m.alpha = SCENE_ALPHA_BLEND;
         m.opacity = 0.4f;
     }
@@ -293,13 +278,20 @@ static struct scene *alone_scene(void)
 {
     struct scene *scene = plain_scene();
     struct scene_material m = alone_material(scene);
-    add_object(scene, alone == SCENE_EFFECT_VERTEX_COLORS ? painted_box() : mesh_box(1, 1, 1), m, 0,
-               0.5, 0);
+    struct scene_mesh body = alone == SCENE_EFFECT_VERTEX_COLORS ? painted_box()
+                             : alone == SCENE_EFFECT_SPHERES
+                                 ? mesh_balls((double[]){0, 0, 0, 0.6}, 1)
+                                 : mesh_box(1, 1, 1);
+    add_object(scene, body, m, 0, 0.5, 0);
     add_object(scene, ring(), m, 0.5, 1.5, 0.5);
     if (alone == SCENE_EFFECT_ENVIRONMENT_MAP)
         add_sky(scene);
     if (alone == SCENE_EFFECT_DIRECTIONAL_LIGHTS)
         scene_put_sun(scene, 0.3, -1, -0.4, 0.4f);
+    if (alone == SCENE_EFFECT_SPOT_LIGHTS)
+        add_spot(scene);
+    if (alone == SCENE_EFFECT_AREA_LIGHTS)
+        add_emitters(scene);
     return scene;
 }
 
@@ -312,7 +304,8 @@ static void effects_alone_draw_the_same(void **state)
         SCENE_EFFECT_ABSORPTION,      SCENE_EFFECT_CUTOUTS,       SCENE_EFFECT_TEXTURES,
         SCENE_EFFECT_NORMAL_MAPS,     SCENE_EFFECT_EMISSION,      SCENE_EFFECT_HIGHLIGHTS,
         SCENE_EFFECT_ENVIRONMENT_MAP, SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_METAL_ROUGH,
-        SCENE_EFFECT_CULLING,         SCENE_EFFECT_CATCHERS,      SCENE_EFFECT_DIRECTIONAL_LIGHTS};
+        SCENE_EFFECT_CULLING,         SCENE_EFFECT_CATCHERS,      SCENE_EFFECT_DIRECTIONAL_LIGHTS,
+        SCENE_EFFECT_SPOT_LIGHTS,     SCENE_EFFECT_AREA_LIGHTS,   SCENE_EFFECT_SPHERES};
     for (size_t i = 0; i < sizeof effects / sizeof *effects; ++i) {
         alone = effects[i];
         print_message("  %s:", scene_effect_name(alone));
@@ -339,12 +332,12 @@ static void effects_left_out_are_gone(void **state)
         params.all_effects = kernels[i].all;
         for (int k = 0; k < 3; ++k)
             params.effects_removed |= kernels[i].without[k] ? bit(effects[k]) : 0;
-        struct drawn drawn = draw(glass_scene(), &params);
-        const uint64_t rays[] = {drawn.stats.rays_shadow, drawn.stats.rays_reflected,
-                                 drawn.stats.rays_refracted};
+        struct picture picture = picture_of(glass_scene(), NULL, &params);
+        const uint64_t rays[] = {picture.stats.rays_shadow, picture.stats.rays_reflected,
+                                 picture.stats.rays_refracted};
         for (int k = 0; k < 3; ++k)
             assert_true((rays[k] == 0) == kernels[i].without[k]);
-        drawn_finish(&drawn);
+        picture_finish(&picture);
     }
 }
 
@@ -354,18 +347,19 @@ static void effects_added_do_not_matter(void **state)
     static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
                                               SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_AREA_LIGHTS,
                                               SCENE_EFFECT_CULLING,     SCENE_EFFECT_SPHERES};
-    struct drawn plain = draw(plain_scene(), &small);
+    struct picture plain = picture_of(plain_scene(), NULL, &small);
     for (size_t i = 0; i < sizeof added / sizeof *added; ++i) {
         struct render_params more = small;
         more.effects_added = bit(added[i]);
-        struct drawn drawn = draw(plain_scene(), &more);
+        struct picture picture = picture_of(plain_scene(), NULL, &more);
         print_message("  with %-16s %+6d instructions\n", scene_effect_name(added[i]),
-                      (int)drawn.stats.kernel_instructions - (int)plain.stats.kernel_instructions);
-        assert_true(same_bytes(&plain.color, &drawn.color));
-        assert_true(drawn.stats.kernel_instructions > plain.stats.kernel_instructions);
-        drawn_finish(&drawn);
+                      (int)picture.stats.kernel_instructions -
+                          (int)plain.stats.kernel_instructions);
+        assert_same_picture(scene_effect_name(added[i]), &plain, &picture);
+        assert_true(picture.stats.kernel_instructions > plain.stats.kernel_instructions);
+        picture_finish(&picture);
     }
-    drawn_finish(&plain);
+    picture_finish(&plain);
 }
 
 /* ---- Kernels ---- */
@@ -469,13 +463,11 @@ static void add_pane(struct scene *scene, struct scene_material m, double width,
 static struct scene *quarters_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-    struct scene_material mirror = material_plain("mirror"), glass = material_plain("glass");
-    set_rgb(mirror.reflection, 0.9f, 0.9f, 0.9f);
-    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
-    glass.fresnel = true;
-    add_pane(scene, mirror, 10, 20, -5, 0, -5);
-    add_pane(scene, glass, 10, 10, 5, -5, -4);
-    add_pane(scene, glass, 40, 40, -20, 20, 5);
+    struct scene_material pane = glass();
+    pane.fresnel = true;
+    add_pane(scene, mirror(0.9f, 0.9f, 0.9f), 10, 20, -5, 0, -5);
+    add_pane(scene, pane, 10, 10, 5, -5, -4);
+    add_pane(scene, pane, 40, 40, -20, 20, 5);
     set_rgb(scene->environment.zenith, 1, 1, 1);
     scene_put_lamp(scene, 0, 0, 1, 5.0f);
     return scene;
@@ -522,9 +514,7 @@ static void only_pixels_that_see_glass_refract(void **state)
 static struct scene *rising_glass_scene(void)
 {
     struct scene *scene = plain_scene();
-    struct scene_material glass = material_plain("glass");
-    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
-    add_pane(scene, glass, 2, 2, 0, -30, 2);
+    add_pane(scene, glass(), 2, 2, 0, -30, 2);
     scene_put_channel(scene, scene->node_count - 1, SCENE_PATH_TRANSLATION, 2, (float[]){0, 1},
                       (float[]){0, -30, 2, 0, 2, 2});
     scene->channels[0].interpolation = SCENE_STEP;
@@ -535,23 +525,20 @@ static void what_comes_into_view_is_right_at_once(void **state)
 {
     (void)state;
     struct render_params later = small;
-    struct render_stats stats;
     later.time_s = 1.0;
-    struct drawn expected = draw(rising_glass_scene(), &later);
+    struct picture expected = picture_of(rising_glass_scene(), NULL, &later);
     assert_true(expected.stats.rays_refracted > 0);
     struct fixture f = fixture_open(rising_glass_scene(), NULL, &small);
-    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    renderer_get_stats(f.renderer, &stats);
-    assert_int_equal(stats.rays_refracted, 0);
+    struct picture before = render_picture(&f);
+    assert_int_equal(before.stats.rays_refracted, 0);
     const struct pipeline *pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
-    struct image image = render(&f);
-    assert_true(same_bytes(&image, &expected.color));
+    struct picture after = render_picture(&f);
+    assert_same_picture("risen glass", &after, &expected);
     assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
-    renderer_get_stats(f.renderer, &stats);
-    assert_int_equal(stats.rays_refracted, expected.stats.rays_refracted);
-    image_finish(&image);
-    drawn_finish(&expected);
+    picture_finish(&before);
+    picture_finish(&after);
+    picture_finish(&expected);
     fixture_close(&f);
 }
 

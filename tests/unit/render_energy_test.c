@@ -17,12 +17,13 @@ static void check_furnace(const char *name, struct scene *scene)
 {
     const struct render_params params = {.width = 32, .height = 32, .depth = 5, .bailout = -1.0};
     struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    struct picture picture = render_picture(&f);
+    const struct render_stats *stats = &picture.stats;
     double highest = 0, worst = 0, cut = 0;
     for (size_t i = 0; i < 32 * 32; ++i) {
         float cuts[2];
         pixel_cut(&f, i, cuts);
-        double value = (double)image.pixels[4 * i], lost = (double)cuts[0];
+        double value = (double)picture.color.pixels[4 * i], lost = (double)cuts[0];
         assert_true(cuts[1] == 0);
         highest = fmax(highest, value);
         worst = fmax(worst, fabs(value + lost - 1));
@@ -31,11 +32,9 @@ static void check_furnace(const char *name, struct scene *scene)
     print_message("  %s: 1 %+.2g at most, with what was cut 1 within %.2g; cut: up to %.2g\n", name,
                   highest - 1, worst, cut);
     assert_true(highest <= 1 + 1e-4 && worst <= 1e-4); /* NUMERICS O13 */
-    struct render_stats stats;
-    renderer_get_stats(f.renderer, &stats);
-    assert_true(fabs(stats.weight_cut_depth - cut) < 1e-6 && stats.weight_cut_bailout == 0);
-    assert_true(stats.rays_cut_bailout == 0 && (stats.rays_cut_depth > 0) == (cut > 0));
-    image_finish(&image);
+    assert_true(fabs(stats->weight_cut_depth - cut) < 1e-6 && stats->weight_cut_bailout == 0);
+    assert_true(stats->rays_cut_bailout == 0 && (stats->rays_cut_depth > 0) == (cut > 0));
+    picture_finish(&picture);
     fixture_close(&f);
 }
 
@@ -49,10 +48,7 @@ static void white_furnace(void **state)
     struct scene_material thin = clear_glass(1.5f, 0);
     thin.thin_walled = true;
     check_furnace("thin cube", furnace(mesh_box(1, 1, 1), thin));
-    struct scene_material mirror = material_plain("mirror");
-    set_rgb(mirror.diffuse, 0, 0, 0);
-    set_rgb(mirror.reflection, 1, 1, 1);
-    check_furnace("mirror ring", furnace(mesh_torus(0.7, 0.3, 24, 12), mirror));
+    check_furnace("mirror ring", furnace(mesh_torus(0.7, 0.3, 24, 12), mirror(1, 1, 1)));
 }
 
 static void white_furnace_of_nested_media(void **state)
@@ -75,12 +71,10 @@ static void facing_mirrors_end(void **state)
     struct image before = {0};
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
-        struct scene_material mirror = material_plain("mirror");
-        set_rgb(mirror.diffuse, 0, 0, 0);
-        set_rgb(mirror.reflection, 1, 1, 1);
-        set_rgb(mirror.emission, 0.01f, 0.01f, 0.01f);
+        struct scene_material shining = mirror(1, 1, 1);
+        set_rgb(shining.emission, 0.01f, 0.01f, 0.01f);
         for (int i = 0; i < 2; ++i)
-            add_object(scene, mesh_box(6, 6, 1), mirror, 0, 0, i ? 2.5 : -2.5);
+            add_object(scene, mesh_box(6, 6, 1), shining, 0, 0, i ? 2.5 : -2.5);
         scene_put_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
         const struct render_params params = {
             .width = 15, .height = 15, .depth = depths[d], .bailout = -1.0};
@@ -109,13 +103,20 @@ static struct scene *weak_scene(int which)
         return glass_scene();
     struct scene *scene = furnace(mesh_box(1.2, 1.2, 1.2), clear_glass(1.5f, 0));
     add_object(scene, mesh_box(0.5, 0.5, 0.5), clear_glass(1.1f, 0), 0.1, 0, 0);
-    struct scene_material shiny = material_plain("shiny");
-    set_rgb(shiny.diffuse, 0.5f, 0.5f, 0.5f);
+    struct scene_material shiny = matte(0.5f, 0.5f, 0.5f);
     set_rgb(shiny.specular, 0.5f, 0.5f, 0.5f);
     set_rgb(shiny.reflection, 0.3f, 0.3f, 0.3f);
     add_object(scene, mesh_plane(6), shiny, 0, -0.8, 0);
     scene_put_lamp(scene, 2, 3, 2, 8);
     return scene;
+}
+
+static double largest_difference(const struct image *a, const struct image *b)
+{
+    double worst = 0;
+    for (size_t k = 0; k < (size_t)a->width * a->height * 4; ++k)
+        worst = fmax(worst, fabs((double)a->pixels[k] - (double)b->pixels[k]));
+    return worst;
 }
 
 /* No pixel is off by more than the statistics say, and that is no idle word. */
@@ -131,26 +132,22 @@ static void bailout_keeps_its_bound(void **state)
                                                  .depth = 6,
                                                  .bailout = bailouts[i],
                                                  .camera = which ? NULL : glass_camera};
-            struct fixture f = fixture_open(weak_scene(which), NULL, &params);
-            struct image image = render(&f);
-            struct render_stats stats;
-            renderer_get_stats(f.renderer, &stats);
-            double worst = 0;
-            for (size_t k = 0; full.pixels && k < 40 * 40 * 4; ++k)
-                worst = fmax(worst, fabs((double)image.pixels[k] - (double)full.pixels[k]));
+            struct picture picture = picture_of(weak_scene(which), NULL, &params);
+            const struct render_stats *stats = &picture.stats;
             if (i == 0) {
-                assert_true(stats.rays_cut_bailout == 0 && stats.bailout_bound == 0);
-                full = image;
+                assert_true(stats->rays_cut_bailout == 0 && stats->bailout_bound == 0);
+                full = picture.color;
+                picture.color = (struct image){0};
             } else {
+                double worst = largest_difference(&picture.color, &full);
                 print_message("  bailout 1/%g cuts %llu rays: off by %.3g, the bound is %.3g\n",
-                              1 / bailouts[i], (unsigned long long)stats.rays_cut_bailout, worst,
-                              stats.bailout_bound);
-                assert_true(stats.rays_cut_bailout > 0 && worst > 0);
-                assert_true(worst <= stats.bailout_bound + 1e-6);
-                assert_true(stats.bailout_bound < 100 * worst);
-                image_finish(&image);
+                              1 / bailouts[i], (unsigned long long)stats->rays_cut_bailout, worst,
+                              stats->bailout_bound);
+                assert_true(stats->rays_cut_bailout > 0 && worst > 0);
+                assert_true(worst <= stats->bailout_bound + 1e-6);
+                assert_true(stats->bailout_bound < 100 * worst);
             }
-            fixture_close(&f);
+            picture_finish(&picture);
         }
         image_finish(&full);
     }

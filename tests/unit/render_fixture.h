@@ -1,4 +1,4 @@
-/* Scenes, devices and rays for tests of traversal and rendering. */
+/* Scenes, devices and pictures for tests of traversal and rendering. */
 #ifndef TESTS_RENDER_FIXTURE_H
 #define TESTS_RENDER_FIXTURE_H
 
@@ -71,6 +71,14 @@ struct fixture {
     struct renderer *renderer;
 };
 
+/* Another renderer in place of the one that there is. */
+static inline void fixture_renew(struct fixture *f, const struct render_params *params)
+{
+    renderer_destroy(f->renderer);
+    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
+                     WHIT_OK);
+}
+
 static inline struct fixture fixture_open(struct scene *scene,
                                           const struct accel_params *accel_params,
                                           const struct render_params *render_params)
@@ -83,9 +91,7 @@ static inline struct fixture fixture_open(struct scene *scene,
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
     f.device = fixture_device();
     const struct render_params small = {.width = 16, .height = 16, .depth = 4};
-    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel,
-                                     render_params ? render_params : &small, &f.renderer),
-                     WHIT_OK);
+    fixture_renew(&f, render_params ? render_params : &small);
     return f;
 }
 
@@ -95,6 +101,98 @@ static inline void fixture_close(struct fixture *f)
     fixture_validate();
     accel_destroy(f->accel);
     scene_destroy(f->scene);
+}
+
+/* Every params of `wrong` is refused for a renderer of what `f` has. */
+static inline void fixture_refuses(const struct fixture *f, const struct render_params *wrong,
+                                   size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        struct renderer *renderer = NULL;
+        if (renderer_create(&fixture_log, f->device, f->accel, &wrong[i], &renderer) !=
+            WHIT_ERROR_USAGE)
+            fail_msg("params %zu are not refused", i);
+        assert_null(renderer);
+    }
+}
+
+/* ---- Pictures ---- */
+
+struct picture {
+    struct image color, ids;
+    struct render_stats stats;
+};
+
+static inline struct image render(const struct fixture *f)
+{
+    struct image image = {0};
+    assert_int_equal(renderer_render(f->renderer), WHIT_OK);
+    assert_int_equal(renderer_read_color(f->renderer, &image), WHIT_OK);
+    return image;
+}
+
+static inline struct picture render_picture(const struct fixture *f)
+{
+    struct picture picture = {.color = render(f)};
+    assert_int_equal(renderer_read_ids(f->renderer, &picture.ids), WHIT_OK);
+    renderer_get_stats(f->renderer, &picture.stats);
+    return picture;
+}
+
+static inline void picture_finish(struct picture *picture)
+{
+    image_finish(&picture->color);
+    image_finish(&picture->ids);
+}
+
+/* What a scene looks like, which is freed. */
+static inline struct image color_of(struct scene *scene, const struct accel_params *accel,
+                                    const struct render_params *params)
+{
+    struct fixture f = fixture_open(scene, accel, params);
+    struct image image = render(&f);
+    fixture_close(&f);
+    return image;
+}
+
+static inline struct picture picture_of(struct scene *scene, const struct accel_params *accel,
+                                        const struct render_params *params)
+{
+    struct fixture f = fixture_open(scene, accel, params);
+    struct picture picture = render_picture(&f);
+    fixture_close(&f);
+    return picture;
+}
+
+/* Pixels of other bytes. */
+static inline uint32_t pixels_unlike(const struct image *a, const struct image *b)
+{
+    const char *x = a->pixels ? (const char *)a->pixels : (const char *)a->words;
+    const char *y = b->pixels ? (const char *)b->pixels : (const char *)b->words;
+    size_t bytes = 4 * (size_t)a->channels;
+    uint32_t unlike = 0;
+    assert_true(a->width == b->width && a->height == b->height && a->channels == b->channels);
+    for (size_t i = 0; i < (size_t)a->width * a->height; ++i)
+        unlike += memcmp(x + i * bytes, y + i * bytes, bytes) != 0;
+    return unlike;
+}
+
+static inline void assert_same_image(const char *what, const struct image *a, const struct image *b)
+{
+    uint32_t unlike = pixels_unlike(a, b);
+    if (unlike > 0)
+        fail_msg("%s: %u pixels of other bytes", what, unlike);
+}
+
+/* Colours, identities, and the number of rays of every kind. */
+static inline void assert_same_picture(const char *what, const struct picture *a,
+                                       const struct picture *b)
+{
+    assert_same_image(what, &a->color, &b->color);
+    assert_same_image(what, &a->ids, &b->ids);
+    assert_int_equal(a->stats.rays_shadow, b->stats.rays_shadow);
+    assert_int_equal(a->stats.rays_reflected, b->stats.rays_reflected);
+    assert_int_equal(a->stats.rays_refracted, b->stats.rays_refracted);
 }
 
 #endif

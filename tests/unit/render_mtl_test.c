@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "load/load.h"
-#include "render_fixture.h"
+#include "picture_fixture.h"
 
 /* The eye looks down on the strips at 60 degrees to their normal; the light comes in at 30. */
 #define COS_VIEW   0.5
@@ -37,74 +37,30 @@ struct strip {
     double plain, emitted;
 };
 
+/* In the order of the members. */
 static const struct strip strips[] = {
-    {.name = "0", .text = "illum 0", .plain = 1},
-    {.name = "1", .text = "illum 1", .ambient = 1, .diffuse = 1},
-    {.name = "2", .text = "illum 2", .ambient = 1, .diffuse = 1, .exponent = 4},
-    {.name = "3", .text = "illum 3", .ambient = 1, .diffuse = 1, .exponent = 4, .mirrored = 1},
-    {.name = "4",
-     .text = "illum 4\nd 0.25",
-     .ambient = 0.25,
-     .diffuse = 0.25,
-     .exponent = 4,
-     .mirrored = 1,
-     .straight = 0.75},
+    {"0", "illum 0", 0, 0, 0, 0, 0, 0, 0, 0, 1, 0},
+    {"1", "illum 1", 1, 1, 0, 0, 0, 0, 0, 0, 0, 0},
+    {"2", "illum 2", 1, 1, 4, 0, 0, 0, 0, 0, 0, 0},
+    {"3", "illum 3", 1, 1, 4, 1, 0, 0, 0, 0, 0, 0},
+    {"4", "illum 4\nd 0.25", 0.25, 0.25, 4, 1, 0, 0.75, 0, 0, 0, 0},
     /* (1 - 0.5)^5 of what is missing to 1 */
-    {.name = "5",
-     .text = "illum 5",
-     .ambient = 1,
-     .diffuse = 1,
-     .exponent = 4,
-     .mirrored = 1 - 0.03125,
-     .fresnel = 0.03125},
-    {.name = "6",
-     .text = "illum 6",
-     .ambient = 1,
-     .diffuse = 1,
-     .exponent = 4,
-     .mirrored = 1,
-     .refracted = 1,
-     .less_ks = 1},
-    {.name = "7",
-     .text = "illum 7",
-     .ambient = 1,
-     .diffuse = 1,
-     .exponent = 4,
-     .fresnel = FRESNEL_60,
-     .refracted = 1 - FRESNEL_60},
-    {.name = "8", .text = "illum 8", .ambient = 1, .diffuse = 1, .exponent = 4},
-    {.name = "9",
-     .text = "illum 9\nTr 0.25",
-     .ambient = 0.75,
-     .diffuse = 0.75,
-     .exponent = -4,
-     .straight = 0.25},
+    {"5", "illum 5", 1, 1, 4, 1 - 0.03125, 0.03125, 0, 0, 0, 0, 0},
+    {"6", "illum 6", 1, 1, 4, 1, 0, 0, 1, 1, 0, 0},
+    {"7", "illum 7", 1, 1, 4, 0, FRESNEL_60, 0, 1 - FRESNEL_60, 0, 0, 0},
+    {"8", "illum 8", 1, 1, 4, 0, 0, 0, 0, 0, 0, 0},
+    {"9", "illum 9\nTr 0.25", 0.75, 0.75, -4, 0, 0, 0.25, 0, 0, 0, 0},
     /* No shadow falls here: the catcher is not to be seen. */
-    {.name = "10", .text = "illum 10", .straight = 1},
-    {.name = "map_Kd",
-     .text = "illum 1\nmap_Kd color.png",
-     .ambient = PICTURE_COLOR,
-     .diffuse = PICTURE_COLOR},
-    {.name = "map_Ks",
-     .text = "illum 3\nmap_Ks fifth.png",
-     .ambient = 1,
-     .diffuse = 1,
-     .exponent = 4,
-     .mirrored = PICTURE_SPECULAR},
-    {.name = "map_Ns",
-     .text = "illum 2\nmap_Ns half.png",
-     .ambient = 1,
-     .diffuse = 1,
-     .exponent = 4 * PICTURE_EXPONENT},
-    {.name = "Ke", .text = "illum 1\nKe 0.1 0.1 0.1", .ambient = 1, .diffuse = 1, .emitted = 0.1},
-    {.name = "map_Ke",
-     .text = "illum 1\nKe 0.1 0.1 0.1\nmap_Ke color.png",
-     .ambient = 1,
-     .diffuse = 1,
-     .emitted = 0.1 * PICTURE_COLOR},
-    {.name = "map_d clear", .text = "illum 1\nmap_d fifth.png", .straight = 1},
-    {.name = "map_d solid", .text = "illum 1\nmap_d half.png", .ambient = 1, .diffuse = 1},
-    {.name = "map_d -mm", .text = "illum 1\nmap_d -mm 0.4 1 fifth.png", .ambient = 1, .diffuse = 1},
+    {"10", "illum 10", 0, 0, 0, 0, 0, 1, 0, 0, 0, 0},
+    {"map_Kd", "illum 1\nmap_Kd color.png", PICTURE_COLOR, PICTURE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0},
+    {"map_Ks", "illum 3\nmap_Ks fifth.png", 1, 1, 4, PICTURE_SPECULAR, 0, 0, 0, 0, 0, 0},
+    {"map_Ns", "illum 2\nmap_Ns half.png", 1, 1, 4 * PICTURE_EXPONENT, 0, 0, 0, 0, 0, 0, 0},
+    {"Ke", "illum 1\nKe 0.1 0.1 0.1", 1, 1, 0, 0, 0, 0, 0, 0, 0, 0.1},
+    {"map_Ke", "illum 1\nKe 0.1 0.1 0.1\nmap_Ke color.png", 1, 1, 0, 0, 0, 0, 0, 0, 0,
+     0.1 * PICTURE_COLOR},
+    {"map_d clear", "illum 1\nmap_d fifth.png", 0, 0, 0, 0, 0, 1, 0, 0, 0, 0},
+    {"map_d solid", "illum 1\nmap_d half.png", 1, 1, 0, 0, 0, 0, 0, 0, 0, 0},
+    {"map_d -mm", "illum 1\nmap_d -mm 0.4 1 fifth.png", 1, 1, 0, 0, 0, 0, 0, 0, 0, 0},
 };
 enum { STRIPS = sizeof strips / sizeof *strips };
 
@@ -135,28 +91,22 @@ static double expected(const struct strip *strip, bool schlick, int c)
     return seen + s->refracted * tf[c] * (1 - s->less_ks * ks[c]) * sky(-COS_INSIDE, c);
 }
 
-static void write_text(const char *folder, const char *name, const char *text)
+static void write_text(const char *name, const char *text)
 {
-    char *path = string_format("%s/%s", folder, name);
-    assert_non_null(path);
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(name, "wb");
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
     assert_int_equal(fclose(file), 0);
-    free(path);
 }
 
-static void write_picture(const char *folder, const char *name, int code)
+static void write_picture(const char *name, int code)
 {
     struct image image;
-    char *path = string_format("%s/%s", folder, name);
-    assert_non_null(path);
     assert_int_equal(image_init(&image, 1, 1, 3, false), WHIT_OK);
     for (int k = 0; k < 3; k++)
         image.pixels[k] = image_linear_from_srgb((float)code / 255.0f);
-    assert_int_equal(image_save(&fixture_log, &image, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture_log, &image, name, NULL, 0), WHIT_OK);
     image_finish(&image);
-    free(path);
 }
 
 /* Strip i lies at y = 0 from x = i to i + 1. */
@@ -176,60 +126,46 @@ static struct scene *load_strips(void)
     }
     assert_true(to < sizeof obj && at < sizeof mtl);
     assert_non_null(mkdtemp(folder));
-    write_text(folder, "a.obj", obj);
-    write_text(folder, "a.mtl", mtl);
-    write_picture(folder, "color.png", 188);
-    write_picture(folder, "fifth.png", 51);
-    write_picture(folder, "half.png", 128);
+    assert_int_equal(chdir(folder), 0);
+    write_text("a.obj", obj);
+    write_text("a.mtl", mtl);
+    write_picture("color.png", 188);
+    write_picture("fifth.png", 51);
+    write_picture("half.png", 128);
     struct scene *scene = scene_begin(&fixture_log, "classes");
-    char *path = string_format("%s/a.obj", folder);
-    assert_int_equal(roots_init(&scene->roots, path), WHIT_OK);
-    assert_int_equal(load_model(scene, path, SCENE_NONE, false, false, NULL), WHIT_OK);
-    free(path);
-    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        path = string_format("%s/%s", folder, files[i]);
-        assert_int_equal(unlink(path), 0);
-        free(path);
-    }
+    assert_int_equal(roots_init(&scene->roots, "a.obj"), WHIT_OK);
+    assert_int_equal(load_model(scene, "a.obj", SCENE_NONE, false, false, NULL), WHIT_OK);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        assert_int_equal(unlink(files[i]), 0);
     assert_int_equal(rmdir(folder), 0);
+    assert_int_equal(chdir("/"), 0);
     return scene;
 }
 
-static void set_rgb(float *out, const double *rgb)
+static void set_floats(float *out, const double *rgb)
 {
-    for (int k = 0; k < 3; k++)
-        out[k] = (float)rgb[k];
-}
-
-static void light_and_look(struct scene *scene)
-{
-    scene->has_environment = true;
-    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
-    set_rgb(scene->environment.scale, (double[]){1, 1, 1});
-    set_rgb(scene->environment.zenith, zenith);
-    set_rgb(scene->environment.horizon, horizon);
-    set_rgb(scene->environment.ground, ground);
-    scene->has_ambient = true;
-    set_rgb(scene->ambient, air);
-    scene_put_sun(scene, 0, -COS_LIGHT, -0.5, 1.0f);
-    set_rgb(scene->lights[0].color, sun);
-    /* One pixel a strip, through its middle. */
-    scene_put_camera(scene, (double[]){0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
-                     (double[]){0.5 * STRIPS, 0, 0}, 0);
-    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
-    scene->cameras[0].height = 1;
+    set_rgb(out, (float)rgb[0], (float)rgb[1], (float)rgb[2]);
 }
 
 static struct image render_strips(const struct render_params *params)
 {
     struct scene *scene = load_strips();
-    light_and_look(scene);
-    struct fixture f = fixture_open(scene, NULL, params);
-    struct image image = {0};
-    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
-    fixture_close(&f);
-    return image;
+    scene->has_environment = true;
+    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
+    set_rgb(scene->environment.scale, 1, 1, 1);
+    set_floats(scene->environment.zenith, zenith);
+    set_floats(scene->environment.horizon, horizon);
+    set_floats(scene->environment.ground, ground);
+    scene->has_ambient = true;
+    set_floats(scene->ambient, air);
+    scene_put_sun(scene, 0, -COS_LIGHT, -0.5, 1.0f);
+    set_floats(scene->lights[0].color, sun);
+    /* One pixel a strip, through its middle. */
+    scene_put_camera(scene, (double[]){0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
+                     (double[]){0.5 * STRIPS, 0, 0}, 0);
+    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].height = 1;
+    return color_of(scene, NULL, params);
 }
 
 static void check_strips(const struct image *image, bool schlick)
@@ -268,7 +204,7 @@ static void schlick_takes_the_place_of_fresnel(void **state)
     params.all_effects = true;
     struct image all = render_strips(&params);
     check_strips(&image, true);
-    assert_memory_equal(image.pixels, all.pixels, STRIPS * 16);
+    assert_same_image("with every effect", &image, &all);
     image_finish(&image);
     image_finish(&all);
 }

@@ -1,49 +1,14 @@
 /* The numeric levels on the device: against the C twin, bit for bit; `exact` against rational
    arithmetic; what `fast` lacks. */
-#include "../scenes.h"
 #include "ray_fixture.h"
 
 #include "oracle/rational.h"
 #include "render_scenes.h"
 #include "sphere_fixture.h"
-#include "twin/traverse.h"
 
 static const char *const names[] = {
     [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_FAST] = "fast", [NUMERICS_EXACT] = "exact"};
-enum { LEVELS = 3 };
-
-/* Rays whose closest hits or costs differ from the twin's; any hits that are none of the closest.
- */
-static uint32_t count_unlike_twin(const struct fixture *f, uint32_t numerics,
-                                  const struct gpu_ray *rays, struct gpu_hit *hits)
-{
-    struct gpu_hit *any = array_alloc(RAYS, sizeof *any);
-    struct gpu_cost *costs = array_alloc(RAYS, sizeof *costs);
-    assert_true(any && costs);
-    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, false, hits, costs), WHIT_OK);
-    assert_int_equal(renderer_trace(f->renderer, rays, RAYS, true, any, NULL), WHIT_OK);
-    struct traverse_params params = {
-        .numerics = numerics, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-    uint32_t bad = 0, any_bad = 0, cost_bad = 0, met = 0, status = 0;
-    for (uint32_t i = 0; i < RAYS; ++i) {
-        struct gpu_hit twin;
-        struct gpu_cost cost = {0};
-        traverse_ray(f->accel, &params, &rays[i], &twin, &cost, &status);
-        met += twin.primitive != HIT_NONE;
-        bad += memcmp(&twin, &hits[i], sizeof twin) != 0;
-        any_bad += (any[i].primitive != HIT_NONE) != (twin.primitive != HIT_NONE);
-        cost_bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
-    }
-    print_message(
-        "  %s: %u rays, %u hit; %u unlike the twin, %u by their costs, %u any hits unlike "
-        "the closest\n",
-        names[numerics], RAYS, met, bad, cost_bad, any_bad);
-    assert_true(met > RAYS / 10);
-    assert_int_equal(status, 0);
-    free(any);
-    free(costs);
-    return bad + cost_bad + any_bad;
-}
+enum { LEVELS = 3, RAYS = 20000 };
 
 static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_ray *rays,
                                       const struct gpu_hit *hits)
@@ -71,13 +36,11 @@ static void check_levels(struct scene *scene, const struct accel_params *accel_p
     assert_true(rays && hits);
     struct render_params params = {.width = 16, .height = 16, .count = true};
     struct fixture f = fixture_open(scene, accel_params, &params);
-    aim_rays(&f, rays, 7);
+    aim_rays(&f, rays, RAYS, 7);
     for (uint32_t level = 0; level < LEVELS; ++level) {
-        renderer_destroy(f.renderer);
         params.numerics = level;
-        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                         WHIT_OK);
-        assert_int_equal(count_unlike_twin(&f, level, rays, hits), 0);
+        fixture_renew(&f, &params);
+        check_rays(&f, names[level], rays, RAYS, hits);
         if (level == NUMERICS_EXACT)
             assert_int_equal(count_unlike_rational(&f, rays, hits), 0);
     }
@@ -96,11 +59,6 @@ static void instances(void **state)
 {
     (void)state;
     check_levels(ring_scene(), NULL);
-}
-
-static void one_tree_over_instances(void **state)
-{
-    (void)state;
     check_levels(ring_scene(), &(struct accel_params){.flatten = true});
 }
 
@@ -118,27 +76,21 @@ static void split_triangles(void **state)
 static void ties(void **state)
 {
     (void)state;
-    struct scene_mesh mesh = mesh_terrain(10.0, 2.0, 4, 3);
     struct scene *scene = scene_begin(&fixture_log, "test");
-    scene_put_mesh(scene, mesh);
+    scene_put_mesh(scene, mesh_terrain(10.0, 2.0, 4, 3));
     for (int i = 0; i < 6; ++i)
         scene_put_again(scene, 0, NULL);
     check_levels(scene, NULL);
 }
 
 /* Balls through terrain: order among what is decided in both ways. aim_rays aims at triangles. */
-static struct scene *spheres_among_triangles(void)
-{
-    struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
-    struct scene *scene = terrain_scene();
-    scene_put(scene, balls, NULL);
-    return scene;
-}
-
 static void spheres(void **state)
 {
     (void)state;
-    check_levels(spheres_among_triangles(), NULL);
+    struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
+    struct scene *scene = terrain_scene();
+    scene_put(scene, balls, NULL);
+    check_levels(scene, NULL);
 }
 
 /* Rays from inside a sphere, at vertices and edges. */
@@ -152,7 +104,7 @@ static void only_fast_leaks(void **state)
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
-    aim_rays(&f, rays, 21);
+    aim_rays(&f, rays, RAYS, 21);
     uint64_t state_random = 5;
     for (uint32_t i = 0; i < RAYS; ++i) { /* those that are aimed, from inside */
         rays[i].t_min = 0.0f;
@@ -166,13 +118,10 @@ static void only_fast_leaks(void **state)
     }
     uint32_t leaks[LEVELS] = {0};
     for (uint32_t level = 0; level < LEVELS; ++level) {
-        renderer_destroy(f.renderer);
         params.numerics = level;
-        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                         WHIT_OK);
+        fixture_renew(&f, &params);
         assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, hits, NULL), WHIT_OK);
-        for (uint32_t i = 0; i < RAYS; ++i)
-            leaks[level] += hits[i].primitive == HIT_NONE;
+        leaks[level] = RAYS - count_met(hits, RAYS);
         print_message("  %s: %u of %u rays leak\n", names[level], leaks[level], RAYS);
     }
     assert_true(leaks[NUMERICS_FAST] > 0); /* or the rays are not hard */
@@ -192,12 +141,9 @@ static void pictures_agree(void **state)
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image pictures[LEVELS];
     for (uint32_t level = 0; level < LEVELS; ++level) {
-        renderer_destroy(f.renderer);
         params.numerics = level;
-        assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, &params, &f.renderer),
-                         WHIT_OK);
-        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-        assert_int_equal(renderer_read_color(f.renderer, &pictures[level]), WHIT_OK);
+        fixture_renew(&f, &params);
+        pictures[level] = render(&f);
     }
     const float *watertight = pictures[NUMERICS_WATERTIGHT].pixels;
     for (uint32_t level = 0; level < LEVELS; ++level) {
@@ -230,33 +176,21 @@ static void trees_do_not_matter(void **state)
                                          .camera = glass_camera,
                                          .bailout = -1.0,
                                          .numerics = NUMERICS_EXACT};
-    struct image pictures[2];
-    for (int i = 0; i < 2; ++i) {
-        struct fixture f = fixture_open(glass_scene(), i ? &none : NULL, &params);
-        assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-        assert_int_equal(renderer_read_color(f.renderer, &pictures[i]), WHIT_OK);
-        struct render_stats stats;
-        renderer_get_stats(f.renderer, &stats);
-        assert_true(stats.deferred > 0);
-        fixture_close(&f);
-    }
-    assert_memory_equal(pictures[0].pixels, pictures[1].pixels, 16 * 24 * 16);
-    image_finish(&pictures[0]);
-    image_finish(&pictures[1]);
+    struct picture with = picture_of(glass_scene(), NULL, &params);
+    struct picture without = picture_of(glass_scene(), &none, &params);
+    assert_true(with.stats.deferred > 0 && without.stats.deferred > 0);
+    assert_same_picture("without trees", &with, &without);
+    picture_finish(&with);
+    picture_finish(&without);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mesh),
-        cmocka_unit_test(instances),
-        cmocka_unit_test(one_tree_over_instances),
-        cmocka_unit_test(split_triangles),
-        cmocka_unit_test(ties),
-        cmocka_unit_test(spheres),
-        cmocka_unit_test(only_fast_leaks),
-        cmocka_unit_test(pictures_agree),
-        cmocka_unit_test(trees_do_not_matter),
+        cmocka_unit_test(one_mesh),        cmocka_unit_test(instances),
+        cmocka_unit_test(split_triangles), cmocka_unit_test(ties),
+        cmocka_unit_test(spheres),         cmocka_unit_test(only_fast_leaks),
+        cmocka_unit_test(pictures_agree),  cmocka_unit_test(trees_do_not_matter),
     };
     return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

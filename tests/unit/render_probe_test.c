@@ -1,6 +1,5 @@
 /* Probed pixels: their rays are those of the picture, all of them, with its colour; the CPU agrees
    with every one; and nothing of it is left in other kernels. */
-#include "load/load.h"
 #include "picture_fixture.h"
 #include "render/probe.h"
 #include "render/renderer.h"
@@ -148,40 +147,46 @@ static void assert_report(const struct probe_report *report)
 
 /* ---- A picture, pixel by pixel ---- */
 
+/* At most `max` rays, 0: all. */
+static struct probe_report probe(const struct fixture *f, uint32_t x, uint32_t y, uint32_t max)
+{
+    struct probe_report report;
+    assert_int_equal(renderer_probe(f->renderer, x, y, max, &report), WHIT_OK);
+    assert_report(&report);
+    return report;
+}
+
 static struct sums probe_picture(struct fixture *f)
 {
     struct sums sums = {0};
-    struct image before = render(f), after = {0}, ids = {0};
-    struct render_stats stats, later;
-    renderer_get_stats(f->renderer, &stats);
-    assert_int_equal(renderer_read_ids(f->renderer, &ids), WHIT_OK);
-    for (uint32_t i = 0; i < before.width * before.height; ++i) {
-        struct probe_report report;
-        assert_int_equal(
-            renderer_probe(f->renderer, i % before.width, i / before.width, 0, &report), WHIT_OK);
-        assert_report(&report);
+    struct picture before = render_picture(f);
+    const struct render_stats *stats = &before.stats;
+    uint32_t width = before.color.width, pixels = width * before.color.height;
+    for (uint32_t i = 0; i < pixels; ++i) {
+        struct probe_report report = probe(f, i % width, i / width, 0);
         assert_int_equal(report.dropped, 0);
-        assert_memory_equal(report.color, &before.pixels[4 * (size_t)i], 3 * sizeof(float));
-        assert_int_equal(report.rays[0].traced.instance, ids.words[2 * (size_t)i]);
-        assert_int_equal(report.rays[0].traced.primitive, ids.words[2 * (size_t)i + 1]);
+        assert_memory_equal(report.color, &before.color.pixels[4 * (size_t)i], 3 * sizeof(float));
+        assert_int_equal(report.rays[0].traced.instance, before.ids.words[2 * (size_t)i]);
+        assert_int_equal(report.rays[0].traced.primitive, before.ids.words[2 * (size_t)i + 1]);
         add_to_sums(&report, &sums);
         probe_report_finish(&report);
     }
-    if (stats.rays_primary == (uint64_t)before.width * before.height) {
-        assert_int_equal(sums.kinds[RAY_PRIMARY], stats.rays_primary);
-        assert_int_equal(sums.kinds[RAY_SHADOW], stats.rays_shadow);
-        assert_int_equal(sums.kinds[RAY_REFLECTED], stats.rays_reflected);
-        assert_int_equal(sums.kinds[RAY_REFRACTED], stats.rays_refracted);
-        assert_int_equal(sums.cut_depth, stats.rays_cut_depth);
-        assert_int_equal(sums.cut_bailout, stats.rays_cut_bailout);
+    if (stats->rays_primary == pixels) {
+        assert_int_equal(sums.kinds[RAY_PRIMARY], stats->rays_primary);
+        assert_int_equal(sums.kinds[RAY_SHADOW], stats->rays_shadow);
+        assert_int_equal(sums.kinds[RAY_REFLECTED], stats->rays_reflected);
+        assert_int_equal(sums.kinds[RAY_REFRACTED], stats->rays_refracted);
+        assert_int_equal(sums.cut_depth, stats->rays_cut_depth);
+        assert_int_equal(sums.cut_bailout, stats->rays_cut_bailout);
     }
     /* The picture and its figures are what they were. */
+    struct render_stats later;
+    struct image after = {0};
     renderer_get_stats(f->renderer, &later);
-    assert_int_equal(later.dispatches, stats.dispatches);
-    assert_true(later.render_ms == stats.render_ms);
+    assert_int_equal(later.dispatches, stats->dispatches);
+    assert_true(later.render_ms == stats->render_ms);
     assert_int_equal(renderer_read_color(f->renderer, &after), WHIT_OK);
-    assert_memory_equal(after.pixels, before.pixels,
-                        4 * sizeof(float) * before.width * before.height);
+    assert_same_image("after probes", &after, &before.color);
     print_message("  %llu rays: %llu shadow, %llu reflected, %llu refracted, %llu straight; cut "
                   "%llu + %llu; %llu surfaces let rays pass; exact agrees with %llu of %llu\n",
                   (unsigned long long)sums.rays, (unsigned long long)sums.kinds[RAY_SHADOW],
@@ -190,9 +195,8 @@ static struct sums probe_picture(struct fixture *f)
                   (unsigned long long)sums.cut_depth, (unsigned long long)sums.cut_bailout,
                   (unsigned long long)sums.passed, (unsigned long long)sums.exact_equal,
                   (unsigned long long)sums.exact);
-    image_finish(&before);
+    picture_finish(&before);
     image_finish(&after);
-    image_finish(&ids);
     return sums;
 }
 
@@ -226,20 +230,17 @@ static struct scene *sieve_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 7}, (double[]){0, 0.8, 0});
     uint32_t texture = add_two_texels(scene, 40, 250);
-    struct scene_material m = material_plain("floor");
-    set_rgb(m.diffuse, 0.7f, 0.6f, 0.5f);
+    struct scene_material m = matte(0.7f, 0.6f, 0.5f);
     add_object(scene, mesh_plane(12), m, 0, 0, 0);
     use_texture(&m, SCENE_SLOT_OPACITY, texture);
     m.alpha = SCENE_ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
     add_object(scene, mesh_box(1.5, 1.2, 0.1), m, -0.6, 0.9, 2);
-    m = material_plain("blended");
-    set_rgb(m.diffuse, 0.2f, 0.5f, 0.9f);
+    m = matte(0.2f, 0.5f, 0.9f);
     m.alpha = SCENE_ALPHA_BLEND;
     m.opacity = 0.4f;
     add_object(scene, mesh_box(0.8, 1.5, 0.1), m, 0.9, 0.9, 1.5);
-    m = material_plain("one-sided");
-    set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
+    m = matte(0.5f, 0.5f, 0.5f);
     m.one_sided = true;
     add_object(scene, mesh_box(8, 8, 14), m, 0, 3, 1.5); /* around all, seen from inside */
     m = material_plain("catcher");
@@ -256,14 +257,13 @@ static struct scene *sieve_scene(void)
     set_rgb(m.reflection, 0.8f, 0.8f, 0.8f);
     add_object(scene, mesh_box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
     scene_put_lamp(scene, 2, 3.5, 4, 6.0f);
-    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE,
-                                .node = SCENE_NONE,
-                                .position = {-1, 5, 0},
-                                .direction = {0, -1, 0},
-                                .edge_u = {1, 0, 0},
-                                .edge_v = {0, 0, 1}};
-    set_rgb(light.color, 3, 3, 3);
-    scene_put_light(scene, light);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+                                                .node = SCENE_NONE,
+                                                .position = {-1, 5, 0},
+                                                .direction = {0, -1, 0},
+                                                .edge_u = {1, 0, 0},
+                                                .edge_v = {0, 0, 1},
+                                                .color = {3, 3, 3}});
     return scene;
 }
 
@@ -305,27 +305,14 @@ static void trees_do_not_matter(void **state)
 
 /* ---- Scenes from files ---- */
 
-static struct fixture open_file(const char *name, const struct render_params *params)
-{
-    char path[256];
-    struct fixture f = {0};
-    snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, name);
-    assert_int_equal(load_scene(&fixture_log, path, NULL, &f.scene), WHIT_OK);
-    assert_int_equal(accel_create(&fixture_log, f.scene, &fixture_accel, &f.accel), WHIT_OK);
-    f.device = fixture_device();
-    assert_int_equal(renderer_create(&fixture_log, f.device, f.accel, params, &f.renderer),
-                     WHIT_OK);
-    return f;
-}
-
 /* Media that touch and absorb, spheres, cut-outs in textures, lamps made of glowing surfaces. */
 static void scenes_of_all_kinds(void **state)
 {
     (void)state;
-    static const char *const names[] = {"default.json", "glass-of-water.json", "layers.json"};
+    static const char *const names[] = {"default", "glass-of-water", "layers"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
         struct render_params params = {.width = 6, .height = 5, .depth = 6, .light_samples = 1};
-        struct fixture f = open_file(names[i], &params);
+        struct fixture f = fixture_open(file_scene(names[i]), NULL, &params);
         print_message("  %s\n", names[i]);
         struct sums sums = probe_picture(&f);
         assert_true(sums.kinds[RAY_SHADOW] > 0);
@@ -340,7 +327,7 @@ static void another_time_and_size(void **state)
 {
     (void)state;
     const struct render_params params = {.width = SIDE, .height = 6, .depth = 3};
-    struct fixture f = open_file("spin.json", &params);
+    struct fixture f = fixture_open(file_scene("spin"), NULL, &params);
     struct sums before = probe_picture(&f);
     assert_int_equal(renderer_set_time(f.renderer, 0.7), WHIT_OK);
     struct sums after = probe_picture(&f);
@@ -367,15 +354,11 @@ static void color_is_of_all_samples(void **state)
     fixture_close(&f);
     assert_int_equal(four.kinds[RAY_PRIMARY], 4 * 4);
     /* An adaptive picture begins with 4 samples. */
-    struct image picture = {0};
-    struct probe_report report;
-    f = fixture_open(glass_scene(), NULL, &params);
-    picture = render(&f);
-    fixture_close(&f);
+    struct image picture = color_of(glass_scene(), NULL, &params);
     params.samples = 0;
     params.adaptive = 1.0;
     f = fixture_open(glass_scene(), NULL, &params);
-    assert_int_equal(renderer_probe(f.renderer, 3, 2, 0, &report), WHIT_OK);
+    struct probe_report report = probe(&f, 3, 2, 0);
     assert_int_equal(report.samples, 4);
     assert_memory_equal(report.color, &picture.pixels[4 * (2 * 4 + 3)], 3 * sizeof(float));
     probe_report_finish(&report);
@@ -389,8 +372,7 @@ static uint32_t busiest_pixel(struct fixture *f, uint32_t *rays)
     uint32_t best = 0;
     *rays = 0;
     for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        struct probe_report report;
-        assert_int_equal(renderer_probe(f->renderer, i % SIDE, i / SIDE, 0, &report), WHIT_OK);
+        struct probe_report report = probe(f, i % SIDE, i / SIDE, 0);
         best = report.ray_count > *rays ? i : best;
         *rays = report.ray_count > *rays ? report.ray_count : *rays;
         probe_report_finish(&report);
@@ -403,16 +385,13 @@ static void rays_without_room_are_counted(void **state)
     (void)state;
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     uint32_t all, pixel = busiest_pixel(&f, &all);
-    struct probe_report whole, part;
-    assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, 0, &whole), WHIT_OK);
+    struct probe_report whole = probe(&f, pixel % SIDE, pixel / SIDE, 0);
     assert_int_equal(whole.dropped, 0);
     assert_true(all > 10);
     for (uint32_t max = 1; max < all; max += 4) {
-        assert_int_equal(renderer_probe(f.renderer, pixel % SIDE, pixel / SIDE, max, &part),
-                         WHIT_OK);
+        struct probe_report part = probe(&f, pixel % SIDE, pixel / SIDE, max);
         assert_int_equal(part.ray_count, max);
         assert_int_equal(part.dropped, all - max);
-        assert_report(&part);
         assert_memory_equal(part.color, whole.color, sizeof part.color);
         probe_report_finish(&part);
     }
@@ -428,7 +407,7 @@ static void pixels_outside_are_refused(void **state)
     assert_int_equal(renderer_probe(f.renderer, SIDE, 0, 0, &report), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_probe(f.renderer, 0, SIDE, 0, &report), WHIT_ERROR_USAGE);
     assert_null(report.rays);
-    assert_int_equal(renderer_probe(f.renderer, SIDE - 1, SIDE - 1, 0, &report), WHIT_OK);
+    report = probe(&f, SIDE - 1, SIDE - 1, 0);
     probe_report_finish(&report);
     fixture_close(&f);
 }
@@ -448,7 +427,6 @@ static void pictures_know_nothing_of_it(void **state)
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     struct renderer *r = f.renderer;
     struct image picture = render(&f);
-    struct probe_report report;
     image_finish(&picture);
     assert_null(r->probe.records);
     assert_null(r->probe.buffers.pixels);
@@ -457,7 +435,7 @@ static void pictures_know_nothing_of_it(void **state)
     const struct pass *shading = &r->picture.stages.set.passes[STAGE_SHADE];
     struct pipeline_info before = kernel_of(shading);
     assert_false(before.bindings >> BIND_PROBE & 1);
-    assert_int_equal(renderer_probe(r, 2, 2, 0, &report), WHIT_OK);
+    struct probe_report report = probe(&f, 2, 2, 0);
     probe_report_finish(&report);
     struct pipeline_info after = kernel_of(shading),
                          probe = kernel_of(&r->probe.stages.set.passes[STAGE_SHADE]);

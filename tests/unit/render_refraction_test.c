@@ -30,8 +30,7 @@ static void slab_keeps_directions(void **state)
     set_height_sky(scene);
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     const struct render_params params = {.width = 24, .height = 24, .depth = 8, .bailout = -1.0};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &params);
     double worst = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
         const float *color = &image.pixels[4 * (size_t)i];
@@ -43,7 +42,6 @@ static void slab_keeps_directions(void **state)
     print_message("  directions are off by %.2g\n", worst);
     assert_true(worst <= 2e-6); /* NUMERICS O4: some ten roundings of a unit vector */
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* Set aside as Snell says, and weaker by both faces. */
@@ -54,8 +52,7 @@ static void slab_moves_rays_aside(void **state)
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     add_coordinate_wall(scene, -2, 8);
     const struct render_params params = {.width = 24, .height = 24, .depth = 2, .bailout = -1.0};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &params);
     double worst = 0.0, worst_light = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
         const float *color = &image.pixels[4 * (size_t)i];
@@ -75,7 +72,6 @@ static void slab_moves_rays_aside(void **state)
     assert_true(worst < 3 * 7 * 10 * 0x1p-24);
     assert_true(worst_light < 16 * 0x1p-24);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* ---- A ball lens ---- */
@@ -121,13 +117,11 @@ static void ball_bends_rays_to_its_focus(void **state)
     double spread[3] = {0};
     for (int w = 0; w < 3; ++w) {
         struct scene *scene = lens_scene((double[]){0, 0, 5});
-        struct scene_mesh ball = mesh_balls((double[]){0, 0, 0, 1}, 1);
-        add_object(scene, ball, clear_glass(1.5f, 0), 0, 0, 0);
+        add_object(scene, mesh_balls((double[]){0, 0, 0, 1}, 1), clear_glass(1.5f, 0), 0, 0, 0);
         add_coordinate_wall(scene, -walls[w], 4);
         const struct render_params params = {
             .width = 32, .height = 32, .depth = 2, .bailout = -1.0};
-        struct fixture f = fixture_open(scene, NULL, &params);
-        struct image image = render(&f);
+        struct image image = color_of(scene, NULL, &params);
         double worst = 0;
         uint32_t through = 0;
         for (uint32_t i = 0; i < 32 * 32; ++i) {
@@ -151,7 +145,6 @@ static void ball_bends_rays_to_its_focus(void **state)
            wall is up to 6 away. */
         assert_true(worst < 8 * 5 * 0x1p-24 * 2 * 2 * (1 + walls[w]));
         image_finish(&image);
-        fixture_close(&f);
     }
     assert_true(spread[1] < 0.1 * spread[0] && spread[1] < 0.1 * spread[2]);
 }
@@ -175,29 +168,23 @@ static void leave_mirrors(double turn)
     affine_point(&turned, after, out);
     struct scene *scene = dark_scene((double[]){0, 0, 0}, target);
     set_height_sky(scene);
-    struct scene_material mirror = material_plain("mirror");
-    set_rgb(mirror.diffuse, 0, 0, 0);
-    set_rgb(mirror.reflection, 1, 1, 1);
     for (int i = 0; i < 2; ++i) {
         double at[3];
         affine_point(&turned, (double[]){i ? 1.5 : -1.5, 0, 0}, at);
-        add_object(scene, mesh_box(1, 13, 13), mirror, at[0], at[1], at[2]);
+        add_object(scene, mesh_box(1, 13, 13), mirror(1, 1, 1), at[0], at[1], at[2]);
         memcpy(scene->nodes[scene->node_count - 1].rotation, q, sizeof q);
     }
     const struct render_params params = {.width = 1, .height = 1, .depth = 255, .bailout = -1.0};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    struct render_stats stats;
-    renderer_get_stats(f.renderer, &stats);
-    double off = (double)image.pixels[0] / (double)image.pixels[2] - out[1] / way;
+    struct picture picture = picture_of(scene, NULL, &params);
+    const float *color = picture.color.pixels;
+    double off = (double)color[0] / (double)color[2] - out[1] / way;
     print_message("  %u reflections, mirrors turned by %g: up is off by %.2g, the weight by %.2g\n",
-                  (unsigned)stats.rays_reflected, turn, off, (double)image.pixels[2] - 1);
-    assert_int_equal(stats.rays_reflected, 65);
-    assert_int_equal(stats.rays_cut_depth, 0);
+                  (unsigned)picture.stats.rays_reflected, turn, off, (double)color[2] - 1);
+    assert_int_equal(picture.stats.rays_reflected, 65);
+    assert_int_equal(picture.stats.rays_cut_depth, 0);
     assert_true(fabs(off) <= 1e-6); /* NUMERICS O6 */
-    assert_true(image.pixels[2] == 1.0f);
-    image_finish(&image);
-    fixture_close(&f);
+    assert_true(color[2] == 1.0f);
+    picture_finish(&picture);
 }
 
 static void directions_stay_unit(void **state)
@@ -221,8 +208,7 @@ static void beer_from_nothing_to_infinity(void **state)
         set_rgb(m.absorption, 0, absorptions[i], 1.0f);
         add_object(scene, mesh_box(20, 20, 1), m, 0, 0, 0);
         const struct render_params params = {.width = 1, .height = 1, .depth = 4, .bailout = -1.0};
-        struct fixture f = fixture_open(scene, NULL, &params);
-        struct image image = render(&f);
+        struct image image = color_of(scene, NULL, &params);
         const float *color = image.pixels;
         assert_true(color[0] == 1.0f);
         /* What is not finite is mended to 0 when the scene is frozen. */
@@ -234,7 +220,6 @@ static void beer_from_nothing_to_infinity(void **state)
                     expected * (8 + 2 * fmin((double)absorptions[i], 100)) * 0x1p-23 + 1.2e-38);
         assert_near(color[2], exp(-1), 10 * 0x1p-23);
         image_finish(&image);
-        fixture_close(&f);
     }
 }
 
@@ -285,18 +270,13 @@ static void paths_are_reversible(void **state)
             struct scene *scene = dark_scene(eye, (double[]){0, 0, 0});
             scene->cameras[0].fov_y = 0.01f;
             add_object(scene, mesh_box(80, 40, 80), clear_glass(1.5f, 0), 0, -20, 0);
-            struct scene_material lamp = material_plain("lamp");
-            lamp.model = SCENE_MODEL_UNLIT;
-            set_rgb(lamp.diffuse, 1, 1, 1);
-            double far = way ? 3 : -3;
-            add_object(scene, mesh_box(1, 1, 1), lamp, way ? -slopes[i] * 3 : tangent * 3, far, 0);
+            add_object(scene, mesh_box(1, 1, 1), unlit(1, 1, 1), way ? -slopes[i] * 3 : tangent * 3,
+                       way ? 3 : -3, 0);
             const struct render_params params = {
                 .width = 1, .height = 1, .depth = 1, .bailout = -1.0};
-            struct fixture f = fixture_open(scene, NULL, &params);
-            struct image image = render(&f);
+            struct image image = color_of(scene, NULL, &params);
             share[way] = (double)image.pixels[0];
             image_finish(&image);
-            fixture_close(&f);
         }
         double expected = 1 - fresnel(sqrt(1 - sine * sine), 1, 1.5);
         print_message("  %.7f there, %.7f back, by formula %.7f\n", share[0], share[1], expected);

@@ -1,8 +1,7 @@
 /* One renderer that is given one view after another: each picture is that of a renderer made for
    it, byte for byte. */
-#include "load/load.h"
 #include "render/renderer.h"
-#include "render_fixture.h"
+#include "render_scenes.h"
 
 static const char *const aside = "3,2.5,4,0,0.6,0,0,1,0,35";
 
@@ -21,55 +20,31 @@ static const struct render_params steps[] = {
 };
 enum { STEPS = sizeof steps / sizeof *steps };
 
-static struct scene *load(const char *name)
+static void check_same(const struct fixture *f, const char *name,
+                       const struct render_params *params)
 {
-    char path[512];
-    struct scene *scene = scene_begin(&fixture_log, name);
-    snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, name);
-    assert_int_equal(roots_init(&scene->roots, path), WHIT_OK);
-    assert_int_equal(load_scene_file(scene, path, NULL), WHIT_OK);
-    return scene;
-}
-
-static void read_all(struct renderer *renderer, struct image *color, struct image *ids)
-{
-    assert_int_equal(renderer_render(renderer), WHIT_OK);
-    assert_int_equal(renderer_read_color(renderer, color), WHIT_OK);
-    assert_int_equal(renderer_read_ids(renderer, ids), WHIT_OK);
-}
-
-static void check_same(const struct fixture *f, const struct render_params *params)
-{
-    struct renderer *fresh = NULL;
-    struct image color = {0}, ids = {0}, fresh_color = {0}, fresh_ids = {0};
+    struct fixture fresh = {.device = f->device, .accel = f->accel};
     struct render_params own = *params;
     own.packets =
         RENDER_PACKETS_OFF; /* else a matter of the size that the renderer was made with */
-    read_all(f->renderer, &color, &ids);
-    assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, &own, &fresh), WHIT_OK);
-    read_all(fresh, &fresh_color, &fresh_ids);
-    assert_int_equal(color.width, params->width);
-    assert_int_equal(color.height, params->height);
-    size_t pixels = (size_t)params->width * params->height;
-    assert_memory_equal(color.pixels, fresh_color.pixels, pixels * 4 * sizeof(float));
-    assert_memory_equal(ids.words, fresh_ids.words, pixels * 2 * sizeof(uint32_t));
-    struct render_stats stats, fresh_stats;
-    renderer_get_stats(f->renderer, &stats);
-    renderer_get_stats(fresh, &fresh_stats);
-    assert_int_equal(stats.device_bytes, fresh_stats.device_bytes);
-    renderer_destroy(fresh);
-    image_finish(&color);
-    image_finish(&ids);
-    image_finish(&fresh_color);
-    image_finish(&fresh_ids);
+    struct picture picture = render_picture(f);
+    fixture_renew(&fresh, &own);
+    struct picture expected = render_picture(&fresh);
+    assert_int_equal(picture.color.width, params->width);
+    assert_int_equal(picture.color.height, params->height);
+    assert_same_picture(name, &picture, &expected);
+    assert_int_equal(picture.stats.device_bytes, expected.stats.device_bytes);
+    renderer_destroy(fresh.renderer);
+    picture_finish(&picture);
+    picture_finish(&expected);
 }
 
 static void walk(const char *name, const struct accel_params *accel, int count)
 {
-    struct fixture f = fixture_open(load(name), accel, &steps[0]);
+    struct fixture f = fixture_open(file_scene(name), accel, &steps[0]);
     for (int i = 0; i < count; ++i) {
         assert_int_equal(renderer_set_view(f.renderer, &steps[i]), WHIT_OK);
-        check_same(&f, &steps[i]);
+        check_same(&f, name, &steps[i]);
     }
     print_message("  %s: 0 of %d views differ\n", name, count);
     fixture_close(&f);
@@ -80,6 +55,7 @@ static void views_are_those_of_new_renderers(void **state)
     (void)state;
     walk("spin", NULL, STEPS);
     walk("whitted", NULL, STEPS);
+    walk("cube", &(struct accel_params){.mesh = {.builder = BVH_NONE}}, 3);
 }
 
 /* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */
@@ -88,29 +64,22 @@ static void media_touch_for_cameras_far_away(void **state)
     (void)state;
     struct render_params far_away = steps[0];
     far_away.camera = "0.6,2.35,900,0.42,1.62,0,0,1,0,0.3";
-    struct fixture f = fixture_open(load("whitted"), NULL, &steps[0]);
+    struct fixture f = fixture_open(file_scene("whitted"), NULL, &steps[0]);
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     assert_int_equal(renderer_set_view(f.renderer, &far_away), WHIT_OK);
     assert_true(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
-    check_same(&f, &far_away);
+    check_same(&f, "far away", &far_away);
     assert_int_equal(renderer_set_view(f.renderer, &steps[0]), WHIT_OK);
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
-    check_same(&f, &steps[0]);
+    check_same(&f, "near", &steps[0]);
     fixture_close(&f);
-}
-
-static void without_trees(void **state)
-{
-    (void)state;
-    const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
-    walk("cube", &none, 3);
 }
 
 /* Kernels of ray batches are bound to what a new size must keep. */
 static void rays_are_traced_in_between(void **state)
 {
     (void)state;
-    struct fixture f = fixture_open(load("cube"), NULL, &steps[0]);
+    struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     const struct gpu_ray ray = {.origin = {3, 2.5f, 4}, .dir = {-3, -2, -4}, .t_max = INFINITY};
     struct gpu_hit before = {0}, after = {0};
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &before, NULL), WHIT_OK);
@@ -124,7 +93,7 @@ static void rays_are_traced_in_between(void **state)
 static void nonsense_is_refused(void **state)
 {
     (void)state;
-    struct fixture f = fixture_open(load("cube"), NULL, &steps[0]);
+    struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     struct render_params wrong = steps[0];
     wrong.camera = "no such camera";
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
@@ -133,7 +102,7 @@ static void nonsense_is_refused(void **state)
     wrong.samples = 5;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
-    check_same(&f, &steps[1]);
+    check_same(&f, "after nonsense", &steps[1]);
     fixture_close(&f);
 }
 
@@ -143,17 +112,16 @@ static void a_larger_view_keeps_the_kernels(void **state)
     (void)state;
     const struct render_params small = {.width = 20, .height = 16, .depth = 4};
     const struct render_params large = {.width = 600, .height = 300, .depth = 4};
-    struct render_stats before, after;
-    struct fixture f = fixture_open(load("whitted"), NULL, &small);
+    struct fixture f = fixture_open(file_scene("whitted"), NULL, &small);
     assert_true(f.renderer->few_kernels && render_few_kernels(&small));
     assert_false(render_few_kernels(&large));
-    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    renderer_get_stats(f.renderer, &before);
+    struct picture before = render_picture(&f);
     assert_int_equal(renderer_set_view(f.renderer, &large), WHIT_OK);
-    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    renderer_get_stats(f.renderer, &after);
+    struct picture after = render_picture(&f);
     assert_true(f.renderer->few_kernels);
-    assert_int_equal(after.kernel_instructions, before.kernel_instructions);
+    assert_int_equal(after.stats.kernel_instructions, before.stats.kernel_instructions);
+    picture_finish(&before);
+    picture_finish(&after);
     fixture_close(&f);
 }
 
@@ -163,7 +131,6 @@ int main(void)
         cmocka_unit_test(views_are_those_of_new_renderers),
         cmocka_unit_test(a_larger_view_keeps_the_kernels),
         cmocka_unit_test(media_touch_for_cameras_far_away),
-        cmocka_unit_test(without_trees),
         cmocka_unit_test(rays_are_traced_in_between),
         cmocka_unit_test(nonsense_is_refused),
     };

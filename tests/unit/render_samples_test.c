@@ -13,22 +13,19 @@ static int open_scene(void **state)
 {
     (void)state;
     struct scene *scene = dark_scene((double[]){0, 1.2, 3.0}, (double[]){0, 0.2, 0});
-    struct scene_material floor = material_plain("floor"), ball = material_plain("ball");
-    struct scene_light lamp = {.kind = SCENE_LIGHT_RECTANGLE, .node = SCENE_NONE};
-    const double corner[3] = {-1.1, 2.7, -0.8}, direction[3] = {0, -1, 0};
-    memcpy(lamp.position, corner, sizeof corner);
-    memcpy(lamp.direction, direction, sizeof direction);
-    lamp.edge_u[0] = 1.9;
-    lamp.edge_v[2] = 1.3;
-    set_rgb(lamp.color, 2.1f, 1.7f, 1.3f);
+    struct scene_material floor = matte(0.5f, 0.4f, 0.3f), ball = matte(0.7f, 0.2f, 0.1f);
     set_rgb(scene->environment.zenith, 0.3f, 0.6f, 0.9f);
-    set_rgb(floor.diffuse, 0.5f, 0.4f, 0.3f);
     set_rgb(floor.reflection, 0.3f, 0.3f, 0.3f);
-    set_rgb(ball.diffuse, 0.7f, 0.2f, 0.1f);
     set_rgb(ball.reflection, 0.2f, 0.3f, 0.4f);
     add_object(scene, mesh_plane(3), floor, 0, 0, 0);
     add_object(scene, mesh_sphere(0.5, 12, 8), ball, 0, 0.5, 0);
-    scene_put_light(scene, lamp);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+                                                .node = SCENE_NONE,
+                                                .position = {-1.1, 2.7, -0.8},
+                                                .direction = {0, -1, 0},
+                                                .edge_u = {1.9, 0, 0},
+                                                .edge_v = {0, 0, 1.3},
+                                                .color = {2.1f, 1.7f, 1.3f}});
     scene->cameras[0].lens_radius = 0.15f;
     const struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3};
     f = fixture_open(scene, NULL, &params);

@@ -1,8 +1,20 @@
-/* Small scenes for tests of kernels. */
+/* Scenes for tests of kernels. */
 #ifndef TESTS_RENDER_SCENES_H
 #define TESTS_RENDER_SCENES_H
 
+#include "load/load.h"
 #include "render_fixture.h"
+
+/* scenes/NAME.json, which is not frozen. */
+static inline struct scene *file_scene(const char *name)
+{
+    char path[512];
+    struct scene *scene = scene_begin(&fixture_log, name);
+    snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, name);
+    assert_int_equal(roots_init(&scene->roots, path), WHIT_OK);
+    assert_int_equal(load_scene_file(scene, path, NULL), WHIT_OK);
+    return scene;
+}
 
 /* One mesh, not moved. */
 static inline struct scene *terrain_scene(void)

@@ -15,42 +15,38 @@ static uint32_t add_texel(struct scene *scene, uint8_t r, uint8_t g, uint8_t b)
 /* All channels of all pixels are `expected`. */
 static void assert_even(struct scene *scene, double expected, double relative)
 {
-    struct fixture f = fixture_open(scene, NULL, &all_params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &all_params);
     for (int i = 0; i < SIDE * SIDE; ++i)
         for (int c = 0; c < 3; ++c)
             assert_near(image.pixels[4 * i + c], expected, relative);
     image_finish(&image);
-    fixture_close(&f);
 }
 
-/* No pixel is other than a number between 0 and `most`. */
+/* No pixel is other than a number between 0 and `max`. */
 static void assert_sane(struct scene *scene, double max)
 {
-    struct fixture f = fixture_open(scene, NULL, &all_params);
-    struct image image = render(&f);
-    for (int i = 0; i < SIDE * SIDE; ++i)
-        for (int c = 0; c < 3; ++c)
-            assert_true(image.pixels[4 * i + c] >= 0.0f && (double)image.pixels[4 * i + c] <= max);
+    struct image image = color_of(scene, NULL, &all_params);
+    assert_range(&image, 0, max);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* The floor fills the picture, seen from straight above; the sun is 60 degrees from it. */
 #define COS_SUN 0.5
-static struct scene *floor_scene(struct scene_mesh mesh, struct scene_material m)
+static struct scene *sunny(struct scene *scene, struct scene_mesh mesh, struct scene_material m)
 {
-    struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
     add_object(scene, mesh, m, 0, 0, 0);
     scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
     return scene;
 }
 
+static struct scene *from_above(void)
+{
+    return dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+}
+
 static struct scene_material white(void)
 {
-    struct scene_material m = material_plain("white");
-    set_rgb(m.diffuse, 1, 1, 1);
-    return m;
+    return matte(1, 1, 1);
 }
 
 static void fill_normals(struct scene_mesh *mesh, float x, float y, float z)
@@ -68,12 +64,12 @@ static void unusable_normals_are_those_of_the_faces(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
         struct scene_mesh mesh = mesh_plane(10);
         fill_normals(&mesh, wrong[i][0], wrong[i][1], wrong[i][2]);
-        assert_even(floor_scene(mesh, white()), COS_SUN, 1e-6);
+        assert_even(sunny(from_above(), mesh, white()), COS_SUN, 1e-6);
     }
     struct scene_mesh flat = mesh_plane(10);
     free(flat.normals);
     flat.normals = NULL;
-    assert_even(floor_scene(flat, white()), COS_SUN, 1e-6);
+    assert_even(sunny(from_above(), flat, white()), COS_SUN, 1e-6);
 }
 
 /* A longer normal weighs no more than its neighbours. */
@@ -88,11 +84,8 @@ static void lengths_of_normals_do_not_matter(void **state)
         set_rgb(&mesh.normals[3 * i], x * lengths[i % 4], y * lengths[i % 4], 0);
     }
     struct image images[2];
-    for (int k = 0; k < 2; ++k) {
-        struct fixture f = fixture_open(floor_scene(k ? mesh : even, white()), NULL, &all_params);
-        images[k] = render(&f);
-        fixture_close(&f);
-    }
+    for (int k = 0; k < 2; ++k)
+        images[k] = color_of(sunny(from_above(), k ? mesh : even, white()), NULL, &all_params);
     for (int i = 0; i < SIDE * SIDE; ++i)
         assert_near(images[1].pixels[4 * i], (double)images[0].pixels[4 * i], 1e-6);
     /* They do bend the light. */
@@ -114,7 +107,7 @@ static void turned_normals_shade_the_same(void **state)
             mesh.indices[3 * t] = mesh.indices[3 * t + 1];
             mesh.indices[3 * t + 1] = other;
         }
-        assert_even(floor_scene(mesh, white()), COS_SUN, 1e-6);
+        assert_even(sunny(from_above(), mesh, white()), COS_SUN, 1e-6);
     }
 }
 
@@ -132,9 +125,8 @@ static void averted_normals_give_way(void **state)
     /* Mirrors, glass and highlights under such normals: finite, and no more than there is. */
     for (int kind = 0; kind < 3; ++kind) {
         struct scene_mesh again = mesh_plane(40);
-        struct scene_material m = white();
+        struct scene_material m = matte(0.5f, 0.5f, 0.5f);
         fill_normals(&again, kind == 1 ? 5.0f : 0.0f, 0.01f, -1);
-        set_rgb(m.diffuse, 0.5f, 0.5f, 0.5f);
         set_rgb(m.reflection, 0.5f, 0.5f, 0.5f);
         if (kind == 1)
             set_rgb(m.transmission, 0.5f, 0.5f, 0.5f);
@@ -164,13 +156,11 @@ static struct scene *textured_floor(const float uvs[4][2], bool bent)
         mesh.uvs[0] = NULL;
     }
     struct scene_material m = white();
-    struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+    struct scene *scene = from_above();
     m.textures[SCENE_SLOT_DIFFUSE].texture = add_texel(scene, 188, 188, 188);
     if (bent)
         m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 240, 128, 180);
-    add_object(scene, mesh, m, 0, 0, 0);
-    scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
-    return scene;
+    return sunny(scene, mesh, m);
 }
 
 static double linear_of(uint8_t srgb)
@@ -214,17 +204,15 @@ static void each_texture_has_its_coordinates(void **state)
             mesh.uvs[0][i] = i % 2 ? 0.5f : 0.25f;
             mesh.uvs[1][i] = i % 2 ? 0.5f : 0.75f;
         }
-        struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
+        struct scene *scene = from_above();
         struct scene_material m = white();
         set_rgb(m.emission, 1, 1, 1);
         use_texture(&m, SCENE_SLOT_DIFFUSE, add_two_texels(scene, diffuse[0], diffuse[1]));
         use_texture(&m, SCENE_SLOT_EMISSION, add_two_texels(scene, emission[0], emission[1]));
         m.textures[SCENE_SLOT_DIFFUSE].uv_set = sets & 1;
         m.textures[SCENE_SLOT_EMISSION].uv_set = sets >> 1;
-        add_object(scene, mesh, m, 0, 0, 0);
-        scene_put_sun(scene, sqrt(0.75), -COS_SUN, 0, 1.0f);
-        assert_even(scene, linear_of(diffuse[sets & 1]) * COS_SUN + linear_of(emission[sets >> 1]),
-                    2e-6);
+        assert_even(sunny(scene, mesh, m),
+                    linear_of(diffuse[sets & 1]) * COS_SUN + linear_of(emission[sets >> 1]), 2e-6);
     }
 }
 
@@ -245,7 +233,7 @@ static void masks_heed_the_alpha_of_vertices(void **state)
         struct scene_material m = white();
         m.alpha = SCENE_ALPHA_MASK;
         m.alpha_cutoff = 0.5f;
-        assert_even(floor_scene(mesh, m), i ? 0.0 : COS_SUN, 1e-6);
+        assert_even(sunny(from_above(), mesh, m), i ? 0.0 : COS_SUN, 1e-6);
     }
 }
 

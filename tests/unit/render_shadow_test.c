@@ -6,30 +6,10 @@ static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
 /* Depths are rounded to 1/64 stop: by half of that. */
 static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
 
-static struct scene *white_floor(void)
-{
-    struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("floor");
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh_plane(40), m, 0, 0, 0);
-    return scene;
-}
-
-static float middle_of(struct scene *scene, struct render_params params, int channel)
-{
-    params.width = params.height = 1;
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    float value = image.pixels[channel];
-    image_finish(&image);
-    fixture_close(&f);
-    return value;
-}
-
 /* The sun comes at 45 degrees, so that the pane is out of sight where its shadow is in it. */
 static struct scene *pane_scene(bool blends)
 {
-    struct scene *scene = white_floor();
+    struct scene *scene = floor_scene(eye_height);
     struct scene_material m = material_plain("pane");
     m.thin_walled = true;
     if (blends) {
@@ -45,9 +25,10 @@ static struct scene *pane_scene(bool blends)
     return scene;
 }
 
-static void assert_pane(struct fixture *f, bool blends)
+static void check_pane(bool blends)
 {
-    struct image image = render(f);
+    const struct render_params params = {.width = 201, .height = 201, .depth = 2};
+    struct image image = color_of(pane_scene(blends), NULL, &params);
     uint32_t clear = 0, dark = 0, changes = 0;
     for (uint32_t x = 0; x < image.width; ++x) {
         double at = ((x + 0.5) / image.width * 2.0 - 1.0) * eye_height * tan(view / 2.0);
@@ -78,79 +59,67 @@ static void assert_pane(struct fixture *f, bool blends)
 static void textures_pattern_shadows(void **state)
 {
     (void)state;
-    for (int blends = 0; blends < 2; ++blends) {
-        const struct render_params params = {.width = 201, .height = 201, .depth = 2};
-        struct fixture f = fixture_open(pane_scene(blends), NULL, &params);
-        assert_pane(&f, blends);
-        fixture_close(&f);
-    }
+    for (int blends = 0; blends < 2; ++blends)
+        check_pane(blends);
 }
 
 static const float sigma[3] = {0.3f, 0.7f, 1.5f};
 
-/* A block of glass that does not bend, 1 high, its middle at `y`. */
-static void add_block(struct scene *scene, double height, double y)
+/* A block of glass that does not bend, `height` high, its middle at `y`, over the floor or around
+   it; a light above it, or in it. */
+struct block {
+    const char *name;
+    double height, y;
+    const char *camera;
+    double sun[3], lamp; /* direction of the one, height of the other; that which is not 0 */
+    float strength;
+    double light;  /* that reaches the floor where nothing absorbs */
+    double length; /* of the light's way through the glass */
+    double seen;   /* of the eye's */
+};
+
+static struct scene *block_scene(const struct block *block)
 {
-    struct scene_material m = material_plain("glass");
-    set_rgb(m.diffuse, 0, 0, 0);
+    struct scene *scene = floor_scene(eye_height);
+    struct scene_material m = matte(0, 0, 0);
     set_rgb(m.transmission, 1, 1, 1);
     memcpy(m.absorption, sigma, sizeof sigma);
     m.ior = 1.0f;
-    add_object(scene, mesh_box(6, height, 6), m, 0, y, 0);
+    add_object(scene, mesh_box(6, block->height, 6), m, 0, block->y, 0);
+    if (block->lamp > 0)
+        scene_put_lamp(scene, 0, block->lamp, 0, block->strength);
+    else
+        scene_put_sun(scene, block->sun[0], block->sun[1], block->sun[2], block->strength);
+    return scene;
 }
 
-/* What absorbs `length` on the way of the light and `seen` on that of the eye leaves exp(-sigma
-   (length + seen)); each end of the light's way inside is rounded to 1/64 stop. */
-static void assert_absorbed(struct scene *scene, const char *camera, double light, double length,
-                            double seen)
-{
-    struct render_params params = {.width = 1, .height = 1, .depth = 4, .camera = camera};
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
-    for (int c = 0; c < 3; ++c)
-        assert_near(image.pixels[c], light * exp(-(double)sigma[c] * (length + seen)),
-                    2.0 * half_a_step + 1e-5);
-    image_finish(&image);
-    fixture_close(&f);
-}
-
+/* exp(-sigma length) is left; each end of the light's way inside is rounded to 1/64 stop. */
 static void bodies_absorb_along_the_way(void **state)
 {
     (void)state;
-    const char *beside = "3.9,0.3,0,0,0,0,0,1,0,0.01"; /* under the block */
+    static const char beside[] = "3.9,0.3,0,0,0,0,0,1,0,0.01"; /* under the block */
+    static const char above[] = "0,8,0,0,0,0,0,0,-1,0.01";
     const double slant = sqrt(1.25);
-    /* A sun, straight and slanting; a lamp. */
-    struct scene *scene = white_floor();
-    add_block(scene, 1.0, 2.0);
-    scene_put_sun(scene, 0, -1, 0, 2.0f);
-    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
-    scene = white_floor();
-    add_block(scene, 1.0, 2.0);
-    scene_put_sun(scene, 1, -2, 0, 2.0f);
-    assert_absorbed(scene, beside, 2.0 / slant, slant, 0.0);
-    scene = white_floor();
-    add_block(scene, 1.0, 2.0);
-    scene_put_lamp(scene, 0, 5, 0, 50.0f);
-    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
-    /* The lamp inside the block. */
-    scene = white_floor();
-    add_block(scene, 2.0, 2.0);
-    scene_put_lamp(scene, 0, 2, 0, 8.0f);
-    assert_absorbed(scene, beside, 2.0, 1.0, 0.0);
-    /* The floor inside the block, the sun, the lamp outside and inside. */
-    const char *above = "0,8,0,0,0,0,0,0,-1,0.01";
-    scene = white_floor();
-    add_block(scene, 2.0, 0.0);
-    scene_put_sun(scene, 0, -1, 0, 2.0f);
-    assert_absorbed(scene, above, 2.0, 1.0, 1.0);
-    scene = white_floor();
-    add_block(scene, 2.0, 0.0);
-    scene_put_lamp(scene, 0, 2, 0, 8.0f);
-    assert_absorbed(scene, above, 2.0, 1.0, 1.0);
-    scene = white_floor();
-    add_block(scene, 2.0, 0.0);
-    scene_put_lamp(scene, 0, 0.5, 0, 0.5f);
-    assert_absorbed(scene, above, 2.0, 0.5, 1.0);
+    const struct block blocks[] = {
+        {"sun", 1, 2, beside, {0, -1, 0}, 0, 2, 2, 1, 0},
+        {"slanting sun", 1, 2, beside, {1, -2, 0}, 0, 2, 2 / slant, slant, 0},
+        {"lamp", 1, 2, beside, {0}, 5, 50, 2, 1, 0},
+        {"lamp inside", 2, 2, beside, {0}, 2, 8, 2, 1, 0},
+        {"sun on the floor inside", 2, 0, above, {0, -1, 0}, 0, 2, 2, 1, 1},
+        {"lamp on the floor inside", 2, 0, above, {0}, 2, 8, 2, 1, 1},
+        {"lamp and floor inside", 2, 0, above, {0}, 0.5, 0.5f, 2, 0.5, 1},
+    };
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i) {
+        const struct block *b = &blocks[i];
+        const struct render_params params = {
+            .width = 1, .height = 1, .depth = 4, .camera = b->camera};
+        struct image image = color_of(block_scene(b), NULL, &params);
+        print_message("  %s\n", b->name);
+        for (int c = 0; c < 3; ++c)
+            assert_near(image.pixels[c], b->light * exp(-(double)sigma[c] * (b->length + b->seen)),
+                        2.0 * half_a_step + 1e-5);
+        image_finish(&image);
+    }
 }
 
 static void knobs_make_shadows_opaque(void **state)
@@ -161,8 +130,7 @@ static void knobs_make_shadows_opaque(void **state)
         params.all_effects = all;
         params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
         for (int blends = 0; blends < 2; ++blends) {
-            struct fixture f = fixture_open(pane_scene(blends), NULL, &params);
-            struct image image = render(&f);
+            struct image image = color_of(pane_scene(blends), NULL, &params);
             uint32_t dark = 0;
             for (uint32_t x = 0; x < image.width; ++x) {
                 float value = image.pixels[4 * x];
@@ -171,7 +139,6 @@ static void knobs_make_shadows_opaque(void **state)
             }
             assert_true(dark > 50 && dark < 100);
             image_finish(&image);
-            fixture_close(&f);
         }
     }
 }
@@ -181,9 +148,7 @@ static void knobs_make_shadows_opaque(void **state)
 static struct scene *ball_scene(uint32_t segments)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
-    struct scene_material m = material_plain("ball");
-    set_rgb(m.diffuse, 1, 1, 1);
-    add_object(scene, mesh_sphere(1.0, segments, segments / 2), m, 0, 0, 0);
+    add_object(scene, mesh_sphere(1.0, segments, segments / 2), matte(1, 1, 1), 0, 0, 0);
     scene_put_sun(scene, 1, -0.3, -0.2, 1.0f);
     return scene;
 }
@@ -193,10 +158,7 @@ static struct image ball_picture(uint32_t segments, bool without)
     struct render_params params = {.width = 120, .height = 120};
     if (without)
         params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
-    struct fixture f = fixture_open(ball_scene(segments), NULL, &params);
-    struct image image = render(&f);
-    fixture_close(&f);
-    return image;
+    return color_of(ball_scene(segments), NULL, &params);
 }
 
 /* Within 0.85 of the ball's radius: outlines differ anyway. */
@@ -239,10 +201,8 @@ static void coarse_balls_are_shaded_like_fine_ones(void **state)
 /* Without normals, and with those of the flat triangles. */
 static struct scene *flat_scene(bool normals)
 {
-    struct scene *scene = white_floor();
-    struct scene_material m = material_plain("box");
+    struct scene *scene = floor_scene(eye_height);
     struct scene_mesh boxes = mesh_box(1.3, 0.7, 1.1);
-    set_rgb(m.diffuse, 1, 1, 1);
     free(boxes.normals);
     boxes.normals = NULL;
     if (normals) {
@@ -262,7 +222,7 @@ static struct scene *flat_scene(bool normals)
                 memcpy(&boxes.normals[3 * (size_t)boxes.indices[3 * t + (uint32_t)k]], n, sizeof n);
         }
     }
-    add_object(scene, boxes, m, 0.1, 0.9, 0.2);
+    add_object(scene, boxes, matte(1, 1, 1), 0.1, 0.9, 0.2);
     scene->nodes[scene->node_count - 1].rotation[0] = 0.3;
     scene->nodes[scene->node_count - 1].rotation[3] = 0.95;
     scene_put_lamp(scene, 2, 3, 1, 9.0f);
@@ -280,11 +240,9 @@ static void flat_meshes_do_not_change(void **state)
                 .width = 64, .height = 64, .depth = 4, .all_effects = true};
             if (i)
                 params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
-            struct fixture f = fixture_open(flat_scene(normals), NULL, &params);
-            images[i] = render(&f);
-            fixture_close(&f);
+            images[i] = color_of(flat_scene(normals), NULL, &params);
         }
-        assert_memory_equal(images[0].pixels, images[1].pixels, 64 * 64 * 4 * sizeof(float));
+        assert_same_image("without the terminator's mending", &images[0], &images[1]);
         image_finish(&images[0]);
         image_finish(&images[1]);
     }
@@ -295,12 +253,9 @@ static struct scene_mesh round_box(void)
 {
     static const uint32_t faces[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    struct scene_mesh mesh = {.vertex_count = 8, .triangle_count = 12};
-    mesh.positions = calloc(24, sizeof *mesh.positions);
+    struct scene_mesh mesh = mesh_zeroed(8, 12);
     mesh.normals = calloc(24, sizeof *mesh.normals);
-    mesh.indices = calloc(36, sizeof *mesh.indices);
-    mesh.materials = calloc(12, sizeof *mesh.materials);
-    assert_true(mesh.positions && mesh.normals && mesh.indices && mesh.materials);
+    assert_non_null(mesh.normals);
     for (int i = 0; i < 24; ++i) {
         float side = (i / 3) >> (i % 3) & 1 ? 1.0f : -1.0f;
         mesh.positions[i] = side;
@@ -318,19 +273,15 @@ static void closed_rooms_stay_dark(void **state)
                                       {1.05, 0, 0},  {-2, -3, 0.5},   {0.99, 1.2, 1.2}};
     for (int shape = 0; shape < 2; ++shape) {
         struct scene *scene = dark_scene((double[]){0.3, 0.2, 0.1}, (double[]){0.3, 0.2, -1});
-        struct scene_material m = material_plain("room");
-        set_rgb(m.diffuse, 1, 1, 1);
+        struct scene_mesh room = shape == 0 ? round_box() : mesh_sphere(1.0, 10, 6);
         scene->cameras[0].fov_y = 2.4f;
-        add_object(scene, shape == 0 ? round_box() : mesh_sphere(1.0, 10, 6), m, 0, 0, 0);
+        add_object(scene, room, matte(1, 1, 1), 0, 0, 0);
         for (size_t i = 0; i < sizeof lamps / sizeof *lamps; ++i)
             scene_put_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
-        struct render_params params = {.width = 100, .height = 100};
-        struct fixture f = fixture_open(scene, NULL, &params);
-        struct image image = render(&f);
-        for (int i = 0; i < 100 * 100; ++i)
-            assert_true(image.pixels[4 * i] == 0.0f);
+        const struct render_params params = {.width = 100, .height = 100};
+        struct image image = color_of(scene, NULL, &params);
+        assert_true(red_sum(&image) == 0.0);
         image_finish(&image);
-        fixture_close(&f);
     }
 }
 
@@ -367,8 +318,7 @@ static void catchers_show_shadows_alone(void **state)
         struct render_params params = {.width = 201, .height = 1, .depth = 4, .bailout = -1.0};
         params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
         params.all_effects = all;
-        struct fixture f = fixture_open(catcher_scene(true), NULL, &params);
-        struct image image = render(&f);
+        struct image image = color_of(catcher_scene(true), NULL, &params);
         uint32_t clear = 0, dark = 0, red = 0;
         for (uint32_t x = 0; x < image.width; ++x) {
             const float *p = &image.pixels[4 * x];
@@ -380,10 +330,11 @@ static void catchers_show_shadows_alone(void **state)
         print_message("  clear %u, dark %u, red %u\n", clear, dark, red);
         assert_true(clear > 80 && dark > 30 && red > 30 && clear + dark + red >= 195);
         image_finish(&image);
-        fixture_close(&f);
     }
-    struct render_params params = {.depth = 4};
-    assert_true(middle_of(catcher_scene(false), params, 0) == 0.5f);
+    const struct render_params params = {.width = 1, .height = 1, .depth = 4};
+    struct image dark = color_of(catcher_scene(false), NULL, &params);
+    assert_true(dark.pixels[0] == 0.5f);
+    image_finish(&dark);
 }
 
 /* ---- Walks that are cut short ---- */
@@ -391,18 +342,14 @@ static void catchers_show_shadows_alone(void **state)
 /* Sheets upon sheets under `m`, 1e-4 apart, from `y` on upwards. */
 static struct scene_mesh sheets(uint32_t count, float y)
 {
-    struct scene_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
-    mesh.positions = array_alloc(9 * (size_t)count, sizeof(float));
-    mesh.indices = array_alloc(3 * (size_t)count, sizeof(uint32_t));
-    mesh.materials = array_alloc_zeroed(count, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
+    float(*corners)[9] = array_alloc(count, sizeof *corners);
+    assert_non_null(corners);
     for (uint32_t i = 0; i < count; ++i) {
         float at = y + (float)i * 1e-4f;
-        const float corners[9] = {-2, at, -2, 0, at, 3, 2, at, -2};
-        memcpy(&mesh.positions[9 * (size_t)i], corners, sizeof corners);
-        for (uint32_t k = 0; k < 3; ++k)
-            mesh.indices[3 * i + k] = 3 * i + k;
+        memcpy(corners[i], (float[9]){-2, at, -2, 0, at, 3, 2, at, -2}, sizeof corners[i]);
     }
+    struct scene_mesh mesh = mesh_triangles(corners[0], count);
+    free(corners);
     return mesh;
 }
 
@@ -413,8 +360,8 @@ static void cut_walks_through_sheets_are_reported(void **state)
 {
     (void)state;
     for (int lit = 0; lit < 2; ++lit) {
-        struct scene *scene =
-            lit ? white_floor() : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
+        struct scene *scene = lit ? floor_scene(eye_height)
+                                  : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
         struct scene_material m = material_plain("sheet");
         m.alpha = lit ? SCENE_ALPHA_BLEND : SCENE_ALPHA_MASK;
         m.alpha_cutoff = 0.5f;
@@ -446,12 +393,8 @@ static struct scene_mesh sheets_mesh(double offset, uint32_t ulps)
 {
     static const double u[3] = {0.8, 0.36, -0.48}, v[3] = {0, 0.8, 0.6}, n[3] = {0.6, -0.48, 0.64};
     static const uint32_t corners[12] = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
-    struct scene_mesh mesh = {.vertex_count = 8, .triangle_count = 4};
+    struct scene_mesh mesh = mesh_zeroed(8, 4);
     float far = (float)offset + 1.0f, ulp = nextafterf(far, INFINITY) - far;
-    mesh.positions = malloc(24 * sizeof(float));
-    mesh.indices = malloc(sizeof corners);
-    mesh.materials = calloc(4, sizeof(uint32_t));
-    assert_true(mesh.positions && mesh.indices && mesh.materials);
     memcpy(mesh.indices, corners, sizeof corners);
     for (int i = 0; i < 8; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -473,21 +416,18 @@ static uint32_t lit_pixels(double offset, uint32_t ulps)
     for (int k = 0; k < 3; ++k)
         eye[k] = offset + 1.5 * n[k];
     struct scene *scene = dark_scene(eye, middle_of_floor);
-    struct scene_material white = material_plain("floor"), lid = material_plain("lid");
-    set_rgb(white.diffuse, 1, 1, 1);
+    struct scene_material lid = material_plain("lid");
     lid.one_sided = true;
-    add_object(scene, sheets_mesh(offset, ulps), white, 0, 0, 0);
+    add_object(scene, sheets_mesh(offset, ulps), matte(1, 1, 1), 0, 0, 0);
     uint32_t index = scene_put_material(scene, lid);
     struct scene_mesh *mesh = &scene->meshes[scene->mesh_count - 1];
     mesh->materials[2] = mesh->materials[3] = index;
     scene_put_sun(scene, -0.6, 0.48, -0.64, 1.0f);
-    struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    struct image image = color_of(scene, NULL, &params);
     uint32_t lit = 0;
     for (size_t i = 0; i < 33 * 33; ++i)
         lit += image.pixels[4 * i] > 0.0f;
     image_finish(&image);
-    fixture_close(&f);
     return lit;
 }
 
