@@ -1,137 +1,68 @@
 /* What `whit devices` says of a GPU that Vulkan does not list: machines are folders here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <cmocka.h>
 
 #include "app/devices/device_hints.h"
+#include "folder_fixture.h"
 
 static const whit_device_info lavapipe = {.name = "llvmpipe", .kind = "cpu", .usable = true},
                               nvidia = {.name = "NVIDIA H100", .kind = "discrete", .usable = true};
 
-struct machine {
-    char root[64];
-};
+static const char ask_for_all[] = "NVIDIA_DRIVER_CAPABILITIES=all", package[] = "libnvidia-gl-580";
 
-static void make(const struct machine *machine, const char *path, const char *text)
+static void make(const char *path, const char *text)
 {
     char whole[256];
-    snprintf(whole, sizeof whole, "%s%s", machine->root, path);
-    for (char *at = strchr(whole + strlen(machine->root) + 1, '/'); at; at = strchr(at + 1, '/')) {
+    snprintf(whole, sizeof whole, "%s%s", folder, path);
+    for (char *at = strchr(whole + strlen(folder) + 1, '/'); at; at = strchr(at + 1, '/')) {
         *at = 0;
         (void)mkdir(whole, 0777);
         *at = '/';
     }
-    FILE *to = fopen(whole, "w");
-    assert_non_null(to);
-    assert_true(fputs(text, to) >= 0 && fclose(to) == 0);
+    put_file(whole, text, strlen(text));
 }
 
-static struct machine make_machine(void)
+TEST_IN(what_lacks_is_named, folder_begin, folder_end)
 {
-    struct machine machine = {"/tmp/whit-hints-XXXXXX"};
-    assert_non_null(mkdtemp(machine.root));
-    return machine;
-}
-
-static void remove_machine(const struct machine *machine)
-{
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", machine->root);
-    assert_int_equal(system(command), 0);
-}
-
-static void put_nvidia(const struct machine *machine)
-{
-    make(machine, "/dev/nvidiactl", "");
-    make(machine, "/proc/driver/nvidia/version",
-         "NVRM version: NVIDIA UNIX x86_64 Kernel Module  580.159.04  Tue\n");
-}
-
-static void a_listed_gpu_needs_no_hint(void **state)
-{
-    (void)state;
-    struct machine machine = make_machine();
-    struct device_hints hints;
-    put_nvidia(&machine);
-    make(&machine, "/dev/dri/renderD128", "");
-    device_hints_find(machine.root, NULL, &nvidia, 1, &hints);
-    assert_int_equal(hints.count, 0);
-    remove_machine(&machine);
-}
-
-static void a_processor_without_a_gpu_needs_no_hint(void **state)
-{
-    (void)state;
-    struct machine machine = make_machine();
-    struct device_hints hints;
-    device_hints_find(machine.root, NULL, &lavapipe, 1, &hints);
-    assert_int_equal(hints.count, 0);
-    remove_machine(&machine);
-}
-
-static void a_container_is_told_what_it_was_started_with(void **state)
-{
-    (void)state;
-    struct machine machine = make_machine();
-    struct device_hints hints;
-    put_nvidia(&machine);
-    device_hints_find(machine.root, "compute,utility", &lavapipe, 1, &hints);
-    assert_int_equal(hints.count, 2);
-    assert_non_null(strstr(hints.list[0], "NVIDIA_DRIVER_CAPABILITIES=all"));
-    assert_non_null(strstr(hints.list[0], "compute,utility"));
-    assert_non_null(strstr(hints.list[1], "libnvidia-gl-580"));
-    device_hints_find(machine.root, "\x1b[2J\xff", &lavapipe, 1, &hints);
-    assert_null(strchr(hints.list[0], '\x1b'));
-    assert_null(strchr(hints.list[0], '\xff'));
-    device_hints_find(machine.root, "all", &lavapipe, 1, &hints);
-    assert_int_equal(hints.count, 1);
-    assert_non_null(strstr(hints.list[0], "libnvidia-gl-580"));
-    remove_machine(&machine);
-}
-
-static void a_gpu_without_its_mesa_driver_is_named(void **state)
-{
-    (void)state;
-    struct machine machine = make_machine();
-    struct device_hints hints;
-    make(&machine, "/dev/dri/renderD129", "");
-    device_hints_find(machine.root, NULL, &lavapipe, 1, &hints);
-    assert_int_equal(hints.count, 1);
-    assert_non_null(strstr(hints.list[0], "renderD129"));
-    assert_non_null(strstr(hints.list[0], "mesa-vulkan-drivers"));
-    remove_machine(&machine);
-}
-
-static void without_any_device_lavapipe_is_named(void **state)
-{
-    (void)state;
-    struct machine machine = make_machine();
-    struct device_hints hints;
-    device_hints_find(machine.root, NULL, NULL, 0, &hints);
-    assert_int_equal(hints.count, 1);
-    assert_non_null(strstr(hints.list[0], "lavapipe"));
-    put_nvidia(&machine);
-    device_hints_find(machine.root, NULL, NULL, 0, &hints);
-    assert_int_equal(hints.count, 3);
-    remove_machine(&machine);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_listed_gpu_needs_no_hint),
-        cmocka_unit_test(a_processor_without_a_gpu_needs_no_hint),
-        cmocka_unit_test(a_container_is_told_what_it_was_started_with),
-        cmocka_unit_test(a_gpu_without_its_mesa_driver_is_named),
-        cmocka_unit_test(without_any_device_lavapipe_is_named),
+    static const char little[] = "compute,utility", steers[] = "\x1b[2J\xff";
+    static const struct {
+        const char *name, *node;
+        bool nvidia;
+        const char *asked;
+        const whit_device_info *listed;
+        uint32_t count;
+        const char *first, *also, *second; /* parts of hints */
+    } cases[] = {
+        {"listed", "D128", true, NULL, &nvidia, 0, NULL, NULL, NULL},
+        {"a processor alone", NULL, false, NULL, &lavapipe, 0, NULL, NULL, NULL},
+        {"a container", NULL, true, little, &lavapipe, 2, ask_for_all, little, package},
+        {"steering", NULL, true, steers, &lavapipe, 2, "\\u001b[2J\\xff", NULL, package},
+        {"with all", NULL, true, "all", &lavapipe, 1, package, NULL, NULL},
+        {"no driver", "D129", false, NULL, &lavapipe, 1, "D129", "mesa-vulkan-drivers", NULL},
+        {"nothing", NULL, false, NULL, NULL, 1, "lavapipe", NULL, NULL},
+        {"a module alone", NULL, true, NULL, NULL, 3, NULL, NULL, NULL},
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct device_hints hints;
+        char node[64];
+        snprintf(node, sizeof node, "/dev/dri/render%s", cases[i].node ? cases[i].node : "");
+        if (i > 0)
+            assert_int_equal(folder_end(state) | folder_begin(state), 0);
+        if (cases[i].node)
+            make(node, "");
+        if (cases[i].nvidia) {
+            make("/dev/nvidiactl", "");
+            make("/proc/driver/nvidia/version",
+                 "NVRM version: NVIDIA UNIX x86_64 Kernel Module  580.159.04  Tue\n");
+        }
+        device_hints_find(folder, cases[i].asked, cases[i].listed, cases[i].listed != NULL, &hints);
+        if (hints.count != cases[i].count)
+            fail_msg("%s: %u hints", cases[i].name, hints.count);
+        const char *parts[] = {cases[i].first, cases[i].also, cases[i].second};
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (parts[k] && !strstr(hints.list[k / 2], parts[k]))
+                fail_msg("%s: %s", cases[i].name, hints.list[k / 2]);
+        }
+        for (uint32_t k = 0; k < hints.count; ++k)
+            assert_true(!strchr(hints.list[k], '\x1b') && !strchr(hints.list[k], '\xff'));
+    }
 }

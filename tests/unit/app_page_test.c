@@ -220,9 +220,8 @@ static void put_everything(struct page *page)
 
 /* ---- Checks ---- */
 
-static void the_reader_finds_faults(void **state)
+TEST(the_reader_finds_faults)
 {
-    (void)state;
     static const char *const bad[] = {
         "<a>",      "<a></b>",      "<a/><b/>",     "<a b/>",      "<a b=c/>",
         "<a>&</a>", "<a>1<2</a>",   "<a b=\"<\"/>", "<a>\x01</a>", "<a b=\"1\" b=\"2\"/>",
@@ -240,9 +239,8 @@ static void assert_escaped(const char *text, const char *expected)
     page_finish(&page);
 }
 
-static void text_is_escaped(void **state)
+TEST(text_is_escaped)
 {
-    (void)state;
     assert_escaped("", "");
     assert_escaped("<b a=\"1\" c='2'> & </b>",
                    "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt; &amp; &lt;/b&gt;");
@@ -255,9 +253,8 @@ static void text_is_escaped(void **state)
     assert_escaped("\xe2\x80\xae>", "\\u202e&gt;");
 }
 
-static void everything_is_well_formed(void **state)
+TEST(everything_is_well_formed)
 {
-    (void)state;
     struct page page = {0};
     uint32_t elements;
     put_everything(&page);
@@ -279,27 +276,24 @@ static void everything_is_well_formed(void **state)
 }
 
 /* Memory ran out on the way: there is no half page. */
-static void half_a_page_is_not_saved(void **state)
+TEST_IN(half_a_page_is_not_saved, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    char *path = fixture_path(fixture, "half.html");
+    char *path = in_folder("half.html");
     struct page page = {0};
     page_begin(&page, "half");
     page.failed = true;
     page_paragraph(&page, "more");
     assert_null(strstr(page.text, "more"));
-    const whit_log log = {fixture_collect, fixture, WHIT_LOG_INFO};
+    const whit_log log = {collect, NULL, WHIT_LOG_INFO};
     assert_int_equal(page_save(&page, path, &log), WHIT_ERROR_MEMORY);
-    assert_int_equal(fixture->errors, 1);
+    assert_int_equal(messages.errors, 1);
     assert_int_not_equal(access(path, F_OK), 0);
     page_finish(&page);
-    free(path);
 }
 
 /* Links would be requests; names of namespaces are none. */
-static void nothing_comes_from_elsewhere(void **state)
+TEST(nothing_comes_from_elsewhere)
 {
-    (void)state;
     struct page page = {0};
     put_everything(&page);
     assert_int_equal(count_of(page.text, "http:"),
@@ -316,9 +310,8 @@ static void nothing_comes_from_elsewhere(void **state)
 }
 
 /* Points that are not finite are left out, all others are there with their titles. */
-static void plots_hold_every_point(void **state)
+TEST(plots_hold_every_point)
 {
-    (void)state;
     struct page page = {0};
     put_plots(&page);
     assert_int_equal(count_of(page.text, "<g class=\"point"), 6 * PLOT_STYLES - 1 + 12 - 1);
@@ -331,9 +324,8 @@ static void plots_hold_every_point(void **state)
 }
 
 /* RFC 4648, section 10. */
-static void base64_is_that_of_the_standard(void **state)
+TEST(base64_is_that_of_the_standard)
 {
-    (void)state;
     static const char *const known[] = {"",         "Zg==",     "Zm8=",    "Zm9v",
                                         "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
     for (size_t length = 0; length < 7; ++length) {
@@ -344,9 +336,8 @@ static void base64_is_that_of_the_standard(void **state)
     }
 }
 
-static void pictures_are_whole(void **state)
+TEST(pictures_are_whole)
 {
-    (void)state;
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     whit_image *image = make_picture(3);
     struct page page = {0};
@@ -382,9 +373,8 @@ static void assert_ticks(double low, double high, bool is_log, uint32_t wanted, 
         assert_true(fabs(ticks[i] - expected[i]) <= 1e-9 * fabs(expected[i]));
 }
 
-static void ticks_read_well(void **state)
+TEST(ticks_read_well)
 {
-    (void)state;
     assert_ticks(0.0, 10.0, false, 5, 6, (const double[]){0, 2, 4, 6, 8, 10});
     assert_ticks(-1.0, 1.0, false, 4, 5, (const double[]){-1, -0.5, 0, 0.5, 1});
     assert_ticks(103.0, 117.0, false, 7, 7, (const double[]){104, 106, 108, 110, 112, 114, 116});
@@ -397,9 +387,8 @@ static void ticks_read_well(void **state)
 }
 
 /* In order, inside, and few enough to be read. */
-static void ticks_of_any_range(void **state)
+TEST(ticks_of_any_range)
 {
-    (void)state;
     uint64_t seed = 5;
     for (int trial = 0; trial < 20000; ++trial) {
         double ticks[PLOT_TICKS_MAX], low, high;
@@ -418,9 +407,8 @@ static void ticks_of_any_range(void **state)
     }
 }
 
-static void axes_are_widened(void **state)
+TEST(axes_are_widened)
 {
-    (void)state;
     static const struct {
         double low, high;
         bool is_log;
@@ -436,22 +424,4 @@ static void axes_are_widened(void **state)
         assert_true(fabs(low - known[i].from) < 1e-5 && fabs(high - known[i].to) < 0.1);
         assert_true(low < high);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_reader_finds_faults),
-        cmocka_unit_test(text_is_escaped),
-        cmocka_unit_test(everything_is_well_formed),
-        cmocka_unit_test(nothing_comes_from_elsewhere),
-        cmocka_unit_test_setup_teardown(half_a_page_is_not_saved, fixture_begin, fixture_end),
-        cmocka_unit_test(plots_hold_every_point),
-        cmocka_unit_test(base64_is_that_of_the_standard),
-        cmocka_unit_test(pictures_are_whole),
-        cmocka_unit_test(ticks_read_well),
-        cmocka_unit_test(ticks_of_any_range),
-        cmocka_unit_test(axes_are_widened),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

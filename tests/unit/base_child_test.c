@@ -2,22 +2,17 @@
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <sched.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "base/child.h"
 #include "base/threads.h"
+#include "unit.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define HAS_ASAN 1
@@ -100,9 +95,8 @@ static int reply_words(void *user, void *to, child_write write)
     return 0;
 }
 
-static void reply_arrives_whole(void **state)
+TEST(reply_arrives_whole)
 {
-    (void)state;
     for (uint32_t count = 1; count <= 100000; count *= 10) {
         struct child_reply reply;
         assert_int_equal(child_run(&ordinary, reply_words, &count, &reply), CHILD_DONE);
@@ -136,9 +130,8 @@ static int reply_held(void *user, void *to, child_write write)
     return write(to, &held, sizeof held) ? 0 : 3;
 }
 
-static void no_child_while_forks_are_held(void **state)
+TEST(no_child_while_forks_are_held)
 {
-    (void)state;
     atomic_bool holds = false;
     struct child_reply reply;
     atomic_store(&child_is_wanted, false);
@@ -154,9 +147,8 @@ static void no_child_while_forks_are_held(void **state)
     child_reply_free(&reply);
 }
 
-static void reply_limit_is_exact(void **state)
+TEST(reply_limit_is_exact)
 {
-    (void)state;
     uint32_t count = 1000;
     struct child_limits limits = ordinary;
     struct child_reply reply;
@@ -174,9 +166,8 @@ static int silent(void *user, void *to, child_write write)
     return *(int *)user;
 }
 
-static void exit_codes_arrive(void **state)
+TEST(exit_codes_arrive)
 {
-    (void)state;
     struct child_reply reply;
     int code = 7;
     assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_REPLY);
@@ -192,9 +183,8 @@ static int die(void *user, void *to, child_write write)
     return 0;
 }
 
-static void crashes_are_told_apart(void **state)
+TEST(crashes_are_told_apart)
 {
-    (void)state;
     struct child_reply reply;
     int number = SIGABRT;
     assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
@@ -217,9 +207,8 @@ static int spin(void *user, void *to, child_write write)
     return 0;
 }
 
-static void hangs_end_at_the_limit(void **state)
+TEST(hangs_end_at_the_limit)
 {
-    (void)state;
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.clock_s = 0.2;
@@ -230,9 +219,8 @@ static void hangs_end_at_the_limit(void **state)
 }
 
 /* On a busy machine the clock runs on while a child waits for the processor. */
-static void time_of_the_processor_counts(void **state)
+TEST(time_of_the_processor_counts)
 {
-    (void)state;
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.cpu_s = 0.2;
@@ -255,9 +243,8 @@ static int wait_for_readings(void *user, void *to, child_write write)
 }
 
 /* Valid files were refused where other programs had the processor. */
-static void a_busy_machine_refuses_nothing(void **state)
+TEST(a_busy_machine_refuses_nothing)
 {
-    (void)state;
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.cpu_s = 0.2;
@@ -270,9 +257,8 @@ static void a_busy_machine_refuses_nothing(void **state)
     child_reply_free(&reply);
 }
 
-static void time_of_the_processor_is_the_childs(void **state)
+TEST(time_of_the_processor_is_the_childs)
 {
-    (void)state;
     int ends[2];
     char none;
     assert_int_equal(pipe(ends), 0);
@@ -293,9 +279,8 @@ static void time_of_the_processor_is_the_childs(void **state)
     close(ends[1]);
 }
 
-static void cancel_ends_it_soon(void **state)
+TEST(cancel_ends_it_soon)
 {
-    (void)state;
     struct child_limits limits = ordinary;
     struct child_reply reply;
     limits.cancel = &cancelled;
@@ -322,9 +307,8 @@ static int reply_processor_limit(void *user, void *to, child_write write)
 }
 
 /* The kernel ends it even while its parent is stopped. */
-static void processor_time_is_limited_too(void **state)
+TEST(processor_time_is_limited_too)
 {
-    (void)state;
     struct child_reply reply;
     uint64_t seconds;
     assert_int_equal(child_run(&ordinary, reply_processor_limit, NULL, &reply), CHILD_DONE);
@@ -346,9 +330,8 @@ static int allocate(void *user, void *to, child_write write)
     return written ? 0 : 1;
 }
 
-static void memory_is_limited(void **state)
+TEST(memory_is_limited)
 {
-    (void)state;
     struct child_reply reply;
     size_t bytes = 128u << 20;
     assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_DONE);
@@ -369,9 +352,8 @@ static int chatter(void *user, void *to, child_write writer)
     return writer(to, "k", 1) ? 0 : 1;
 }
 
-static void output_goes_nowhere(void **state)
+TEST(output_goes_nowhere)
 {
-    (void)state;
     int ends[2], kept = dup(STDERR_FILENO);
     assert_int_equal(pipe(ends), 0);
     dup2(ends[1], STDERR_FILENO);
@@ -385,24 +367,4 @@ static void output_goes_nowhere(void **state)
     char text[8];
     assert_int_equal(read(ends[0], text, sizeof text), 0);
     close(ends[0]);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reply_arrives_whole),
-        cmocka_unit_test(no_child_while_forks_are_held),
-        cmocka_unit_test(reply_limit_is_exact),
-        cmocka_unit_test(exit_codes_arrive),
-        cmocka_unit_test(crashes_are_told_apart),
-        cmocka_unit_test(hangs_end_at_the_limit),
-        cmocka_unit_test(time_of_the_processor_counts),
-        cmocka_unit_test(a_busy_machine_refuses_nothing),
-        cmocka_unit_test(time_of_the_processor_is_the_childs),
-        cmocka_unit_test(cancel_ends_it_soon),
-        cmocka_unit_test(processor_time_is_limited_too),
-        cmocka_unit_test(memory_is_limited),
-        cmocka_unit_test(output_goes_nowhere),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

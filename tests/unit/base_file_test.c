@@ -1,49 +1,19 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "base/array.h"
 #include "base/file.h"
 #include "base/platform.h"
+#include "folder_fixture.h"
 
-static char folder[64];
-
-struct messages {
-    int count;
-    char last[512];
-};
-
-static void collect(void *user, whit_log_level level, const char *message)
-{
-    (void)level;
-    struct messages *messages = user;
-    ++messages->count;
-    snprintf(messages->last, sizeof messages->last, "%s", message);
-}
-
-static struct log log_to(struct messages *messages)
-{
-    *messages = (struct messages){0};
-    return (struct log){.fn = collect, .user = messages, .level = WHIT_LOG_DEBUG};
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/whit-file-XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
-}
+/* All that is said, however small. */
+static const struct log full_log = {.fn = collect, .level = WHIT_LOG_DEBUG};
 
 static int entry_count(void)
 {
@@ -54,26 +24,6 @@ static int entry_count(void)
         count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
     closedir(dir);
     return count;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    DIR *dir = opendir(folder);
-    for (struct dirent *entry; dir && (entry = readdir(dir));) {
-        char *path = string_format("%s/%s", folder, entry->d_name);
-        remove(path);
-        free(path);
-    }
-    closedir(dir);
-    return rmdir(folder);
-}
-
-static char *in_folder(const char *name)
-{
-    char *path = string_format("%s/%s", folder, name);
-    assert_non_null(path);
-    return path;
 }
 
 static void put(const char *path, const char *text)
@@ -94,9 +44,8 @@ static void assert_content(const char *path, const char *text)
     free(data);
 }
 
-static void commit_replaces_at_once(void **state)
+TEST_IN(commit_replaces_at_once, folder_begin, folder_end)
 {
-    (void)state;
     char *path = in_folder("a.txt");
     put(path, "old");
     chmod(path, 0640);
@@ -113,12 +62,10 @@ static void commit_replaces_at_once(void **state)
     struct stat info;
     assert_int_equal(stat(path, &info), 0);
     assert_int_equal(info.st_mode & 0777, 0640);
-    free(path);
 }
 
-static void abandon_leaves_the_old_file(void **state)
+TEST_IN(abandon_leaves_the_old_file, folder_begin, folder_end)
 {
-    (void)state;
     char *path = in_folder("a.txt");
     put(path, "old");
     struct file_write file;
@@ -130,12 +77,10 @@ static void abandon_leaves_the_old_file(void **state)
     file_write_abandon(&file);
     assert_int_equal(file_write_commit(NULL, &file), WHIT_OK);
     file_write_abandon(NULL);
-    free(path);
 }
 
-static void abandon_all_removes_every_open_file(void **state)
+TEST_IN(abandon_all_removes_every_open_file, folder_begin, folder_end)
 {
-    (void)state;
     char *path = in_folder("a.txt");
     struct file_write first, second;
     assert_int_equal(file_write_begin(NULL, path, &first), WHIT_OK);
@@ -144,40 +89,32 @@ static void abandon_all_removes_every_open_file(void **state)
     assert_int_equal(entry_count(), 2);
     file_abandon_all();
     assert_int_equal(entry_count(), 0);
-    struct messages messages;
-    struct log log = log_to(&messages);
-    assert_int_equal(file_write_commit(&log, &first), WHIT_ERROR_OUTPUT);
+    assert_int_equal(file_write_commit(&full_log, &first), WHIT_ERROR_OUTPUT);
     assert_int_equal(messages.count, 1);
     file_write_abandon(&second);
     assert_int_equal(entry_count(), 0);
-    free(path);
 }
 
-static void write_failures_name_path_and_reason(void **state)
+TEST_IN(write_failures_name_path_and_reason, folder_begin, folder_end)
 {
-    (void)state;
-    struct messages messages;
-    struct log log = log_to(&messages);
     struct file_write file;
     char *path = in_folder("none/a.txt");
-    assert_int_equal(file_write_begin(&log, path, &file), WHIT_ERROR_OUTPUT);
+    assert_int_equal(file_write_begin(&full_log, path, &file), WHIT_ERROR_OUTPUT);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.last, path));
     assert_non_null(strstr(messages.last, strerror(ENOENT)));
     assert_null(file.stream);
-    assert_int_equal(file_write_begin(&log, folder, &file), WHIT_ERROR_OUTPUT);
+    assert_int_equal(file_write_begin(&full_log, folder, &file), WHIT_ERROR_OUTPUT);
     assert_non_null(strstr(messages.last, strerror(EISDIR)));
-    assert_int_equal(file_write_begin(&log, "/dev/full", &file), WHIT_OK);
+    assert_int_equal(file_write_begin(&full_log, "/dev/full", &file), WHIT_OK);
     fputs("text", file.stream);
-    assert_int_equal(file_write_commit(&log, &file), WHIT_ERROR_OUTPUT);
+    assert_int_equal(file_write_commit(&full_log, &file), WHIT_ERROR_OUTPUT);
     assert_non_null(strstr(messages.last, strerror(ENOSPC)));
     assert_int_equal(entry_count(), 0);
-    free(path);
 }
 
-static void links_pipes_and_long_names(void **state)
+TEST_IN(links_pipes_and_long_names, folder_begin, folder_end)
 {
-    (void)state;
     char *path = in_folder("target"), *link_path = in_folder("link"), *pipe_path = in_folder("p");
     put(path, "old");
     assert_int_equal(symlink("target", link_path), 0);
@@ -203,14 +140,10 @@ static void links_pipes_and_long_names(void **state)
     char *longest = in_folder(name);
     put(longest, "x");
     assert_content(longest, "x");
-    free(longest), free(path), free(link_path), free(pipe_path);
 }
 
-static void read_refuses_with_one_message(void **state)
+TEST_IN(read_refuses_with_one_message, folder_begin, folder_end)
 {
-    (void)state;
-    struct messages messages;
-    struct log log = log_to(&messages);
     char *path = in_folder("a.txt"), *pipe_path = in_folder("p"), *missing = in_folder("m");
     put(path, "0123456789");
     mkfifo(pipe_path, 0600);
@@ -228,21 +161,20 @@ static void read_refuses_with_one_message(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         messages = (struct messages){0};
         assert_int_equal(
-            file_read(&log, NULL, cases[i].path, cases[i].limit_bytes, &data, &size_bytes),
+            file_read(&full_log, NULL, cases[i].path, cases[i].limit_bytes, &data, &size_bytes),
             WHIT_ERROR_INPUT);
         assert_null(data);
         assert_int_equal(messages.count, 1);
         assert_non_null(strstr(messages.last, cases[i].path));
         assert_non_null(strstr(messages.last, cases[i].reason));
     }
-    assert_int_equal(file_read(&log, NULL, path, 10, &data, &size_bytes), WHIT_OK);
+    assert_int_equal(file_read(&full_log, NULL, path, 10, &data, &size_bytes), WHIT_OK);
     assert_int_equal(data[size_bytes], 0);
-    free(data), free(path), free(pipe_path), free(missing);
+    free(data);
 }
 
-static void second_interrupt_removes_files_and_ends(void **state)
+TEST_IN(second_interrupt_removes_files_and_ends, folder_begin, folder_end)
 {
-    (void)state;
     char *path = in_folder("a.txt");
     int ready[2];
     assert_int_equal(pipe(ready), 0);
@@ -270,7 +202,6 @@ static void second_interrupt_removes_files_and_ends(void **state)
     assert_int_equal(WTERMSIG(status), SIGTERM);
     assert_int_equal(entry_count(), 0);
     close(ready[0]);
-    free(path);
 }
 
 /* The number of a process that is no more. */
@@ -289,26 +220,16 @@ static bool is_there(const char *path)
     return lstat(path, &info) == 0;
 }
 
-/* Not beside and renamed, as put() does. */
-static void put_plain(const char *path, const char *text)
-{
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
-}
-
 /* Puts something at the name that process `writer` gives to an unfinished a.txt, with `end`. */
 static char *leave(pid_t writer, const char *end, const char *text)
 {
     char *path = string_format("%s/.a.txt.%ld%s.tmp", folder, (long)writer, end);
-    put_plain(path, text);
+    put_file(path, text, strlen(text)); /* not beside and renamed, as put() does */
     return path;
 }
 
-static void files_of_killed_runs_are_swept(void **state)
+TEST_IN(files_of_killed_runs_are_swept, folder_begin, folder_end)
 {
-    (void)state;
     pid_t gone = ended_process();
     char *path = in_folder("a.txt");
     char *swept[] = {leave(gone, "", "half"), leave(gone, ".3", ""), leave(getpid(), "", "before")};
@@ -319,13 +240,11 @@ static void files_of_killed_runs_are_swept(void **state)
     }
     assert_content(path, "whole");
     assert_int_equal(entry_count(), 1);
-    free(path);
 }
 
 /* Of processes that live, of other names, of others, in use elsewhere, or no files at all. */
-static void nothing_else_is_swept(void **state)
+TEST_IN(nothing_else_is_swept, folder_begin, folder_end)
 {
-    (void)state;
     pid_t gone = ended_process();
     char *path = in_folder("a.txt");
     char *others[] = {leave(getppid(), "", "x"),
@@ -344,7 +263,7 @@ static void nothing_else_is_swept(void **state)
     assert_int_equal(symlink("target", others[LINK]), 0);
     assert_int_equal(mkfifo(others[PIPE], 0600), 0);
     for (int i = NAMED; i < COUNT; ++i)
-        put_plain(others[i], "x");
+        put_file(others[i], "x", 1);
     put(path, "whole");
     for (int i = 0; i < COUNT; ++i) {
         if (i != FOREIGN || has_foreign)
@@ -352,13 +271,11 @@ static void nothing_else_is_swept(void **state)
         free(others[i]);
     }
     close(lock);
-    free(path);
 }
 
 /* Both are begun before either ends, in one process and in two. */
-static void two_writers_of_one_file(void **state)
+TEST_IN(two_writers_of_one_file, folder_begin, folder_end)
 {
-    (void)state;
     static const char *const texts[] = {"first", "second"};
     char *path = in_folder("a.txt");
     struct file_write files[2];
@@ -387,12 +304,10 @@ static void two_writers_of_one_file(void **state)
     assert_int_equal(file_write_commit(NULL, &files[0]), WHIT_OK);
     assert_content(path, "mine");
     assert_int_equal(entry_count(), 1);
-    free(path);
 }
 
-static void paths(void **state)
+TEST(paths)
 {
-    (void)state;
     const struct {
         const char *path, *folder, *name, *extension;
     } cases[] = {{"a/b.PNG", "a/", "b.PNG", "png"},          {"b", "", "b", ""},
@@ -413,25 +328,4 @@ static void paths(void **state)
     beside = path_beside("scenes/a.json", "/b.obj");
     assert_string_equal(beside, "/b.obj");
     free(beside);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(commit_replaces_at_once, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(abandon_leaves_the_old_file, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(abandon_all_removes_every_open_file, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(write_failures_name_path_and_reason, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(links_pipes_and_long_names, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(read_refuses_with_one_message, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(second_interrupt_removes_files_and_ends, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(files_of_killed_runs_are_swept, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(nothing_else_is_swept, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(two_writers_of_one_file, make_folder, remove_folder),
-        cmocka_unit_test(paths),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

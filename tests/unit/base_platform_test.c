@@ -1,16 +1,8 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "base/platform.h"
+#include "unit.h"
 
-static void peak_memory_covers_what_was_used(void **state)
+TEST(peak_memory_covers_what_was_used)
 {
-    (void)state;
     uint64_t before = platform_peak_memory_bytes();
     assert_true(before > 0);
     size_t bytes = (size_t)before + (32u << 20);
@@ -19,12 +11,4 @@ static void peak_memory_covers_what_was_used(void **state)
     memset(memory, 1, bytes);
     assert_true(platform_peak_memory_bytes() >= bytes);
     free(memory);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(peak_memory_covers_what_was_used),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

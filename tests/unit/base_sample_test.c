@@ -1,20 +1,12 @@
 /* Medians, their intervals, and which differences can be told from chance. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "base/sample.h"
 #include "random_fixture.h"
+#include "unit.h"
 
-static void quantiles_are_between_neighbours(void **state)
+TEST(quantiles_are_between_neighbours)
 {
-    (void)state;
     double values[] = {4.0, 1.0, 3.0, 2.0};
     sample_sort(values, 4);
     for (int i = 0; i < 4; ++i)
@@ -24,9 +16,8 @@ static void quantiles_are_between_neighbours(void **state)
     assert_true(sample_quantile(values, 3, 0.5) == 2.0 && sample_quantile(values, 0, 0.5) == 0.0);
 }
 
-static void runs_are_summed_up(void **state)
+TEST(runs_are_summed_up)
 {
-    (void)state;
     static const double times[] = {9.0, 1.0, 5.0, 2.0, 3.0};
     struct sample_runs a = {0}, b = {0};
     for (int i = 0; i < 5; ++i) {
@@ -46,9 +37,8 @@ static void runs_are_summed_up(void **state)
 
 /* Ranks and coverages of sums of binomial coefficients in whole numbers; those of 10, 20, 30, 50
    and 100 are in tables of many textbooks. */
-static void ranks_are_those_of_the_binomial(void **state)
+TEST(ranks_are_those_of_the_binomial)
 {
-    (void)state;
     static const struct {
         uint32_t count, low, high;
         double coverage;
@@ -90,9 +80,8 @@ static double skewed(void)
 
 enum { TRIALS = 4000, COUNT = 15 };
 
-static void intervals_hold_the_median(void **state)
+TEST(intervals_hold_the_median)
 {
-    (void)state;
     uint32_t held = 0;
     random_state = 7;
     double truth = 10.0 + log(2.0), values[COUNT];
@@ -119,9 +108,8 @@ static int compare_once(double slower)
     return sample_compare(a, b, COUNT, differences, NULL);
 }
 
-static void equal_things_are_rarely_told_apart(void **state)
+TEST(equal_things_are_rarely_told_apart)
 {
-    (void)state;
     int wrong = 0;
     random_state = 11;
     for (int t = 0; t < TRIALS; ++t)
@@ -130,9 +118,8 @@ static void equal_things_are_rarely_told_apart(void **state)
     assert_true(wrong < 0.05 * TRIALS && wrong > 0.02 * TRIALS); /* 0.0352 expected */
 }
 
-static void ten_percent_are_found_through_a_drift(void **state)
+TEST(ten_percent_are_found_through_a_drift)
 {
-    (void)state;
     int found = 0;
     random_state = 13;
     for (int t = 0; t < TRIALS; ++t)
@@ -141,9 +128,8 @@ static void ten_percent_are_found_through_a_drift(void **state)
     assert_true(found > 0.99 * TRIALS);
 }
 
-static void few_or_equal_values_say_nothing(void **state)
+TEST(few_or_equal_values_say_nothing)
 {
-    (void)state;
     const double low[6] = {1, 1, 1, 1, 1, 1}, high[6] = {2, 2, 2, 2, 2, 2};
     double differences[6];
     struct sample_median median;
@@ -155,9 +141,8 @@ static void few_or_equal_values_say_nothing(void **state)
     assert_int_equal(sample_compare(low, high, 0, differences, NULL), 0);
 }
 
-static void apart_means_that_intervals_do_not_touch(void **state)
+TEST(apart_means_that_intervals_do_not_touch)
 {
-    (void)state;
     const struct sample_median fast = {2.0, 1.0, 3.0, 0.96, 9}, slow = {4.0, 3.1, 5.0, 0.96, 9},
                                touching = {4.0, 3.0, 5.0, 0.96, 9}, few = {9.0, 9.0, 9.0, 0.9, 4};
     assert_int_equal(sample_compare_apart(&fast, &slow), -1);
@@ -179,9 +164,8 @@ static whit_result note_turn(void *user, uint32_t way, uint32_t round)
     return turns->count == turns->fails_at ? WHIT_ERROR_FAILED : WHIT_OK;
 }
 
-static void turns_go_there_and_back(void **state)
+TEST(turns_go_there_and_back)
 {
-    (void)state;
     static const uint32_t expected[9] = {0, 1, 2, 12, 11, 10, 20, 21, 22};
     struct turns turns = {0}, failing = {.fails_at = 5};
     assert_int_equal(sample_in_turns(3, 3, note_turn, &turns), WHIT_OK);
@@ -189,20 +173,4 @@ static void turns_go_there_and_back(void **state)
     assert_memory_equal(turns.order, expected, sizeof expected);
     assert_int_equal(sample_in_turns(3, 3, note_turn, &failing), WHIT_ERROR_FAILED);
     assert_int_equal(failing.count, 5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quantiles_are_between_neighbours),
-        cmocka_unit_test(runs_are_summed_up),
-        cmocka_unit_test(ranks_are_those_of_the_binomial),
-        cmocka_unit_test(intervals_hold_the_median),
-        cmocka_unit_test(equal_things_are_rarely_told_apart),
-        cmocka_unit_test(ten_percent_are_found_through_a_drift),
-        cmocka_unit_test(few_or_equal_values_say_nothing),
-        cmocka_unit_test(apart_means_that_intervals_do_not_touch),
-        cmocka_unit_test(turns_go_there_and_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,11 +5,7 @@
 #include <netinet/in.h>
 #include <pthread.h>
 #include <sched.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -20,15 +16,14 @@
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <time.h>
-#include <unistd.h>
 
-#include <cmocka.h>
 #include <seccomp.h>
 
 #include "base/array.h"
 #include "base/file.h"
 #include "base/foreign.h"
 #include "base/sandbox.h"
+#include "folder_fixture.h"
 
 int __real_seccomp_load(const scmp_filter_ctx filter);
 int __wrap_seccomp_load(const scmp_filter_ctx filter);
@@ -45,45 +40,32 @@ static const struct child_limits ordinary = {
 
 /* What there is to be harmed: two files, a descriptor that reads one, and this process. */
 static struct {
-    char folder[32], *secret, *other;
+    char *secret, *other;
     int fd;
     pid_t pid;
 } victim;
 
-static void make_file(const char *path)
-{
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_true(fputs("secret", file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 static int begin(void **state)
 {
-    (void)state;
-    strcpy(victim.folder, "/tmp/whit-sandbox-XXXXXX");
-    if (!mkdtemp(victim.folder))
-        return -1;
-    victim.secret = string_format("%s/secret", victim.folder);
-    victim.other = string_format("%s/other", victim.folder);
-    make_file(victim.secret);
+    int result = folder_begin(state);
+    victim.secret = string_format("%s/secret", folder);
+    victim.other = string_format("%s/other", folder);
+    put_file(victim.secret, "secret", 6);
     /* Inherited: nothing closes it at exec. Not the number of the reply's. */
     int low = open(victim.secret, O_RDWR);
     victim.fd = fcntl(low, F_DUPFD, 2 * SANDBOX_FD_COUNT);
     close(low);
     victim.pid = getpid();
     no_filter = false;
-    return victim.fd < 0 ? -1 : 0;
+    return victim.fd < 0 ? -1 : result;
 }
 
 static int end(void **state)
 {
-    (void)state;
     close(victim.fd);
-    int result = unlink(victim.secret) | rmdir(victim.folder);
     free(victim.secret);
     free(victim.other);
-    return result;
+    return folder_end(state);
 }
 
 /* --- what is tried -------------------------------------------------------------------------- */
@@ -196,9 +178,8 @@ static void nothing_was_harmed(const char *by)
         fail_msg("%s did harm", by);
 }
 
-static void each_forbidden_thing_is_stopped(void **state)
+TEST_IN(each_forbidden_thing_is_stopped, begin, end)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof trials / sizeof *trials; ++i) {
         struct child_reply reply;
         struct trial trial = trials[i];
@@ -237,9 +218,8 @@ static int work(void *user, void *to, child_write write)
     return written ? 0 : 1;
 }
 
-static void what_decoding_needs_is_allowed(void **state)
+TEST_IN(what_decoding_needs_is_allowed, begin, end)
 {
-    (void)state;
     struct child_reply reply;
     assert_int_equal(child_run(&ordinary, work, NULL, &reply), CHILD_DONE);
     assert_int_equal(reply.exit_code, 0);
@@ -255,9 +235,8 @@ static int give_up(void *user, void *to, child_write write)
     abort();
 }
 
-static void crashes_are_still_crashes(void **state)
+TEST_IN(crashes_are_still_crashes, begin, end)
 {
-    (void)state;
     struct child_reply reply;
     assert_int_equal(child_run(&ordinary, give_up, NULL, &reply), CHILD_CRASHED);
     assert_int_equal(reply.signal, SIGABRT);
@@ -292,9 +271,8 @@ static long limits_of_processes_and_files(void)
 }
 
 /* Descriptors, privileges and limits go whether or not there is a filter. */
-static void the_rest_holds_without_the_filter(void **state)
+TEST_IN(the_rest_holds_without_the_filter, begin, end)
 {
-    (void)state;
     no_filter = true;
     struct outcome outcome = outcome_of(read_inherited);
     assert_true(outcome.result == -1 && outcome.error == EBADF);
@@ -303,9 +281,8 @@ static void the_rest_holds_without_the_filter(void **state)
     assert_int_equal(outcome_of(duplicate).error, EMFILE);
 }
 
-static void landlock_holds_without_the_filter(void **state)
+TEST_IN(landlock_holds_without_the_filter, begin, end)
 {
-    (void)state;
     if (syscall(444, NULL, 0, 1) < 1) {
         print_message("skipped: this kernel has no Landlock\n");
         skip();
@@ -327,9 +304,8 @@ static int write_shared(void *user, void *to, child_write write)
 }
 
 /* As a driver maps its cache. */
-static void shared_memory_is_gone(void **state)
+TEST_IN(shared_memory_is_gone, begin, end)
 {
-    (void)state;
     struct child_reply reply;
     void *memory = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     assert_true(memory != MAP_FAILED);
@@ -364,9 +340,8 @@ static void *run_there(void *user)
 }
 
 /* Of a thread's arena glibc asks the system how it counts memory before it shrinks that. */
-static void memory_is_given_back_in_threads(void **state)
+TEST_IN(memory_is_given_back_in_threads, begin, end)
 {
-    (void)state;
     enum child_end end = CHILD_NOT_STARTED;
     pthread_t other;
     assert_int_equal(pthread_create(&other, NULL, run_there, &end), 0);
@@ -374,39 +349,24 @@ static void memory_is_given_back_in_threads(void **state)
     assert_int_equal(end, CHILD_DONE);
 }
 
-struct heard {
-    int warnings;
-    char text[256];
-};
-
-static void hear(void *user, whit_log_level level, const char *message)
+TEST_IN(a_filter_that_cannot_be_set_is_said_once, begin, end)
 {
-    struct heard *heard = user;
-    assert_int_equal(level, WHIT_LOG_WARNING);
-    heard->warnings++;
-    snprintf(heard->text, sizeof heard->text, "%s", message);
-}
-
-static void a_filter_that_cannot_be_set_is_said_once(void **state)
-{
-    (void)state;
-    struct heard heard = {0};
-    const struct log log = {.fn = hear, .user = &heard, .level = WHIT_LOG_WARNING};
     char reason[FOREIGN_REASON_BYTES] = "";
     struct child_reply reply;
     for (int i = 0; i < 3; ++i) {
         no_filter = i > 0;
-        assert_int_equal(foreign_run(&log, &ordinary, work, NULL, &reply, reason), WHIT_OK);
+        assert_int_equal(foreign_run(&warnings_log, &ordinary, work, NULL, &reply, reason),
+                         WHIT_OK);
         child_reply_free(&reply);
-        assert_int_equal(heard.warnings, i > 0);
+        assert_int_equal(messages.warnings, i > 0);
+        assert_int_equal(messages.errors, 0);
     }
-    assert_non_null(strstr(heard.text, strerror(EPERM)));
-    assert_non_null(strstr(heard.text, "--require-sandbox"));
+    assert_non_null(strstr(messages.last, strerror(EPERM)));
+    assert_non_null(strstr(messages.last, "--require-sandbox"));
 }
 
-static void a_filter_that_is_required_is_an_error(void **state)
+TEST_IN(a_filter_that_is_required_is_an_error, begin, end)
 {
-    (void)state;
     struct foreign_params params = {.require_sandbox = true};
     struct child_limits limits = foreign_limits(&params, "importer", 0, 1u << 20);
     char reason[FOREIGN_REASON_BYTES] = "";
@@ -419,22 +379,4 @@ static void a_filter_that_is_required_is_an_error(void **state)
     assert_int_equal(foreign_run(NULL, &limits, work, NULL, &reply, reason), WHIT_ERROR_USAGE);
     assert_non_null(strstr(reason, "the importer cannot be locked in"));
     assert_non_null(strstr(reason, strerror(EPERM)));
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, begin, end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(each_forbidden_thing_is_stopped),
-        TEST(what_decoding_needs_is_allowed),
-        TEST(crashes_are_still_crashes),
-        TEST(the_rest_holds_without_the_filter),
-        TEST(landlock_holds_without_the_filter),
-        TEST(shared_memory_is_gone),
-        TEST(memory_is_given_back_in_threads),
-        TEST(a_filter_that_cannot_be_set_is_said_once),
-        TEST(a_filter_that_is_required_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,23 +1,16 @@
 /* What is kept from one run to the next, and what is found in its place. */
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
-#include <unistd.h>
-
-#include <cmocka.h>
 
 #include "base/array.h"
 #include "base/store.h"
+#include "folder_fixture.h"
 
-static char home[64], folder[80];
+static char kept_in[80];    /* the folder below XDG_CACHE_HOME, which is the folder of the check */
 static uid_t owner_of_next; /* what fstat says from call `foreign_from` on; 0: the truth */
 static int foreign_from;
 static int64_t disk_bytes = -1; /* that are left; < 0: enough */
@@ -68,32 +61,11 @@ ssize_t __wrap_write(int fd, const void *data, size_t bytes)
     return __real_write(fd, data, now);
 }
 
-struct messages {
-    int count, warnings;
-    char last[512];
-};
-
-static void collect(void *user, whit_log_level level, const char *message)
-{
-    struct messages *messages = user;
-    ++messages->count;
-    messages->warnings += level == WHIT_LOG_WARNING;
-    snprintf(messages->last, sizeof messages->last, "%s", message);
-}
-
-static struct log log_to(struct messages *messages)
-{
-    *messages = (struct messages){0};
-    return (struct log){.fn = collect, .user = messages, .level = WHIT_LOG_WARNING};
-}
-
 static char *path_of(const char *name)
 {
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
+    char inner[128];
+    snprintf(inner, sizeof inner, "whit/%s", name);
+    return in_folder(inner);
 }
 
 static bool exists(const char *name)
@@ -137,31 +109,20 @@ static void set_age(const char *name, time_t days)
     assert_int_equal(utimensat(AT_FDCWD, path_of(name), times, AT_SYMLINK_NOFOLLOW), 0);
 }
 
-static int make_home(void **state)
+static int begin(void **state)
 {
-    (void)state;
-    strcpy(home, "/tmp/whit-store-XXXXXX");
-    assert_non_null(mkdtemp(home));
-    snprintf(folder, sizeof folder, "%s/whit", home);
-    setenv("XDG_CACHE_HOME", home, 1);
+    int result = folder_begin(state);
+    snprintf(kept_in, sizeof kept_in, "%s/whit", folder);
+    setenv("XDG_CACHE_HOME", folder, 1);
     unsetenv("WHIT_NO_CACHE");
     unsetenv("WHIT_CACHE_LIMIT");
-    return 0;
-}
-
-static int remove_home(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", home);
     foreign_from = 0;
     disk_bytes = -1;
-    return system(command);
+    return result;
 }
 
-static void what_is_kept_is_read(void **state)
+TEST_IN(what_is_kept_is_read, begin, folder_end)
 {
-    (void)state;
     struct stat info;
     assert_false(is_kept("a", 1));
     keep("a", 1);
@@ -169,7 +130,7 @@ static void what_is_kept_is_read(void **state)
     assert_true(is_kept("a", 1) && is_kept("b", 2));
     keep("a", 3);
     assert_true(is_kept("a", 3));
-    assert_int_equal(stat(folder, &info), 0);
+    assert_int_equal(stat(kept_in, &info), 0);
     assert_int_equal(info.st_mode & 0777, 0700);
     assert_int_equal(stat(path_of("a"), &info), 0);
     assert_int_equal(info.st_mode & 0777, 0600);
@@ -181,18 +142,9 @@ static void what_is_kept_is_read(void **state)
     free(data);
 }
 
-static void write_file(const char *name, const void *data, size_t bytes)
-{
-    FILE *file = fopen(path_of(name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, bytes, file), bytes);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* Any byte flipped, any length, payload of zeros, another version, another file in its place. */
-static void damage_is_thrown_away(void **state)
+TEST_IN(damage_is_thrown_away, begin, folder_end)
 {
-    (void)state;
     uint8_t good[2 * BYTES], bad[2 * BYTES] = {0};
     keep("a", 1);
     FILE *file = fopen(path_of("a"), "rb");
@@ -203,33 +155,31 @@ static void damage_is_thrown_away(void **state)
     for (size_t i = 0; i < bytes; i += i < 40 ? 1 : 97) {
         memcpy(bad, good, bytes);
         bad[i] ^= (uint8_t)(1 << i % 8);
-        write_file("a", bad, bytes);
+        put_file(path_of("a"), bad, bytes);
         assert_false(is_kept("a", 1));
         assert_false(exists("a"));
     }
     memcpy(bad, good, bytes);
     for (size_t i = 0; i <= bytes + 8; i += i < 40 ? 1 : 8) {
-        write_file("a", bad, i);
+        put_file(path_of("a"), bad, i);
         assert_true(is_kept("a", 1) == (i == bytes));
     }
     memset(bad + 24, 0, BYTES);
-    write_file("a", bad, bytes);
+    put_file(path_of("a"), bad, bytes);
     assert_false(is_kept("a", 1));
     memcpy(bad, good, bytes);
     bad[7] = '0';
-    write_file("a", bad, bytes);
+    put_file(path_of("a"), bad, bytes);
     assert_false(is_kept("a", 1));
-    write_file("b", good, bytes);
+    put_file(path_of("b"), good, bytes);
     assert_false(is_kept("b", 1));
-    write_file("a", good, bytes);
+    put_file(path_of("a"), good, bytes);
     assert_true(is_kept("a", 1));
 }
 
 static void put_link(const char *name)
 {
-    char target[128];
-    snprintf(target, sizeof target, "%s/target", home);
-    assert_int_equal(symlink(target, path_of(name)), 0);
+    assert_int_equal(symlink(in_folder("target"), path_of(name)), 0);
 }
 
 static void put_nowhere(const char *name)
@@ -239,9 +189,7 @@ static void put_nowhere(const char *name)
 
 static void put_second_name(const char *name)
 {
-    char target[128];
-    snprintf(target, sizeof target, "%s/target", home);
-    assert_int_equal(link(target, path_of(name)), 0);
+    assert_int_equal(link(in_folder("target"), path_of(name)), 0);
 }
 
 static void put_pipe(const char *name)
@@ -278,17 +226,15 @@ static void put_writable(const char *name)
 }
 
 /* None is opened, none is followed; each is gone after it, and what is kept then is a file. */
-static void what_is_no_file_of_ours_is_thrown_away(void **state)
+TEST_IN(what_is_no_file_of_ours_is_thrown_away, begin, folder_end)
 {
-    (void)state;
     static void (*const puts[])(const char *) = {put_link,   put_nowhere, put_second_name,
                                                  put_pipe,   put_folder,  put_socket,
                                                  put_device, put_writable};
-    char target[128], text[2 * BYTES];
+    char text[2 * BYTES];
     struct stat info;
     keep("a", 1); /* what links lead to is whole, and would be taken */
-    snprintf(target, sizeof target, "%s/target", home);
-    assert_int_equal(rename(path_of("a"), target), 0);
+    assert_int_equal(rename(path_of("a"), in_folder("target")), 0);
     for (size_t i = 0; i < sizeof puts / sizeof *puts; ++i) {
         puts[i]("a");
         opened = 0;
@@ -304,16 +250,15 @@ static void what_is_no_file_of_ours_is_thrown_away(void **state)
             assert_int_equal(unlink(path_of("a")), 0);
         }
     }
-    FILE *file = fopen(target, "rb");
+    FILE *file = fopen(in_folder("target"), "rb");
     assert_non_null(file);
     assert_int_equal(fread(text, 1, sizeof text, file), BYTES + 24);
     assert_int_equal((uint8_t)text[24], 1);
     fclose(file);
 }
 
-static void files_of_others_are_thrown_away(void **state)
+TEST_IN(files_of_others_are_thrown_away, begin, folder_end)
 {
-    (void)state;
     keep("a", 1);
     owner_of_next = geteuid() + 1;
     foreign_from = 2; /* the first call is about the folder */
@@ -322,64 +267,58 @@ static void files_of_others_are_thrown_away(void **state)
     assert_false(exists("a"));
 }
 
-static bool store_is_used(struct messages *messages)
+static bool store_is_used(void)
 {
     uint8_t *data;
     size_t bytes;
-    struct log log = log_to(messages);
-    store_write(&log, "used", "x", 1);
-    bool found = store_read(&log, "used", &data, &bytes);
+    messages = (struct messages){0};
+    store_write(&warnings_log, "used", "x", 1);
+    bool found = store_read(&warnings_log, "used", &data, &bytes);
     free(data);
     return found;
 }
 
 /* The first to be said is the only one of this process. */
-static void folders_of_others_are_not_used(void **state)
+TEST_IN(folders_of_others_are_not_used, begin, folder_end)
 {
-    (void)state;
-    struct messages messages;
     struct store_info info;
     struct stat about;
     owner_of_next = geteuid() + 1;
-    assert_true(store_is_used(&messages));
+    assert_true(store_is_used());
     foreign_from = 1;
     assert_false(is_kept("used", 0));
     foreign_from = 1;
-    assert_false(store_is_used(&messages));
+    assert_false(store_is_used());
     assert_int_equal(messages.warnings, 1);
     assert_non_null(strstr(messages.last, "belongs to somebody else"));
-    assert_non_null(strstr(messages.last, folder));
+    assert_non_null(strstr(messages.last, kept_in));
     foreign_from = 0;
     for (mode_t write = 020; write; write = write == 020 ? 002 : 0) {
-        assert_int_equal(chmod(folder, 0700 | write), 0);
-        assert_false(store_is_used(&messages));
+        assert_int_equal(chmod(kept_in, 0700 | write), 0);
+        assert_false(store_is_used());
         assert_int_equal(messages.count, 0);
         store_get_info(&info);
         assert_string_equal(info.why_not, "others may write to it");
-        assert_string_equal(info.folder, folder);
+        assert_string_equal(info.folder, kept_in);
         assert_null(store_folder(&silent));
     }
-    assert_int_equal(chmod(folder, 0755), 0); /* others may look: they may not any more */
-    assert_true(store_is_used(&messages));
+    assert_int_equal(chmod(kept_in, 0755), 0); /* others may look: they may not any more */
+    assert_true(store_is_used());
     assert_int_equal(messages.count, 0);
-    assert_int_equal(stat(folder, &about), 0);
+    assert_int_equal(stat(kept_in, &about), 0);
     assert_int_equal(about.st_mode & 0777, 0700);
 }
 
 /* No place, a file or a link in place of the folder, a parent that is not there, WHIT_NO_CACHE:
    whit goes on without, quietly. */
-static void without_a_folder_nothing_is_kept(void **state)
+TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
 {
-    (void)state;
-    struct messages messages;
-    char other[128];
-    snprintf(other, sizeof other, "%s/other", home);
-    assert_int_equal(mkdir(other, 0700), 0);
+    assert_int_equal(mkdir(in_folder("other"), 0700), 0);
     for (int i = 0; i < 5; ++i) {
         if (i == 0)
-            assert_int_equal(symlink(other, folder), 0);
+            assert_int_equal(symlink(in_folder("other"), kept_in), 0);
         if (i == 1)
-            assert_int_equal(close(open(folder, O_WRONLY | O_CREAT, 0600)), 0);
+            assert_int_equal(close(open(kept_in, O_WRONLY | O_CREAT, 0600)), 0);
         if (i == 2)
             setenv("XDG_CACHE_HOME", "/proc/nowhere", 1);
         if (i == 3)
@@ -388,44 +327,41 @@ static void without_a_folder_nothing_is_kept(void **state)
             unsetenv("XDG_CACHE_HOME");
         if (i >= 3)
             unsetenv("HOME");
-        assert_false(store_is_used(&messages));
+        assert_false(store_is_used());
         assert_int_equal(messages.count, 0);
         assert_null(store_folder(&silent));
         struct store_info info;
         store_get_info(&info);
         assert_true(info.why_not[0] != '\0');
         if (i < 2)
-            assert_int_equal(unlink(folder), 0);
+            assert_int_equal(unlink(kept_in), 0);
     }
-    assert_int_equal(rmdir(other), 0); /* nothing came into it */
-    setenv("HOME", home, 1);
-    assert_true(store_is_used(&messages)); /* below ~/.cache */
-    snprintf(other, sizeof other, "%s/.cache/whit/used", home);
-    assert_int_equal(access(other, R_OK), 0);
-    setenv("XDG_CACHE_HOME", home, 1);
+    assert_int_equal(rmdir(in_folder("other")), 0); /* nothing came into it */
+    setenv("HOME", folder, 1);
+    assert_true(store_is_used()); /* below ~/.cache */
+    assert_int_equal(access(in_folder(".cache/whit/used"), R_OK), 0);
+    setenv("XDG_CACHE_HOME", folder, 1);
     setenv("WHIT_NO_CACHE", "1", 1);
-    assert_false(store_is_used(&messages));
-    assert_int_not_equal(access(folder, F_OK), 0);
+    assert_false(store_is_used());
+    assert_int_not_equal(access(kept_in, F_OK), 0);
     setenv("WHIT_NO_CACHE", "0", 1);
-    assert_true(store_is_used(&messages));
+    assert_true(store_is_used());
     setenv("WHIT_NO_CACHE", "1", 1);
     assert_false(is_kept("used", 0));
     keep("a", 1);
     assert_false(exists("a"));
 }
 
-static int file_count(void)
+static uint64_t used_bytes(void)
 {
     struct store_info info;
     store_get_info(&info);
-    assert_int_equal(info.used_bytes % (BYTES + 24), 0);
-    return (int)(info.used_bytes / (BYTES + 24));
+    return info.used_bytes;
 }
 
 /* At each length that fits on the disk. */
-static void full_disks_leave_nothing_half(void **state)
+TEST_IN(full_disks_leave_nothing_half, begin, folder_end)
 {
-    (void)state;
     keep("a", 1);
     for (int64_t left = 0; left < BYTES + 24; left += left < 30 ? 1 : 100) {
         disk_bytes = left;
@@ -435,7 +371,7 @@ static void full_disks_leave_nothing_half(void **state)
         disk_bytes = -1;
         assert_true(is_kept("a", 1));
         assert_false(is_kept("b", 2));
-        assert_int_equal(file_count(), 1);
+        assert_int_equal(used_bytes(), BYTES + 24);
     }
 }
 
@@ -456,17 +392,9 @@ static void die_writing(void)
     keep("a", 2);
 }
 
-static uint64_t used_bytes(void)
-{
-    struct store_info info;
-    store_get_info(&info);
-    return info.used_bytes;
-}
-
 /* What a killed writer leaves is swept by the next one; what a live one writes is not. */
-static void killed_writers_leave_nothing_half(void **state)
+TEST_IN(killed_writers_leave_nothing_half, begin, folder_end)
 {
-    (void)state;
     int status;
     char name[64];
     keep("a", 1);
@@ -474,9 +402,9 @@ static void killed_writers_leave_nothing_half(void **state)
     assert_int_equal(waitpid(pid, &status, 0), pid);
     assert_int_equal(WEXITSTATUS(status), 9);
     snprintf(name, sizeof name, ".a.%ld.tmp", (long)pid); /* as whit once named it */
-    write_file(name, "x", 1);
+    put_file(path_of(name), "x", 1);
     snprintf(name, sizeof name, ".a.%ld.99999999.tmp", (long)getpid());
-    write_file(name, "x", 1);
+    put_file(path_of(name), "x", 1);
     assert_true(is_kept("a", 1));
     keep("b", 2);
     assert_int_equal(used_bytes(), 2 * (BYTES + 24) + 1);
@@ -490,9 +418,8 @@ static void write_often(void)
         keep("a", i);
 }
 
-static void two_writers_do_no_harm(void **state)
+TEST_IN(two_writers_do_no_harm, begin, folder_end)
 {
-    (void)state;
     int status;
     pid_t pid = run_apart(write_often);
     uint8_t *data;
@@ -505,7 +432,7 @@ static void two_writers_do_no_harm(void **state)
     }
     assert_int_equal(waitpid(pid, &status, 0), pid);
     assert_int_equal(status, 0);
-    assert_int_equal(file_count(), 1);
+    assert_int_equal(used_bytes(), BYTES + 24);
 }
 
 /* Files as large as it takes, with nothing in them. */
@@ -516,9 +443,8 @@ static void put_large(const char *name, off_t bytes, time_t days)
     set_age(name, days);
 }
 
-static void the_oldest_go_first(void **state)
+TEST_IN(the_oldest_go_first, begin, folder_end)
 {
-    (void)state;
     const off_t mib = 1 << 20;
     keep("used", 1);
     keep("idle", 2);
@@ -547,22 +473,4 @@ static void the_oldest_go_first(void **state)
     struct store_info info;
     store_get_info(&info);
     assert_int_equal(info.limit_bytes, 512 * mib);
-}
-
-int main(void)
-{
-#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_home, remove_home)
-    const struct CMUnitTest tests[] = {
-        STORE_TEST(what_is_kept_is_read),
-        STORE_TEST(damage_is_thrown_away),
-        STORE_TEST(what_is_no_file_of_ours_is_thrown_away),
-        STORE_TEST(files_of_others_are_thrown_away),
-        STORE_TEST(folders_of_others_are_not_used),
-        STORE_TEST(without_a_folder_nothing_is_kept),
-        STORE_TEST(full_disks_leave_nothing_half),
-        STORE_TEST(killed_writers_leave_nothing_half),
-        STORE_TEST(two_writers_do_no_harm),
-        STORE_TEST(the_oldest_go_first),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,11 @@
 /* Text that others wrote: nothing of it steers a terminal or hides, and what is left of it is
  * there. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../random.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "unit.h"
 
-static void each_kind_is_shown(void **state)
+TEST(each_kind_is_shown)
 {
     static const char *const cases[][2] = {
         {"", ""},
@@ -41,7 +32,6 @@ static void each_kind_is_shown(void **state)
         {"\xe2\x82", "\\xe2\\x82"},                                     /* cut */
         {"\xe2\x82(\xc3", "\\xe2\\x82(\\xc3"},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char shown[128], again[128];
         assert_string_equal(whit_text_show(cases[i][0], shown, sizeof shown), cases[i][1]);
@@ -88,10 +78,9 @@ static void draw(uint64_t *random, char *text, uint32_t max)
     text[length] = 0;
 }
 
-static void any_bytes_are_printable(void **state)
+TEST(any_bytes_are_printable)
 {
     uint64_t random = 17;
-    (void)state;
     for (int i = 0; i < 20000; ++i) {
         char text[48], shown[48 * WHIT_SHOWN_BYTES], again[sizeof shown], brief[24];
         draw(&random, text, sizeof text);
@@ -112,9 +101,8 @@ static void any_bytes_are_printable(void **state)
     }
 }
 
-static void tokens_are_short_and_whole(void **state)
+TEST(tokens_are_short_and_whole)
 {
-    (void)state;
     char text[64] = "";
     assert_string_equal(text_token(NULL).text, "");
     assert_string_equal(text_token("Kd").text, "Kd");
@@ -135,22 +123,10 @@ static void keep(void *user, whit_log_level level, const char *message)
 }
 
 /* Host programs print what libwhit tells them. */
-static void messages_are_shown(void **state)
+TEST(messages_are_shown)
 {
     char message[64];
     const struct log log = {keep, message, WHIT_LOG_WARNING};
-    (void)state;
     log_error(&log, "%s: cannot be read", "a\n\x1b[2J\xff.obj");
     assert_string_equal(message, "a\\u000a\\u001b[2J\\xff.obj: cannot be read");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_kind_is_shown),
-        cmocka_unit_test(any_bytes_are_printable),
-        cmocka_unit_test(tokens_are_short_and_whole),
-        cmocka_unit_test(messages_are_shown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,9 +21,8 @@ static struct image copy_of(const struct image *image)
     return copy;
 }
 
-static void equal_pictures(void **state)
+TEST(equal_pictures)
 {
-    (void)state;
     struct image a = fixture_floats(10, 10, 3);
     a.pixels[4] = NAN;
     struct image b = copy_of(&a);
@@ -39,9 +38,8 @@ static void equal_pictures(void **state)
     image_finish(&b);
 }
 
-static void differences_are_measured(void **state)
+TEST(differences_are_measured)
 {
-    (void)state;
     struct image a, b;
     assert_int_equal(image_init(&a, 2, 2, 4, false), WHIT_OK);
     b = copy_of(&a);
@@ -58,9 +56,8 @@ static void differences_are_measured(void **state)
     image_finish(&b);
 }
 
-static void one_step_of_8_bits_is_not_over(void **state)
+TEST(one_step_of_8_bits_is_not_over)
 {
-    (void)state;
     struct image a, b;
     assert_int_equal(image_init(&a, 255, 1, 1, false), WHIT_OK);
     b = copy_of(&a);
@@ -76,9 +73,8 @@ static void one_step_of_8_bits_is_not_over(void **state)
     image_finish(&b);
 }
 
-static void nonfinite_counts_but_does_not_spread(void **state)
+TEST(nonfinite_counts_but_does_not_spread)
 {
-    (void)state;
     struct image a, b;
     assert_int_equal(image_init(&a, 3, 1, 3, false), WHIT_OK);
     b = copy_of(&a);
@@ -99,9 +95,8 @@ static void nonfinite_counts_but_does_not_spread(void **state)
 }
 
 /* By hand: what is relative to the reference, and on which side of it the other one is. */
-static void means_are_those_of_the_formulas(void **state)
+TEST(means_are_those_of_the_formulas)
 {
-    (void)state;
     struct image a, b, difference_image;
     assert_int_equal(image_init(&a, 2, 1, 3, false), WHIT_OK);
     b = copy_of(&a);
@@ -128,9 +123,8 @@ static void means_are_those_of_the_formulas(void **state)
 }
 
 /* Grey is as three equal channels, no alpha is as one of 1. */
-static void channels_may_differ(void **state)
+TEST(channels_may_differ)
 {
-    (void)state;
     struct image grey = fixture_floats(5, 4, 1), colours[2];
     for (uint32_t i = 0; i < 2; ++i) {
         uint32_t channels = 3 + i;
@@ -150,9 +144,8 @@ static void channels_may_differ(void **state)
     image_finish(&colours[1]);
 }
 
-static void integers_differ_or_not(void **state)
+TEST(integers_differ_or_not)
 {
-    (void)state;
     struct image a = fixture_words(10, 10, 2), b = copy_of(&a);
     assert_true(compare(&a, &b).largest == 0.0);
     b.words[0] ^= 1;
@@ -165,18 +158,17 @@ static void integers_differ_or_not(void **state)
     image_finish(&b);
 }
 
-static void unlike_pictures_are_refused(void **state)
+TEST_IN(unlike_pictures_are_refused, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     struct image a = fixture_floats(4, 3, 3),
                  other[3] = {fixture_floats(3, 4, 3), fixture_words(4, 3, 3), {0}};
     struct image ids = fixture_words(4, 3, 2), out;
     struct image_difference difference;
     for (int i = 0; i < 3; ++i) {
-        assert_int_equal(image_compare(&fixture->log, &a, &other[i], &difference),
+        assert_int_equal(image_compare(&warnings_log, &a, &other[i], &difference),
                          WHIT_ERROR_INPUT);
-        assert_int_equal(image_subtract(&fixture->log, &a, &other[i], &out), WHIT_ERROR_INPUT);
-        assert_int_equal(fixture->errors, 2 * i + 2);
+        assert_int_equal(image_subtract(&warnings_log, &a, &other[i], &out), WHIT_ERROR_INPUT);
+        assert_int_equal(messages.errors, 2 * i + 2);
         assert_null(out.pixels);
     }
     assert_int_equal(image_compare(NULL, &ids, &other[1], &difference), WHIT_ERROR_INPUT);
@@ -187,9 +179,8 @@ static void unlike_pictures_are_refused(void **state)
     image_finish(&ids);
 }
 
-static void srgb_curve(void **state)
+TEST(srgb_curve)
 {
-    (void)state;
     assert_true(image_srgb_from_linear(-1.0f) == 0.0f && image_srgb_from_linear(NAN) == 0.0f);
     assert_true(image_srgb_from_linear(2.0f) == 1.0f && image_linear_from_srgb(2.0f) == 1.0f);
     assert_true(fabsf(image_srgb_from_linear(0.214041f) - 0.5f) < 1e-5f);
@@ -200,20 +191,4 @@ static void srgb_curve(void **state)
         assert_true(fabsf(image_linear_from_srgb(srgb) - linear) < 2e-7f);
         last = srgb;
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_pictures),
-        cmocka_unit_test(differences_are_measured),
-        cmocka_unit_test(one_step_of_8_bits_is_not_over),
-        cmocka_unit_test(nonfinite_counts_but_does_not_spread),
-        cmocka_unit_test(means_are_those_of_the_formulas),
-        cmocka_unit_test(channels_may_differ),
-        cmocka_unit_test(integers_differ_or_not),
-        cmocka_unit_test_setup_teardown(unlike_pictures_are_refused, fixture_begin, fixture_end),
-        cmocka_unit_test(srgb_curve),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,15 +21,14 @@ struct sample {
     size_t size_bytes;
 };
 
-static struct sample sample_of(struct fixture *fixture, const char *name, const struct image *image)
+static struct sample sample_of(const char *name, const struct image *image)
 {
     static const struct image_text text = {"scene", "a.json"};
     struct sample sample = {.name = name};
-    char *path = fixture_path(fixture, name);
-    assert_int_equal(image_save(&fixture->log, image, path, &text, 1), WHIT_OK);
-    assert_int_equal(file_read(&fixture->log, NULL, path, 0, &sample.data, &sample.size_bytes),
+    char *path = in_folder(name);
+    assert_int_equal(image_save(&warnings_log, image, path, &text, 1), WHIT_OK);
+    assert_int_equal(file_read(&warnings_log, NULL, path, 0, &sample.data, &sample.size_bytes),
                      WHIT_OK);
-    free(path);
     return sample;
 }
 
@@ -49,90 +48,63 @@ static struct sample hdr_sample(void)
 }
 
 /* True when it loaded. Everything about the outcome must agree. */
-static bool try_load(struct fixture *fixture, const char *path, const uint8_t *data,
-                     size_t size_bytes)
+static bool try_load(const char *path, const uint8_t *data, size_t size_bytes)
 {
     struct image image;
     struct image_text *texts;
     uint32_t text_count;
     fixture_put(path, data, size_bytes);
-    fixture->errors = 0;
-    whit_result result = image_load(&fixture->log, path, &image);
-    assert_int_equal(fixture->errors, result == WHIT_OK ? 0 : 1);
+    messages.errors = 0;
+    whit_result result = image_load(&warnings_log, path, &image);
+    assert_int_equal(messages.errors, result == WHIT_OK ? 0 : 1);
     if (result == WHIT_OK) {
         assert_true(image.width > 0 && image.height > 0 && !image.pixels != !image.words);
     } else {
         assert_true(result == WHIT_ERROR_INPUT || result == WHIT_ERROR_MEMORY);
-        assert_non_null(strstr(fixture->last, path));
+        assert_non_null(strstr(messages.last, path));
         assert_true(!image.pixels && !image.words);
     }
     image_finish(&image);
-    fixture->errors = 0;
-    whit_result texts_result = image_load_texts(&fixture->log, path, &texts, &text_count);
-    assert_int_equal(fixture->errors, texts_result == WHIT_OK ? 0 : 1);
+    messages.errors = 0;
+    whit_result texts_result = image_load_texts(&warnings_log, path, &texts, &text_count);
+    assert_int_equal(messages.errors, texts_result == WHIT_OK ? 0 : 1);
     free(texts);
     return result == WHIT_OK;
 }
 
-static void damage(struct fixture *fixture, struct sample *sample)
+static void damage(struct sample sample)
 {
-    char *path = fixture_path(fixture, sample->name);
-    assert_true(try_load(fixture, path, sample->data, sample->size_bytes));
-    for (size_t length = 0; length < sample->size_bytes; ++length)
-        assert_false(try_load(fixture, path, sample->data, length));
+    print_message("%s\n", sample.name);
+    char *path = in_folder(sample.name);
+    assert_true(try_load(path, sample.data, sample.size_bytes));
+    for (size_t length = 0; length < sample.size_bytes; ++length)
+        assert_false(try_load(path, sample.data, length));
     uint64_t seed = 99;
-    uint8_t *copy = malloc(sample->size_bytes);
+    uint8_t *copy = malloc(sample.size_bytes);
     assert_non_null(copy);
     for (int i = 0; i < FLIPS; ++i) {
-        memcpy(copy, sample->data, sample->size_bytes);
+        memcpy(copy, sample.data, sample.size_bytes);
         /* Every other time in the first bytes, where the sizes are. */
-        size_t range = i % 2 && sample->size_bytes > 64 ? 64 : sample->size_bytes;
+        size_t range = i % 2 && sample.size_bytes > 64 ? 64 : sample.size_bytes;
         for (uint32_t n = 1 + random_below(&seed, 3); n; --n)
             copy[random_bits(&seed) % range] = (uint8_t)random_bits(&seed);
-        try_load(fixture, path, copy, sample->size_bytes);
+        try_load(path, copy, sample.size_bytes);
     }
     free(copy);
-    free(sample->data);
-    free(path);
+    free(sample.data);
 }
 
-static void damaged_png(void **state)
+TEST_IN(damaged_files_load_or_are_refused, folder_begin, folder_end)
 {
-    struct image image = fixture_floats(7, 5, 4);
-    struct sample sample = sample_of(*state, "a.png", &image);
-    damage(*state, &sample);
-    image_finish(&image);
-}
-
-static void damaged_exr(void **state)
-{
-    struct image image = fixture_floats(7, 5, 3);
-    struct sample sample = sample_of(*state, "a.exr", &image);
-    damage(*state, &sample);
-    image_finish(&image);
-}
-
-static void damaged_identities(void **state)
-{
-    struct image image = fixture_words(5, 20, 2);
-    memset(image.words, 0, 5 * 20 * 2 * sizeof(uint32_t)); /* compresses well */
-    struct sample sample = sample_of(*state, "ids.exr", &image);
-    damage(*state, &sample);
-    image_finish(&image);
-}
-
-static void damaged_pfm(void **state)
-{
-    struct image image = fixture_floats(7, 5, 3);
-    struct sample sample = sample_of(*state, "a.pfm", &image);
-    damage(*state, &sample);
-    image_finish(&image);
-}
-
-static void damaged_hdr(void **state)
-{
-    struct sample sample = hdr_sample();
-    damage(*state, &sample);
+    static const char *const names[] = {"a.png", "a.exr", "ids.exr", "a.pfm"};
+    struct image images[] = {fixture_floats(7, 5, 4), fixture_floats(7, 5, 3),
+                             fixture_words(5, 20, 2), fixture_floats(7, 5, 3)};
+    memset(images[2].words, 0, 5 * 20 * 2 * sizeof(uint32_t)); /* compresses well */
+    for (int i = 0; i < 4; ++i) {
+        damage(sample_of(names[i], &images[i]));
+        image_finish(&images[i]);
+    }
+    damage(hdr_sample());
 }
 
 static uint64_t reply_seed;
@@ -147,28 +119,25 @@ static void answer_anything(struct child_reply *reply)
         reply->size_bytes -= random_below(&reply_seed, (uint32_t)reply->size_bytes);
 }
 
-static void replies_are_not_believed(void **state)
+TEST_IN(replies_are_not_believed, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     struct image image = fixture_floats(7, 5, 4);
-    struct sample sample = sample_of(fixture, "a.png", &image);
-    char *path = fixture_path(fixture, sample.name);
+    struct sample sample = sample_of("a.png", &image);
+    char *path = in_folder(sample.name);
     int refused = 0;
     reply_seed = 7;
     change_reply = answer_anything;
     for (int i = 0; i < FLIPS; ++i)
-        refused += !try_load(fixture, path, sample.data, sample.size_bytes);
+        refused += !try_load(path, sample.data, sample.size_bytes);
     change_reply = NULL;
     assert_true(refused > FLIPS / 2);
-    assert_true(try_load(fixture, path, sample.data, sample.size_bytes));
+    assert_true(try_load(path, sample.data, sample.size_bytes));
     free(sample.data);
-    free(path);
     image_finish(&image);
 }
 
-static void headers_that_lie(void **state)
+TEST_IN(headers_that_lie, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     static const char *const files[] = {
         "PF\n-3 4\n-1.0\n",
         "PF\n99999999999999999999 1\n-1.0\n",
@@ -186,24 +155,7 @@ static void headers_that_lie(void **state)
         "GIF89a",
         "",
     };
-    char *path = fixture_path(fixture, "a.png");
+    char *path = in_folder("a.png");
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
-        assert_false(try_load(fixture, path, (const uint8_t *)files[i], strlen(files[i])));
-    free(path);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(damaged_png),
-        TEST(damaged_exr),
-        TEST(damaged_identities),
-        TEST(damaged_pfm),
-        TEST(damaged_hdr),
-        TEST(headers_that_lie),
-        TEST(replies_are_not_believed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+        assert_false(try_load(path, (const uint8_t *)files[i], strlen(files[i])));
 }

@@ -1,5 +1,6 @@
 #include "image_fixture.h"
 #include <math.h>
+#include <sys/stat.h>
 
 #include <png.h>
 
@@ -12,17 +13,15 @@ static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
                                            {"note", "\xc3\xbc 5\xc2\xb0"}};
 enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
 
-static void save_and_load(struct fixture *fixture, const char *name, const struct image *image,
-                          struct image *loaded)
+static void save_and_load(const char *name, const struct image *image, struct image *loaded)
 {
-    char *path = fixture_path(fixture, name);
-    assert_int_equal(image_save(&fixture->log, image, path, recipe, RECIPE_COUNT), WHIT_OK);
-    assert_int_equal(image_load(&fixture->log, path, loaded), WHIT_OK);
-    assert_int_equal(fixture->errors, 0);
-    free(path);
+    char *path = in_folder(name);
+    assert_int_equal(image_save(&warnings_log, image, path, recipe, RECIPE_COUNT), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, path, loaded), WHIT_OK);
+    assert_int_equal(messages.errors, 0);
 }
 
-static void floats_keep_every_bit(void **state)
+TEST_IN(floats_keep_every_bit, folder_begin, folder_end)
 {
     static const uint32_t sizes[][2] = {{1, 1}, {37, 1}, {1, 33}, {70, 49}};
     for (int i = 0; i < 4; ++i) {
@@ -31,11 +30,11 @@ static void floats_keep_every_bit(void **state)
                 continue;
             struct image image = fixture_floats(sizes[i][0], sizes[i][1], channels), loaded;
             image.pixels[0] = NAN;
-            save_and_load(*state, "a.exr", &image, &loaded);
+            save_and_load("a.exr", &image, &loaded);
             assert_images_equal(&image, &loaded);
             image_finish(&loaded);
             if (channels != 4) {
-                save_and_load(*state, "a.pfm", &image, &loaded);
+                save_and_load("a.pfm", &image, &loaded);
                 assert_images_equal(&image, &loaded);
                 image_finish(&loaded);
             }
@@ -44,39 +43,37 @@ static void floats_keep_every_bit(void **state)
     }
 }
 
-static void integers_keep_every_bit(void **state)
+TEST_IN(integers_keep_every_bit, folder_begin, folder_end)
 {
     for (uint32_t channels = 1; channels <= 4; ++channels) {
         struct image image = fixture_words(53, 41, channels), loaded;
-        save_and_load(*state, "ids.exr", &image, &loaded);
+        save_and_load("ids.exr", &image, &loaded);
         assert_images_equal(&image, &loaded);
         image_finish(&loaded);
         image_finish(&image);
     }
 }
 
-static void pfm_is_bottom_up_little_endian(void **state)
+TEST_IN(pfm_is_bottom_up_little_endian, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     struct image image, loaded;
     assert_int_equal(image_init(&image, 1, 2, 1, false), WHIT_OK);
     image.pixels[0] = 1.0f;
     image.pixels[1] = -2.0f;
-    save_and_load(fixture, "a.pfm", &image, &loaded);
+    save_and_load("a.pfm", &image, &loaded);
     image_finish(&loaded);
     uint8_t *data;
     size_t size_bytes;
-    char *path = fixture_path(fixture, "a.pfm");
+    char *path = in_folder("a.pfm");
     assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
     assert_int_equal(size_bytes, 20);
     assert_memory_equal(data, "Pf\n1 2\n-1.0\n\0\0\0\xc0\0\0\x80\x3f", 20);
     free(data);
     fixture_put(path, "Pf 1 2 2.5 \xc0\0\0\0\x3f\x80\0\0", 19);
-    assert_int_equal(image_load(&fixture->log, path, &loaded), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
     assert_images_equal(&image, &loaded);
     image_finish(&loaded);
     image_finish(&image);
-    free(path);
 }
 
 /* The nearest of 256 codes, from the formula in double. */
@@ -92,12 +89,12 @@ static int code_of(float linear)
     return (int)lroundf(image_srgb_from_linear(linear) * 255.0f);
 }
 
-static void png_rounds_to_nearest_srgb(void **state)
+TEST_IN(png_rounds_to_nearest_srgb, folder_begin, folder_end)
 {
     struct image image = fixture_floats(211, 97, 4), loaded;
     for (uint32_t i = 0; i < 4000; ++i)
         image.pixels[i] = (float)i / 1e6f; /* where the codes lie close */
-    save_and_load(*state, "a.png", &image, &loaded);
+    save_and_load("a.png", &image, &loaded);
     assert_int_equal(loaded.channels, 4);
     for (size_t i = 0; i < (size_t)211 * 97 * 4; ++i) {
         if (i % 4 == 3) {
@@ -111,12 +108,12 @@ static void png_rounds_to_nearest_srgb(void **state)
     image_finish(&image);
 }
 
-static void png_survives_its_own_round_trip(void **state)
+TEST_IN(png_survives_its_own_round_trip, folder_begin, folder_end)
 {
     for (uint32_t channels = 1; channels <= 3; channels += 2) {
         struct image image = fixture_floats(64, 64, channels), first, second;
-        save_and_load(*state, "a.png", &image, &first);
-        save_and_load(*state, "b.png", &first, &second);
+        save_and_load("a.png", &image, &first);
+        save_and_load("b.png", &first, &second);
         assert_int_equal(first.channels, channels);
         assert_images_equal(&first, &second);
         image_finish(&first);
@@ -125,19 +122,18 @@ static void png_survives_its_own_round_trip(void **state)
     }
 }
 
-static void nonfinite_is_magenta_and_counted(void **state)
+TEST_IN(nonfinite_is_magenta_and_counted, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     for (uint32_t channels = 1; channels <= 4; ++channels) {
         if (channels == 2)
             continue;
         struct image image = fixture_floats(8, 8, channels), loaded;
         image.pixels[5 * channels] = INFINITY;
         image.pixels[9 * channels + channels - 1] = NAN;
-        fixture->warnings = 0;
-        save_and_load(fixture, "a.png", &image, &loaded);
-        assert_int_equal(fixture->warnings, 1);
-        assert_non_null(strstr(fixture->last, " 2 of 64 "));
+        messages.warnings = 0;
+        save_and_load("a.png", &image, &loaded);
+        assert_int_equal(messages.warnings, 1);
+        assert_non_null(strstr(messages.last, " 2 of 64 "));
         static const float magenta[4] = {1.0f, 0.0f, 1.0f, 1.0f};
         assert_true(loaded.channels >= 3);
         size_t bytes = loaded.channels * sizeof(float);
@@ -145,25 +141,24 @@ static void nonfinite_is_magenta_and_counted(void **state)
         assert_memory_equal(loaded.pixels + 9 * loaded.channels, magenta, bytes);
         assert_memory_not_equal(loaded.pixels + 6 * loaded.channels, magenta, bytes);
         image_finish(&loaded);
-        fixture->warnings = 0;
-        save_and_load(fixture, "a.exr", &image, &loaded);
-        assert_int_equal(fixture->warnings, 1);
+        messages.warnings = 0;
+        save_and_load("a.exr", &image, &loaded);
+        assert_int_equal(messages.warnings, 1);
         image_finish(&loaded);
         image_finish(&image);
     }
 }
 
-static void recipe_comes_back(void **state)
+TEST_IN(recipe_comes_back, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     static const char *const names[] = {"a.png", "a.exr", "a.pfm"};
     struct image image = fixture_floats(9, 7, 3);
     for (int i = 0; i < 3; ++i) {
-        char *path = fixture_path(fixture, names[i]);
+        char *path = in_folder(names[i]);
         struct image_text *texts;
         uint32_t count, found = 0;
-        assert_int_equal(image_save(&fixture->log, &image, path, recipe, RECIPE_COUNT), WHIT_OK);
-        assert_int_equal(image_load_texts(&fixture->log, path, &texts, &count), WHIT_OK);
+        assert_int_equal(image_save(&warnings_log, &image, path, recipe, RECIPE_COUNT), WHIT_OK);
+        assert_int_equal(image_load_texts(&warnings_log, path, &texts, &count), WHIT_OK);
         for (uint32_t t = 0; t < count; ++t) {
             for (int r = 0; r < RECIPE_COUNT; ++r)
                 found += strcmp(texts[t].key, recipe[r].key) == 0 &&
@@ -172,33 +167,37 @@ static void recipe_comes_back(void **state)
         assert_int_equal(count, i == 2 ? 0 : RECIPE_COUNT);
         assert_int_equal(found, count);
         free(texts);
-        free(path);
     }
-    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(messages.errors, 0);
     image_finish(&image);
 }
 
-static void refusals_leave_nothing_behind(void **state)
+TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    struct image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2);
-    char *jpg = fixture_path(fixture, "a.jpg"), *png = fixture_path(fixture, "a.png");
-    char *folder = fixture_path(fixture, "none/a.exr");
-    assert_int_equal(image_save(&fixture->log, &floats, jpg, NULL, 0), WHIT_ERROR_USAGE);
-    assert_int_equal(image_save(&fixture->log, &words, png, NULL, 0), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(fixture->last, ".exr"));
-    assert_int_equal(image_save(&fixture->log, &floats, folder, NULL, 0), WHIT_ERROR_OUTPUT);
-    assert_int_equal(image_save(&fixture->log, &(struct image){0}, png, NULL, 0), WHIT_ERROR_USAGE);
-    assert_int_equal(fixture->errors, 4);
-    /* An empty key is refused half-way. */
-    struct image_text empty = {"", "value"};
-    char *exr = fixture_path(fixture, "a.exr");
-    assert_int_equal(image_save(&fixture->log, &floats, exr, &empty, 1), WHIT_ERROR_OUTPUT);
-    assert_int_equal(rmdir(fixture->folder), 0);
-    assert_non_null(mkdtemp(strcpy(fixture->folder, "/tmp/whit-image-XXXXXX")));
+    struct image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
+    const struct image_text empty = {"", "value"}; /* refused half-way */
+    const struct {
+        const char *name;
+        const struct image *image;
+        uint32_t texts;
+        whit_result result;
+        const char *says;
+    } cases[] = {{"a.jpg", &floats, 0, WHIT_ERROR_USAGE, ""},
+                 {"a.png", &words, 0, WHIT_ERROR_USAGE, ".exr"},
+                 {"none/a.exr", &floats, 0, WHIT_ERROR_OUTPUT, ""},
+                 {"a.png", &none, 0, WHIT_ERROR_USAGE, ""},
+                 {"a.exr", &floats, 1, WHIT_ERROR_OUTPUT, ""}};
+    for (int i = 0; i < 5; ++i) {
+        whit_result result = image_save(&warnings_log, cases[i].image, in_folder(cases[i].name),
+                                        cases[i].texts ? &empty : NULL, cases[i].texts);
+        if (result != cases[i].result || messages.errors != i + 1 ||
+            !strstr(messages.last, cases[i].says))
+            fail_msg("case %d, %s: %d, %s", i, cases[i].name, (int)result, messages.last);
+    }
+    assert_int_equal(rmdir(folder), 0);
+    assert_int_equal(mkdir(folder, 0700), 0);
     assert_true(image_format_known("x.PNG", false) && image_format_known("x.exr", true));
     assert_false(image_format_known("x.png", true) || image_format_known("exr", false));
-    free(jpg), free(png), free(folder), free(exr);
     image_finish(&floats);
     image_finish(&words);
 }
@@ -243,41 +242,35 @@ static float linear_of(int code, int largest)
     return image_linear_from_srgb((float)code / (float)largest);
 }
 
-static void png_kinds_are_converted(void **state)
+static struct image load_kind(int colour_type, int bit_depth, int interlace, uint32_t channels)
 {
-    struct fixture *fixture = *state;
-    char *path = fixture_path(fixture, "a.png");
     struct image image;
+    png_write_raw(in_folder("a.png"), colour_type, bit_depth, interlace, 0);
+    assert_int_equal(image_load(&warnings_log, in_folder("a.png"), &image), WHIT_OK);
+    assert_int_equal(image.channels, channels);
+    return image;
+}
+
+TEST_IN(png_kinds_are_converted, folder_begin, folder_end)
+{
     for (int interlace = 0; interlace <= 1; ++interlace) {
-        png_write_raw(path, PNG_COLOR_TYPE_PALETTE, 1, interlace, 0);
-        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
-        assert_int_equal(image.channels, 4);
+        struct image image = load_kind(PNG_COLOR_TYPE_PALETTE, 1, interlace, 4);
         const float expected[8] = {1.0f, linear_of(128, 255), 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.2f};
         assert_memory_equal(image.pixels + 8 * 4 * 3, expected, sizeof expected);
         image_finish(&image);
-
-        png_write_raw(path, PNG_COLOR_TYPE_GRAY, 1, interlace, 0);
-        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
-        assert_int_equal(image.channels, 1);
+        image = load_kind(PNG_COLOR_TYPE_GRAY, 1, interlace, 1);
         assert_true(image.pixels[0] == 1.0f && image.pixels[1] == 0.0f);
         image_finish(&image);
-
-        png_write_raw(path, PNG_COLOR_TYPE_GRAY_ALPHA, 8, interlace, 0);
-        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
-        assert_int_equal(image.channels, 4);
+        image = load_kind(PNG_COLOR_TYPE_GRAY_ALPHA, 8, interlace, 4);
         assert_true(image.pixels[4] == linear_of(6, 255) && image.pixels[5] == image.pixels[4] &&
                     image.pixels[6] == image.pixels[4] && image.pixels[7] == 9.0f / 255.0f);
         image_finish(&image);
-
-        png_write_raw(path, PNG_COLOR_TYPE_RGB, 16, interlace, 0);
-        assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
-        assert_int_equal(image.channels, 3);
+        image = load_kind(PNG_COLOR_TYPE_RGB, 16, interlace, 3);
         int word = (29 + 2 * 3) << 8 | (29 + 3 * 3); /* row 1, bytes 2 and 3 */
         assert_true(image.pixels[8 * 3 + 1] == linear_of(word, 65535));
         image_finish(&image);
     }
-    assert_int_equal(fixture->errors, 0);
-    free(path);
+    assert_int_equal(messages.errors, 0);
 }
 
 /* A picture with R, G, B written by the library's own calls. */
@@ -342,33 +335,30 @@ static void exr_write_raw(const char *path, const struct image *image, bool tile
     assert_int_equal(exr_finish(&context), 0);
 }
 
-static void exr_kinds_are_read(void **state)
+TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
     static const exr_compression_t compressions[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,
                                                      EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
                                                      EXR_COMPRESSION_PIZ};
-    char *path = fixture_path(fixture, "a.exr");
+    char *path = in_folder("a.exr");
     struct image image = fixture_floats(45, 37, 3), loaded;
     for (size_t i = 0; i < (size_t)45 * 37 * 3; ++i)
         image.pixels[i] = roundf(image.pixels[i] * 1024.0f) / 1024.0f; /* a half holds these */
     for (int kind = 0; kind < 4; ++kind) {
         for (int c = 0; c < 5; ++c) {
             exr_write_raw(path, &image, kind & 1, kind & 2, compressions[c]);
-            assert_int_equal(image_load(&fixture->log, path, &loaded), WHIT_OK);
+            assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
             assert_images_equal(&image, &loaded);
             image_finish(&loaded);
         }
     }
-    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(messages.errors, 0);
     image_finish(&image);
-    free(path);
 }
 
-static void hdr_rows_of_all_kinds(void **state)
+TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    char *path = fixture_path(fixture, "a.hdr");
+    char *path = in_folder("a.hdr");
     /* Row 0 flat with an old repeat mark, row 1 run-length coded: red runs, green plain. */
     static const char file[] = "#?RADIANCE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n"
                                "\x80\x40\x20\x81"
@@ -381,7 +371,7 @@ static void hdr_rows_of_all_kinds(void **state)
                                "\x88\x88";
     struct image image;
     fixture_put(path, file, sizeof file - 1);
-    assert_int_equal(image_load(&fixture->log, path, &image), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, path, &image), WHIT_OK);
     assert_int_equal(image.width, 8);
     assert_int_equal(image.height, 2);
     assert_int_equal(image.channels, 3);
@@ -395,7 +385,6 @@ static void hdr_rows_of_all_kinds(void **state)
         assert_memory_equal(image.pixels + 24 + 3 * x, expected, sizeof expected);
     }
     image_finish(&image);
-    free(path);
 }
 
 static uint64_t malloc_bytes;
@@ -432,54 +421,29 @@ static uint8_t *repeat_text(const char *path, size_t *size_bytes)
     return many;
 }
 
-static void png_texts_take_what_they_may(void **state)
+TEST_IN(png_texts_take_what_they_may, folder_begin, folder_end)
 {
     enum { TEXT_BYTES = (2 << 20) - 100, FREE_BYTES = 64 << 20 };
-    struct fixture *fixture = *state;
-    char *path = fixture_path(fixture, "a.png");
+    char *path = in_folder("a.png");
     png_write_raw(path, PNG_COLOR_TYPE_GRAY, 8, PNG_INTERLACE_NONE, TEXT_BYTES);
     size_t size_bytes;
     uint8_t *file = repeat_text(path, &size_bytes);
     struct image image;
     fixture_put(path, file, size_bytes);
-    const struct image_source source = {&fixture->log, path, file, size_bytes};
+    const struct image_source source = {&warnings_log, path, file, size_bytes};
     malloc_bytes = 0;
     assert_int_equal(image_decode(&source, &image), WHIT_OK); /* which runs in a child else */
     assert_in_range(malloc_bytes, TEXT_BYTES, FREE_BYTES + 10 * size_bytes + (1 << 20));
     image_finish(&image);
     free(file);
-    free(path);
 }
 
-static void sizes_out_of_range(void **state)
+TEST(sizes_out_of_range)
 {
-    (void)state;
     struct image image;
     assert_int_equal(image_init(&image, UINT32_MAX, UINT32_MAX, 4, false), WHIT_ERROR_MEMORY);
     assert_int_equal(image_init(&image, 0, 4, 4, false), WHIT_ERROR_USAGE);
     assert_int_equal(image_init(&image, 4, 4, 5, false), WHIT_ERROR_USAGE);
     image_finish(&image);
     image_finish(NULL);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(floats_keep_every_bit),
-        TEST(integers_keep_every_bit),
-        TEST(pfm_is_bottom_up_little_endian),
-        TEST(png_rounds_to_nearest_srgb),
-        TEST(png_survives_its_own_round_trip),
-        TEST(nonfinite_is_magenta_and_counted),
-        TEST(recipe_comes_back),
-        TEST(refusals_leave_nothing_behind),
-        TEST(png_kinds_are_converted),
-        TEST(png_texts_take_what_they_may),
-        TEST(exr_kinds_are_read),
-        TEST(hdr_rows_of_all_kinds),
-        cmocka_unit_test(sizes_out_of_range),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,74 +1,14 @@
-/* Pictures and folders for the image tests. */
+/* Pictures for the image tests. */
 #ifndef IMAGE_FIXTURE_H
 #define IMAGE_FIXTURE_H
 
-#include <dirent.h>
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
 
 #include "../random.h"
 #include "base/array.h"
 #include "base/file.h"
+#include "folder_fixture.h"
 #include "image/image.h"
-
-struct fixture {
-    char folder[32];
-    struct log log;
-    int errors, warnings;
-    char last[512];
-};
-
-static inline void fixture_collect(void *user, whit_log_level level, const char *message)
-{
-    struct fixture *fixture = user;
-    if (level > WHIT_LOG_WARNING)
-        return;
-    *(level == WHIT_LOG_ERROR ? &fixture->errors : &fixture->warnings) += 1;
-    snprintf(fixture->last, sizeof fixture->last, "%s", message);
-}
-
-static inline int fixture_begin(void **state)
-{
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    if (!fixture)
-        return -1;
-    strcpy(fixture->folder, "/tmp/whit-image-XXXXXX");
-    fixture->log = (struct log){.fn = fixture_collect, .user = fixture, .level = WHIT_LOG_INFO};
-    *state = fixture;
-    return mkdtemp(fixture->folder) ? 0 : -1;
-}
-
-static inline int fixture_end(void **state)
-{
-    struct fixture *fixture = *state;
-    DIR *dir = opendir(fixture->folder);
-    for (struct dirent *entry; dir && (entry = readdir(dir));) {
-        char *path = string_format("%s/%s", fixture->folder, entry->d_name);
-        remove(path);
-        free(path);
-    }
-    closedir(dir);
-    int result = rmdir(fixture->folder);
-    free(fixture);
-    return result;
-}
-
-/* Release with free(). */
-static inline char *fixture_path(const struct fixture *fixture, const char *name)
-{
-    char *path = string_format("%s/%s", fixture->folder, name);
-    assert_non_null(path);
-    return path;
-}
 
 /* Written over what is there: file systems are slow to make a file anew, and some wait for the disk
    when a file is cut to nothing and filled again. */

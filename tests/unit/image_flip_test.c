@@ -242,9 +242,8 @@ static void finish_pair(struct image pair[2])
     image_finish(&pair[1]);
 }
 
-static void every_pixel_is_that_of_direct_sums(void **state)
+TEST(every_pixel_is_that_of_direct_sums)
 {
-    (void)state;
     static const double resolutions[] = {FLIP_PIXELS_PER_DEGREE, 25.0};
     struct image pair[2], map;
     make_pair(pair);
@@ -267,9 +266,8 @@ static void every_pixel_is_that_of_direct_sums(void **state)
 }
 
 /* Means and largest values by a program in Python, direct sums in doubles. */
-static void means_are_those_of_another_program(void **state)
+TEST(means_are_those_of_another_program)
 {
-    (void)state;
     static const struct {
         double resolution, mean, largest;
     } known[] = {{0.0, 0.2818399, 0.8323297}, {25.0, 0.2422116, 0.9854911}};
@@ -298,9 +296,8 @@ static double flip_of_colors(const uint8_t p[3], const uint8_t q[3])
     return mean;
 }
 
-static void one_colour_is_as_by_hand(void **state)
+TEST(one_colour_is_as_by_hand)
 {
-    (void)state;
     static const uint8_t colors[][3] = {{0, 0, 0},   {255, 255, 255}, {255, 0, 0},     {0, 255, 0},
                                         {0, 0, 255}, {128, 128, 128}, {136, 128, 120}, {3, 2, 1}};
     enum { COUNT = sizeof colors / sizeof colors[0] };
@@ -328,9 +325,8 @@ static void one_colour_is_as_by_hand(void **state)
 
 /* OpenImageIO's testsuite/flip (commit 66c3c5e, ref/out.txt): 64 x 64 of 0.1 and of 0.9, kept as
    half floats, linear, by an implementation of its own: mean and largest 0.9514. */
-static void grey_pair_is_as_published(void **state)
+TEST(grey_pair_is_as_published)
 {
-    (void)state;
     static const float dark = 0.099975586f, light = 0.89990234f;
     struct image a = image_of(64, 64), b = image_of(64, 64), map;
     struct flip_summary summary;
@@ -347,9 +343,8 @@ static void grey_pair_is_as_published(void **state)
     image_finish(&b);
 }
 
-static void equal_is_exactly_none(void **state)
+TEST(equal_is_exactly_none)
 {
-    (void)state;
     struct image pair[2];
     make_pair(pair);
     assert_true(flip_of(&pair[0], &pair[0], 0.0, NULL) == 0.0);
@@ -357,9 +352,8 @@ static void equal_is_exactly_none(void **state)
     finish_pair(pair);
 }
 
-static void swapping_changes_nothing(void **state)
+TEST(swapping_changes_nothing)
 {
-    (void)state;
     struct image pair[2], there, back;
     make_pair(pair);
     flip_of(&pair[0], &pair[1], 0.0, &there);
@@ -382,9 +376,8 @@ static struct image noisy(const struct image *image, float amplitude)
 }
 
 /* More noise is a larger difference; seen from farther away it is a smaller one. */
-static void noise_counts_by_its_size(void **state)
+TEST(noise_counts_by_its_size)
 {
-    (void)state;
     static const uint8_t grey[3] = {150, 150, 150};
     struct image a = image_of_one(40, 30, grey);
     double before = 0.0;
@@ -401,9 +394,8 @@ static void noise_counts_by_its_size(void **state)
 }
 
 /* What a PNG cannot show makes no difference, what is not finite is magenta. */
-static void pictures_are_taken_as_shown(void **state)
+TEST(pictures_are_taken_as_shown)
 {
-    (void)state;
     static const uint8_t white[3] = {255, 255, 255}, magenta[3] = {255, 0, 255};
     struct image a = image_of_one(12, 10, white), b = image_of_one(12, 10, white), maps[2];
     for (int i = 0; i < 60; ++i)
@@ -423,9 +415,8 @@ static void pictures_are_taken_as_shown(void **state)
     image_finish(&b);
 }
 
-static void other_pictures_are_refused(void **state)
+TEST(other_pictures_are_refused)
 {
-    (void)state;
     struct image a = fixture_floats(4, 3, 3), b = fixture_floats(3, 4, 3);
     struct image ids = fixture_words(4, 3, 1), map;
     struct flip_summary summary;
@@ -440,20 +431,4 @@ static void other_pictures_are_refused(void **state)
     image_finish(&a);
     image_finish(&b);
     image_finish(&ids);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_pixel_is_that_of_direct_sums),
-        cmocka_unit_test(means_are_those_of_another_program),
-        cmocka_unit_test(one_colour_is_as_by_hand),
-        cmocka_unit_test(grey_pair_is_as_published),
-        cmocka_unit_test(equal_is_exactly_none),
-        cmocka_unit_test(swapping_changes_nothing),
-        cmocka_unit_test(noise_counts_by_its_size),
-        cmocka_unit_test(pictures_are_taken_as_shown),
-        cmocka_unit_test(other_pictures_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,9 +31,8 @@ static void assert_color(double share, uint8_t red, uint8_t green, uint8_t blue)
     assert_int_equal(codes[2], blue);
 }
 
-static void colors_are_those_of_viridis(void **state)
+TEST(colors_are_those_of_viridis)
 {
-    (void)state;
     assert_color(0.0, 0x44, 0x01, 0x54);
     assert_color(15.0 / 255.0, 0x48, 0x17, 0x69);
     assert_color(120.0 / 255.0, 0x23, 0x89, 0x8e);
@@ -44,9 +43,8 @@ static void colors_are_those_of_viridis(void **state)
 }
 
 /* Colours of the map that lie between those of the table. */
-static void colors_between_are_near(void **state)
+TEST(colors_between_are_near)
 {
-    (void)state;
     static const struct {
         int index;
         uint8_t codes[3];
@@ -69,9 +67,8 @@ static double light_of(const uint8_t codes[3])
 }
 
 /* Brighter is more, also for who sees no colours. */
-static void brightness_rises(void **state)
+TEST(brightness_rises)
 {
-    (void)state;
     double before = -1.0;
     for (int i = 0; i <= 100; ++i) {
         uint8_t codes[3];
@@ -82,9 +79,8 @@ static void brightness_rises(void **state)
 }
 
 /* Both sides darken away from 0, blue on one, brown on the other. */
-static void signed_colors_have_two_sides(void **state)
+TEST(signed_colors_have_two_sides)
 {
-    (void)state;
     uint8_t zero[3], below[3], above[3], beyond[3];
     heat_signed_color(0.0, zero);
     double before[2] = {light_of(zero), light_of(zero)};
@@ -102,9 +98,8 @@ static void signed_colors_have_two_sides(void **state)
     assert_memory_equal(beyond, zero, 3);
 }
 
-static void signed_pictures_show_the_farthest_channel(void **state)
+TEST(signed_pictures_show_the_farthest_channel)
 {
-    (void)state;
     struct image values, heat;
     assert_int_equal(image_init(&values, 200, 2, 3, false), WHIT_OK);
     for (int i = 0; i < 400; ++i)
@@ -129,9 +124,8 @@ static void signed_pictures_show_the_farthest_channel(void **state)
     image_finish(&heat);
 }
 
-static void the_scale_ignores_the_brightest_200th(void **state)
+TEST(the_scale_ignores_the_brightest_200th)
 {
-    (void)state;
     struct image values = values_of(100, 10, 0.0f);
     for (int i = 0; i < 1000; ++i)
         values.pixels[(i * 7) % 1000] = (float)(i + 1); /* 1 to 1000 */
@@ -144,9 +138,8 @@ static void the_scale_ignores_the_brightest_200th(void **state)
     image_finish(&values);
 }
 
-static void the_scale_of_few_or_no_values(void **state)
+TEST(the_scale_of_few_or_no_values)
 {
-    (void)state;
     struct image values = values_of(100, 100, 0.0f);
     assert_true(image_heat_scale(&values) == 1.0);
     values.pixels[77] = 13.0f; /* far below a 200th of the picture */
@@ -162,17 +155,16 @@ static void the_scale_of_few_or_no_values(void **state)
 }
 
 /* Through a PNG and back: its codes are those of heat_color. */
-static void the_file_has_the_codes_of_the_table(void **state)
+TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    char *path = string_format("%s/heat.png", fixture->folder);
+    char *path = in_folder("heat.png");
     struct image values = values_of(500, 3, 0.0f), back;
     for (uint32_t i = 0; i < 1500; ++i)
         values.pixels[i] = (float)i;
     struct image heat = heat_of(&values, 1499.0, "all of them");
     assert_int_equal(heat.width, 500);
-    assert_int_equal(image_save(&fixture->log, &heat, path, NULL, 0), WHIT_OK);
-    assert_int_equal(image_load(&fixture->log, path, &back), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, &heat, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, path, &back), WHIT_OK);
     assert_true(back.width == heat.width && back.height == heat.height);
     for (uint32_t i = 0; i < 1500; ++i) {
         uint8_t codes[3];
@@ -185,7 +177,6 @@ static void the_file_has_the_codes_of_the_table(void **state)
     image_finish(&values);
     image_finish(&heat);
     image_finish(&back);
-    free(path);
 }
 
 static uint32_t count_ink(const struct image *image, uint32_t first_row)
@@ -196,9 +187,8 @@ static uint32_t count_ink(const struct image *image, uint32_t first_row)
     return count;
 }
 
-static void the_legend_fits_any_picture(void **state)
+TEST(the_legend_fits_any_picture)
 {
-    (void)state;
     static const uint32_t sizes[][2] = {{1, 1},    {1, 300},   {300, 1},   {7, 5},
                                         {119, 40}, {640, 480}, {2048, 16}, {5000, 2}};
     static const char *const titles[] = {
@@ -221,9 +211,8 @@ static void the_legend_fits_any_picture(void **state)
     }
 }
 
-static void the_title_is_drawn(void **state)
+TEST(the_title_is_drawn)
 {
-    (void)state;
     struct image values = values_of(400, 4, 0.0f);
     struct image with = heat_of(&values, 1.0, "title"), without = heat_of(&values, 1.0, "");
     assert_int_equal(with.height, without.height);
@@ -233,9 +222,8 @@ static void the_title_is_drawn(void **state)
     image_finish(&without);
 }
 
-static void what_is_not_finite_stays_so(void **state)
+TEST(what_is_not_finite_stays_so)
 {
-    (void)state;
     struct image values = values_of(200, 1, 3.0f);
     values.pixels[5] = NAN;
     values.pixels[6] = INFINITY;
@@ -245,9 +233,8 @@ static void what_is_not_finite_stays_so(void **state)
     image_finish(&heat);
 }
 
-static void other_pictures_are_refused(void **state)
+TEST(other_pictures_are_refused)
 {
-    (void)state;
     struct image out, colors = fixture_floats(4, 4, 3), words;
     struct heat_params params = {0};
     assert_int_equal(image_init(&words, 4, 4, 1, true), WHIT_OK);
@@ -261,24 +248,4 @@ static void other_pictures_are_refused(void **state)
     image_finish(&colors);
     image_finish(&words);
     image_finish(&values);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colors_are_those_of_viridis),
-        cmocka_unit_test(colors_between_are_near),
-        cmocka_unit_test(brightness_rises),
-        cmocka_unit_test(signed_colors_have_two_sides),
-        cmocka_unit_test(signed_pictures_show_the_farthest_channel),
-        cmocka_unit_test(the_scale_ignores_the_brightest_200th),
-        cmocka_unit_test(the_scale_of_few_or_no_values),
-        cmocka_unit_test_setup_teardown(the_file_has_the_codes_of_the_table, fixture_begin,
-                                        fixture_end),
-        cmocka_unit_test(the_legend_fits_any_picture),
-        cmocka_unit_test(the_title_is_drawn),
-        cmocka_unit_test(what_is_not_finite_stays_so),
-        cmocka_unit_test(other_pictures_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,11 @@
 /* What scene_freeze drops, mends, refuses and makes up. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
+#include "unit.h"
 
 static void *copy_of(const void *data, size_t size_bytes)
 {
@@ -50,9 +43,8 @@ static bool noted(const struct scene *scene, const char *text)
     return false;
 }
 
-static void bad_triangles_are_dropped_and_counted(void **state)
+TEST(bad_triangles_are_dropped_and_counted)
 {
-    (void)state;
     const float p[] = {0,          0,      0, 1,     0, 0, 0,      1,     0, /* 0 1 2 */
                        (float)NAN, 0,      0, 2e18f, 0, 0,                   /* 3 4: unusable */
                        2,          0,      0, 1,     0, 0, 1e-30f, 0,     0, /* 5 6 7 */
@@ -83,9 +75,8 @@ static void bad_triangles_are_dropped_and_counted(void **state)
     scene_destroy(scene);
 }
 
-static void bad_spheres_are_dropped_and_counted(void **state)
+TEST(bad_spheres_are_dropped_and_counted)
 {
-    (void)state;
     const float spheres[] = {1, 2,          3, 0.5f,  0, 0, 0, 0,          0, 0, 0, -1,
                              0, (float)NAN, 0, 1,     0, 0, 0, (float)NAN, 0, 0, 0, INFINITY,
                              0, 0,          0, 2e18f, 9, 9, 9, 1e-30f,     4, 5, 6, 1e17f};
@@ -111,9 +102,8 @@ static void bad_spheres_are_dropped_and_counted(void **state)
 }
 
 /* A mesh is of triangles or of spheres. */
-static void mixed_meshes_are_refused(void **state)
+TEST(mixed_meshes_are_refused)
 {
-    (void)state;
     const float sphere[] = {0, 0, 0, 1};
     struct scene_mesh mesh = mesh_box(2, 2, 2);
     mesh.sphere_count = 1;
@@ -123,9 +113,8 @@ static void mixed_meshes_are_refused(void **state)
     scene_destroy(scene);
 }
 
-static void attributes_are_mended(void **state)
+TEST(attributes_are_mended)
 {
-    (void)state;
     const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5};
     const uint32_t indices[] = {0, 1, 2};
     const float normals[] = {0, 0, 0, (float)NAN, 0, 1, 0, -3, 0, 0, 0, 0};
@@ -160,9 +149,8 @@ static bool keeps_normals(float side, float lean)
     return keeps;
 }
 
-static void normals_of_flat_faces_go(void **state)
+TEST(normals_of_flat_faces_go)
 {
-    (void)state;
     for (int i = 0; i < 2; ++i) {
         float side = i ? -1.0f : 1.0f;
         assert_false(keeps_normals(side, 0.0f));
@@ -171,9 +159,8 @@ static void normals_of_flat_faces_go(void **state)
     }
 }
 
-static void materials_are_mended(void **state)
+TEST(materials_are_mended)
 {
-    (void)state;
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_material material = material_grey("odd");
     material.diffuse[0] = (float)NAN;
@@ -187,9 +174,8 @@ static void materials_are_mended(void **state)
     scene_destroy(scene);
 }
 
-static void broken_references_are_refused(void **state)
+TEST(broken_references_are_refused)
 {
-    (void)state;
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     scene->meshes[0].materials[3] = 7;
     assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
@@ -212,9 +198,8 @@ static void broken_references_are_refused(void **state)
     scene_destroy(scene);
 }
 
-static void singular_instances_and_unused_meshes_go(void **state)
+TEST(singular_instances_and_unused_meshes_go)
 {
-    (void)state;
     struct scene *scene = scene_begin(NULL, "test");
     scene_put_mesh(scene, mesh_box(2, 2, 2)); /* unused */
     uint32_t mesh = scene_put_mesh(scene, mesh_box(2, 2, 2));
@@ -232,9 +217,8 @@ static void singular_instances_and_unused_meshes_go(void **state)
     scene_destroy(scene);
 }
 
-static void empty_scene_is_a_background(void **state)
+TEST(empty_scene_is_a_background)
 {
-    (void)state;
     struct scene *scene = scene_begin(NULL, "test");
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->camera_count, 1);
@@ -245,9 +229,8 @@ static void empty_scene_is_a_background(void **state)
 }
 
 /* The light comes from behind the camera. */
-static void missing_camera_and_light_are_made(void **state)
+TEST(missing_camera_and_light_are_made)
 {
-    (void)state;
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     const struct scene_camera *camera = &scene->cameras[0];
@@ -261,9 +244,8 @@ static void missing_camera_and_light_are_made(void **state)
     scene_destroy(scene);
 }
 
-static void own_light_gets_no_company(void **state)
+TEST(own_light_gets_no_company)
 {
-    (void)state;
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_light light = {.kind = SCENE_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
     scene_put_light(scene, light);
@@ -294,9 +276,8 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
 
 /* Of many triangles: the samples' intensities add up to radiance * world area / pi, and lie on the
    panel. */
-static void tessellated_lamps_become_points(void **state)
+TEST(tessellated_lamps_become_points)
 {
-    (void)state;
     struct scene *scene = panel_scene(10.0f, 6);
     struct scene_pose pose;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
@@ -319,9 +300,8 @@ static void tessellated_lamps_become_points(void **state)
     scene_destroy(scene);
 }
 
-static void flat_lamps_become_rectangles(void **state)
+TEST(flat_lamps_become_rectangles)
 {
-    (void)state;
     struct scene *scene = panel_scene(10.0f, 1);
     struct scene_pose pose;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
@@ -342,9 +322,8 @@ static void flat_lamps_become_rectangles(void **state)
 }
 
 /* Halves that are no parallelogram, in a mirrored node: the front stays above. */
-static void single_triangles_become_lights(void **state)
+TEST(single_triangles_become_lights)
 {
-    (void)state;
     struct scene *scene = panel_scene(10.0f, 1);
     struct scene_pose pose;
     scene->meshes[1].positions[0] *= 1.5f;
@@ -363,9 +342,8 @@ static void single_triangles_become_lights(void **state)
     scene_destroy(scene);
 }
 
-static void faint_glow_lights_nothing(void **state)
+TEST(faint_glow_lights_nothing)
 {
-    (void)state;
     struct scene *scene = panel_scene(0.001f, 1);
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->light_count, 1);
@@ -386,33 +364,9 @@ static uint64_t hash_of(float diffuse, float move)
     return hash;
 }
 
-static void hash_follows_content(void **state)
+TEST(hash_follows_content)
 {
-    (void)state;
     assert_true(hash_of(0.5f, 0.0f) == hash_of(0.5f, 0.0f));
     assert_true(hash_of(0.5f, 0.0f) != hash_of(0.6f, 0.0f));
     assert_true(hash_of(0.5f, 0.0f) != hash_of(0.5f, 0.125f));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_triangles_are_dropped_and_counted),
-        cmocka_unit_test(bad_spheres_are_dropped_and_counted),
-        cmocka_unit_test(mixed_meshes_are_refused),
-        cmocka_unit_test(attributes_are_mended),
-        cmocka_unit_test(normals_of_flat_faces_go),
-        cmocka_unit_test(materials_are_mended),
-        cmocka_unit_test(broken_references_are_refused),
-        cmocka_unit_test(singular_instances_and_unused_meshes_go),
-        cmocka_unit_test(empty_scene_is_a_background),
-        cmocka_unit_test(missing_camera_and_light_are_made),
-        cmocka_unit_test(own_light_gets_no_company),
-        cmocka_unit_test(tessellated_lamps_become_points),
-        cmocka_unit_test(flat_lamps_become_rectangles),
-        cmocka_unit_test(single_triangles_become_lights),
-        cmocka_unit_test(faint_glow_lights_nothing),
-        cmocka_unit_test(hash_follows_content),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,11 @@
 /* Animation against values worked out by hand, and the effects that a scene calls for. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
+#include "unit.h"
 
 static float *copy_of(const float *values, size_t count)
 {
@@ -61,9 +54,8 @@ static void assert_near(double a, double b)
     assert_true(fabs(a - b) < 1e-6);
 }
 
-static void linear_and_held_ends(void **state)
+TEST(linear_and_held_ends)
 {
-    (void)state;
     const float times[] = {1, 2, 4}, values[] = {0, 0, 0, 4, 2, 0, 4, 2, 8};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values, 9);
     assert_near((double)scene->time_end_s, 4.0);
@@ -76,9 +68,8 @@ static void linear_and_held_ends(void **state)
     scene_destroy(scene);
 }
 
-static void steps_hold_until_the_next_key(void **state)
+TEST(steps_hold_until_the_next_key)
 {
-    (void)state;
     const float times[] = {0, 1, 2}, values[] = {1, 0, 0, 2, 0, 0, 3, 0, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values, 9);
     assert_near(matrix_at(scene, 0.999).m[3], 11.0);
@@ -90,9 +81,8 @@ static void steps_hold_until_the_next_key(void **state)
 
 /* Tangents are per second: with dt = 2 they count double. p(s) for values 0 -> 1, slopes 3 and 5.
  */
-static void cubic_is_hermite(void **state)
+TEST(cubic_is_hermite)
 {
-    (void)state;
     const float times[] = {0, 2};
     const float values[] = {7, 7, 7, 0, 0, 0, 3, 0, 0, 5, 0, 0, 1, 0, 0, 7, 7, 7};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values, 18);
@@ -107,9 +97,8 @@ static void cubic_is_hermite(void **state)
     scene_destroy(scene);
 }
 
-static void rotation_is_slerp_by_the_shorter_way(void **state)
+TEST(rotation_is_slerp_by_the_shorter_way)
 {
-    (void)state;
     /* 0 to 90 degrees about y, the second key written with its sign turned. */
     const float half = 0.70710678f, times[] = {0, 1};
     const float values[] = {0, 0, 0, 1, 0, -half, 0, -half};
@@ -124,9 +113,8 @@ static void rotation_is_slerp_by_the_shorter_way(void **state)
 }
 
 /* Equal keys must not divide by the sine of nothing. */
-static void rotation_between_equal_keys(void **state)
+TEST(rotation_between_equal_keys)
 {
-    (void)state;
     const float times[] = {0, 1}, values[] = {0, 0, 0, 2, 0, 0, 0, 2};
     struct scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
     struct affine matrix = matrix_at(scene, 0.5);
@@ -136,9 +124,8 @@ static void rotation_between_equal_keys(void **state)
 }
 
 /* Finite, and with an inverse; the scene is looked at at nine of its times before it is taken. */
-static void what_floats_cannot_place_is_refused(void **state)
+TEST(what_floats_cannot_place_is_refused)
 {
-    (void)state;
     const float times[] = {0, 2}, near[] = {0, 0, 0, 4e29f, 0, 0}, far[] = {0, 0, 0, 4e30f, 0, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, near, 6);
     scene_destroy(scene);
@@ -147,9 +134,8 @@ static void what_floats_cannot_place_is_refused(void **state)
     scene_destroy(scene);
 }
 
-static void vanishing_scale_keeps_an_inverse(void **state)
+TEST(vanishing_scale_keeps_an_inverse)
 {
-    (void)state;
     const float times[] = {0, 1}, values[] = {0, 0, 0, 1, 1, 1};
     struct scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values, 6);
     assert_true(matrix_at(scene, 0.0).m[0] > 0.0 && matrix_at(scene, 0.0).m[0] < 1e-5);
@@ -157,9 +143,8 @@ static void vanishing_scale_keeps_an_inverse(void **state)
     scene_destroy(scene);
 }
 
-static void unordered_times_are_dropped(void **state)
+TEST(unordered_times_are_dropped)
 {
-    (void)state;
     const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
     assert_int_equal(scene->channel_count, 0);
@@ -167,9 +152,8 @@ static void unordered_times_are_dropped(void **state)
     scene_destroy(scene);
 }
 
-static void lights_cameras_and_bounds_follow_their_nodes(void **state)
+TEST(lights_cameras_and_bounds_follow_their_nodes)
 {
-    (void)state;
     const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
     scene->frozen = false; /* add to it after all */
@@ -216,9 +200,8 @@ static struct scene *glass_scene(void)
     return scene_ready(scene);
 }
 
-static void effects_have_reasons(void **state)
+TEST(effects_have_reasons)
 {
-    (void)state;
     struct scene *scene = glass_scene();
     struct scene_effects effects;
     scene_effects_scan(scene, &effects);
@@ -239,21 +222,4 @@ static void effects_have_reasons(void **state)
     for (int i = 0; i < SCENE_EFFECT_COUNT; ++i)
         assert_non_null(scene_effect_name((enum scene_effect)i));
     scene_destroy(scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_and_held_ends),
-        cmocka_unit_test(steps_hold_until_the_next_key),
-        cmocka_unit_test(cubic_is_hermite),
-        cmocka_unit_test(rotation_is_slerp_by_the_shorter_way),
-        cmocka_unit_test(rotation_between_equal_keys),
-        cmocka_unit_test(what_floats_cannot_place_is_refused),
-        cmocka_unit_test(vanishing_scale_keeps_an_inverse),
-        cmocka_unit_test(unordered_times_are_dropped),
-        cmocka_unit_test(lights_cameras_and_bounds_follow_their_nodes),
-        cmocka_unit_test(effects_have_reasons),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,8 @@
 /* Shapes made by formula: exact counts, closed surfaces, outward faces, normals that agree. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "scene/shapes.h"
+#include "unit.h"
 
 struct edge {
     float a[3], b[3];
@@ -112,18 +105,16 @@ static void check_open(struct scene_mesh *mesh, uint32_t triangles)
     scene_mesh_finish(mesh);
 }
 
-static void box(void **state)
+TEST(box)
 {
-    (void)state;
     struct scene_mesh mesh;
     assert_int_equal(shape_box((double[]){1, 2, 4}, &mesh), WHIT_OK);
     check_closed(&mesh, 12, 7.999999, 8.000001);
 }
 
 /* Pictures stand upright on a box's walls: v falls with y, and u runs to the right of who looks. */
-static void box_pictures_stand_upright(void **state)
+TEST(box_pictures_stand_upright)
 {
-    (void)state;
     struct scene_mesh mesh;
     assert_int_equal(shape_box((double[]){2, 2, 2}, &mesh), WHIT_OK);
     for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
@@ -138,9 +129,8 @@ static void box_pictures_stand_upright(void **state)
     scene_mesh_finish(&mesh);
 }
 
-static void spheres(void **state)
+TEST(spheres)
 {
-    (void)state;
     struct scene_mesh mesh;
     double full = 4.0 / 3.0 * 3.14159265358979 * 8.0;
     assert_int_equal(shape_sphere(2.0, 3, 2, &mesh), WHIT_OK);
@@ -154,9 +144,8 @@ static void spheres(void **state)
     }
 }
 
-static void rings_and_rods(void **state)
+TEST(rings_and_rods)
 {
-    (void)state;
     struct scene_mesh mesh;
     double pi = 3.14159265358979;
     assert_int_equal(shape_torus(3.0, 1.0, 64, 32, &mesh), WHIT_OK);
@@ -169,9 +158,8 @@ static void rings_and_rods(void **state)
     check_closed(&mesh, 256, 0.99 * 7.0 * pi, 7.0 * pi);
 }
 
-static void open_shapes(void **state)
+TEST(open_shapes)
 {
-    (void)state;
     struct scene_mesh mesh;
     assert_int_equal(shape_plane(2.0, 4.0, 5, 3.0, &mesh), WHIT_OK);
     check_open(&mesh, 50);
@@ -183,9 +171,8 @@ static void open_shapes(void **state)
     check_open(&mesh, 2048);
 }
 
-static void terrain_follows_its_seed(void **state)
+TEST(terrain_follows_its_seed)
 {
-    (void)state;
     struct scene_mesh a, b, c;
     assert_int_equal(shape_terrain(1.0, 1.0, 8, 1, &a), WHIT_OK);
     assert_int_equal(shape_terrain(1.0, 1.0, 8, 1, &b), WHIT_OK);
@@ -198,9 +185,8 @@ static void terrain_follows_its_seed(void **state)
     scene_mesh_finish(&c);
 }
 
-static void strands_are_closed_needles(void **state)
+TEST(strands_are_closed_needles)
 {
-    (void)state;
     struct scene_mesh a, b, c;
     double one = sqrt(3.0) / 12.0 * 0.1 * 0.1 * 2.0;
     assert_int_equal(shape_strands(3.0, 2.0, 0.1, 200, 1, &a), WHIT_OK);
@@ -215,9 +201,8 @@ static void strands_are_closed_needles(void **state)
 }
 
 /* The sum over bays and ends is linear: a hall of 5 bays has what 3 have, and twice two of them. */
-static void atrium(void **state)
+TEST(atrium)
 {
-    (void)state;
     struct scene_mesh mesh;
     uint32_t counts[3];
     for (uint32_t i = 0; i < 3; ++i) {
@@ -249,9 +234,8 @@ static double distance(const double *a, const double *b)
     return sqrt(sum);
 }
 
-static void sphereflake(void **state)
+TEST(sphereflake)
 {
-    (void)state;
     double *spheres;
     uint32_t count;
     assert_int_equal(shape_sphereflake(1.0, 2, &spheres, &count), WHIT_OK);
@@ -271,9 +255,8 @@ static void sphereflake(void **state)
     free(spheres);
 }
 
-static void senseless_parameters_are_refused(void **state)
+TEST(senseless_parameters_are_refused)
 {
-    (void)state;
     struct scene_mesh mesh;
     double *spheres;
     uint32_t count;
@@ -293,21 +276,4 @@ static void senseless_parameters_are_refused(void **state)
     assert_int_equal(shape_atrium(0, 1, &mesh), WHIT_ERROR_USAGE);
     assert_int_equal(shape_atrium(1, 9, &mesh), WHIT_ERROR_USAGE);
     assert_int_equal(shape_sphereflake(1.0, 7, &spheres, &count), WHIT_ERROR_USAGE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(box),
-        cmocka_unit_test(box_pictures_stand_upright),
-        cmocka_unit_test(spheres),
-        cmocka_unit_test(rings_and_rods),
-        cmocka_unit_test(open_shapes),
-        cmocka_unit_test(terrain_follows_its_seed),
-        cmocka_unit_test(strands_are_closed_needles),
-        cmocka_unit_test(atrium),
-        cmocka_unit_test(sphereflake),
-        cmocka_unit_test(senseless_parameters_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

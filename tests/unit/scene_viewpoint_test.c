@@ -1,18 +1,11 @@
 /* Where whit looks from, and how brightly models' lights are drawn, when a file leaves it open. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../scenes.h"
 #include "base/array.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
+#include "unit.h"
 
 static struct scene *empty_scene(void)
 {
@@ -96,9 +89,8 @@ static double reach(const struct scene_camera *camera, const double forward[3], 
 }
 
 /* All vertices lie in a 4:3 picture, and some near its border on both sides. */
-static void closed_shapes_fill_the_usual_view(void **state)
+TEST(closed_shapes_fill_the_usual_view)
 {
-    (void)state;
     const double scales[] = {1.0, 1e-6, 1e9};
     for (size_t k = 0; k < 3; ++k) {
         struct scene *scene = empty_scene();
@@ -124,9 +116,8 @@ static void closed_shapes_fill_the_usual_view(void **state)
     }
 }
 
-static void open_boxes_are_seen_through_their_opening(void **state)
+TEST(open_boxes_are_seen_through_their_opening)
 {
-    (void)state;
     const float half[3] = {1, 1, 1};
     const unsigned sides[] = {1, 0, 5, 4};
     const double expected[][3] = {{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}};
@@ -144,9 +135,8 @@ static void open_boxes_are_seen_through_their_opening(void **state)
 }
 
 /* A mirrored copy of an inward box shows its inside still. */
-static void mirrors_do_not_turn_surfaces(void **state)
+TEST(mirrors_do_not_turn_surfaces)
 {
-    (void)state;
     const float half[3] = {1, 1, 1};
     struct scene *scene = empty_scene();
     struct scene_node node;
@@ -160,9 +150,8 @@ static void mirrors_do_not_turn_surfaces(void **state)
     scene_destroy(scene);
 }
 
-static void rooms_are_seen_from_inside(void **state)
+TEST(rooms_are_seen_from_inside)
 {
-    (void)state;
     const float half[3] = {6, 2, 3};
     for (int thick = 0; thick < 2; ++thick) {
         struct scene *scene = empty_scene();
@@ -193,9 +182,8 @@ static void rooms_are_seen_from_inside(void **state)
     scene_destroy(scene);
 }
 
-static void boards_are_seen_straight_on(void **state)
+TEST(boards_are_seen_straight_on)
 {
-    (void)state;
     struct scene *scene = empty_scene();
     scene_put(scene, walls((const float[]){2, 1, 0.02f}, 0, true), NULL);
     double forward[3];
@@ -205,9 +193,8 @@ static void boards_are_seen_straight_on(void **state)
 }
 
 /* A board with a picture on its far side, and a plate before most of it. */
-static void boards_show_their_pictures(void **state)
+TEST(boards_show_their_pictures)
 {
-    (void)state;
     struct scene *scene = empty_scene();
     struct scene_material printed = material_grey("printed");
     printed.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
@@ -221,9 +208,8 @@ static void boards_show_their_pictures(void **state)
 }
 
 /* What flies away later is in the picture from the start. */
-static void animations_stay_in_the_picture(void **state)
+TEST(animations_stay_in_the_picture)
 {
-    (void)state;
     struct scene *scene = empty_scene();
     uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
     scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
@@ -273,9 +259,8 @@ static double light_total(const struct scene *scene)
 }
 
 /* Straight under the lamp: total / height^2, somewhat above what 9 of 10 points get. */
-static void lamps_of_models_light_their_scene(void **state)
+TEST(lamps_of_models_light_their_scene)
 {
-    (void)state;
     const float emissions[] = {0.5f, 17.0f, 900.0f};
     for (size_t i = 0; i < 3; ++i) {
         struct scene *scene = lamp_scene(emissions[i], "lamp.mtl");
@@ -304,9 +289,8 @@ static struct scene *lit_scene(float level, const char *file)
     return scene_ready(scene);
 }
 
-static void stated_lights_change_only_where_nothing_is_seen(void **state)
+TEST(stated_lights_change_only_where_nothing_is_seen)
 {
-    (void)state;
     const struct {
         float level;
         const char *file;
@@ -322,20 +306,4 @@ static void stated_lights_change_only_where_nothing_is_seen(void **state)
         assert_int_equal(noted(scene, "times as strong"), cases[i].lo != cases[i].hi);
         scene_destroy(scene);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_shapes_fill_the_usual_view),
-        cmocka_unit_test(open_boxes_are_seen_through_their_opening),
-        cmocka_unit_test(mirrors_do_not_turn_surfaces),
-        cmocka_unit_test(rooms_are_seen_from_inside),
-        cmocka_unit_test(boards_are_seen_straight_on),
-        cmocka_unit_test(boards_show_their_pictures),
-        cmocka_unit_test(animations_stay_in_the_picture),
-        cmocka_unit_test(lamps_of_models_light_their_scene),
-        cmocka_unit_test(stated_lights_change_only_where_nothing_is_seen),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

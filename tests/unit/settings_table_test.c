@@ -1,15 +1,7 @@
 /* Every row of the table of settings. With an argument: prints another value of each, for the test
    of the command line: name, value, commands, change, key, title, key in JSON; tabs between. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "settings/settings.h"
+#include "unit.h"
 
 /* What the option takes to say something else than the default. */
 static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES])
@@ -57,9 +49,8 @@ static bool has_value(const struct setting *row)
     return row->name && row->kind != SETTING_GONE;
 }
 
-static void a_value_is_written_as_it_is_read(void **state)
+TEST(a_value_is_written_as_it_is_read)
 {
-    (void)state;
     char text[SETTING_VALUE_BYTES], again[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
     uint32_t rows = 0;
     for (const struct setting *row = settings_table; row->name; ++row) {
@@ -83,9 +74,8 @@ static void a_value_is_written_as_it_is_read(void **state)
 }
 
 /* And changes no other row. */
-static void a_row_has_a_field_of_its_own(void **state)
+TEST(a_row_has_a_field_of_its_own)
 {
-    (void)state;
     char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
     for (const struct setting *row = settings_table; row->name; ++row) {
         const struct settings usual = settings_usual();
@@ -101,9 +91,8 @@ static void a_row_has_a_field_of_its_own(void **state)
     }
 }
 
-static void defaults_are_named_as_they_are(void **state)
+TEST(defaults_are_named_as_they_are)
 {
-    (void)state;
     uint32_t fractions = 0;
     char why[SETTING_WHY_BYTES];
     for (const struct setting *row = settings_table; row->name; ++row) {
@@ -128,9 +117,8 @@ static void defaults_are_named_as_they_are(void **state)
 }
 
 /* What a row needs is what comparing two settings says. */
-static void needs_are_kept(void **state)
+TEST(needs_are_kept)
 {
-    (void)state;
     char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
     for (const struct setting *row = settings_table; row->name; ++row) {
         const struct settings usual = settings_usual();
@@ -149,9 +137,8 @@ static void needs_are_kept(void **state)
     }
 }
 
-static void each_kind_of_text_that_is_none_is_refused(void **state)
+TEST(each_kind_of_text_that_is_none_is_refused)
 {
-    (void)state;
     static const char *const texts[] = {"",   "x",   "1x",      "-1", "nan", "99999999999999999999",
                                         "0x", "1,2", "4x4junk", "\n"};
     char why[SETTING_WHY_BYTES];
@@ -184,16 +171,9 @@ static void print_row(const struct setting *row)
 int main(int argc, char **argv)
 {
     (void)argv;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_value_is_written_as_it_is_read),
-        cmocka_unit_test(a_row_has_a_field_of_its_own),
-        cmocka_unit_test(defaults_are_named_as_they_are),
-        cmocka_unit_test(needs_are_kept),
-        cmocka_unit_test(each_kind_of_text_that_is_none_is_refused),
-    };
     for (const struct setting *row = settings_table; argc > 1 && row->name; ++row) {
         if (has_value(row))
             print_row(row);
     }
-    return argc > 1 ? 0 : cmocka_run_group_tests(tests, NULL, NULL);
+    return argc > 1 ? 0 : unit_run(NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* The camera that the user moves. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "view/camera.h"
 
 static double distance(const double a[3], const double b[3])
@@ -27,9 +21,8 @@ static void assert_near(double a, double b)
         fail_msg("%.17g and %.17g", a, b);
 }
 
-static void orbits_keep_distance_and_stay_below_the_pole(void **state)
+TEST(orbits_keep_distance_and_stay_below_the_pole)
 {
-    (void)state;
     struct view_camera c = front();
     camera_orbit(&c, 1.5707963267948966, 0.0); /* to the right: the eye goes to the left */
     assert_near(c.eye[0], -5.0);
@@ -41,9 +34,8 @@ static void orbits_keep_distance_and_stay_below_the_pole(void **state)
     }
 }
 
-static void turning_moves_the_target_alone(void **state)
+TEST(turning_moves_the_target_alone)
 {
-    (void)state;
     struct view_camera c = front();
     camera_turn(&c, 1.5707963267948966, 0.0);
     assert_near(c.eye[2], 5.0);
@@ -51,9 +43,8 @@ static void turning_moves_the_target_alone(void **state)
     assert_near(c.target[2], 5.0);
 }
 
-static void flying_is_by_the_distance(void **state)
+TEST(flying_is_by_the_distance)
 {
-    (void)state;
     struct view_camera c = front();
     camera_fly(&c, 0.0, 0.0, 0.5);
     assert_near(c.eye[2], 2.5);
@@ -63,9 +54,8 @@ static void flying_is_by_the_distance(void **state)
     assert_near(c.eye[1], 1.0);
 }
 
-static void zoom_never_reaches_the_target(void **state)
+TEST(zoom_never_reaches_the_target)
 {
-    (void)state;
     struct view_camera c = front();
     camera_zoom(&c, 0.5);
     assert_near(c.eye[2], 2.5);
@@ -79,9 +69,8 @@ static void zoom_never_reaches_the_target(void **state)
 }
 
 /* All corners of the box are in the picture, whatever its shape. */
-static void all_of_a_box_is_shown(void **state)
+TEST(all_of_a_box_is_shown)
 {
-    (void)state;
     const double lo[3] = {-3, 1, 10}, hi[3] = {9, 2, 11};
     const double aspects[] = {0.3, 1.0, 1.7, 5.0};
     for (int i = 0; i < 4; ++i) {
@@ -104,9 +93,8 @@ static void all_of_a_box_is_shown(void **state)
         assert_true(isfinite(c.eye[k]) && isfinite(c.target[k]));
 }
 
-static void along_axes(void **state)
+TEST(along_axes)
 {
-    (void)state;
     for (int axis = 0; axis < 3; ++axis) {
         for (int from = -1; from <= 1; from += 2) {
             struct view_camera c = front();
@@ -121,9 +109,8 @@ static void along_axes(void **state)
     }
 }
 
-static void text_goes_there_and_back(void **state)
+TEST(text_goes_there_and_back)
 {
-    (void)state;
     struct view_camera c = front(), back;
     char text[256], again[256];
     camera_orbit(&c, 0.7, 0.3);
@@ -146,9 +133,8 @@ static void text_goes_there_and_back(void **state)
         assert_false(camera_from_text(wrong[i], &back));
 }
 
-static void lines_are_cut_at_the_eye(void **state)
+TEST(lines_are_cut_at_the_eye)
 {
-    (void)state;
     struct view_camera c = front();
     const double ahead[3] = {0, 0, 0}, aside[3] = {1, 1, 0}, behind[3] = {1, 0, 9};
     double line[4];
@@ -161,19 +147,4 @@ static void lines_are_cut_at_the_eye(void **state)
     assert_true(camera_project(&c, ahead, behind, 200.0, 100.0, line));
     assert_true(isfinite(line[2]) && line[2] > 100.0);
     assert_false(camera_project(&c, behind, behind, 200.0, 100.0, line));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orbits_keep_distance_and_stay_below_the_pole),
-        cmocka_unit_test(turning_moves_the_target_alone),
-        cmocka_unit_test(flying_is_by_the_distance),
-        cmocka_unit_test(zoom_never_reaches_the_target),
-        cmocka_unit_test(all_of_a_box_is_shown),
-        cmocka_unit_test(along_axes),
-        cmocka_unit_test(text_goes_there_and_back),
-        cmocka_unit_test(lines_are_cut_at_the_eye),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,25 +1,16 @@
 /* In what two settings of the viewer differ, in words. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "unit.h"
 #include "view/choices.h"
 
-static void the_same_differ_in_nothing(void **state)
+TEST(the_same_differ_in_nothing)
 {
-    (void)state;
     struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = {.scene = "a.json"}, b = a;
     assert_int_equal(choice_changes(&a, &b, changes), 0);
 }
 
-static void each_choice_is_told_by_its_name(void **state)
+TEST(each_choice_is_told_by_its_name)
 {
-    (void)state;
     struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = settings_usual();
     uint32_t told = 0;
@@ -38,9 +29,8 @@ static void each_choice_is_told_by_its_name(void **state)
     assert_in_range(told, 10, CHOICE_CHANGES_MAX);
 }
 
-static void numbers_end_where_their_options_do(void **state)
+TEST(numbers_end_where_their_options_do)
 {
-    (void)state;
     const struct setting *depth = settings_row("depth");
     struct settings settings = settings_usual();
     choice_set_number(&settings, depth, -1.0);
@@ -52,9 +42,8 @@ static void numbers_end_where_their_options_do(void **state)
     assert_int_equal(settings.picture.depth, (uint32_t)depth->max);
 }
 
-static void scenes_are_told_by_their_files(void **state)
+TEST(scenes_are_told_by_their_files)
 {
-    (void)state;
     struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = {.scene = "some/where/a.json"};
     struct settings b = {.scene = "b.obj", .effects = "-textures"};
@@ -70,15 +59,4 @@ static void scenes_are_told_by_their_files(void **state)
     assert_int_equal(choice_changes(&a, &b, changes), 1);
     assert_string_equal(changes[0].a, "a.json");
     assert_string_equal(changes[0].b, "a.json, read again");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_differ_in_nothing),
-        cmocka_unit_test(each_choice_is_told_by_its_name),
-        cmocka_unit_test(numbers_end_where_their_options_do),
-        cmocka_unit_test(scenes_are_told_by_their_files),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

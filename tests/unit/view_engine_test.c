@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "device_fixture.h"
+#include "unit.h"
 #include "view/engine.h"
 
 enum { WIDTH = 96, HEIGHT = 64 };
@@ -68,9 +69,8 @@ static bool lose_at(unsigned n, bool once, bool *gave_up)
     return whole;
 }
 
-static void a_lost_device_is_made_again_or_given_up(void **state)
+TEST(a_lost_device_is_made_again_or_given_up)
 {
-    (void)state;
     uint32_t gave_up = 0, failed = 0, mended = 0;
     bool whole = false, lost = false;
     unsigned n = 0;
@@ -94,9 +94,8 @@ static void a_lost_device_is_made_again_or_given_up(void **state)
 
 /* A large tree is drawn in packets, as a picture of the window's size is, although the engine's
    renderer is made for a small one. */
-static void large_trees_are_drawn_in_packets(void **state)
+TEST(large_trees_are_drawn_in_packets)
 {
-    (void)state;
     struct engine *engine;
     struct engine_frame frame = {0};
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
@@ -161,9 +160,8 @@ static bool draws_without(unsigned n, struct engine *engine, const struct settin
     return atomic_load(&asked_for) >= n;
 }
 
-static void memory_that_runs_out_is_said(void **state)
+TEST(memory_that_runs_out_is_said)
 {
-    (void)state;
     static const enum settings_paint paints[] = {PAINT_COLOR, PAINT_VISITS};
     window_thread = pthread_self();
     for (int i = 0; i < 2; ++i) {
@@ -189,9 +187,8 @@ static void memory_that_runs_out_is_said(void **state)
 /* ---- One who moves on ---- */
 
 /* Somebody who turns the camera faster than pictures come gets pictures all the same. */
-static void no_look_is_cut_short(void **state)
+TEST(no_look_is_cut_short)
 {
-    (void)state;
     struct engine *engine;
     struct engine_frame frame = {0};
     uint32_t shown = 0, asked = 0;
@@ -223,9 +220,8 @@ static void no_look_is_cut_short(void **state)
 }
 
 /* While another tree is made the picture stays as it is: no rougher one comes between. */
-static void a_switch_keeps_the_picture(void **state)
+TEST(a_switch_keeps_the_picture)
 {
-    (void)state;
     struct engine *engine;
     struct engine_frame frame = {0};
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
@@ -251,9 +247,8 @@ static void a_switch_keeps_the_picture(void **state)
 }
 
 /* Whoever turns the camera beside a scene that cannot be read is still told so. */
-static void an_error_outlives_the_other_side(void **state)
+TEST(an_error_outlives_the_other_side)
 {
-    (void)state;
     struct engine *engine;
     struct engine_frame frame = {0}, other = {0};
     struct engine_status status;
@@ -278,17 +273,4 @@ static void an_error_outlives_the_other_side(void **state)
     engine_frame_finish(&frame);
     engine_frame_finish(&other);
     assert_int_equal(engine_destroy(engine), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_lost_device_is_made_again_or_given_up),
-        cmocka_unit_test(large_trees_are_drawn_in_packets),
-        cmocka_unit_test(memory_that_runs_out_is_said),
-        cmocka_unit_test(no_look_is_cut_short),
-        cmocka_unit_test(a_switch_keeps_the_picture),
-        cmocka_unit_test(an_error_outlives_the_other_side),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

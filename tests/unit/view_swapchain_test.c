@@ -3,6 +3,7 @@
 #include "device/swapchain.h"
 #include "device_fixture.h"
 #include "kernels.h"
+#include "unit.h"
 #include "view/ui.h"
 #include "view/window.h"
 
@@ -125,9 +126,8 @@ static whit_result shop_run(struct shop *shop, bool validation, bool blit)
     return result;
 }
 
-static void pictures_come_whole(void **state)
+TEST(pictures_come_whole)
 {
-    (void)state;
     for (int blit = 0; blit < 2; ++blit) {
         struct shop shop;
         struct swapchain_info info;
@@ -175,16 +175,14 @@ static void fail_each_call(bool blit, bool validation, unsigned step)
     assert_true(call > 60); /* that it failed all along */
 }
 
-static void each_call_may_fail(void **state)
+TEST(each_call_may_fail)
 {
-    (void)state;
     fail_each_call(false, false, 4);
     fail_each_call(true, false, 4);
 }
 
-static void nothing_is_left_behind(void **state)
+TEST(nothing_is_left_behind)
 {
-    (void)state;
     fail_each_call(false, true, 9);
     fail_each_call(true, true, 9);
 }
@@ -218,18 +216,16 @@ static void change_at(const char *call, int result, bool shown_then)
     shop_close(&shop);
 }
 
-static void windows_that_change(void **state)
+TEST(windows_that_change)
 {
-    (void)state;
     change_at("vkAcquireNextImageKHR", OUT_OF_DATE, false);
     change_at("vkAcquireNextImageKHR", SUBOPTIMAL, true);
     change_at("vkQueuePresentKHR", OUT_OF_DATE, false);
     change_at("vkQueuePresentKHR", SUBOPTIMAL, true);
 }
 
-static void a_lost_device_is_said_once(void **state)
+TEST(a_lost_device_is_said_once)
 {
-    (void)state;
     static const char *const calls[] = {"vkQueueSubmit:2", "vkWaitForFences:2",
                                         "vkQueuePresentKHR:1:-4", "vkAcquireNextImageKHR:1:-4"};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
@@ -248,9 +244,8 @@ static void a_lost_device_is_said_once(void **state)
     }
 }
 
-static void no_surface(void **state)
+TEST(no_surface)
 {
-    (void)state;
     struct shop shop;
     setenv("WHIT_FAULT", "vkCreateSurface:1", 1);
     assert_int_equal(shop_open(&shop, true, false), WHIT_ERROR_MEMORY);
@@ -258,14 +253,4 @@ static void no_surface(void **state)
     assert_non_null(strstr(shop.messages.text, "the window's surface"));
     assert_int_equal(shop.messages.lines, 1);
     shop_close(&shop);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_come_whole),        cmocka_unit_test(windows_that_change),
-        cmocka_unit_test(a_lost_device_is_said_once), cmocka_unit_test(no_surface),
-        cmocka_unit_test(each_call_may_fail),         cmocka_unit_test(nothing_is_left_behind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,5 @@
 /* Everything of the window that can say a name shows it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "unit.h"
 #include "view/ui.h"
 
 void text_begin(void);
@@ -24,12 +16,11 @@ static uint32_t count(const char *text, const char *part)
     return found;
 }
 
-static void names_are_shown(void **state)
+TEST(names_are_shown)
 {
     static const char *const names[] = {"one", "two"};
     float width, height, shown_width, shown_height;
     int value = 0;
-    (void)state;
     text_begin();
     ui_text("plain %s", EVIL);
     ui_text_dim("dim %s", EVIL);
@@ -49,10 +40,4 @@ static void names_are_shown(void **state)
     for (size_t i = 0; i < sizeof steering / sizeof *steering; ++i)
         assert_null(strstr(said, steering[i]));
     assert_true(width == shown_width && height == shown_height);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(names_are_shown)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

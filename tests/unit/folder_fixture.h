@@ -1,0 +1,62 @@
+/* A folder of a check's own, by TEST_IN(name, folder_begin, folder_end), and what it was told. */
+#ifndef FOLDER_FIXTURE_H
+#define FOLDER_FIXTURE_H
+
+#include <unistd.h>
+
+#include "base/log.h"
+#include "unit.h"
+
+static char folder[32];
+
+static struct messages {
+    int count, errors, warnings;
+    char last[512];
+} messages;
+
+static inline void collect(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    ++messages.count;
+    messages.errors += level == WHIT_LOG_ERROR;
+    messages.warnings += level == WHIT_LOG_WARNING;
+    snprintf(messages.last, sizeof messages.last, "%s", message);
+}
+
+static const struct log warnings_log = {.fn = collect, .level = WHIT_LOG_WARNING};
+
+static inline int folder_begin(void **state)
+{
+    (void)state;
+    messages = (struct messages){0};
+    strcpy(folder, "/tmp/whit-test-XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static inline int folder_end(void **state)
+{
+    (void)state;
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+/* A path in the folder, which seven more calls leave as it is. */
+static inline char *in_folder(const char *name)
+{
+    static char paths[8][320];
+    static int next;
+    char *path = paths[next++ % 8];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static inline void put_file(const char *path, const void *data, size_t bytes)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, bytes, file), bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+#endif

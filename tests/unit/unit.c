@@ -1,0 +1,34 @@
+/* Linked into every unit test: the list of its checks, and its main(). With WHIT_TEST_ONLY=NAME the
+   checks of that name alone run, in which * and ? stand for others. None of that name is no
+   failure: see what was run. */
+#include "unit.h"
+
+enum { CHECKS_MAX = 64 };
+
+static struct CMUnitTest checks[CHECKS_MAX]; /* cmocka leaves out those without a name. */
+static size_t check_count;
+
+__attribute__((constructor)) static void run_only(void)
+{
+    const char *name = getenv("WHIT_TEST_ONLY");
+    if (name && *name)
+        cmocka_set_test_filter(name);
+}
+
+void unit_add(const char *name, CMUnitTestFunction check, CMFixtureFunction begin,
+              CMFixtureFunction end)
+{
+    if (check_count == CHECKS_MAX)
+        abort();
+    checks[check_count++] = (struct CMUnitTest){name, check, begin, end, NULL};
+}
+
+int unit_run(CMFixtureFunction begin, CMFixtureFunction end)
+{
+    return cmocka_run_group_tests(checks, begin, end);
+}
+
+__attribute__((weak)) int main(void)
+{
+    return unit_run(NULL, NULL);
+}
