@@ -54,6 +54,11 @@ refuse() {
     check "$what: says \`$pattern\`" grep -q "^whit: error: .*$pattern" "$OUT/stderr"
 }
 
+# holds EXPRESSION: of numbers, as awk has them.
+holds() {
+    awk "BEGIN { exit !($1) }"
+}
+
 # wait_for PID COMMAND...: until the command succeeds; fails where the process ends before.
 wait_for() {
     awaited=$1

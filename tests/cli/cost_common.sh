@@ -10,8 +10,3 @@ value() {
         NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
         $at["knob"] == knob && $at["setting"] == setting { print $at[column] }'
 }
-
-# holds EXPRESSION: of numbers.
-holds() {
-    awk "BEGIN { exit !($1) }"
-}

@@ -20,13 +20,45 @@ read_states() {
         "$OUT/states" >"$OUT/values" || FAILED=1
 }
 
-# play WHAT OPTION...: `whit view` with the replay on standard input, and read_states. Neither whit
-# nor the validation layers may complain, unless of what matches $EXPECTED.
+# steps: the replay of a table, and what it expects, into $OUT/wanted. A row is
+#     NAME: EVENT, EVENT xN | FIELD = VALUE | FIELD > NUMBER | FIELD has PART | FIELD as OTHER | FIELD not as OTHER
+# The events come first, each N times, then `still`, and `state NAME`, whose field has this value, or a larger one, or
+# one with that part, or the one that it has in another state, or not that. `NAME!` is without `still`. A row of
+# `| ...` alone goes on with the one before; other lines are events as they are.
+steps() {
+    awk -F ' *[|] *' -v wanted="$OUT/wanted" '
+        function expect(    i, at) {
+            for (i = 2; i <= NF; ++i) {
+                at = match($i, / (=|>|has|as|not as)( |$)/)
+                print name "\t" substr($i, at + 1, RLENGTH - 2 + ($i ~ / =$/)) "\t" substr($i, 1, at - 1) "\t" \
+                    substr($i, at + RLENGTH) >wanted
+            }
+        }
+        BEGIN { printf "" >wanted }
+        /^ *[|]/ { expect(); next }
+        !/^[A-Za-z0-9_-]+[:!]/ { print; next }
+        {
+            split($1, head, /[:!] */)
+            name = head[1]
+            count = split(substr($1, length(name) + 3), events, ", ")
+            for (i = 1; i <= count; ++i) {
+                times = match(events[i], / x[0-9]+$/) ? substr(events[i], RSTART + 2) : 1
+                sub(/ x[0-9]+$/, "", events[i])
+                for (n = 0; n < times; ++n) print events[i]
+            }
+            if (substr($1, length(name) + 1, 1) == ":") print "still"
+            print "state " name
+            expect()
+        }'
+}
+
+# play WHAT OPTION...: `whit view` with the replay of the table on standard input; its states are as expected.
+# Neither whit nor the validation layers may complain, unless of what matches $EXPECTED.
 EXPECTED=
 play() {
     what=$1
     shift
-    cat >"$OUT/replay"
+    steps >"$OUT/replay"
     rm -rf "$XDG_STATE_HOME"
     run view "$@" --replay "$OUT/replay" --quiet
     mv "$OUT/stdout" "$OUT/states"
@@ -37,6 +69,21 @@ play() {
         test "$(grep -cv "${EXPECTED:-^$}" "$OUT/stderr")" -eq 0
     check "$what: all states are there" test "$(grep -c '^state' "$OUT/replay")" -eq \
         "$(grep -c '^{.*}$' "$OUT/states")"
+    as_wanted
+}
+
+# as_wanted: the states in $OUT/values are as the table of the last `steps` says.
+as_wanted() {
+    while IFS=$(printf '\t') read -r at how field wanted; do
+        has=$(value "$at" "$field")
+        case $how in
+        =) is "$at" "$field" "$wanted" ;;
+        '>') check "at $at: $field is more than $wanted ($has)" holds "$has > $wanted" ;;
+        has) check "at $at: $field has \`$wanted\` ($has)" test "${has#*"$wanted"}" != "$has" ;;
+        as) same "$field" "$wanted" "$at" ;;
+        *) differs "$field" "$wanted" "$at" ;;
+        esac
+    done <"$OUT/wanted"
 }
 
 # value NAME FIELD: of the first state of this name.

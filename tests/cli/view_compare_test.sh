@@ -24,52 +24,17 @@ columns() {
 # ---- Split ----
 
 play "A beside B" "$BALLS" --size 96x64 <<END
-press F2
-press F2
-still
-state start
-shot b.pfm
-press C
-still
-state same
-press T
-still
-state sign
-press T
-press T
-press Minus
-press Minus
-press Minus
-press Minus
-press Minus
-press Minus
-press Minus
-press Minus
-still
-wait 4200
-still
-state flat
-shot split.pfm
-press C
-still
-state ended
+start: press F2 x2 | compare.mode = off
+same: shot b.pfm, press C | compare.mode = split | compare.other_ids = 0 | compare.other_colors = 0 | compare.flip = 0
+sign: press T | compare.other_colors = 0 | compare.count = 6144 | words = --size 96x64 --traversal sign
+flat: press T x2, press Minus x8, still, wait 4200 | compare.other_ids = 0
+ended: shot split.pfm, press C | compare.mode = off | frame.pixels as flat
 shot a.pfm
 END
-is start compare.mode off
-is same compare.mode split
-is same compare.other_ids 0
-is same compare.other_colors 0
-is same compare.flip 0
 check "half of one and half of the other are the picture" \
     test "$(value same compare.mixed)" = "$(value same frame.pixels)"
-is sign compare.other_colors 0
-is sign compare.count 6144
-is sign words "--size 96x64 --traversal sign"
-is flat compare.other_ids 0
 check "no bounces are other colours" more "$(value flat compare.other_colors)" 100
 check "B stays as it was" test "$(value flat compare.b.pixels)" = "$(value start frame.pixels)"
-is ended compare.mode off
-same frame.pixels flat ended
 
 # The window has A on the left and B on the right; the divider is in between.
 columns a.pfm 0 43 >a.left
@@ -102,119 +67,48 @@ check "as many pixels differ" test "$(jq .differing_pixels c.json)" = "$(value f
 # ---- Difference, and the divider ----
 
 play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
-still
-press C
-press Equal
-still
-state one
-press D
-still
-state difference
-press ]
-still
-state scaled
-press \\
-still
-state own
-press T
-still
-state order
-press D
-move 48 32
-button left down
-move 24 32
-button left up
-still
-state dragged
-move 80 20
-button left down
-move 90 25
-button left up
-still
-state turned
+one: still, press C, press Equal
+difference: press D | compare.mode = difference
+scaled: press ] | compare.heat not as difference
+own: press \\ | compare.heat as difference
+order: press T | compare.heat as difference
+dragged: press D, move 48 32, button left down, move 24 32, button left up | compare.divider = 0.25 | words as order
+turned: move 80 20, button left down, move 90 25, button left up | words not as dragged | frame.pixels not as dragged
+    | compare.other_ids = 0
 END
-is difference compare.mode difference
 check "the scale is above 0" more "$(value difference compare.scale)" 0
 check "] doubles it" about "$(value scaled compare.scale)" \
     "$(awk -v a="$(value difference compare.scale)" 'BEGIN { printf "%.17g", 2 * a }')"
-differs compare.heat difference scaled
-same compare.heat difference own
-same compare.heat difference order
 check "the scale of costs is not touched" test "$(value scaled words)" = "$(value one words)"
-is dragged compare.divider 0.25
-same words order dragged
-differs words dragged turned
-differs frame.pixels dragged turned
-is turned compare.other_ids 0
 check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 
 # Costs are numbers, not colours; and there is nothing between the two.
 play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
-still
-press C
-press T
-press T
-still
-state costs
-press V
-press V
-press V
-still
-press D
-still
-state mixed
+costs: still, press C, press T x2 | compare.has_flip = false | compare.other_ids = 0
+mixed: press V x3, still, press D | keys.view = stack
 END
 check "another order, other visits" more "$(value costs compare.other_colors)" 0
-is costs compare.has_flip false
-is costs compare.other_ids 0
-is mixed keys.view stack
 press_v=$(value mixed compare.known)
 check "both are costs: they are subtracted ($press_v)" test "$press_v" = true
 
 # ---- Effects ----
 
 play "effects by click" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
-press F2
-press F2
-still
-state start
-press X
-choose shadows
-still
-state off
-choose shadows
-still
-state on
+start: press F2 x2
+off: press X, choose shadows | words = --size 320x240 --effects -shadows | change.what = effects auto -> -shadows
+on: choose shadows | words = --size 320x240 | frame.pixels as start
 END
-is off words "--size 320x240 --effects -shadows"
-is on words "--size 320x240"
-is off change.what "effects auto -> -shadows"
 check "the price says how many pixels changed" \
     test "$(value off prices.shadows)" = "$(value off change.other_colors)"
 is off prices.highlights "(no prices.highlights)" # of what was switched alone
-same frame.pixels start on
 
 # ---- Settings by mouse: what their keys do ----
 
 play "by mouse" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
-press F2
-press F2
-press T
-still
-state key
-press Shift+T
-still
-press Tab
-still
-choose traversal
-still
-choose sign
-still
-state mouse
+key: press F2 x2, press T
+mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose sign | words as key
+    | keys.traversal as key | words = --size 320x240 --traversal sign
 END
-same words key mouse
-same "keys.traversal" key mouse
-is mouse words "--size 320x240 --traversal sign"
 
 # ---- Files of settings ----
 
@@ -223,17 +117,7 @@ still
 move 40 30
 button left down
 move 49 33
-button left up
-press T
-press M
-press K
-press A
-press Minus
-press O
-press V
-still
-press Ctrl+S
-state saved
+saved! button left up, press T, press M, press K, press A, press Minus, press O, press V, still, press Ctrl+S
 press Ctrl+S
 END
 check "Ctrl+S saves" test -s whit-0001.view
@@ -244,18 +128,9 @@ check "as many as there are words" test "$(grep -c '^--' whit-0001.view)" -eq \
 cp "$OUT/values" saved.values
 echo "--numerics exactly" >bad.view
 play "loaded" "$SCENES/8k.json" --state whit-0001.view <<END
-still
-state loaded
-press Ctrl+S
-press T
-press A
-press V
-still
-drop whit-0001.view
-still
-state dropped
-drop bad.view
-state bad
+loaded:
+dropped: press Ctrl+S, press T, press A, press V, still, drop whit-0001.view
+bad! drop bad.view
 END
 cat saved.values >>"$OUT/values"
 same words saved loaded
@@ -269,29 +144,15 @@ check "the message has file and line ($(value bad toast))" \
 check "what was loaded is saved as it was" sh -c \
     "grep -v '^#' whit-0001.view >1 && grep -v '^#' whit-0003.view | cmp - 1"
 play "the command line has the last word" "$CUBE" --state whit-0001.view --traversal basic <<END
-still
-state last
+last:
 END
 check "of all words one is another ($(value last words))" test "$(value last words | grep -c -e "--traversal basic .*--numerics")" -eq 1
 
 # What whit render refuses is not among the words: costs are not those of adaptive samples.
 play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END
-still
-press V
-still
-state costs
-press V
-press V
-press V
-press V
-press V
-still
-state colors
+costs: still, press V | error = | frame.view = depth | words = --size 96x64 --view depth
+colors: press V x5 | words = --size 96x64 --aa adaptive:0.1
 END
-is costs error ""
-is costs frame.view depth
-is costs words "--size 96x64 --view depth"
-is colors words "--size 96x64 --aa adaptive:0.1"
 
 # refused WHAT PATTERN LINE...: a file of settings with these lines.
 refused() {

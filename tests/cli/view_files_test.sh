@@ -18,104 +18,39 @@ echo "--size 96x64 --effects -highlights" >plain.view
 EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
 # shellcheck disable=SC2086
 play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
-still
-state a
-press Right
-still
-state b
-press Right
-still
-state c
-press Right
-still
-state around
-press Left
-still
-state back
-press Period
-still
-state stepped
-press Space
-drop $OUT/nowhere.json
-until error
-state plays
-press Space
-still
-state stood
-drop $SCENES/cube.json
-still
-state dropped
-drop $SCENES/atrium.json
-until error
-state large
-drop $OUT/nowhere.obj
-still
-state nowhere
-press C
-move 40 30
-button left down
-move 49 33
-button left up
-still
-state turned
-click 24 32
-still
-state picked
-press Escape
-state closed
-drop plain.view
-still
-state plain
-press Ctrl+C
-state copied
-press F12
-press C
-drop start.view
-drop list/b.json
-still
-state mended
+a: | scene = list/a.json
+b: press Right | scene = list/b.json | frame.ids not as a
+c: press Right | scene = list/c.json
+around: press Right | scene = list/a.json | frame.ids as a
+back: press Left | scene = list/c.json | frame.ids as c
+stepped: press Period
+plays! press Space, drop $OUT/nowhere.json, until error | playing = true
+stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels not as back
+dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
+large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json
+nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped
+turned: press C, move 40 30, button left down, move 49 33, button left up | scene = $SCENES/cube.json
+    | frame.ids not as nowhere | error as nowhere | compare.count = 6144 | compare.other_colors = 0
+picked: click 24 32 | picked = true
+closed! press Escape | error =
+plain: drop plain.view | compare.other_ids = 0
+copied! press Ctrl+C
+mended: press F12, press C, drop start.view, drop list/b.json | error = | frame.ids as b
 END
-is a scene list/a.json
-is b scene list/b.json
-is c scene list/c.json
-is around scene list/a.json
-is back scene list/c.json
-is dropped scene "$SCENES/cube.json"
-is large scene "$SCENES/cube.json"
 has=$(value large error)
 check "a scene that takes too much is refused" test "${has%% (--memory-limit)*}" != "$has"
-differs frame.ids a b
-same frame.ids a around
-same frame.ids c back
-same frame.ids a dropped
-same frame.ids dropped nowhere
 check "a scene that is not there is said" test "$(value nowhere error | grep -c nowhere.obj)" -eq 1
 check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
     "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
 check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
 # What is shown goes on beside what was refused.
-is plays playing true
-same frame.pixels stepped stood
-same render stepped stood
-differs frame.pixels back stood
-same render dropped nowhere
-is turned scene "$SCENES/cube.json"
-differs frame.ids nowhere turned
-same error nowhere turned
-is turned compare.count 6144
-is turned compare.other_colors 0
-is picked picked true
 check "a pixel is explained" test "$(value picked probe.rays)" -gt 0
-is closed error ""
-is plain compare.other_ids 0
 check "A and B: highlights are gone" test "$(value plain compare.other_colors)" -gt 0
 check "Ctrl+C copies what is shown" \
     test "$(value copied toast | grep -c "^copied: whit render $SCENES/cube.json .*-highlights")" -eq 1
 check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png
 rm whit-0001.png
-is mended error ""
 EXPECTED=
-same frame.ids b mended
 
 # A scene that names a file outside of its folder: asked once, read where the answer is yes.
 mkdir model maps
@@ -123,32 +58,15 @@ printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\
 printf 'newmtl red\nKd 1 0 0\n' >maps/a.mtl
 maps=$(realpath maps)
 play "files elsewhere" model/a.obj --size 400x160 <<END
-until question
-still
-state asked
-choose go on without
-still
-state without
-press R
-still
-state again
-drop $CUBE
-still
-state other
+asked: until question | question = $maps
+without: choose go on without | question =
+again: press R | question = | frame.pixels as asked
+other: drop $CUBE | question =
 END
-is asked question "$maps"
-is without question ""
-is again question ""
-same frame.pixels asked again
-is other question ""
 ids=$(value without frame.ids) pixels=$(value without frame.pixels)
 play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
-until question
-choose allow
-still
-state allowed
+allowed: until question, choose allow | question =
 END
-is allowed question ""
 is allowed frame.ids "$ids"
 check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
 check "the render line allows it too" test "$(value allowed render | grep -c -- "--allow-path $maps")" -eq 1
@@ -256,13 +174,7 @@ done
 
 # shellcheck disable=SC2086
 play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
-press F2
-press F2
-still
-press V
-still
-press F12
-state costs
+costs! press F2 x2, still, press V, still, press F12
 press B
 still
 move 40 30
@@ -272,17 +184,7 @@ button left up
 press T
 press M
 press Minus
-press A
-press K
-press Period
-still
-press Ctrl+C
-press F12
-still
-wait 4200
-still
-shot shown.png
-state shown
+shown! press A, press K, press Period, still, press Ctrl+C, press F12, still, wait 4200, still, shot shown.png
 END
 check "F12 saves" test -s whit-0001.png
 check "Ctrl+C copies the line" test "$(value shown frame.whole)" = true
@@ -303,20 +205,14 @@ check "and it says how" test "$(value costs toast | grep -c 'whit render --view'
 # shellcheck disable=SC2086
 play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
     --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
-still
-state start
+start:
+    | words = --size 96x64 --aa 4 --depth 3 --bailout 0.01 --shadows opaque --fresnel schlick --build median --instances off --traversal basic --numerics fast
 END
 renders start -o words.pfm --ids words.exr
-is start words "--size 96x64 --aa 4 --depth 3 --bailout 0.01 --shadows opaque --fresnel schlick --build median --instances off --traversal basic --numerics fast"
 # shellcheck disable=SC2086
 play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
-press F2
-press F2
-still
-state start
+start: press F2 x2 | words = --size 96x64 --view visits --view-rays all --view-scale 64 | frame.view = visits
 END
-is start words "--size 96x64 --view visits --view-rays all --view-scale 64"
-is start frame.view visits
 
 # ---- Replays ----
 

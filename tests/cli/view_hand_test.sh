@@ -24,68 +24,31 @@ rest() {
 
 hand
 play "minimise, restore" "$CUBE" --size 96x64 <<END
-still
-state start
-minimise
-still
-state minimised
-press T
-still
-wait 1000
-state hidden
-restore
-still
-state back
+start: | window_width = 96
+minimised: minimise | window_width = 0 | window_height = 0
+hidden! press T, still, wait 1000 | keys.traversal = sign | frame.number as minimised | measure.drawn = 0
+back: restore | window_width = 96 | frame.whole = true | change.other_ids = 0 | frame.ids as start
 END
 rest
-is start window_width 96
-is minimised window_width 0
-is minimised window_height 0
-is hidden "keys.traversal" sign
-same frame.number minimised hidden
-is hidden measure.drawn 0
-is back window_width 96
-is back frame.whole true
-is back change.other_ids 0
-same frame.ids start back
 
 # Full screen by the window manager, and minimised from there.
 hand
 play "full screen" "$CUBE" --size 96x64 <<END
-still
-state start
-press F11
-still
-state full
-minimise
-still
-state minimised
-restore
-still
-state again
-press F11
-still
-state back
+start:
+full: press F11 | window_width = 1280 | frame.height = 1024 | frame.whole = true | keys.full screen = on
+minimised: minimise | window_width = 0
+again: restore | window_width = 1280
+back: press F11 | window_width = 96 | keys.full screen = off | frame.ids as start
 END
 rest
 check "it was the window manager that did it" grep -q "^full$" "$OUT/hand"
 check "and undid it" grep -q "^window$" "$OUT/hand"
-is full window_width 1280
-is full frame.height 1024
-is full frame.whole true
-is full "keys.full screen" on
-is minimised window_width 0
-is again window_width 1280
-is back window_width 96
-is back "keys.full screen" off
-same frame.ids start back
 
 # How large text is by the X resource that desktops set, and by the option.
 for dpi in 96 144 192; do
     hand $dpi
     play "a screen of $dpi dots an inch" "$CUBE" --size 640x480 <<END
-still
-state shown
+shown:
 END
     rest
     is shown ui_scale "$(awk -v d=$dpi 'BEGIN { print d / 96 }')"
@@ -98,11 +61,9 @@ check "figures are larger on a finer screen ($(wide 96), $(wide 192) pixels)" \
     awk -v a="$(wide 96)" -v b="$(wide 192)" 'BEGIN { exit !(b > 1.6 * a && b < 2.4 * a) }'
 hand 192
 play "the option has the last word" "$CUBE" --size 96x64 --ui-scale 1 <<END
-still
-state shown
+shown: | ui_scale = 1
 END
 rest
-is shown ui_scale 1
 
 # What somebody does is recorded; the replay ends where he did. Each order waits for what it needs: the
 # first picture, or what was recorded before. The window's title shows what would steer.
@@ -153,17 +114,7 @@ check "and hits" cmp "$OUT/ids.1" "$OUT/ids.2"
 # The same by arithmetic: a drag of 20 x 8 pixels and a notch of the wheel.
 cp "$OUT/words.1" "$OUT/hand.words"
 play "by replay alone" "$CUBE" --size 96x64 <<END
-still
-press T
-press K
-move 40 30
-button left down
-move 50 34
-move 60 38
-button left up
-wheel 0 1
-still
-state end
+end: still, press T, press K, move 40 30, button left down, move 50 34, move 60 38, button left up, wheel 0 1
 END
 check "the record holds what was done ($(value end words))" \
     test "$(value end words)" = "$(cat "$OUT/hand.words")"

@@ -69,15 +69,8 @@ done
 # reach the engine.
 # shellcheck disable=SC2086
 play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
-still
-state before
-move 30 30
-button left down
-move 40 32
-wait 1
-move 50 36
-still
-state after
+before:
+after: move 30 30, button left down, move 40 32, wait 1, move 50 36
 button left up
 END
 is after frame.drawn_words "$(value after words)"
@@ -89,22 +82,10 @@ check "two pictures later at most" test "$(value after frame.number)" -le $(($(v
 for scene in 34k swarm; do
     # shellcheck disable=SC2086
     play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
-size 64 48
-still
-state distance
-press V
-still
-state counted
-press Shift+T
-still
-state basic
-press V
-press V
-press V
-press V
-press V
-still
-state twin
+distance: size 64 48
+counted: press V
+basic: press Shift+T
+twin: press V x5
 END
     for name in distance counted basic twin; do
         is $name frame.visits_rays 3072
@@ -119,24 +100,13 @@ END
 done
 # shellcheck disable=SC2086
 play "visits without trees" "$CUBE" $SMALL <<END
-still
-press G
-press T
-still
-state no_trees
+no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
-is no_trees keys.trees off
-is no_trees frame.visits_rays 1536
-is no_trees frame.visits 1
 # Of a larger picture a part of them.
 play "visits of some" "$SCENES/34k.json" --size 320x240 <<END
-still
-state twin
-press V
-still
-state counted
+twin:
+counted: press V | frame.visits_rays = 76800
 END
-is counted frame.visits_rays 76800
 check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
 check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
     awk -v a="$(value twin frame.visits)" -v b="$(value counted frame.visits)" \

@@ -13,66 +13,22 @@ HIGH=${WHIT_TEST_SCREEN#*x}
 
 # shellcheck disable=SC2086
 play "cameras" "$SCENES/spin.json" $SMALL <<END
-still
-state start
-move 40 30
-button left down
-move 60 40
-button left up
-still
-state around
-move 40 30
-button middle down
-move 60 40
-button middle up
-still
-state aside
-wheel 0 1
-still
-state near
-wheel 0 -1
-still
-state far
-button right down
-move 50 45
-still
-state look
-key W down
-wait 60
-key W up
-still
-state fly
-press S
-button right up
-still
-press Home
-still
-state fit
-press 0
-still
-state file
-press 1
-still
-state front
-press 2
-still
-state right
-press 3
-still
-state above
-press 4
-still
-state behind
-press 5
-still
-state left
-press 6
-still
-state below
-press W
-press D
-still
-state same
+start:
+around: move 40 30, button left down, move 60 40, button left up | keys.next camera of the file = by hand
+aside: move 40 30, button middle down, move 60 40, button middle up
+near: wheel 0 1
+far: wheel 0 -1 | words as aside | frame.ids as aside
+look: button right down, move 50 45
+fly: key W down, wait 60, key W up
+fit: press S, button right up, still, press Home
+file: press 0 | frame.ids as start | words = --size 96x64 | keys.next camera of the file = camera
+front: press 1
+right: press 2
+above: press 3
+behind: press 4
+left: press 5
+below: press 6
+same: press W, press D | words as below
 END
 before=start
 for at in around aside near look fly fit file front right above behind left below; do
@@ -81,13 +37,6 @@ for at in around aside near look fly fit file front right above behind left belo
     is $at frame.whole true
     before=$at
 done
-same words aside far
-same frame.ids aside far
-same frame.ids start file
-is file words "--size 96x64"
-is file "keys.next camera of the file" camera
-is around "keys.next camera of the file" "by hand"
-same words below same
 # Along an axis: the eye differs from the target in that coordinate alone.
 along() {
     value "$1" words | sed 's/.*--camera //' | awk -F, -v axis="$2" -v sign="$3" '
@@ -104,97 +53,34 @@ done
 
 # shellcheck disable=SC2086
 play "animation" "$SCENES/spin.json" $SMALL --fps 10 <<END
-still
-state start
-press Period
-press Period
-still
-state two
-press Comma
-still
-state one
-press Comma
-press Comma
-still
-state last
-press Period
-still
-state first
-press L
-press 9
-state slow
-press Shift+9
-press Shift+9
-state fast
-press Space
-wait 300
-press Space
-still
-state later
-press Shift+9
-press Shift+9
-press Shift+9
-press Space
-wait 900
-still
-state end
+start:
+two: press Period x2 | time_s = 0.2 | frame.ids not as start
+one: press Comma | time_s = 0.1
+last: press Comma x2 | time_s = 4
+first: press Period | time_s = 0 | frame.ids as start
+slow! press L, press 9 | keys.animation runs = once | keys.double speed = x 0.5
+fast! press Shift+9 x2 | keys.double speed = x 2
+later: press Space, wait 300, press Space | playing = false
+end: press Shift+9 x3, press Space, wait 900 | playing = false | time_s = 4
 END
-is two time_s 0.2
-is one time_s 0.1
-is last time_s 4
-is first time_s 0
-same frame.ids start first
-differs frame.ids start two
-is slow "keys.animation runs" once
-is slow "keys.double speed" "x 0.5"
-is fast "keys.double speed" "x 2"
-is later playing false
 check "300 ms at double speed are 0.6 s ($(value later time_s))" \
     awk -v t="$(value later time_s)" 'BEGIN { exit !(t > 0.599999 && t < 0.600001) }'
-is end playing false
-is end time_s 4
 
 # ---- Sizes ----
 
 play "sizes" "$CUBE" --size 200x100 <<END
-still
-state start
-size 90 120
-still
-state tall
-size 200 100
-still
-state back
-press F11
-still
-state full
-shot full.png
-press F11
-still
-state window
+start:
+tall: size 90 120 | window_width = 90 | frame.width = 90 | frame.height = 120 | frame.whole = true
+back: size 200 100 | frame.ids as start | frame.pixels as start
+full: press F11 | window_width = $WIDE | frame.height = $HIGH | keys.full screen = on
+window: shot full.png, press F11 | window_width = 200 | frame.ids as start
 END
-is tall window_width 90
-is tall frame.width 90
-is tall frame.height 120
-is tall frame.whole true
-same frame.ids start back
-same frame.pixels start back
-is full window_width "$WIDE"
-is full frame.height "$HIGH"
-is full "keys.full screen" on
-is window window_width 200
-same frame.ids start window
 check "a picture of the full screen" test "$(od -An -tu1 -j16 -N8 full.png | tr -s ' ')" = \
     "$(printf ' 0 0 %d %d 0 0 %d %d' $((WIDE / 256)) $((WIDE % 256)) $((HIGH / 256)) $((HIGH % 256)))"
 play "full screen from the start" "$CUBE" --size 200x100 --fullscreen <<END
-still
-state full
-press F11
-still
-state window
+full: | window_width = $WIDE
+window: press F11 | window_width = 200
 END
-is full window_width "$WIDE"
-is window window_width 200
 
 # ---- Ways to the screen ----
 
@@ -204,11 +90,7 @@ for way in direct blit "no-vsync"; do
     [ "$way" = direct ] || option=--$way
     # shellcheck disable=SC2086
     play "$way" "$CUBE" --size 200x100 $option <<END
-press F2
-press F2
-still
-shot $way.png
-state shown
+shown! press F2 x2, still, shot $way.png
 END
     is shown hud off
     is shown frame.whole true
@@ -224,52 +106,22 @@ done
 
 # shellcheck disable=SC2086
 play "help, figures, Escape twice" "$CUBE" $SMALL <<END
-still
-state start
-press Space
-state still
-press H
-still
-state help
-press Escape
-still
-state closed
-press F1
-state f1
-press F1
-press F2
-state full
-press F2
-state off
-press F2
-state small
-press Escape
-state once
-wait 1600
-press Escape
-state late
-wait 3900
-state told
-wait 200
-state silent
+start: | help = false
+still! press Space | playing = false | toast = nothing moves in this scene
+help: press H | help = true
+closed: press Escape | help = false
+f1! press F1 | help = true
+full! press F1, press F2 | hud = full
+off! press F2 | hud = off
+small! press F2 | hud = small | frame.ids as start
+once! press Escape | toast = Escape once more quits
+late! wait 1600, press Escape | toast = Escape once more quits
+told! wait 3900 | toast = Escape once more quits
+silent! wait 200 | toast =
 press Escape
 press Escape
 wait 60000
 END
-is still playing false
-is still toast "nothing moves in this scene"
-is start help false
-is help help true
-is closed help false
-is f1 help true
-is full hud full
-is off hud off
-is small hud small
-same frame.ids start small
-is once toast "Escape once more quits"
-is late toast "Escape once more quits"
-is told toast "Escape once more quits"
-is silent toast ""
 
 # ---- What takes long ----
 
@@ -280,24 +132,12 @@ WHIT=$SLOW
 export WHIT_TEST_SLOW=kernel
 # shellcheck disable=SC2086
 play "a switch that is stopped" "$CUBE" $SMALL <<END
-still
-state start
-press G
-until work = compiling the kernel
-state working
-press Escape
-still
-state stopped
-press G
-until work
-press G
-still
-state back
-press Escape
-state once
+start:
+working! press G, until work = compiling the kernel | keys.trees = off
+stopped: press Escape | toast = stopped: as it was
+back: press G, until work, press G
+once! press Escape | toast = Escape once more quits
 END
-is working "keys.trees" off
-is stopped toast "stopped: as it was"
 for at in stopped back; do
     is $at "keys.trees" on
     is $at work ""
@@ -305,31 +145,20 @@ for at in stopped back; do
     same frame.number start $at
     same frame.pixels start $at
 done
-is once toast "Escape once more quits"
 
 # A slow picture says how far it is, and can be left.
 export WHIT_TEST_SLOW=picture
 # shellcheck disable=SC2086
 play "a slow picture" "$CUBE" $SMALL <<END
-still
-state start
-press G
-picture
-until part
-until panels.work
-state slow
-press G
-still
-state back
+start:
+slow! press G, picture, until part, until panels.work | keys.trees = off | frame.whole = false
+back: press G | frame.ids as start
 END
 unset WHIT_TEST_SLOW
 WHIT=$patient
-is slow "keys.trees" off
-is slow frame.whole false
 part=$(value slow part)
 check "it says which part is done ($part)" awk -v p="$part" 'BEGIN { exit !(p > 0 && p < 1) }'
 check "at slow: it is shown" test "$(value slow panels.work)" != "(no panels.work)"
-same frame.ids start back
 
 # ---- Ways to end ----
 

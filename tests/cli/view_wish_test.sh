@@ -16,20 +16,10 @@ wished() {
     text=$4
     shift 4
     play "$*" "$scene" --size $SIZE --spend 0.1 "$@" <<END
-picture
-state first
-until wish.stage = measures
-$event
-press T
-still
-shot $OUT/wish.png
-state chosen
-press 1
-still
-state elsewhere
-press Equal
-still
-state left
+first! picture
+chosen! until wish.stage = measures, $event, press T, still
+elsewhere: press 1
+left: press Equal
 END
     is first wish.predicted_ms 0
     is chosen scene "$measured"
