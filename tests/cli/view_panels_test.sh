@@ -1,5 +1,5 @@
 #!/bin/sh
-# sh view_panels_test.sh WHIT SCENES WHIT_SLOW [large]: panels over the picture. All of what they say
+# sh view_panels_test.sh WHIT SCENES [large]: panels over the picture. All of what they say
 # is in the window, and none covers another one.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
@@ -39,42 +39,15 @@ size $1 $2
 still
 press F2
 state $1x$2-full
-press F2
-press F2
-press T
-press C
-press M
-press M
-press B
-still
-shot split-$1x$2.png
-state $1x$2-split
-press Tab
-still
-shot settings-$1x$2.png
-state $1x$2-settings
+$1x$2-split: press F2 x2, press T, press C, press M x2, press B
+$1x$2-settings: press Tab
 press X
 priced
-still
-shot effects-$1x$2.png
-state $1x$2-effects
-press D
-press X
-still
-state $1x$2-difference
-press N
-still
-state $1x$2-boxes
-press H
-still
-shot help-$1x$2.png
-state $1x$2-help
-press H
-press D
-press C
-click 60 50
-still
-state $1x$2-pixel
+$1x$2-effects:
+$1x$2-difference: press D, press X
+$1x$2-boxes: press N
+$1x$2-help: press H
+$1x$2-pixel: press H, press D, press C, click 60 50
 press Escape
 wait 5000
 press N
@@ -107,7 +80,7 @@ panels() {
 }
 
 # Small and large: text of another scale fills smaller windows as it fills larger ones at 1.
-if [ "${4:-}" = large ]; then
+if [ "${3:-}" = large ]; then
     panels 1 640 320x240 640x480 1280x720
     panels 2 1280 640x480 1280x960
 else
