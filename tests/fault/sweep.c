@@ -22,6 +22,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <glob.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,7 +97,7 @@ struct sweep {
     struct content printed;
     const struct fault *faults[FAULTS_MAX], *fault; /* fault: of this run */
     uint32_t fault_count;
-    uint32_t max_runs, every, shown, max_submits;
+    uint32_t max_runs, every, shown, max_submits, step_ms;
     char **command;
     uint32_t runs, fired, failed, fine, said, defects; /* said: fine, but a picture is missing */
     uint32_t kept;    /* reports of what was measured before the end */
@@ -471,15 +472,9 @@ static void show(const struct sweep *sweep, uint32_t at, const char *defect, con
 
 static bool has_unfinished(void)
 {
-    bool found = false;
-    DIR *folder = opendir(".");
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        size_t length = strlen(entry->d_name);
-        found |= entry->d_name[0] == '.' && length > 4 &&
-                 strcmp(entry->d_name + length - 4, ".tmp") == 0;
-    }
-    if (folder)
-        closedir(folder);
+    glob_t names;
+    bool found = glob(".*.tmp", 0, NULL, &names) == 0;
+    globfree(&names);
     return found;
 }
 
@@ -594,24 +589,12 @@ static void make_folder(char *folder)
         stop(inner);
 }
 
-static void remove_folder(const struct sweep *sweep, const char *folder)
+static void remove_folder(const char *folder)
 {
-    static const char *const names[] = {"stdout", "stderr"};
-    for (uint32_t i = 0; i < sweep->output_count; ++i)
-        unlink(sweep->outputs[i]);
-    for (int i = 0; i < 2; ++i) {
-        char path[64];
-        snprintf(path, sizeof path, "../%s", names[i]);
-        unlink(path);
-    }
-    if (sweep->cold && system("rm -rf ../cache") != 0)
-        stop("../cache");
-    if (chdir("/") == 0) {
-        char inner[64];
-        snprintf(inner, sizeof inner, "%s/work", folder);
-        rmdir(inner);
-        rmdir(folder);
-    }
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    if (chdir("/") != 0 || system(command) != 0)
+        stop(folder);
 }
 
 static void share(struct sweep *sweep)
@@ -644,48 +627,42 @@ static void read_faults(struct sweep *sweep, const char *names)
     }
 }
 
-static bool read_number(struct sweep *sweep, const char *name, const char *value)
+static bool read_option(struct sweep *sweep, const char *name, const char *value)
 {
+    const struct {
+        const char *name, *word; /* sets `to` where the value is this word */
+        bool *to;
+    } words[] = {
+        {"--leaks", "ignore", &sweep->may_leak},   {"--validated", "yes", &sweep->validated},
+        {"--cache", "cold", &sweep->cold},         {"--outputs", "reports", &sweep->reports},
+        {"--outputs", "figures", &sweep->figures}, {"--stdout", "same", &sweep->same_stdout},
+        {"--stdout", "pictures", &sweep->pictures}};
     const struct {
         const char *name;
         uint32_t *to;
     } numbers[] = {{"--runs", &sweep->max_runs},
                    {"--every", &sweep->every},
                    {"--show", &sweep->shown},
-                   {"--submits", &sweep->max_submits}};
-    for (uint32_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
-        if (strcmp(name, numbers[i].name) != 0)
-            continue;
-        *numbers[i].to = (uint32_t)strtoul(value, NULL, 10);
-        return true;
+                   {"--submits", &sweep->max_submits},
+                   {"--step-ms", &sweep->step_ms}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
+        if (strcmp(name, words[i].name) == 0 && strcmp(value, words[i].word) == 0)
+            return *words[i].to = true;
     }
-    return false;
-}
-
-static bool read_option(struct sweep *sweep, const char *name, const char *value)
-{
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
+        if (strcmp(name, numbers[i].name) == 0) {
+            *numbers[i].to = (uint32_t)strtoul(value, NULL, 10);
+            return true;
+        }
+    }
     if (strcmp(name, "--output") == 0 && sweep->output_count < OUTPUTS_MAX)
         sweep->outputs[sweep->output_count++] = value;
     else if (strcmp(name, "--from") == 0)
         snprintf(sweep->shared->from, sizeof sweep->shared->from, "%s", value);
     else if (strcmp(name, "--say") == 0)
         sweep->say = value;
-    else if (strcmp(name, "--leaks") == 0)
-        sweep->may_leak = strcmp(value, "ignore") == 0;
-    else if (strcmp(name, "--validated") == 0)
-        sweep->validated = strcmp(value, "yes") == 0;
-    else if (strcmp(name, "--cache") == 0)
-        sweep->cold = strcmp(value, "cold") == 0;
-    else if (strcmp(name, "--step-ms") == 0)
-        sweep->shared->step_ns = 1000000 * atoll(value);
-    else if (strcmp(name, "--outputs") == 0) {
-        sweep->reports = strcmp(value, "reports") == 0;
-        sweep->figures = strcmp(value, "figures") == 0;
-    } else if (strcmp(name, "--stdout") == 0) {
-        sweep->same_stdout = strcmp(value, "same") == 0;
-        sweep->pictures = strcmp(value, "pictures") == 0;
-    } else
-        return read_number(sweep, name, value);
+    else
+        return false;
     return true;
 }
 
@@ -723,12 +700,15 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: fault_sweep INJECT FAULTS [options] -- COMMAND...\n");
         return 2;
     }
-    struct sweep sweep = {
-        .inject = argv[1], .max_runs = 1 << 20, .max_submits = UINT32_MAX, .shown = SHOWN};
+    struct sweep sweep = {.inject = argv[1],
+                          .max_runs = 1 << 20,
+                          .max_submits = UINT32_MAX,
+                          .step_ms = 1,
+                          .shown = SHOWN};
     share(&sweep);
-    sweep.shared->step_ns = 1000000;
     read_faults(&sweep, argv[2]);
     read_options(&sweep, argc, argv);
+    sweep.shared->step_ns = 1000000 * (int64_t)sweep.step_ms;
     make_folder(folder);
     run_without_fault(&sweep);
     uint32_t calls = count_calls(&sweep);
@@ -736,7 +716,7 @@ int main(int argc, char **argv)
         check_each(&sweep, calls);
     else
         check_some(&sweep, calls);
-    remove_folder(&sweep, folder);
+    remove_folder(folder);
     print_sum(&sweep);
     /* Few runs may all go well; all of them may not. */
     bool kills = deadly(sweep.faults[0]) == SIGKILL;

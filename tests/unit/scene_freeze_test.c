@@ -56,8 +56,7 @@ TEST(bad_triangles_are_dropped_and_counted)
     mesh.groups = copy_of(groups, sizeof groups);
     mesh.group_count = 2;
     mesh.materials = calloc(9, sizeof(uint32_t));
-    struct scene *scene = scene_of(mesh);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
     /* Kept: 0 1 2, the tiny 0 7 8, the huge 0 9 10, and 2 1 0. */
     assert_int_equal(m->triangle_count, 4);
@@ -87,7 +86,7 @@ TEST(bad_spheres_are_dropped_and_counted)
     struct scene *scene = scene_of(mesh);
     scene_put_material(scene, material_grey("grey"));
     scene_put_material(scene, material_grey("grey"));
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     const struct scene_mesh *m = &scene->meshes[0];
     assert_int_equal(m->sphere_count, 3);
     assert_int_equal(scene->sphere_total, 3);
@@ -101,6 +100,12 @@ TEST(bad_spheres_are_dropped_and_counted)
     scene_destroy(scene);
 }
 
+static void assert_refused(struct scene *scene)
+{
+    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
+    scene_destroy(scene);
+}
+
 /* A mesh is of triangles or of spheres. */
 TEST(mixed_meshes_are_refused)
 {
@@ -108,9 +113,7 @@ TEST(mixed_meshes_are_refused)
     struct scene_mesh mesh = mesh_box(2, 2, 2);
     mesh.sphere_count = 1;
     mesh.spheres = copy_of(sphere, sizeof sphere);
-    struct scene *scene = scene_of(mesh);
-    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
-    scene_destroy(scene);
+    assert_refused(scene_of(mesh));
 }
 
 TEST(attributes_are_mended)
@@ -122,8 +125,7 @@ TEST(attributes_are_mended)
     struct scene_mesh mesh = make_mesh(p, 4, indices, 1);
     mesh.normals = copy_of(normals, sizeof normals);
     mesh.uvs[0] = copy_of(uvs, sizeof uvs);
-    struct scene *scene = scene_of(mesh);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
     const float mended[] = {0, 0, 1, 0, 0, 1, 0, -1, 0, 0, 0, 1};
     const float mended_uvs[] = {0.5f, 0.25f, 0, 0, 0, 0, 0, 0};
@@ -142,8 +144,7 @@ static bool keeps_normals(float side, float lean)
     const float normals[] = {0, 0, side, 0, 0, side, lean, 0, side};
     struct scene_mesh mesh = make_mesh(p, 3, indices, 1);
     mesh.normals = copy_of(normals, sizeof normals);
-    struct scene *scene = scene_of(mesh);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_ready(scene_of(mesh));
     bool keeps = scene->meshes[0].normals != NULL;
     scene_destroy(scene);
     return keeps;
@@ -167,7 +168,7 @@ TEST(materials_are_mended)
     material.diffuse[1] = -1.0f;
     material.ior = 0.0f;
     scene_put_material(scene, material);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     const struct scene_material *m = &scene->materials[0];
     assert_true(m->diffuse[0] == 0.7f && m->diffuse[1] == 0.0f && m->ior == 1.5f);
     assert_true(noted(scene, "material `odd`: 3 values"));
@@ -176,26 +177,17 @@ TEST(materials_are_mended)
 
 TEST(broken_references_are_refused)
 {
-    struct scene *scene = scene_of(mesh_box(2, 2, 2));
-    scene->meshes[0].materials[3] = 7;
-    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
-    scene_destroy(scene);
-    scene = scene_of(mesh_box(2, 2, 2));
-    scene_put_again(scene, 5, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
-    scene_destroy(scene);
-    scene = scene_of(mesh_box(2, 2, 2));
-    struct scene_node node;
-    scene_node_init(&node, "n", 0);
-    scene_add_node(scene, node); /* its own parent */
-    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
-    scene_destroy(scene);
-    scene = scene_of(mesh_box(2, 2, 2));
+    struct scene *scenes[4];
+    for (int i = 0; i < 4; ++i)
+        scenes[i] = scene_of(mesh_box(2, 2, 2));
+    scenes[0]->meshes[0].materials[3] = 7;
+    scene_put_again(scenes[1], 5, NULL);
+    scene_put_node(scenes[2], 0, 0, 0, 0); /* its own parent */
     struct scene_material material = material_grey("m");
     material.textures[SCENE_SLOT_DIFFUSE].texture = 0;
-    scene_put_material(scene, material);
-    assert_int_equal(scene_freeze(scene), WHIT_ERROR_INPUT);
-    scene_destroy(scene);
+    scene_put_material(scenes[3], material);
+    for (int i = 0; i < 4; ++i)
+        assert_refused(scenes[i]);
 }
 
 TEST(singular_instances_and_unused_meshes_go)
@@ -209,7 +201,7 @@ TEST(singular_instances_and_unused_meshes_go)
     uint32_t flat = scene_add_node(scene, node);
     scene_put_again(scene, mesh, &(struct put){.name = "i", .node = &flat});
     scene_put_again(scene, mesh, NULL);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     assert_int_equal(scene->instance_count, 1);
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instances[0].mesh, 0);
@@ -220,7 +212,7 @@ TEST(singular_instances_and_unused_meshes_go)
 TEST(empty_scene_is_a_background)
 {
     struct scene *scene = scene_begin(NULL, "test");
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     assert_int_equal(scene->camera_count, 1);
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->triangle_total, 0);
@@ -231,8 +223,7 @@ TEST(empty_scene_is_a_background)
 /* The light comes from behind the camera. */
 TEST(missing_camera_and_light_are_made)
 {
-    struct scene *scene = scene_of(mesh_box(2, 2, 2));
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_ready(scene_of(mesh_box(2, 2, 2)));
     const struct scene_camera *camera = &scene->cameras[0];
     const struct scene_light *light = &scene->lights[0];
     double along = 0.0;
@@ -249,7 +240,7 @@ TEST(own_light_gets_no_company)
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_light light = {.kind = SCENE_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
     scene_put_light(scene, light);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     assert_int_equal(scene->light_count, 1);
     assert_true(scene->lights[0].color[2] == 0.0f);
     assert_true(scene->ambient[0] == 0.0f && scene->environment.horizon[0] == 0.0f);
@@ -280,8 +271,7 @@ TEST(tessellated_lamps_become_points)
 {
     struct scene *scene = panel_scene(10.0f, 6);
     struct scene_pose pose;
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 16);
     double sum = 0.0, mean_x = 0.0;
     for (uint32_t i = 0; i < pose.light_count; ++i) {
@@ -304,8 +294,7 @@ TEST(flat_lamps_become_rectangles)
 {
     struct scene *scene = panel_scene(10.0f, 1);
     struct scene_pose pose;
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 1);
     const struct scene_light *light = &pose.lights[0];
     assert_int_equal(light->kind, SCENE_LIGHT_RECTANGLE);
@@ -328,8 +317,7 @@ TEST(single_triangles_become_lights)
     struct scene_pose pose;
     scene->meshes[1].positions[0] *= 1.5f;
     scene->nodes[scene->node_count - 1].scale[0] = -3.0;
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 2);
     for (uint32_t i = 0; i < 2; ++i) {
         const struct scene_light *light = &pose.lights[i];
@@ -344,8 +332,7 @@ TEST(single_triangles_become_lights)
 
 TEST(faint_glow_lights_nothing)
 {
-    struct scene *scene = panel_scene(0.001f, 1);
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    struct scene *scene = scene_ready(panel_scene(0.001f, 1));
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
     scene_destroy(scene);
@@ -358,7 +345,7 @@ static uint64_t hash_of(float diffuse, float move)
     material.diffuse[0] = diffuse;
     scene_put_material(scene, material);
     scene->meshes[0].positions[0] += move;
-    assert_int_equal(scene_freeze(scene), WHIT_OK);
+    scene_ready(scene);
     uint64_t hash = scene->hash;
     scene_destroy(scene);
     return hash;

@@ -37,6 +37,25 @@ static void take_all(struct engine *engine, struct engine_frame *frame)
     take_both(engine, frame, NULL);
 }
 
+/* An engine that has drawn this. */
+static struct engine *engine_of(const struct engine_params *params, const struct settings *settings,
+                                struct engine_frame *frame)
+{
+    struct engine *engine;
+    *frame = (struct engine_frame){0};
+    assert_int_equal(engine_create(params, &engine), WHIT_OK);
+    engine_ask(engine, settings, false);
+    take_all(engine, frame);
+    assert_true(frame->whole);
+    return engine;
+}
+
+static void close_engine(struct engine *engine, struct engine_frame *frame)
+{
+    engine_frame_finish(frame);
+    assert_int_equal(engine_destroy(engine), 0);
+}
+
 /* The device is lost at the n-th submission of each device: while the engine is opened, later, or
    not at all. `once`: the devices after the first are sound. */
 static bool lose_at(unsigned n, bool once, bool *gave_up)
@@ -96,16 +115,11 @@ TEST(a_lost_device_is_made_again_or_given_up)
    renderer is made for a small one. */
 TEST(large_trees_are_drawn_in_packets)
 {
-    struct engine *engine;
-    struct engine_frame frame = {0};
-    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct engine_frame frame;
     struct settings settings = settings_of("8k.json");
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
-    assert_true(frame.whole);
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
     assert_true(frame.stats.packets == (frame.device.subgroup_size == 8)); /* lavapipe */
-    engine_frame_finish(&frame);
-    assert_int_equal(engine_destroy(engine), 0);
+    close_engine(engine, &frame);
 }
 
 /* ---- Memory ---- */
@@ -165,22 +179,18 @@ TEST(memory_that_runs_out_is_said)
     static const enum settings_paint paints[] = {PAINT_COLOR, PAINT_VISITS};
     window_thread = pthread_self();
     for (int i = 0; i < 2; ++i) {
-        struct engine *engine;
-        struct engine_frame right = {0};
+        struct engine_frame right;
         struct settings settings = settings_of("cube.json");
         uint32_t said_count = 0, blocks = 0;
         bool said = false;
         settings.paint = paints[i];
-        assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-        draw(engine, &settings, &right);
-        assert_true(right.whole);
+        struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &right);
         while (draws_without(blocks + 1, engine, &settings, &right, &said) && ++blocks < 1000)
             said_count += said;
         print_message("view %d: %u blocks, %u of them missed and said so\n", (int)paints[i], blocks,
                       said_count);
         assert_true(said_count >= 2 && blocks < 1000);
-        engine_frame_finish(&right);
-        assert_int_equal(engine_destroy(engine), 0);
+        close_engine(engine, &right);
     }
 }
 
@@ -189,16 +199,12 @@ TEST(memory_that_runs_out_is_said)
 /* Somebody who turns the camera faster than pictures come gets pictures all the same. */
 TEST(no_look_is_cut_short)
 {
-    struct engine *engine;
-    struct engine_frame frame = {0};
+    struct engine_frame frame;
     uint32_t shown = 0, asked = 0;
-    assert_int_equal(engine_create(&(struct engine_params){.budget_ms = 1e4}, &engine), WHIT_OK);
     struct settings settings = settings_of("default.json");
     settings.picture.width = 160;
     settings.picture.height = 108;
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
-    assert_true(frame.whole);
+    struct engine *engine = engine_of(&(struct engine_params){.budget_ms = 1e4}, &settings, &frame);
     double picture_ms = frame.draw_ms, start_ms = clock_ms();
     while (shown <
            3) { /* from the first question on none gets a picture where looks are cut short */
@@ -215,19 +221,15 @@ TEST(no_look_is_cut_short)
     take_all(engine, &frame);
     assert_string_equal(frame.settings.camera, settings.camera); /* the last one is answered */
     assert_true(frame.whole);
-    engine_frame_finish(&frame);
-    assert_int_equal(engine_destroy(engine), 0);
+    close_engine(engine, &frame);
 }
 
 /* While another tree is made the picture stays as it is: no rougher one comes between. */
 TEST(a_switch_keeps_the_picture)
 {
-    struct engine *engine;
-    struct engine_frame frame = {0};
-    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
+    struct engine_frame frame;
     struct settings settings = settings_of("8k.json");
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
     settings.trees.build = WHIT_BUILD_MEDIAN;
     engine_ask(engine, &settings, false);
     double start_ms = clock_ms();
@@ -242,20 +244,16 @@ TEST(a_switch_keeps_the_picture)
     assert_true(frame.whole);
     assert_int_equal(status.change.number, 1);
     assert_int_equal(status.change.other_ids, 0);
-    engine_frame_finish(&frame);
-    assert_int_equal(engine_destroy(engine), 0);
+    close_engine(engine, &frame);
 }
 
 /* Whoever turns the camera beside a scene that cannot be read is still told so. */
 TEST(an_error_outlives_the_other_side)
 {
-    struct engine *engine;
-    struct engine_frame frame = {0}, other = {0};
+    struct engine_frame frame, other = {0};
     struct engine_status status;
-    assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
     struct settings settings = settings_of("cube.json");
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
     engine_ask_other(engine, &settings);
     take_both(engine, &frame, &other);
     settings = settings_of("nowhere.json");
@@ -270,7 +268,6 @@ TEST(an_error_outlives_the_other_side)
     assert_true(other.number > number);
     engine_get_status(engine, &status);
     assert_non_null(strstr(status.error, "nowhere.json"));
-    engine_frame_finish(&frame);
     engine_frame_finish(&other);
-    assert_int_equal(engine_destroy(engine), 0);
+    close_engine(engine, &frame);
 }
