@@ -31,17 +31,8 @@ expect 0 "--stats" render "$CUBE" -o "$OUT/auto.pfm" --size 48x36 --stats text
 check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ in the largest, [0-9]+ of [0-9]+ bindings" \
     "$OUT/stdout"
 
-expect 0 "scene --effects --json" scene "$CUBE" --effects --size 32x24 --quiet --json
-for key in hash device picture kernel frame_ms effects; do
-    check "JSON has $key" jq -e "has(\"$key\")" "$OUT/stdout"
-done
-for key in name called compiled reason cost_ms difference; do
-    check "JSON has $key of each effect" \
-        jq -e "(.effects | length > 0) and all(.effects[]; has(\"$key\"))" "$OUT/stdout"
-done
-
 # The table, and an effect in it that changes the picture though the scene does not call for it. The
-# layers have seen its kernels in the run above.
+# layers see its kernels in json_test.sh, which has the same as JSON.
 WHIT=$CHANGED
 unset WHIT_VALIDATION
 export WHIT_TEST_CHANGED_EFFECT=normal-maps

@@ -39,10 +39,12 @@ saved() {
     made frames render "$SCENES/spin.json" -o p.##.png --frames 0-1 $SMALL --stats json
     made scene scene "$SCENES/default.json" --json
     made effects scene "$CUBE" --effects --json --size 16x12 --quiet
+    check "each effect has the same keys" \
+        jq -e '(.effects | length > 0) and ([.effects[] | keys] | unique | length == 1)' "$OUT/stdout"
     made kernels scene "$CUBE" --kernels --json --size 16x12 --quiet
     saved probe probe "$SCENES/glass-of-water.json" --pixel 8,6 $SMALL
     made bvh bvh "$CUBE" --json --runs 1 --rays 500 --build binned --threads 1 --quiet
-    saved hard hard --case sphere --quick --quiet
+    saved hard hard --case sphere --quick --quiet --numerics watertight
     saved compare compare p.png p.png
     saved cost cost "$CUBE" $SMALL --spend 0.2 --rays 100 --knobs traversal --within 1e6
     made devices devices --json

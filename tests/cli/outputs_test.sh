@@ -10,19 +10,30 @@ for i in 0 1 2 3 4 5 6 7 8 9; do
     cat "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray"
 done >"$OUT/rays"
 
+# no_place EXTENSION ARGUMENT...: names that are no place for an output, behind the last argument. What opens
+# outputs is the same for all of a command.
+no_place() {
+    end=$1
+    shift
+    option="$1 ... $(for last; do :; done; echo "$last")"
+    mkdir "folder$end"
+    echo old >file
+    refuse 2 "$option: a folder" "folder$end: cannot write: Is a directory" "$@" "folder$end"
+    refuse 2 "$option: a file for a folder" "file/x$end: cannot write: Not a dir" "$@" "file/x$end"
+    refuse 2 "$option: too long a name" "xx$end: cannot write: File name too long" \
+        "$@" "$(printf '%0300d' 0 | tr 0 x)$end"
+    rmdir "folder$end"
+    rm file
+    check "$option: nothing is left" is_empty .
+}
+
 # one_option EXTENSION ARGUMENT...: with the name of an output behind the last argument. ok.pfm may
 # be written besides.
 one_option() {
     end=$1
     shift
     option="$1 ... $(for last; do :; done; echo "$last")"
-    mkdir "folder$end"
-    echo old >file
     refuse 2 "$option: no such folder" "nowhere/x$end: cannot write: No such" "$@" "nowhere/x$end"
-    refuse 2 "$option: a folder" "folder$end: cannot write: Is a directory" "$@" "folder$end"
-    refuse 2 "$option: a file for a folder" "file/x$end: cannot write: Not a dir" "$@" "file/x$end"
-    refuse 2 "$option: too long a name" "xx$end: cannot write: File name too long" \
-        "$@" "$(printf '%0300d' 0 | tr 0 x)$end"
     if [ -c /dev/full ]; then
         ln -s /dev/full "full$end"
         refuse 2 "$option: a full device" "full$end: cannot write: No space" "$@" "full$end"
@@ -38,12 +49,15 @@ one_option() {
     check "$option: says which file" grep -q "^whit: error: .*x$end: cannot write: " "$OUT/stderr"
     check "$option: in one line" test "$(grep -c . "$OUT/stderr")" -eq 1
     check "$option: the old file is there" test "$(cat "x$end")" = old
-    rmdir "folder$end"
-    rm -f "x$end" file ok.pfm
+    rm -f "x$end" ok.pfm
     check "$option: nothing is left" is_empty .
 }
 
 small="--size 96x64 --quiet"
+# shellcheck disable=SC2086
+no_place .png render "$CUBE" $small -o
+no_place "" trace "$CUBE" --input "$OUT/rays" --on cpu --quiet -o
+no_place "" scene "$SCENES/spin.json" --quiet --triangles
 for end in .png .exr .pfm; do
     # shellcheck disable=SC2086
     one_option $end render "$CUBE" $small -o

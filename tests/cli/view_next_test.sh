@@ -14,7 +14,7 @@ next() {
 
 # ---- Keys ----
 
-KEYS="T K O Minus Equal A B V T ] 2 Home Period M" # exact last: its kernels are large
+KEYS="T K O Minus Equal A B V T ] 2 Home Period"
 {
     n=0
     for key in $KEYS; do

@@ -79,12 +79,12 @@ panels() {
     done
 }
 
-# Small and large: text of another scale fills smaller windows as it fills larger ones at 1.
+# Small and large: text of another scale fills smaller windows as it fills larger ones at 1, so that what does not
+# go by the scale is seen at 0.5.
 if [ "${3:-}" = large ]; then
     panels 1 640 320x240 640x480 1280x720
     panels 2 1280 640x480 1280x960
 else
-    panels 1 640 320x240
     panels 2 1280 640x480
     panels 0.5 320 160x120 320x240 640x360
 fi
