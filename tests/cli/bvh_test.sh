@@ -1,4 +1,5 @@
 # `whit bvh`: builders side by side, trees in files, and what it refuses.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 cd "$OUT" || exit 1
 SMALL="--runs 1 --rays 2000"
@@ -16,7 +17,6 @@ check "whit names the command" sh -c "'$WHIT' --help | grep -q '^  bvh  '"
 
 # ---- Comparisons ----
 
-# shellcheck disable=SC2086
 expect 0 "the default builders" bvh "$BALL" $SMALL --threads 1,2 --validate
 check "nothing but the report" test ! -s stderr
 check "the scene" has "^scene      $BALL: [0-9]* triangles in 1 instance of 1 mesh$"
@@ -36,7 +36,6 @@ done
 
 # A device takes half a second to compile for each row.
 for option in "--traversal sign --instance-build median" "--load-path texel --instances off"; do
-    # shellcheck disable=SC2086
     expect 0 "$option" bvh "$SCENES/many.json" $SMALL --build median,binned:4+opt --threads 2 $option
     check "$option: no hit differs" has "^hits: 0 of [1-9][0-9]* differ$"
 done
@@ -51,7 +50,6 @@ check "without rays there are no rates" sh -c '! grep -q Mray stdout'
 MIXED=$OUT/mixed.json
 printf '{ "objects": [ { "shape": "box" }, { "shape": "ball" } ] }\n' >"$MIXED"
 for instances in "" "--instances off"; do
-    # shellcheck disable=SC2086
     expect 0 "spheres $instances" bvh "$MIXED" --no-trace --runs 1 --build sweep $instances
     check "spheres are no triangles $instances" has "^scene .*: 12 triangles and 1 sphere in 2 instances"
     check "nor in trees $instances" has ", 12 triangles and 1 sphere in 13 references (1.000 each)"
@@ -62,7 +60,6 @@ check "twelve of them" has "^  of size  1: 12$"
 
 # ---- JSON ----
 
-# shellcheck disable=SC2086
 expect 0 "--json" bvh "$BALL" $SMALL --json --build sweep --threads 1,3
 check "three threads" jq -e '.builders[0].build_ms[1].threads == 3' stdout
 check "nothing to compare" jq -e '.hits.compared == 0' stdout
@@ -89,7 +86,6 @@ refuse 2 "--tree, which is gone" "option .--tree. is gone: trees are built" rend
 check "no picture" test ! -e b.png
 
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
-# shellcheck disable=SC2086
 expect 0 "no device" bvh "$CUBE" $SMALL --build sweep
 check "one note says so" test "$(grep -c "^whit: note: .*no rays are traced" stderr)" -eq 1
 check "and nothing else" test "$(grep -c . stderr)" -eq 1

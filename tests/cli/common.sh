@@ -59,6 +59,11 @@ holds() {
     awk "BEGIN { exit !($1) }"
 }
 
+# about A B [SHARE]: two numbers that differ by less than that share of the first, else a millionth.
+about() {
+    holds "($1 - $2) ^ 2 <= (${3:-1e-6} * $1) ^ 2"
+}
+
 # wait_for PID COMMAND...: until the command succeeds; fails where the process ends before.
 wait_for() {
     awaited=$1
@@ -67,6 +72,25 @@ wait_for() {
         kill -0 "$awaited" 2>/dev/null || return 1
         sleep 0.02
     done
+}
+
+# shows WHAT PATTERN ARGUMENT...: whit exits with 0, and standard output has a line with PATTERN.
+shows() {
+    what=$1
+    pattern=$2
+    shift 2
+    expect 0 "$what" "$@"
+    check "$what: shows \`$pattern\`" grep -q -e "$pattern" "$OUT/stdout"
+}
+
+# interrupted PID COMMAND...: Ctrl+C once the command succeeds, after which the process ends with 130.
+interrupted() {
+    pid=$1
+    check "it goes on until $2" wait_for "$@"
+    kill -INT "$pid"
+    wait "$pid"
+    status=$?
+    check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
 }
 
 # Nothing but what the test made lies in the folder, hidden files included.

@@ -2,6 +2,7 @@
 # `whit cost`: rows, errors, answers, files (Ctrl+C: fault_stop_cost). The third argument is whit over a
 # library in which WHIT_TEST_WRONG is wrong, by clocks of its own: nothing here depends on how fast the
 # machine is.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 needs xmllint
@@ -21,7 +22,6 @@ small="--size 48x36 --quick --rays 600 --quiet --spend 0.1"
 
 C=$OUT/files/cost.csv
 D=$OUT/files/other.csv
-# shellcheck disable=SC2086
 expect 0 "a scene" cost "$CUBE" $small --reference-samples 4 --knobs aa,light-samples --within 1e6 --json "$J"
 check "--within anything is kept" grep -q "^Best picture within 1e+06 ms: .*: kept" "$OUT/stdout"
 check "the JSON names its device and is whole" jq -e '(.device | length > 0) and
@@ -34,11 +34,9 @@ check "prices have intervals" jq -e 'all(.rows[].price; (.cpu // .wall).ratio as
 # ---- By clocks that are known ----
 
 WHIT=$WRONG
-# shellcheck disable=SC2086
-expect 0 "a scene by known clocks" cost "$GLASS" $small --reference-samples 16 \
+shows "a scene by known clocks" "^usual  " cost "$GLASS" $small --reference-samples 16 \
     --knobs aa,depth,light-samples --csv "$C" --html "$OUT/files/cost.html" \
     --markdown "$OUT/files/cost.md" --json "$J" --under 0.03 --within 1e6
-check "the usual row" grep -q "^usual  " "$OUT/stdout"
 check "what is not here is named" grep -q "^Not here: .*light-samples 1" "$OUT/stdout"
 check "--under is kept" grep -q "^Cheapest with rmse up to 0.03: .*: kept" "$OUT/stdout"
 check "the page has plots and pictures" \
@@ -66,7 +64,6 @@ expect 0 "compared with itself" cost --compare "$J" "$J"
 check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
 
-# shellcheck disable=SC2086
 expect 0 "what may change nothing" cost "$CUBE" $small --reference-samples 4 \
     --knobs traversal,build,numerics,arithmetic --csv "$C"
 double=$(value "$C" arithmetic double alone_rmse)
@@ -75,7 +72,6 @@ check "double is exact where nothing is cut, float nearly ($double, $float)" \
     holds "$double < 1e-9 && 1e-9 < $float && $float < 1e-6"
 for row in "traversal sign" "traversal basic" "build median" "build sweep" "build spatial" \
     "build binned+opt"; do
-    # shellcheck disable=SC2086
     set -- $row
     check "$row: no pixel is other" test "$(value "$C" "$1" "$2" pixels_changed)" = 0
     check "$row: no identity is other" test "$(value "$C" "$1" "$2" ids_changed)" = 0
@@ -91,7 +87,6 @@ cat >"$OUT/far.json" <<'JSON'
     { "shape": "box", "translation": [90.3, 0.7, 0.1], "rotation": [10, 30, 20] },
     { "shape": "sphere", "translation": [91.6, 0.7, 0.1] } ] }
 JSON
-# shellcheck disable=SC2086
 expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --reference-samples 4 \
     --knobs instances --csv "$C"
 for row in usual: instances:on; do
@@ -100,11 +95,9 @@ for row in usual: instances:on; do
 done
 check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
-# shellcheck disable=SC2086
 expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
 check "and no other" test "$(grep -c '^aa  ' "$OUT/stdout")" -eq 0
-# shellcheck disable=SC2086
 expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
     --under 1e-9
 check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
@@ -112,25 +105,19 @@ check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
 # ---- Choices of `whit render` ----
 
 tiny="$CUBE --size 48x36 -o $OUT/chosen.png"
-# shellcheck disable=SC2086
 expect 0 "a time that is enough" render $tiny --budget-ms 1e6
 check "takes the most samples" grep -q "^whit: note: chosen: --aa 16;* .*predicted" "$OUT/stderr"
 check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
-# shellcheck disable=SC2086
 expect 0 "an error that one sample has" render $tiny --max-error 0.9
 check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
 check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0
-# shellcheck disable=SC2086
 refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --quiet
-# shellcheck disable=SC2086
 refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
-# shellcheck disable=SC2086
 refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 
 # ---- What is wrong is found, in its row ----
 
 export WHIT_TEST_WRONG=schlick
-# shellcheck disable=SC2086
 run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
 right=$(value "$C" fresnel schlick alone_rmse) biased=$(value "$D" fresnel schlick alone_rmse)
@@ -138,7 +125,6 @@ check "a biased Schlick: its error grows ($right to $biased)" holds "$biased > 1
 check "and no other" test "$(value "$C" usual "" alone_rmse)" = "$(value "$D" usual "" alone_rmse)"
 
 export WHIT_TEST_WRONG=triangle
-# shellcheck disable=SC2086
 refuse 1 "a wrong triangle" "build median: it may change nothing" \
     cost "$CUBE" $small --reference-samples 4 --knobs build,traversal --csv "$D"
 unset WHIT_TEST_WRONG
@@ -150,7 +136,6 @@ check "rays find it too ($(value "$D" build median aimed_wrong))" \
     holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
 
 export WHIT_TEST_WRONG=slow
-# shellcheck disable=SC2086
 run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
 check "10 % more work is found" test "$(value "$D" depth 16 ratio)$(value "$D" depth 16 verdict)" = 1.11
@@ -173,6 +158,5 @@ refuse 2 "JSON to a pipe" "/dev/stdout" cost "$CUBE" --json -
 refuse 2 "a page nowhere" "nowhere/x" cost "$CUBE" --html "$OUT/nowhere/x"
 refuse 2 "one file for two" "the same file" cost "$CUBE" --html "$J" --json "$J"
 check "no file was left" is_empty "$OUT/files"
-expect 0 "help" cost --help
-check "help names the reference" grep -q "reference" "$OUT/stdout"
+shows "help" "reference" cost --help
 finish

@@ -2,6 +2,7 @@
 # Times by the clocks of the machine: `whit cost` finds 10 % more work, in its row alone; `whit bench`
 # finds that trees are faster than none. Long. The third argument is whit over a library in which
 # WHIT_TEST_WRONG is wrong.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/cost_common.sh"
 PLAIN=$WHIT WHIT=$WRONG
@@ -13,10 +14,8 @@ D=$OUT/files/slow.csv
 # Nothing meets what a convex body reflects: 16 bounces are what 8 are.
 sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
 deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --reference-samples 4 --spend 8"
-# shellcheck disable=SC2086
 expect 0 "as it is" cost $deep --csv "$C"
 export WHIT_TEST_WRONG=slow
-# shellcheck disable=SC2086
 expect 0 "10 % slower" cost $deep --csv "$D"
 right=$(value "$C" depth 16 ratio) slowed=$(value "$D" depth 16 ratio)
 check "16 bounces cost about what 8 do (x $right)" holds "0.9 < $right && $right < 1.1"

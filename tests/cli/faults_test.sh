@@ -1,6 +1,7 @@
 #!/bin/sh
 # What lacks around the program, and what is sent to it: sh faults_test.sh WHIT SCENES MODELS [long].
 # MODELS is a folder with model.obj and the files that it names. docs/reliability.md lists it all.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 MODELS=$(cd "$3" && pwd)
 LONG=${4:-}
@@ -40,7 +41,6 @@ with_files() (
 
 errors=0
 for most in 4 5 6 7 8; do
-    # shellcheck disable=SC2086
     for command in "scene model.obj" "render model.gltf -o a.pfm $small"; do
         with_files $most $command
         status=$?
@@ -80,7 +80,6 @@ if [ "$LONG" ]; then
     for command in "render $SCENES/cube.json -o a.pfm $small" "render model.obj -o a.pfm $small" \
         "render $SCENES/default.json -o a.pfm --size 320x240 --quiet" \
         "trace $SCENES/swarm.json --input $MODELS/one.rays -o a.pfm --quiet"; do
-        # shellcheck disable=SC2086
         little_memory 30 15 900 $command
         check "$command: the last has enough" test $status -eq 0
     done
@@ -89,7 +88,6 @@ if [ "$LONG" ]; then
     little_memory 30 2 200 bvh "$SCENES/swarm.json" --no-trace --runs 1
 else
     # Too little for a driver; a driver that crashes, or some that do.
-    # shellcheck disable=SC2086
     little_memory 150 120 390 render "$SCENES/cube.json" -o a.pfm $small
     little_memory 40 20 80 scene model.obj
 fi
@@ -150,7 +148,6 @@ for home in "" /nowhere /dev/null; do
     (
         unset XDG_CACHE_HOME HOME
         [ "$home" ] && export HOME="$home"
-        # shellcheck disable=SC2086
         exec "$WHIT" render "$SCENES/cube.json" -o a.pfm $small
     ) 2>"$OUT/stderr"
     check "HOME ${home:-unset}: a picture" test $? -eq 0 -a -s a.pfm
@@ -168,7 +165,6 @@ into_nothing() {
     exec 6>&-
 }
 for command in "scene $SCENES/default.json --all" "scene model.obj --json" "--help"; do
-    # shellcheck disable=SC2086
     into_nothing $command
     check "$command | head: ends of SIGPIPE (got $status)" test $status -eq 141
     check "$command | head: without a word" test ! -s "$OUT/stderr"

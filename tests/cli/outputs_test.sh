@@ -1,6 +1,7 @@
 #!/bin/sh
 # Outputs that cannot be written: exit code 2, one line that names the file, the old one kept, and
 # nothing left beside it. What runs out of space in the middle too.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/files"
 cd "$OUT/files" || exit 1
@@ -54,17 +55,13 @@ one_option() {
 }
 
 small="--size 96x64 --quiet"
-# shellcheck disable=SC2086
 no_place .png render "$CUBE" $small -o
 no_place "" trace "$CUBE" --input "$OUT/rays" --on cpu --quiet -o
 no_place "" scene "$SCENES/spin.json" --quiet --triangles
 for end in .png .exr .pfm; do
-    # shellcheck disable=SC2086
     one_option $end render "$CUBE" $small -o
 done
-# shellcheck disable=SC2086
 one_option .exr render "$CUBE" $small -o ok.pfm --ids
-# shellcheck disable=SC2086
 one_option .png render "$CUBE" $small --view visits -o
 one_option "" trace "$CUBE" --input "$OUT/rays" --on cpu --quiet -o
 one_option "" scene "$SCENES/spin.json" --quiet --triangles
@@ -78,7 +75,6 @@ rmdir folder
 
 # In a sequence, frames before the one that fails stay.
 mkdir p.1.pfm
-# shellcheck disable=SC2086
 expect 2 "the second of two frames" render "$SCENES/spin.json" --frames 0-1 --size 96x64 -o p.#.pfm
 check "says which" grep -q "^whit: error: p.1.pfm: cannot write: Is a directory" "$OUT/stderr"
 check "says how many there are" grep -q "1 of 2 frames were written" "$OUT/stderr"
@@ -89,7 +85,6 @@ rm -r p.0.pfm p.1.pfm
 if [ -c /dev/full ]; then
     for command in "scene $CUBE" "scene $CUBE --json" "devices --json" "bvh $CUBE --no-trace --runs 1" \
         "render --help" "render $CUBE --size 8x8 -o ok.pfm --stats json" "--version"; do
-        # shellcheck disable=SC2086
         "$WHIT" $command >/dev/full 2>"$OUT/stderr"
         status=$?
         check "$command to a full device: exit code 2 (got $status)" test $status -eq 2

@@ -1,5 +1,6 @@
 #!/bin/sh
 # `whit probe`: what it prints, JSON, exit codes, options. sh TEST WHIT SCENES LEAKY
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 LEAKY=$3
@@ -8,7 +9,6 @@ J=$OUT/files/probe.json
 GLASS=$SCENES/whitted.json
 S="--size 64x48"
 
-# shellcheck disable=SC2086
 expect 0 "a pixel" probe "$GLASS" $S --pixel 32,20 --quiet --json "$J"
 check "nothing else is said" test ! -s "$OUT/stderr"
 for line in "pixel      32,20 of 64 x 48, 1 sample, watertight" "instance   1 glass ball" "primitive  0" \
@@ -26,47 +26,31 @@ check "JSON has one camera ray" jq -e '[.rays[] | select(.parent == null)] | len
 check "JSON says where" jq -e '.pixel.x == 32' "$J"
 check "JSON has the material's line" jq -e '.pixel.material.line == 12' "$J"
 cp "$J" "$OUT/first.json"
-# shellcheck disable=SC2086
 expect 0 "the same once more" probe "$GLASS" $S --pixel 32,20 --quiet --json "$J"
 check "is the same" cmp -s "$J" "$OUT/first.json"
+probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
 
 # The picture's own number: row 20 from above is 27 from below; 12 bytes a pixel behind the head.
-# shellcheck disable=SC2086
 expect 0 "the picture" render "$GLASS" $S --quiet -o "$OUT/whitted.pfm"
 head=$(($(wc -c <"$OUT/whitted.pfm") - 64 * 48 * 12))
 picture=$(od -An -tf4 -j $((head + (27 * 64 + 32) * 12)) -N 12 "$OUT/whitted.pfm")
-probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
-# shellcheck disable=SC2086
-run probe "$GLASS" $S --pixel 32,20 --quiet
-probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
 check "has that colour ($picture; $probed)" sh -c 'echo "$1 $2" | awk "{
     for (i = 1; i <= 3; i++) { d = \$i - \$(i + 3); if (d * d > 1e-12 * \$i * \$i) exit 1 }
     exit NF != 6 || \$1 + \$2 + \$3 == 0 }"' sh "$picture" "$probed"
-
-# shellcheck disable=SC2086
-expect 0 "at exact" probe "$CUBE" $S --pixel 32,24 --quiet --numerics exact
-check "exact arithmetic says the same" grep -q "^exact      differs in 0 of [1-9]" "$OUT/stdout"
+shows "at exact" "^exact      differs in 0 of [1-9]" probe "$CUBE" $S --pixel 32,24 --quiet --numerics exact
 check "to the last bit" grep -q "^primary .* =  *=  *1 1 1" "$OUT/stdout"
-# shellcheck disable=SC2086
-expect 0 "the sky" probe "$CUBE" $S --pixel 0,0 --quiet
-check "is nothing" grep -q "^instance   none" "$OUT/stdout"
-# shellcheck disable=SC2086
-expect 0 "without bounces" probe "$GLASS" $S --pixel 32,20 --depth 0 --quiet
-check "nothing is reflected" grep -q " 0 reflected, 0 refracted, 2 not traced" "$OUT/stdout"
-# shellcheck disable=SC2086
+shows "the sky" "^instance   none" probe "$CUBE" $S --pixel 0,0 --quiet
+shows "without bounces" " 0 reflected, 0 refracted, 2 not traced" probe "$GLASS" $S --pixel 32,20 --depth 0 --quiet
 expect 0 "little room" probe "$GLASS" $S --pixel 32,20 --rays 3
 check "is said" grep -q "^whit: warning: [1-9][0-9]* of $rows rays had no room" "$OUT/stderr"
 check "and shown" grep -q " $((rows - 3)) not recorded" "$OUT/stdout"
 
 L="--camera 0,0,5,0,0,0,0,1,0,40 --size 641x481 --pixel 321,240 --quiet"
-# shellcheck disable=SC2086
 expect 0 "a ray to the cube" probe "$CUBE" $L
-# shellcheck disable=SC2086
 "$LEAKY" probe "$CUBE" $L >"$OUT/stdout" 2>"$OUT/stderr"
 check "a twin that loses rays: exit code 1" test $? -eq 1
 check "says so" grep -q "^whit: error: the device and its twin differ in 1 of" "$OUT/stderr"
 check "and where" grep -q "^primary .* at .* nothing " "$OUT/stdout"
-# shellcheck disable=SC2086
 "$LEAKY" probe "$CUBE" $L --numerics fast >"$OUT/stdout" 2>"$OUT/stderr"
 check "which fast promises not: exit code 0" test $? -eq 0
 
@@ -85,6 +69,5 @@ refuse 2 "no such camera" "no camera" probe "$CUBE" --pixel 1,1 --camera nobody 
 refuse 2 "no such scene" "missing.json" probe "$OUT/missing.json" --pixel 1,1 --quiet
 refuse 2 "unknown option" "did you mean .--pixel." probe "$CUBE" --pixle 1,1
 check "no file was left" is_empty "$OUT/files"
-expect 0 "help" probe --help
-check "help names the twin" grep -q "twin" "$OUT/stdout"
+shows "help" "twin" probe --help
 finish

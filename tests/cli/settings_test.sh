@@ -87,7 +87,7 @@ flip_of 0
 usual=$flip
 flip_of -12
 check "FLIP is of what is displayed ($usual, $flip)" \
-    awk -v a="$usual" -v b="$flip" 'BEGIN { exit !(a > 0 && b < a / 4) }'
+    holds "$usual > 0 && $flip < $usual / 4"
 
 # ---- The viewer ----
 

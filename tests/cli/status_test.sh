@@ -1,6 +1,7 @@
 #!/bin/sh
 # What a kernel reports is exit code 1 and one line, and no picture: sh status_test.sh WHIT SCENES
 # SMALL_STACKS. The last is a whit whose stacks are too small, which nothing else makes overflow.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 SMALL=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
 mkdir "$OUT/pictures"
@@ -28,7 +29,6 @@ cat >"$OUT/mirrors.json" <<END
 END
 where="radiance is not finite: in [1-9][0-9]* pixels\{0,1\} so far, the first at [0-9]*,[0-9]*$"
 for options in "" "--aa 4" "--aa adaptive:0.1" "--build none" "--effects all"; do
-    # shellcheck disable=SC2086
     distrust "infinite radiance $options" "$where" "$OUT/mirrors.json" --size 16x16 $options
 done
 expect 0 "the same mirrors without a second bounce" \
@@ -71,10 +71,8 @@ awk 'BEGIN {
     for (i = 0; i < n; ++i)
         printf "f %d %d %d\n", 3 * i + 1, 3 * i + 2, 3 * i + 3 }' >"$OUT/pile.obj"
 camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001"
-# shellcheck disable=SC2086
 distrust "too many nodes" "a traversal was cut short" \
     "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --shadows none $camera
-# shellcheck disable=SC2086
 expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet
 rm p.exr
 

@@ -8,13 +8,11 @@ export VK_DRIVER_FILES VK_ICD_FILENAMES
 mkdir "$OUT/pictures"
 P=$OUT/pictures/x.png
 
-expect 0 "help" --help
-check "help lists render" grep -q "^  render " "$OUT/stdout"
+shows "help" "^  render " --help
 commands="render scene trace compare cost devices"
 "$WHIT" --help | grep -q "^  view " && commands="$commands view" # built with the viewer
 for command in $commands; do
-    expect 0 "$command --help" "$command" --help
-    check "$command --help shows its usage" grep -q "^usage: whit $command" "$OUT/stdout"
+    shows "$command --help" "^usage: whit $command" "$command" --help
 done
 expect 0 "version" --version
 check "version is a number" grep -Eq '^whit [0-9]+\.[0-9]+\.[0-9]+$' "$OUT/stdout"

@@ -1,5 +1,6 @@
 #!/bin/sh
 # The viewer and files: scenes that come, go and are mended, pictures and lines that go out, replays.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
@@ -16,7 +17,6 @@ echo no scene >list/notes.txt
 echo "--size 96x64" >start.view
 echo "--size 96x64 --effects -highlights" >plain.view
 EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
-# shellcheck disable=SC2086
 play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
 a: | scene = list/a.json
 b: press Right | scene = list/b.json | frame.ids not as a
@@ -27,27 +27,19 @@ stepped: press Period
 plays! press Space, drop $OUT/nowhere.json, until error | playing = true
 stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels not as back
 dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
-large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json
-nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped
+large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json | error has (--memory-limit)
+nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped | error has nowhere.obj
 turned: press C, move 40 30, button left down, move 49 33, button left up | scene = $SCENES/cube.json
     | frame.ids not as nowhere | error as nowhere | compare.count = 6144 | compare.other_colors = 0
-picked: click 24 32 | picked = true
+picked: click 24 32 | picked = true | probe.rays > 0
 closed! press Escape | error =
-plain: drop plain.view | compare.other_ids = 0
-copied! press Ctrl+C
+plain: drop plain.view | compare.other_ids = 0 | compare.other_colors > 0
+copied! press Ctrl+C | toast has copied: whit render $SCENES/cube.json | toast has -highlights
 mended: press F12, press C, drop start.view, drop list/b.json | error = | frame.ids as b
 END
-has=$(value large error)
-check "a scene that takes too much is refused" test "${has%% (--memory-limit)*}" != "$has"
-check "a scene that is not there is said" test "$(value nowhere error | grep -c nowhere.obj)" -eq 1
 check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
     "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
 check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
-# What is shown goes on beside what was refused.
-check "a pixel is explained" test "$(value picked probe.rays)" -gt 0
-check "A and B: highlights are gone" test "$(value plain compare.other_colors)" -gt 0
-check "Ctrl+C copies what is shown" \
-    test "$(value copied toast | grep -c "^copied: whit render $SCENES/cube.json .*-highlights")" -eq 1
 check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png
 rm whit-0001.png
 EXPECTED=
@@ -65,11 +57,9 @@ other: drop $CUBE | question =
 END
 ids=$(value without frame.ids) pixels=$(value without frame.pixels)
 play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
-allowed: until question, choose allow | question =
+allowed: until question, choose allow | question = | frame.ids = $ids | render has --allow-path $maps
 END
-is allowed frame.ids "$ids"
 check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
-check "the render line allows it too" test "$(value allowed render | grep -c -- "--allow-path $maps")" -eq 1
 
 # Read again: an error with file and line, the old picture stays; then its mend.
 cp "$CUBE" own.json
@@ -78,40 +68,19 @@ sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
 line=$(grep -n boxx broken.json | cut -d : -f 1)
 mkfifo "$OUT/pipe"
 NONE=""
-cat >"$OUT/replay" <<END
-still
-state start
-move 40 30
-button left down
-move 45 30
-button left up
-still
-state turned
+steps >"$OUT/replay" <<END
+start:
+turned: move 40 30, button left down, move 45 30, button left up
 until toast = own.json was written: reading it again
-until error
-press R
-still
-state broken
+broken: until error, press R | error has own.json:$line: | frame.ids as turned | frame.pixels as turned
 move 40 30
-button left down
-move 45 34
-button left up
-still
-click 48 32
-still
-state alive
-drop own.json
-still
-state again
+alive: button left down, move 45 34, button left up, still, click 48 32 | error as broken | frame.ids not as broken
+    | probe.rays > 0
+again: drop own.json | frame.pixels as alive | words as alive
 until error = $NONE
-still
-state mended
-drop late.json
-until error
-state missing
-until scene = late.json
-still
-state came
+mended: | error = | scene = own.json | frame.ids not as alive | words as alive
+missing! drop late.json, until error | scene = own.json
+came: until scene = late.json | error = | scene = late.json
 END
 timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
@@ -130,21 +99,7 @@ check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" 
     " own.json:$line  own.json:$line  late.json: there is no such file "
 mv "$OUT/read" "$OUT/states"
 read_states
-check "the error has file and line" test "$(value broken error | grep -c "own.json:$line:")" -eq 1
-same frame.ids turned broken
-same frame.pixels turned broken
-same error broken alive
-differs frame.ids broken alive
-same frame.pixels alive again
-same words alive again
-check "a pixel is explained beside it" test "$(value alive probe.rays)" -gt 0
-is mended error ""
-is mended scene own.json
-differs frame.ids alive mended
-same words alive mended
-is missing scene own.json
-is came error ""
-is came scene late.json
+as_wanted
 
 # Nothing is shown beside a scene that cannot be read at the start.
 printf '{ "asset": { "version": "2.0" }, ' >broken.gltf
@@ -172,7 +127,6 @@ done
 
 # ---- Out: the picture, and the line that makes it ----
 
-# shellcheck disable=SC2086
 play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
 costs! press F2 x2, still, press V, still, press F12
 press B
@@ -202,14 +156,12 @@ check "costs are not saved so" test ! -e whit-0002.png
 check "and it says how" test "$(value costs toast | grep -c 'whit render --view')" -eq 1
 
 # The words of a start are those of the state: whit view says as whit render does.
-# shellcheck disable=SC2086
 play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
     --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
 start:
     | words = --size 96x64 --aa 4 --depth 3 --bailout 0.01 --shadows opaque --fresnel schlick --build median --instances off --traversal basic --numerics fast
 END
 renders start -o words.pfm --ids words.exr
-# shellcheck disable=SC2086
 play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
 start: press F2 x2 | words = --size 96x64 --view visits --view-rays all --view-scale 64 | frame.view = visits
 END

@@ -58,7 +58,7 @@ wide() {
     awk '{ print $3 - $1 }' "$OUT/figures.$1"
 }
 check "figures are larger on a finer screen ($(wide 96), $(wide 192) pixels)" \
-    awk -v a="$(wide 96)" -v b="$(wide 192)" 'BEGIN { exit !(b > 1.6 * a && b < 2.4 * a) }'
+    holds "$(wide 192) > 1.6 * $(wide 96) && $(wide 192) < 2.4 * $(wide 96)"
 hand 192
 play "the option has the last word" "$CUBE" --size 96x64 --ui-scale 1 <<END
 shown: | ui_scale = 1

@@ -1,13 +1,13 @@
 #!/bin/sh
 # Keys of the viewer that say how rays are traced and what is painted: by replay, on states and hit
 # identities.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 SMALL="--size 96x64"
 
 # ---- How rays are traced: another way to the same hits ----
 
-# shellcheck disable=SC2086
 play "traversal, builders, instances" "$SCENES/spin.json" $SMALL <<END
 start:
 sign: press T | change.what = traversal distance -> sign
@@ -46,21 +46,18 @@ done
 # Where `fast` leaks, the window says on how many pixels: as many as two pictures of `whit render`.
 INSIDE="--camera 0,0,0,1,0,0,0,1,0,90 --size 161x121"
 for level in watertight fast; do
-    # shellcheck disable=SC2086
     expect 0 "hits of $level" render "$CUBE" -o "$OUT/x.pfm" --ids "$OUT/$level.exr" \
         --numerics $level $INSIDE --quiet
 done
 run compare "$OUT/watertight.exr" "$OUT/fast.exr"
 leaks=$(sed -n 's/.*(\([0-9]*\) of 19481 pixels not the same.*/\1/p' "$OUT/stdout")
 check "\`fast\` leaks here (on $leaks pixels)" test "$leaks" -gt 0
-# shellcheck disable=SC2086
 play "leaks" "$CUBE" $INSIDE <<END
 fast: still, press M x2 | change.what = numerics watertight -> fast | change.pixels = 19481
 END
 is fast change.other_ids "$leaks"
 
 # Without trees: the same again, and back.
-# shellcheck disable=SC2086
 play "no trees" "$CUBE" $SMALL <<END
 start:
 off: press G | keys.trees = off | frame.ids as start | frame.pixels as start | change.other_ids = 0
@@ -68,7 +65,6 @@ on: press G | keys.trees = on
 END
 
 # Where there is too much to test it is refused, and the tree stays.
-# shellcheck disable=SC2086
 play "no trees, too much" "$SCENES/54k.json" $SMALL <<END
 placed:
 refused: press G, until keys.trees = on | keys.trees = on | frame.number as placed | frame.pixels as placed
@@ -77,7 +73,6 @@ END
 
 # ---- Bounces and samples, and what is painted ----
 
-# shellcheck disable=SC2086
 play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
 start: | keys.bounces = 8
 depth: press B

@@ -1,5 +1,6 @@
 #!/bin/sh
 # What the user does is in the very next picture; what the figures say of a view.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 SMALL="--size 96x64 --fps-goal 0.1" # whole pictures also while something moves
@@ -23,7 +24,6 @@ KEYS="T K O Minus Equal A B V T ] 2 Home Period"
     done
     printf 'still\nstate before%d\n' $n
 } >"$OUT/keys"
-# shellcheck disable=SC2086
 play "keys" "$SCENES/spin.json" $SMALL <"$OUT/keys"
 n=0
 for key in $KEYS; do
@@ -49,7 +49,6 @@ drag() {
     printf 'button left up\n'
 }
 drag picture >"$OUT/drag"
-# shellcheck disable=SC2086
 play "a drag" "$SCENES/34k.json" $SMALL <"$OUT/drag"
 for n in 1 2 3 4 5 6; do
     next m$n m$((n - 1))
@@ -58,7 +57,6 @@ for n in 1 2 3 4 5 6; do
     value m$n words >"$OUT/words.$n"
 done
 drag still >"$OUT/drag"
-# shellcheck disable=SC2086
 play "the same drag, still each time" "$SCENES/34k.json" $SMALL <"$OUT/drag"
 for n in 1 2 3 4 5 6; do
     is m$n words "$(cat "$OUT/words.$n")"
@@ -67,7 +65,6 @@ done
 
 # While one picture is on its way, or has just come: the one after it. `wait` lets the first question
 # reach the engine.
-# shellcheck disable=SC2086
 play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
 before:
 after: move 30 30, button left down, move 40 32, wait 1, move 50 36
@@ -80,7 +77,6 @@ check "two pictures later at most" test "$(value after frame.number)" -le $(($(v
 
 # Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
 for scene in 34k swarm; do
-    # shellcheck disable=SC2086
     play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
 distance: size 64 48
 counted: press V
@@ -96,9 +92,8 @@ END
     same frame.visits basic twin
     differs frame.visits distance twin
     check "$scene: some are visited ($(value distance frame.visits))" \
-        awk -v v="$(value distance frame.visits)" 'BEGIN { exit !(v > 2 && v < 200) }'
+        holds "$(value distance frame.visits) > 2 && $(value distance frame.visits) < 200"
 done
-# shellcheck disable=SC2086
 play "visits without trees" "$CUBE" $SMALL <<END
 no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
@@ -109,6 +104,5 @@ counted: press V | frame.visits_rays = 76800
 END
 check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
 check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
-    awk -v a="$(value twin frame.visits)" -v b="$(value counted frame.visits)" \
-    'BEGIN { exit !(a > 0.95 * b && a < 1.05 * b) }'
+    about "$(value counted frame.visits)" "$(value twin frame.visits)" 0.05
 finish

@@ -1,5 +1,6 @@
 #!/bin/sh
 # The viewer's window and what moves in it: cameras, time, sizes, ways to show and to end.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
@@ -11,7 +12,6 @@ HIGH=${WHIT_TEST_SCREEN#*x}
 
 # ---- Cameras ----
 
-# shellcheck disable=SC2086
 play "cameras" "$SCENES/spin.json" $SMALL <<END
 start:
 around: move 40 30, button left down, move 60 40, button left up | keys.next camera of the file = by hand
@@ -45,13 +45,11 @@ along() {
           exit !(d[axis] * sign > 0 && far <= 0.1 * size(d[axis])) }'
 }
 for at in "front 2 1" "right 0 1" "above 1 1" "behind 2 -1" "left 0 -1" "below 1 -1"; do
-    # shellcheck disable=SC2086
     check "at ${at%% *}: the camera looks along its axis" along $at
 done
 
 # ---- Time ----
 
-# shellcheck disable=SC2086
 play "animation" "$SCENES/spin.json" $SMALL --fps 10 <<END
 start:
 two: press Period x2 | time_s = 0.2 | frame.ids not as start
@@ -64,7 +62,7 @@ later: press Space, wait 300, press Space | playing = false
 end: press Shift+9 x3, press Space, wait 900 | playing = false | time_s = 4
 END
 check "300 ms at double speed are 0.6 s ($(value later time_s))" \
-    awk -v t="$(value later time_s)" 'BEGIN { exit !(t > 0.599999 && t < 0.600001) }'
+    about 0.6 "$(value later time_s)"
 
 # ---- Sizes ----
 
@@ -88,7 +86,6 @@ END
 for way in direct blit "no-vsync"; do
     option=
     [ "$way" = direct ] || option=--$way
-    # shellcheck disable=SC2086
     play "$way" "$CUBE" --size 200x100 $option <<END
 shown! press F2 x2, still, shot $way.png
 END
@@ -104,7 +101,6 @@ done
 
 # ---- Help and figures ----
 
-# shellcheck disable=SC2086
 play "help, figures, Escape twice" "$CUBE" $SMALL <<END
 start: | help = false
 still! press Space | playing = false | toast = nothing moves in this scene
@@ -130,7 +126,6 @@ END
 patient=$WHIT
 WHIT=$SLOW
 export WHIT_TEST_SLOW=kernel
-# shellcheck disable=SC2086
 play "a switch that is stopped" "$CUBE" $SMALL <<END
 start:
 working! press G, until work = compiling the kernel | keys.trees = off
@@ -148,7 +143,6 @@ done
 
 # A slow picture says how far it is, and can be left.
 export WHIT_TEST_SLOW=picture
-# shellcheck disable=SC2086
 play "a slow picture" "$CUBE" $SMALL <<END
 start:
 slow! press G, picture, until part, until panels.work | keys.trees = off | frame.whole = false
@@ -157,12 +151,11 @@ END
 unset WHIT_TEST_SLOW
 WHIT=$patient
 part=$(value slow part)
-check "it says which part is done ($part)" awk -v p="$part" 'BEGIN { exit !(p > 0 && p < 1) }'
+check "it says which part is done ($part)" holds "$part > 0 && $part < 1"
 check "at slow: it is shown" test "$(value slow panels.work)" != "(no panels.work)"
 
 # ---- Ways to end ----
 
-# shellcheck disable=SC2086
 play "close" "$CUBE" $SMALL <<END
 still
 close

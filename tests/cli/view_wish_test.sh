@@ -41,8 +41,9 @@ chose() {
 # Another scene is measured anew; what is dropped meanwhile ends what goes on.
 wished "$CUBE" "drop $BALLS" "$BALLS" chosen --max-error 0.9
 chose chosen
-check "one sample or less will do" awk -v e="$(value chosen wish.predicted_error)" 'BEGIN { exit !(e > 0 && e <= 0.81) }'
-check "its picture was timed" awk -v t="$(value chosen wish.took_ms)" 'BEGIN { exit !(t > 0) }'
+error=$(value chosen wish.predicted_error)
+check "one sample or less will do ($error)" holds "$error > 0 && $error <= 0.81"
+check "its picture was timed" holds "$(value chosen wish.took_ms) > 0"
 renders chosen -o rendered.pfm
 
 wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
